@@ -1,0 +1,27 @@
+//! Expressions as a graph with shared nodes, and the algebra on it.
+//!
+//! In: terms with resolved names, as calls of [`Pool`]'s constructors. Out: [`Id`]s of nodes in canonical form, and their
+//! derivatives, antiderivatives, values, texts and identities.
+
+mod antiderivative;
+mod calculus;
+mod evaluate;
+mod function;
+mod node;
+mod polynomial;
+mod pool;
+mod product;
+#[cfg(test)]
+mod random;
+mod substitute;
+mod sum;
+mod text;
+
+pub use antiderivative::antiderivative;
+pub use calculus::{derivative, gradient};
+pub use evaluate::{Environment, apply, evaluate};
+pub use node::{Function, Id, Node, Number, Symbol};
+pub use polynomial::same_polynomial;
+pub use pool::{Pool, children};
+pub use substitute::substitute;
+pub use text::text;

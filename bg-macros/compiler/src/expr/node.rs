@@ -1,0 +1,142 @@
+//! The nodes of the expression graph.
+//!
+//! In: nothing. Out: the types that [`super::Pool`] stores.
+
+/// A node of a [`super::Pool`].
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Id(pub(super) u32);
+
+/// A quantity that an expression does not define.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Symbol {
+    /// Time.
+    Time,
+    /// A state.
+    State(u32),
+    /// A parameter.
+    Parameter(u32),
+    /// An input.
+    Input(u32),
+    /// A start value that the assembly solves for.
+    Unknown(u32),
+    /// An opaque quantity, used in proofs.
+    Atom(u32),
+}
+
+/// An elementary function.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+#[expect(missing_docs, reason = "the names are those of the functions")]
+pub enum Function {
+    Sqrt,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan2,
+    Exp,
+    Ln,
+    Tanh,
+    Abs,
+    Pow,
+}
+
+impl Function {
+    /// Number of arguments.
+    #[must_use]
+    pub fn arity(self) -> usize {
+        if matches!(self, Self::Atan2 | Self::Pow) { 2 } else { 1 }
+    }
+
+    /// The function's name in texts.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sqrt => "sqrt",
+            Self::Sin => "sin",
+            Self::Cos => "cos",
+            Self::Tan => "tan",
+            Self::Asin => "asin",
+            Self::Acos => "acos",
+            Self::Atan2 => "atan2",
+            Self::Exp => "exp",
+            Self::Ln => "ln",
+            Self::Tanh => "tanh",
+            Self::Abs => "abs",
+            Self::Pow => "pow",
+        }
+    }
+}
+
+/// A real number that can be compared, ordered and hashed; -0 is stored as 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Number(f64);
+
+impl Number {
+    /// The number of this value.
+    #[must_use]
+    pub fn new(value: f64) -> Self {
+        Self(if value == 0.0 { 0.0 } else { value })
+    }
+
+    /// Its value.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        self.0
+    }
+}
+
+impl PartialEq for Number {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.to_bits() == other.0.to_bits()
+    }
+}
+
+impl Eq for Number {}
+
+impl PartialOrd for Number {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Number {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+impl std::hash::Hash for Number {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.0.to_bits().hash(state);
+    }
+}
+
+/// What a node is.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Node {
+    /// A number.
+    Number(Number),
+    /// A quantity that the expression does not define.
+    Symbol(Symbol),
+    /// constant + sum of coefficient * node; terms sorted by node, no coefficient zero, no node a number.
+    Sum {
+        /// The constant.
+        constant: Number,
+        /// Nodes with their coefficients.
+        terms: Box<[(Id, Number)]>,
+    },
+    /// Product of node^exponent; factors sorted by node, no exponent zero, no node a number or a product.
+    Product(Box<[(Id, i32)]>),
+    /// A function.
+    Call(Function, Box<[Id]>),
+    /// `negative` where the switch's guard is below zero, `positive` elsewhere.
+    Select {
+        /// The switch's index.
+        switch: u32,
+        /// The value in the branch of the negative guard.
+        negative: Id,
+        /// The value in the other branch.
+        positive: Id,
+    },
+}

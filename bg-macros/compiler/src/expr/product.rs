@@ -1,0 +1,190 @@
+//! Products and powers in canonical form.
+//!
+//! In: nodes with whole exponents. Out: a number, a node, a [`Node::Product`], or one of these times a number.
+//! Numbers and signs stand in front of the product, powers of one base are one factor, an inner product is flattened, and
+//! the square of a square root is its argument. `x/x` is 1 for every x; a zero factor makes the product 0, and 1/0 is the
+//! number infinity.
+
+use std::collections::BTreeMap;
+
+use super::{Function, Id, Node, Pool};
+
+/// A product under construction.
+struct Draft {
+    coefficient: f64,
+    factors: BTreeMap<Id, i32>,
+}
+
+impl Draft {
+    fn multiply(&mut self, base: Id, exponent: i32) {
+        let total = self.factors.get(&base).map_or(exponent, |present| present.saturating_add(exponent));
+        if total == 0 {
+            self.factors.remove(&base);
+        } else {
+            self.factors.insert(base, total);
+        }
+    }
+}
+
+impl Pool {
+    /// `a * b`
+    pub fn mul(&mut self, a: Id, b: Id) -> Id {
+        self.powers(&[(a, 1), (b, 1)])
+    }
+
+    /// `a / b`
+    pub fn div(&mut self, a: Id, b: Id) -> Id {
+        self.powers(&[(a, 1), (b, -1)])
+    }
+
+    /// `a` to a whole power.
+    pub fn powi(&mut self, a: Id, exponent: i32) -> Id {
+        self.powers(&[(a, exponent)])
+    }
+
+    /// Product of all factors.
+    pub fn product(&mut self, factors: &[Id]) -> Id {
+        let factors: Vec<_> = factors.iter().map(|&id| (id, 1)).collect();
+        self.powers(&factors)
+    }
+
+    /// Product of node to the power of exponent.
+    pub(super) fn powers(&mut self, factors: &[(Id, i32)]) -> Id {
+        if factors.iter().any(|&(id, exponent)| exponent > 0 && self.is_zero(id)) {
+            return self.zero();
+        }
+        let mut draft = Draft { coefficient: 1.0, factors: BTreeMap::new() };
+        for &(id, exponent) in factors {
+            self.multiply(&mut draft, id, exponent);
+        }
+        while let Some((root, argument, exponent)) = self.whole_power_of_root(&draft) {
+            draft.multiply(root, -(exponent / 2 * 2));
+            self.multiply(&mut draft, argument, exponent / 2);
+        }
+        self.complete(draft)
+    }
+
+    /// Multiplies the draft by `id^exponent`: numbers and scales into the coefficient, products by their factors.
+    fn multiply(&self, draft: &mut Draft, id: Id, exponent: i32) {
+        if exponent == 0 {
+            return;
+        }
+        if let Some((node, scale)) = self.as_scaled(id) {
+            draft.coefficient *= scale.powi(exponent);
+            return self.multiply(draft, node, exponent);
+        }
+        match self.node(id) {
+            Node::Number(number) => draft.coefficient *= number.value().powi(exponent),
+            Node::Product(factors) => {
+                for &(base, inner) in factors {
+                    draft.multiply(base, inner.saturating_mul(exponent));
+                }
+            }
+            _ => draft.multiply(id, exponent),
+        }
+    }
+
+    /// A square root in a power beyond ±1, with its argument and its exponent.
+    fn whole_power_of_root(&self, draft: &Draft) -> Option<(Id, Id, i32)> {
+        draft.factors.iter().find_map(|(&id, &exponent)| match self.node(id) {
+            Node::Call(Function::Sqrt, arguments) if exponent.unsigned_abs() > 1 => Some((id, arguments[0], exponent)),
+            _ => None,
+        })
+    }
+
+    fn complete(&mut self, draft: Draft) -> Id {
+        let factors: Box<[_]> = draft.factors.into_iter().collect();
+        let product = match *factors {
+            [] => return self.number(draft.coefficient),
+            [(base, 1)] => base,
+            _ => self.intern(Node::Product(factors)),
+        };
+        self.scale(draft.coefficient, product)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::Symbol;
+
+    fn letters(pool: &mut Pool) -> [Id; 4] {
+        [0, 1, 2, 3].map(|index| pool.symbol(Symbol::State(index)))
+    }
+
+    #[test]
+    fn numbers_fold_and_stand_in_front() {
+        let mut pool = Pool::new();
+        let [x, y, ..] = letters(&mut pool);
+        let (two, three) = (pool.number(2.0), pool.number(3.0));
+        assert_eq!(pool.mul(two, three), pool.number(6.0));
+        assert_eq!(pool.div(three, two), pool.number(1.5));
+        assert_eq!(pool.mul(two, x), pool.scale(2.0, x));
+        assert_eq!(pool.product(&[]), pool.one());
+        let (double, triple, product) = (pool.scale(2.0, x), pool.scale(-3.0, y), pool.mul(x, y));
+        assert_eq!(pool.mul(double, triple), pool.scale(-6.0, product));
+        assert_eq!(*pool.node(product), Node::Product([(x, 1), (y, 1)].into()));
+        let (one, zero) = (pool.one(), pool.zero());
+        assert_eq!(pool.mul(one, x), x);
+        assert_eq!(pool.mul(x, zero), zero);
+    }
+
+    #[test]
+    fn signs_of_sums_stand_in_front() {
+        let mut pool = Pool::new();
+        let [x, y, z, _] = letters(&mut pool);
+        let (plus, minus) = (pool.sub(x, y), pool.sub(y, x));
+        let (left, right) = (pool.mul(plus, z), pool.mul(minus, z));
+        assert_eq!(right, pool.neg(left));
+        assert_eq!(pool.powi(plus, 2), pool.powi(minus, 2));
+        let square = pool.powi(plus, 2);
+        assert_eq!(pool.mul(plus, minus), pool.neg(square));
+    }
+
+    #[test]
+    fn powers_combine() {
+        let mut pool = Pool::new();
+        let [x, y, ..] = letters(&mut pool);
+        let square = pool.mul(x, x);
+        assert_eq!(*pool.node(square), Node::Product([(x, 2)].into()));
+        assert_eq!(pool.powi(x, 2), square);
+        assert_eq!(pool.div(x, x), pool.one());
+        assert_eq!(pool.div(square, x), x);
+        assert_eq!(pool.powi(x, 0), pool.one());
+        assert_eq!(pool.powi(x, 1), x);
+        let (scaled, ratio) = (pool.scale(-2.0, x), pool.div(x, y));
+        let cube = pool.powi(x, 3);
+        assert_eq!(pool.powi(scaled, 3), pool.scale(-8.0, cube));
+        assert_eq!(pool.powi(ratio, -2), pool.powers(&[(x, -2), (y, 2)]));
+        let product = pool.mul(ratio, square);
+        assert_eq!(*pool.node(product), Node::Product([(x, 3), (y, -1)].into()));
+    }
+
+    #[test]
+    fn squares_of_roots_are_arguments() {
+        let mut pool = Pool::new();
+        let [x, y, ..] = letters(&mut pool);
+        let sum = pool.linear(0.0, &[(x, 1.0), (y, 2.0)]);
+        let product = pool.scale(-3.0, sum);
+        let roots = [sum, product].map(|argument| pool.call(Function::Sqrt, &[argument]));
+        assert_eq!(pool.powi(roots[0], 2), sum);
+        assert_eq!(pool.mul(roots[1], roots[1]), product);
+        assert_eq!(pool.powi(roots[0], -2), pool.powi(sum, -1));
+        assert_eq!(pool.powi(roots[0], 5), pool.powers(&[(roots[0], 1), (sum, 2)]));
+        assert_eq!(pool.powi(roots[0], -3), pool.powers(&[(roots[0], -1), (sum, -1)]));
+        let nested = pool.call(Function::Sqrt, &[roots[0]]);
+        assert_eq!(pool.powi(nested, 4), sum);
+    }
+
+    #[test]
+    fn division_by_zero_is_infinite() {
+        let mut pool = Pool::new();
+        let [x, ..] = letters(&mut pool);
+        let (zero, one) = (pool.zero(), pool.one());
+        assert_eq!(pool.div(one, zero), pool.number(f64::INFINITY));
+        assert_eq!(pool.div(x, zero), pool.scale(f64::INFINITY, x));
+        assert_eq!(pool.div(zero, zero), zero);
+        let infinite = pool.div(one, zero);
+        assert_eq!(pool.mul(zero, infinite), zero);
+    }
+}

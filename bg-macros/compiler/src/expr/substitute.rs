@@ -1,0 +1,99 @@
+//! Substitution of symbols.
+//!
+//! In: nodes, and an expression for each symbol to be replaced. Out: the same nodes over the new symbols, in canonical form.
+
+use std::collections::HashMap;
+
+use super::{Id, Node, Pool, Symbol, children};
+
+/// The roots with every symbol replaced for which `replace` gives an expression. Replacements are not searched again.
+pub fn substitute(pool: &mut Pool, roots: &[Id], replace: &dyn Fn(Symbol) -> Option<Id>) -> Vec<Id> {
+    let mut images: HashMap<Id, Id> = HashMap::new();
+    for id in pool.reachable(roots) {
+        let image = match *pool.node(id) {
+            Node::Symbol(symbol) => replace(symbol).unwrap_or(id),
+            _ => pool.rebuild(id, &images),
+        };
+        images.insert(id, image);
+    }
+    roots.iter().map(|root| images[root]).collect()
+}
+
+impl Pool {
+    /// The node over the images of its children.
+    fn rebuild(&mut self, id: Id, images: &HashMap<Id, Id>) -> Id {
+        if children(self.node(id)).all(|child| images[&child] == child) {
+            return id;
+        }
+        match self.node(id).clone() {
+            Node::Number(_) | Node::Symbol(_) => id,
+            Node::Sum { constant, terms } => {
+                let terms: Vec<_> = terms.iter().map(|(id, c)| (images[id], c.value())).collect();
+                self.linear(constant.value(), &terms)
+            }
+            Node::Product(factors) => {
+                let factors: Vec<_> = factors.iter().map(|(id, exponent)| (images[id], *exponent)).collect();
+                self.powers(&factors)
+            }
+            Node::Call(function, arguments) => {
+                let arguments: Vec<_> = arguments.iter().map(|id| images[id]).collect();
+                self.call(function, &arguments)
+            }
+            Node::Select { switch, negative, positive } => self.select(switch, images[&negative], images[&positive]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::{Function, random};
+
+    #[test]
+    fn replaces_and_simplifies() {
+        let mut pool = Pool::new();
+        let (x, y) = (pool.symbol(Symbol::State(0)), pool.symbol(Symbol::State(1)));
+        let sum = pool.add(x, y);
+        let product = pool.mul(sum, x);
+        let minus = pool.neg(y);
+        let replace = |symbol| (symbol == Symbol::State(0)).then_some(minus);
+        assert_eq!(substitute(&mut pool, &[product, y], &replace), [pool.zero(), y]);
+    }
+
+    #[test]
+    fn swaps_symbols_at_once() {
+        let mut pool = Pool::new();
+        let (x, y) = (pool.symbol(Symbol::State(0)), pool.symbol(Symbol::State(1)));
+        let difference = pool.sub(x, y);
+        let swap = |symbol| Some(if symbol == Symbol::State(0) { y } else { x });
+        let image = substitute(&mut pool, &[difference], &swap)[0];
+        assert_eq!(image, pool.neg(difference));
+    }
+
+    #[test]
+    fn no_replacement_changes_nothing() {
+        let mut pool = Pool::new();
+        let roots = random::Source::new(3).expressions(&mut pool, 60);
+        let length = pool.len();
+        assert_eq!(substitute(&mut pool, &roots, &|_| None), roots);
+        assert_eq!(pool.len(), length);
+    }
+
+    #[test]
+    fn a_chain_of_50_000_nodes() {
+        let mut pool = Pool::new();
+        let (x, y) = (pool.symbol(Symbol::State(0)), pool.symbol(Symbol::State(1)));
+        let chain = |pool: &mut Pool, start| {
+            (0..25_000).fold(start, |link, _| {
+                let sine = pool.call(Function::Sin, &[link]);
+                pool.add(sine, y)
+            })
+        };
+        let of_x = chain(&mut pool, x);
+        let z = pool.symbol(Symbol::State(2));
+        let of_z = chain(&mut pool, z);
+        assert!(pool.reachable(&[of_x]).len() > 50_000);
+        let replace = |symbol| (symbol == Symbol::State(0)).then_some(z);
+        assert_eq!(substitute(&mut pool, &[of_x], &replace), [of_z]);
+    }
+}

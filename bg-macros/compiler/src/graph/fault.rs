@@ -1,0 +1,196 @@
+//! What can be wrong with the names, ports, cardinalities, shapes and units of a graph.
+
+use super::Shape;
+use crate::fault::Explain;
+use crate::units::Dimension;
+
+/// A fault of the resolution.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
+pub enum GraphFault {
+    Duplicate { name: String },
+    UnknownName { name: String, near: Option<String> },
+    UnknownFunction { name: String, near: Option<String> },
+    UnknownDomain { name: String, near: Option<String> },
+    ArgumentCount { function: String, expected: usize, found: usize },
+    NotANode { name: String },
+    OnePortBonds { symbol: &'static str, name: String, count: usize },
+    TwoPortBonds { symbol: &'static str, name: String, inward: usize, outward: usize },
+    NoBond { name: String },
+    Cardinality { from: String, from_cardinality: usize, to: String, to_cardinality: usize },
+    TransformerShape { name: String, found: Shape, inward: usize, outward: usize },
+    Shapes { what: &'static str, left: Shape, right: Shape },
+    ShapeOf { what: String, expected: Shape, found: Shape },
+    NoComponent { found: Shape },
+    Units { what: String, left: Dimension, right: Dimension },
+    NotDimensionless { what: String, found: Dimension },
+    NoRoot { found: Dimension },
+    UnknownUnits { from: String, to: String },
+    LawUnit { symbol: &'static str, name: String, found: Dimension, expected: Vec<Dimension> },
+    NumberForC { name: String },
+    Modulated { symbol: &'static str, name: String, by: String },
+    NotConstant { what: String, by: String },
+    LetCycle { name: String },
+    TrackOfNoJunction { track: String, junction: String },
+    NotStorage { name: String, clause: &'static str },
+    RangeEmpty { name: String },
+    DefaultOutOfRange { name: String },
+    NotANumber { what: String },
+    GuessOutsideStart,
+    IntegralOutsideObserve,
+    VariableRole { name: String, symbol: &'static str },
+    EmptyGraph { name: String },
+}
+
+use GraphFault as F;
+
+impl Explain for GraphFault {
+    fn code(&self) -> &'static str {
+        match self {
+            F::Duplicate { .. } => "BG0302",
+            F::UnknownName { .. } => "BG0303",
+            F::UnknownFunction { .. } => "BG0304",
+            F::UnknownDomain { .. } => "BG0305",
+            F::ArgumentCount { .. } => "BG0306",
+            F::NotANode { .. } => "BG0307",
+            F::OnePortBonds { .. } => "BG0308",
+            F::TwoPortBonds { .. } => "BG0309",
+            F::NoBond { .. } => "BG0310",
+            F::Cardinality { .. } => "BG0311",
+            F::TransformerShape { .. } => "BG0312",
+            F::Shapes { .. } => "BG0313",
+            F::ShapeOf { .. } => "BG0314",
+            F::NoComponent { .. } => "BG0315",
+            F::Units { .. } => "BG0316",
+            F::NotDimensionless { .. } => "BG0317",
+            F::NoRoot { .. } => "BG0318",
+            F::UnknownUnits { .. } => "BG0319",
+            F::LawUnit { .. } => "BG0320",
+            F::NumberForC { .. } => "BG0321",
+            F::Modulated { .. } => "BG0322",
+            F::NotConstant { .. } => "BG0323",
+            F::LetCycle { .. } => "BG0324",
+            F::TrackOfNoJunction { .. } => "BG0325",
+            F::NotStorage { .. } => "BG0326",
+            F::RangeEmpty { .. } => "BG0327",
+            F::DefaultOutOfRange { .. } => "BG0328",
+            F::NotANumber { .. } => "BG0329",
+            F::GuessOutsideStart => "BG0330",
+            F::IntegralOutsideObserve => "BG0331",
+            F::VariableRole { .. } => "BG0332",
+            F::EmptyGraph { .. } => "BG0333",
+        }
+    }
+
+    fn message(&self) -> String {
+        match self {
+            F::Duplicate { name } => format!("`{name}` is declared twice"),
+            F::UnknownName { name, .. } => format!("nothing is called `{name}`"),
+            F::UnknownFunction { name, .. } => format!("there is no function `{name}`"),
+            F::UnknownDomain { name, .. } => format!("there is no energy domain `{name}`"),
+            F::ArgumentCount { function, expected, found } => {
+                format!("`{function}` takes {expected} argument(s), not {found}")
+            }
+            F::NotANode { name } => format!("`{name}` is neither a junction nor an element, so no bond can end at it"),
+            F::OnePortBonds { symbol, name, count } => format!("{symbol} `{name}` has one port but {count} bonds"),
+            F::TwoPortBonds { symbol, name, inward, outward } => format!(
+                "{symbol} `{name}` needs one half arrow in and one out; it has {inward} in and {outward} out"
+            ),
+            F::NoBond { name } => format!("no bond ends at `{name}`"),
+            F::Cardinality { from, from_cardinality, to, to_cardinality } => format!(
+                "the bond joins `{from}` of cardinality {from_cardinality} to `{to}` of cardinality {to_cardinality}"
+            ),
+            F::TransformerShape { name, found, inward, outward } => format!(
+                "the modulus of `{name}` is a {found}, which cannot map the {inward} flow(s) of the bond in to the \
+                 {outward} of the bond out"
+            ),
+            F::Shapes { what, left, right } => format!("cannot {what} a {left} and a {right}"),
+            F::ShapeOf { what, expected, found } => format!("{what} must be a {expected}; this is a {found}"),
+            F::NoComponent { found } => format!("a {found} has no component x, y or z"),
+            F::Units { what, left, right } => format!("{what}: the units {left} and {right} disagree"),
+            F::NotDimensionless { what, found } => format!("{what} must be a pure number; this has unit {found}"),
+            F::NoRoot { found } => format!("the square root of a quantity in {found} has no unit"),
+            F::UnknownUnits { from, to } => {
+                format!("nothing fixes the units of effort and flow on the bond `{from}` -> `{to}`")
+            }
+            F::LawUnit { symbol, name, found, expected } => format!(
+                "the law of {symbol} `{name}` has unit {found}; its bond asks for {}",
+                expected.iter().map(ToString::to_string).collect::<Vec<_>>().join(" or ")
+            ),
+            F::NumberForC { name } => {
+                format!("the bare number of C `{name}` may be a stiffness or a compliance")
+            }
+            F::Modulated { symbol, name, by } => format!("{symbol} `{name}` is modulated by {by}"),
+            F::NotConstant { what, by } => format!("{what} depends on {by}"),
+            F::LetCycle { name } => format!("`{name}` is defined by itself"),
+            F::TrackOfNoJunction { track, junction } => {
+                format!("`{track}` follows `{junction}`, which is no 1-junction of cardinality 3")
+            }
+            F::NotStorage { name, clause } => format!("`{name}` cannot have the clause `{clause}`"),
+            F::RangeEmpty { name } => format!("no value of `{name}` is allowed by its range"),
+            F::DefaultOutOfRange { name } => format!("the default of `{name}` is outside its range"),
+            F::NotANumber { what } => format!("{what} must be made of numbers only"),
+            F::GuessOutsideStart => "`guess` has a meaning only in a start value".to_owned(),
+            F::IntegralOutsideObserve => "`integral` has a meaning only in an observed output".to_owned(),
+            F::VariableRole { name, symbol } => format!("the law of {symbol} `{name}` cannot be of that variable"),
+            F::EmptyGraph { name } => format!("graph `{name}` has no bond"),
+        }
+    }
+
+    fn help(&self) -> String {
+        match self {
+            F::Duplicate { .. } => "give one of them another name".to_owned(),
+            F::UnknownName { near: Some(near), .. } | F::UnknownFunction { near: Some(near), .. } => {
+                format!("did you mean `{near}`?")
+            }
+            F::UnknownName { name, .. } => format!("declare `{name}`"),
+            F::UnknownFunction { .. } => {
+                format!("use one of {}", super::Builtin::names().collect::<Vec<_>>().join(" "))
+            }
+            F::UnknownDomain { near: Some(near), .. } => format!("did you mean `{near}`?"),
+            F::UnknownDomain { .. } => {
+                let names: Vec<_> = crate::units::DOMAINS.iter().map(|domain| domain.name).collect();
+                format!("use one of {}", names.join(" "))
+            }
+            F::ArgumentCount { expected, .. } => format!("give it {expected}"),
+            F::NotANode { .. } => "name a junction or an element".to_owned(),
+            F::OnePortBonds { name, count: 0, .. } | F::NoBond { name } => {
+                format!("bond `{name}` to a junction, `... -> {name};`, or delete it")
+            }
+            F::OnePortBonds { .. } => "put a junction in between and bond the others to that".to_owned(),
+            F::TwoPortBonds { name, .. } => format!("write it inside one chain, `a -> {name} -> b;`"),
+            F::Cardinality { .. } => {
+                "make the junctions alike, or put a TF in between that maps the flows, `TF t(v) = dot(n, v);`".to_owned()
+            }
+            F::TransformerShape { inward, outward, .. } => format!(
+                "write the law as a map of the flow, `(flow v) = ...`, from {inward} component(s) to {outward}"
+            ),
+            F::Shapes { what: "multiply", .. } => "use `dot`, `cross` or `outer` for two vectors".to_owned(),
+            F::Shapes { .. } => "make them alike".to_owned(),
+            F::ShapeOf { expected, .. } => match expected {
+                Shape::Scalar => "write a scalar, or take a component such as `.x`".to_owned(),
+                Shape::Vector => "write `[x, y, z]`".to_owned(),
+                Shape::Matrix => "write its three rows, `[[..], [..], [..]]`, or use a rotation".to_owned(),
+            },
+            F::NoComponent { .. } => "take components of vectors only".to_owned(),
+            F::Units { .. } => "change one of the two so that they agree".to_owned(),
+            F::NotDimensionless { .. } => "divide by a reference quantity of the same unit".to_owned(),
+            F::NoRoot { .. } => "take the root of a square".to_owned(),
+            F::UnknownUnits { from, .. } => format!("give a junction on it its domain, such as `1 {from}: rotation;`"),
+            F::LawUnit { expected, .. } => format!("give a value in {}", expected.first().map_or_else(String::new, ToString::to_string)),
+            F::NumberForC { .. } => "use a parameter with its unit".to_owned(),
+            F::Modulated { symbol, name, .. } => format!("write `M{symbol} {name}`"),
+            F::NotConstant { .. } => "use parameters and numbers only".to_owned(),
+            F::LetCycle { .. } => "break the circle".to_owned(),
+            F::TrackOfNoJunction { .. } => "follow a `1 NAME[3]` junction".to_owned(),
+            F::NotStorage { clause, .. } => format!("remove `{clause}`"),
+            F::RangeEmpty { .. } => "swap or widen the ends".to_owned(),
+            F::DefaultOutOfRange { .. } => "change the default or the range".to_owned(),
+            F::NotANumber { .. } => "write a number".to_owned(),
+            F::GuessOutsideStart => "write the value itself".to_owned(),
+            F::IntegralOutsideObserve => "observe the integral, or use a C or I for a state".to_owned(),
+            F::VariableRole { .. } => "leave `effort` or `flow` away: a C's law is of its displacement, an I's of its momentum".to_owned(),
+            F::EmptyGraph { .. } => "bond its elements in a chain, `a -> b;`".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! The multibond graph: nodes, bonds and expressions with every name resolved, every unit known.
+//!
+//! In: `ast` of bond-graph words. Out: [`BondGraph`]. No longer occurs: names, missing ports, unknown cardinalities, units.
+
+mod connect;
+mod domains;
+mod fault;
+mod resolve;
+mod term;
+mod typing;
+
+use crate::ast::{ElementKind, Name, Role, TrackKind};
+use crate::units::Dimension;
+
+pub use fault::GraphFault;
+pub use resolve::resolve;
+pub use term::{Builtin, Reference, Term, TermKind};
+pub use typing::Shape;
+
+/// A resolved multibond graph. Indices of its tables are typed by their names: `NodeId`, `BondId`.
+#[derive(Clone, Debug)]
+pub struct BondGraph {
+    /// The generated type's name.
+    pub name: Name,
+    /// Documentation comment.
+    pub docs: String,
+    /// Visibility of the generated items.
+    pub visibility: syn::Visibility,
+    /// Parameters in the order of declaration.
+    pub parameters: Vec<Parameter>,
+    /// Inputs in the order of declaration.
+    pub inputs: Vec<Input>,
+    /// Names for expressions; a let refers to others in any order without cycles.
+    pub lets: Vec<Let>,
+    /// Junctions and elements in the order of declaration.
+    pub nodes: Vec<Node>,
+    /// Bonds in the order of the chains.
+    pub bonds: Vec<Bond>,
+    /// Kinematic states in the order of declaration.
+    pub tracks: Vec<Track>,
+    /// The state-carrying items in the order of declaration.
+    pub storages: Vec<Storage>,
+    /// Gaps for the assembly of the start.
+    pub closes: Vec<Close>,
+    /// Observed outputs.
+    pub observations: Vec<Observation>,
+    /// The guesses in start expressions, each one unknown of the assembly.
+    pub guesses: Vec<Term>,
+    /// Time integrals that outputs ask for, each one state.
+    pub integrals: Vec<Integral>,
+}
+
+/// Index of a node.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Hash)]
+pub struct NodeId(pub usize);
+
+/// Index of a bond.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Hash)]
+pub struct BondId(pub usize);
+
+/// What carries states, in the order of declaration.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Storage {
+    /// A C or I.
+    Element(NodeId),
+    /// A position or orientation, an index into `tracks`.
+    Track(usize),
+}
+
+/// A parameter.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Its name.
+    pub name: Name,
+    /// Documentation comment.
+    pub docs: String,
+    /// Its unit as written.
+    pub unit: String,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Its default.
+    pub default: f64,
+    /// Lower end and whether it is included.
+    pub lower: Option<(f64, bool)>,
+    /// Upper end and whether it is included.
+    pub upper: Option<(f64, bool)>,
+}
+
+/// An input.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// Its name.
+    pub name: Name,
+    /// Documentation comment.
+    pub docs: String,
+    /// Its unit as written.
+    pub unit: String,
+    /// Its dimension.
+    pub dimension: Dimension,
+}
+
+/// A name for an expression.
+#[derive(Clone, Debug)]
+pub struct Let {
+    /// Its name.
+    pub name: Name,
+    /// Its value.
+    pub value: Term,
+    /// Its unit, when declared.
+    pub dimension: Option<Dimension>,
+}
+
+/// A junction or an element.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Its name.
+    pub name: Name,
+    /// What it is.
+    pub kind: NodeKind,
+    /// Its bonds; a two-port's in order: the one that points in, the one that points out.
+    pub bonds: Vec<BondId>,
+}
+
+/// What a node is.
+#[derive(Clone, Debug)]
+pub enum NodeKind {
+    /// Common effort.
+    Zero,
+    /// Common flow.
+    One,
+    /// An element.
+    Element(Element),
+}
+
+/// An element.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// What it is.
+    pub kind: ElementKind,
+    /// Its constitutive law.
+    pub law: Law,
+    /// The law as written.
+    pub text: String,
+    /// The orientation that a tensor turns with.
+    pub frame: Option<Term>,
+    /// The displacement that the poses determine.
+    pub displacement: Option<Term>,
+    /// The state at t = 0.
+    pub start: Option<Term>,
+    /// The stored energy of a nonlinear law.
+    pub energy: Option<Term>,
+}
+
+/// A constitutive law.
+#[derive(Clone, Debug)]
+pub enum Law {
+    /// Value of a source, modulus of a two-port, resistance, inertia.
+    Parameter(Term),
+    /// A C's effort per displacement.
+    Stiffness(Term),
+    /// A C's displacement per effort.
+    Compliance(Term),
+    /// An expression of the law's variable.
+    Of {
+        /// Whether an R's or a two-port's variable is effort or flow.
+        role: Role,
+        /// The expression.
+        value: Term,
+    },
+}
+
+impl Law {
+    /// The expression of the law.
+    #[must_use]
+    pub fn term(&self) -> &Term {
+        match self {
+            Self::Parameter(term) | Self::Stiffness(term) | Self::Compliance(term) => term,
+            Self::Of { value, .. } => value,
+        }
+    }
+}
+
+/// A bond.
+#[derive(Clone, Debug)]
+pub struct Bond {
+    /// Where the half arrow starts.
+    pub from: NodeId,
+    /// Where it points.
+    pub to: NodeId,
+    /// 1 or 3.
+    pub cardinality: usize,
+    /// Dimension of the effort.
+    pub effort: Dimension,
+    /// The bond's place in the source.
+    pub span: proc_macro2::Span,
+}
+
+impl Bond {
+    /// The node at the other end.
+    #[must_use]
+    pub fn other(&self, node: NodeId) -> NodeId {
+        if self.from == node { self.to } else { self.from }
+    }
+
+    /// Dimension of the flow.
+    #[must_use]
+    pub fn flow(&self) -> Dimension {
+        Dimension::WATT.per(self.effort)
+    }
+}
+
+/// A kinematic state.
+#[derive(Clone, Debug)]
+pub struct Track {
+    /// Position or orientation.
+    pub kind: TrackKind,
+    /// Its name.
+    pub name: Name,
+    /// The 1-junction that it follows.
+    pub junction: NodeId,
+    /// Its value at t = 0.
+    pub start: Option<Term>,
+}
+
+/// A gap to be closed at the start.
+#[derive(Clone, Debug)]
+pub struct Close {
+    /// The joint.
+    pub joint: Name,
+    /// The gap.
+    pub gap: Term,
+    /// Scalar or vector.
+    pub shape: Shape,
+    /// Its dimension.
+    pub dimension: Dimension,
+}
+
+/// An observed output.
+#[derive(Clone, Debug)]
+pub struct Observation {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: Term,
+    /// Its shape.
+    pub shape: Shape,
+    /// Its unit as text.
+    pub unit: String,
+}
+
+/// A time integral.
+#[derive(Clone, Debug)]
+pub struct Integral {
+    /// The integrand.
+    pub value: Term,
+    /// The integrand's dimension.
+    pub dimension: Dimension,
+}
+
+impl BondGraph {
+    /// A node.
+    #[must_use]
+    pub fn node(&self, id: NodeId) -> &Node {
+        &self.nodes[id.0]
+    }
+
+    /// A bond.
+    #[must_use]
+    pub fn bond(&self, id: BondId) -> &Bond {
+        &self.bonds[id.0]
+    }
+
+    /// The element at a node, unless it is a junction.
+    #[must_use]
+    pub fn element(&self, id: NodeId) -> Option<&Element> {
+        match &self.node(id).kind {
+            NodeKind::Element(element) => Some(element),
+            NodeKind::Zero | NodeKind::One => None,
+        }
+    }
+
+    /// +1 where the bond's half arrow points into the node, -1 where it points out.
+    #[must_use]
+    pub fn sign(&self, bond: BondId, node: NodeId) -> f64 {
+        if self.bond(bond).to == node { 1.0 } else { -1.0 }
+    }
+}
+
+impl NodeKind {
+    /// The field's symbol.
+    #[must_use]
+    pub fn symbol(&self) -> &'static str {
+        match self {
+            Self::Zero => "0",
+            Self::One => "1",
+            Self::Element(element) => element.kind.symbol(),
+        }
+    }
+}
+
+impl ElementKind {
+    /// The field's symbol.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Se => "Se",
+            Self::Sf => "Sf",
+            Self::I => "I",
+            Self::C => "C",
+            Self::R => "R",
+            Self::Tf => "TF",
+            Self::Gy => "GY",
+            Self::MSe => "MSe",
+            Self::MSf => "MSf",
+            Self::Mtf => "MTF",
+            Self::Mgy => "MGY",
+            Self::Mr => "MR",
+        }
+    }
+
+    /// Whether it has two ports.
+    #[must_use]
+    pub fn is_two_port(self) -> bool {
+        matches!(self, Self::Tf | Self::Gy | Self::Mtf | Self::Mgy)
+    }
+}

@@ -1,0 +1,611 @@
+//! Names to indices, chains to bonds, expressions to terms.
+//!
+//! In: one `ast::Graph` of bond-graph words. Out: a [`BondGraph`] that every later stage can trust.
+
+use std::collections::BTreeMap;
+
+use proc_macro2::Span;
+
+use super::term::{Builtin, Reference, Term, TermKind};
+use super::typing::{Quantity, Shape, Types};
+use super::{
+    BondGraph, Close, Element, GraphFault, Input, Integral, Law, Let, Node, NodeId, NodeKind, Observation, Parameter,
+    Storage, Track, connect, domains,
+};
+use crate::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role};
+use crate::fault::{Fault, Staged, near_miss};
+use crate::units::{self, Dimension, Domain};
+
+/// What a name stands for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Entity {
+    /// A parameter.
+    Parameter(usize),
+    /// An input.
+    Input(usize),
+    /// A named expression.
+    Let(usize),
+    /// A junction or element.
+    Node(NodeId),
+    /// A position or orientation.
+    Track(usize),
+}
+
+/// Resolves one graph of bond-graph words.
+///
+/// # Errors
+/// All faults of names, ports and cardinalities; where there are none, all faults of shapes and units.
+pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
+    let mut resolver = Resolver::new(source);
+    resolver.declare(source);
+    let chains: Vec<Vec<Name>> = source
+        .items
+        .iter()
+        .filter_map(|item| if let Item::Chain(chain) = item { Some(chain.clone()) } else { None })
+        .collect();
+    resolver.define(source);
+    resolver.tracks(source);
+    connect::bonds(
+        &mut resolver.graph,
+        &chains,
+        &resolver.names,
+        &resolver.junctions,
+        &mut resolver.faults,
+    );
+    if resolver.graph.bonds.is_empty() && resolver.faults.is_empty() {
+        let name = source.name.text.clone();
+        resolver.faults.push(Fault::new(source.name.span, &GraphFault::EmptyGraph { name }));
+    }
+    resolver.checked()?;
+    domains::assign(&mut resolver.graph, &resolver.domains, &mut resolver.faults);
+    resolver.dependencies();
+    resolver.finish_outputs();
+    resolver.checked()?;
+    Ok(resolver.graph)
+}
+
+/// Where an expression stands, which decides what it may contain.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place<'a> {
+    Plain,
+    Law(Option<&'a str>),
+    Start,
+    Observed,
+}
+
+struct Resolver {
+    graph: BondGraph,
+    names: BTreeMap<String, Entity>,
+    junctions: BTreeMap<NodeId, usize>,
+    domains: Vec<(NodeId, Domain)>,
+    observed: Vec<Option<Dimension>>,
+    faults: Vec<Fault>,
+}
+
+impl Resolver {
+    fn new(source: &ast::Graph) -> Self {
+        let graph = BondGraph {
+            name: source.name.clone(),
+            docs: source.docs.clone(),
+            visibility: source.visibility.clone(),
+            parameters: Vec::new(),
+            inputs: Vec::new(),
+            lets: Vec::new(),
+            nodes: Vec::new(),
+            bonds: Vec::new(),
+            tracks: Vec::new(),
+            storages: Vec::new(),
+            closes: Vec::new(),
+            observations: Vec::new(),
+            guesses: Vec::new(),
+            integrals: Vec::new(),
+        };
+        Self {
+            graph,
+            names: BTreeMap::new(),
+            junctions: BTreeMap::new(),
+            domains: Vec::new(),
+            observed: Vec::new(),
+            faults: Vec::new(),
+        }
+    }
+
+    fn checked(&mut self) -> Staged<()> {
+        if self.faults.is_empty() { Ok(()) } else { Err(std::mem::take(&mut self.faults)) }
+    }
+
+    fn fault(&mut self, span: Span, fault: &GraphFault) {
+        self.faults.push(Fault::new(span, fault));
+    }
+
+    fn name(&mut self, name: &Name, entity: Entity) {
+        if self.names.insert(name.text.clone(), entity).is_some() || name.text == "t" {
+            self.fault(name.span, &GraphFault::Duplicate { name: name.text.clone() });
+        }
+    }
+
+    fn unit(&mut self, unit: &ast::Unit) -> Dimension {
+        units::dimension(unit).unwrap_or_else(|fault| {
+            self.faults.push(fault);
+            Dimension::NONE
+        })
+    }
+
+    /// First pass: every name gets its index.
+    fn declare(&mut self, source: &ast::Graph) {
+        let (mut lets, mut tracks, mut nodes) = (0, 0, 0);
+        for item in &source.items {
+            match item {
+                Item::Parameter(parameter) => self.parameter(parameter),
+                Item::Input(input) => {
+                    let dimension = self.unit(&input.unit);
+                    self.name(&input.name, Entity::Input(self.graph.inputs.len()));
+                    let (name, docs, unit) = (input.name.clone(), input.docs.clone(), input.unit.to_string());
+                    self.graph.inputs.push(Input { name, docs, unit, dimension });
+                }
+                Item::Let(definition) => {
+                    self.name(&definition.name, Entity::Let(lets));
+                    lets += 1;
+                }
+                Item::Junction(junction) => {
+                    self.junction(junction, NodeId(nodes));
+                    nodes += 1;
+                }
+                Item::Element(element) => {
+                    self.name(&element.name, Entity::Node(NodeId(nodes)));
+                    nodes += 1;
+                }
+                Item::Track(track) => {
+                    self.name(&track.name, Entity::Track(tracks));
+                    tracks += 1;
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn parameter(&mut self, parameter: &ast::Parameter) {
+        let dimension = self.unit(&parameter.unit);
+        self.name(&parameter.name, Entity::Parameter(self.graph.parameters.len()));
+        let name = &parameter.name;
+        let default = self.number(&parameter.default);
+        let lower = parameter.lower.as_ref().map(|bound| (self.number(&bound.value), bound.included));
+        let upper = parameter.upper.as_ref().map(|bound| (self.number(&bound.value), bound.included));
+        if let (Some((low, _)), Some((high, _))) = (lower, upper)
+            && low > high
+        {
+            self.fault(name.span, &GraphFault::RangeEmpty { name: name.text.clone() });
+        }
+        let above = lower.is_none_or(|(low, included)| default > low || included && default == low);
+        let below = upper.is_none_or(|(high, included)| default < high || included && default == high);
+        if !(above && below) {
+            self.fault(parameter.default.span, &GraphFault::DefaultOutOfRange { name: name.text.clone() });
+        }
+        let (docs, unit) = (parameter.docs.clone(), parameter.unit.to_string());
+        self.graph.parameters.push(Parameter { name: name.clone(), docs, unit, dimension, default, lower, upper });
+    }
+
+    /// The value of an expression of numbers.
+    fn number(&mut self, expression: &Expression) -> f64 {
+        if let Some(value) = number(expression)
+            && value.is_finite()
+        {
+            return value;
+        }
+        self.fault(expression.span, &GraphFault::NotANumber { what: "a default or an end of a range".to_owned() });
+        0.0
+    }
+
+    fn junction(&mut self, junction: &ast::Junction, id: NodeId) {
+        self.name(&junction.name, Entity::Node(id));
+        self.junctions.insert(id, junction.cardinality);
+        if let Some(word) = &junction.domain {
+            match Domain::named(&word.text) {
+                Some(domain) => self.domains.push((id, domain)),
+                None => {
+                    let near = near_miss(&word.text, units::DOMAINS.iter().map(|domain| domain.name));
+                    let near = near.map(str::to_owned);
+                    self.fault(word.span, &GraphFault::UnknownDomain { name: word.text.clone(), near });
+                }
+            }
+        }
+    }
+
+    /// Second pass: every item gets its terms.
+    fn define(&mut self, source: &ast::Graph) {
+        let mut tracks = 0;
+        for item in &source.items {
+            match item {
+                Item::Let(definition) => {
+                    let value = self.term(&definition.value, Place::Plain);
+                    let dimension = definition.unit.as_ref().map(|unit| self.unit(unit));
+                    self.graph.lets.push(Let { name: definition.name.clone(), value, dimension });
+                }
+                Item::Junction(junction) => {
+                    let kind = match junction.kind {
+                        JunctionKind::Zero => NodeKind::Zero,
+                        JunctionKind::One => NodeKind::One,
+                    };
+                    self.graph.nodes.push(Node { name: junction.name.clone(), kind, bonds: Vec::new() });
+                }
+                Item::Element(element) => self.element(element),
+                Item::Track(_) => {
+                    self.graph.storages.push(Storage::Track(tracks));
+                    tracks += 1;
+                }
+                Item::Close(close) => {
+                    let gap = self.term(&close.gap, Place::Plain);
+                    let (shape, dimension) = (Shape::Scalar, Dimension::NONE);
+                    self.graph.closes.push(Close { joint: close.joint.clone(), gap, shape, dimension });
+                }
+                Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
+                _ => {}
+            }
+        }
+    }
+
+    fn tracks(&mut self, source: &ast::Graph) {
+        for item in &source.items {
+            let Item::Track(track) = item else { continue };
+            let junction = match self.names.get(&track.junction.text) {
+                Some(Entity::Node(id)) if self.junctions.get(id) == Some(&3) => Some(*id),
+                _ => None,
+            };
+            let one = junction.filter(|&id| matches!(self.graph.node(id).kind, NodeKind::One));
+            if one.is_none() {
+                let span = track.junction.span;
+                let (track, junction) = (track.name.text.clone(), track.junction.text.clone());
+                self.faults.push(Fault::new(span, &GraphFault::TrackOfNoJunction { track, junction }));
+            }
+            let start = track.start.as_ref().map(|start| self.term(start, Place::Start));
+            let (kind, name) = (track.kind, track.name.clone());
+            self.graph.tracks.push(Track { kind, name, junction: one.unwrap_or(NodeId(0)), start });
+        }
+    }
+
+    fn element(&mut self, element: &ast::Element) {
+        let kind = element.kind;
+        let id = NodeId(self.graph.nodes.len());
+        self.clauses_fit(element);
+        let variable = element.variable.as_ref().map(|variable| variable.name.text.as_str());
+        let law = self.term(&element.law, Place::Law(variable));
+        let law = match &element.variable {
+            Some(variable) => Law::Of { role: variable.role.unwrap_or(Role::Flow), value: law },
+            None => Law::Parameter(law),
+        };
+        let frame = element.frame.as_ref().map(|term| self.term(term, Place::Plain));
+        let displacement = element.displacement.as_ref().map(|term| self.term(term, Place::Plain));
+        let start = element.start.as_ref().map(|term| self.term(term, Place::Start));
+        let energy = element.energy.as_ref().map(|term| self.term(term, Place::Law(variable)));
+        let stores = matches!(kind, ElementKind::I) || (kind == ElementKind::C && displacement.is_none());
+        if stores {
+            self.graph.storages.push(Storage::Element(id));
+        }
+        let text = law_text(element);
+        let element_node = Element { kind, law, text, frame, displacement, start, energy };
+        let node = Node { name: element.name.clone(), kind: NodeKind::Element(element_node), bonds: Vec::new() };
+        self.graph.nodes.push(node);
+    }
+
+    /// A clause that its kind of element does not have is a fault.
+    fn clauses_fit(&mut self, element: &ast::Element) {
+        use ElementKind as K;
+        let (kind, name) = (element.kind, &element.name);
+        let clauses = [
+            ("start", element.start.is_some(), matches!(kind, K::I | K::C)),
+            ("energy", element.energy.is_some(), matches!(kind, K::I | K::C)),
+            ("at", element.displacement.is_some(), kind == K::C),
+            ("in", element.frame.is_some(), kind == K::I),
+        ];
+        for (clause, given, fits) in clauses {
+            if given && !fits {
+                self.fault(name.span, &GraphFault::NotStorage { name: name.text.clone(), clause });
+            }
+        }
+        let role = element.variable.as_ref().and_then(|variable| variable.role);
+        let has_variable = element.variable.is_some();
+        let fits = match kind {
+            K::I | K::C => role.is_none(),
+            K::R | K::Mr | K::Tf | K::Mtf => true,
+            _ => !has_variable,
+        };
+        if !fits {
+            let fault = GraphFault::VariableRole { name: name.text.clone(), symbol: kind.symbol() };
+            self.fault(name.span, &fault);
+        }
+    }
+
+    fn observe(&mut self, observation: &ast::Observation) {
+        let value = self.term(&observation.value, Place::Observed);
+        let name = observation.name.as_ref().map_or_else(|| observation.value.to_string(), |name| name.text.clone());
+        let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
+        let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
+        if self.graph.observations.iter().any(|known| known.name == name) {
+            self.fault(observation.value.span, &GraphFault::Duplicate { name: name.clone() });
+        }
+        self.observed.push(declared);
+        self.graph.observations.push(Observation { name, value, shape: Shape::Scalar, unit });
+    }
+
+    fn term(&mut self, expression: &Expression, place: Place<'_>) -> Term {
+        let span = expression.span;
+        let kind = match &expression.kind {
+            ExpressionKind::Number(value) => TermKind::Number(*value),
+            ExpressionKind::Name(name) => return self.named(name, span, place),
+            ExpressionKind::Negate(inner) => TermKind::Negate(Box::new(self.term(inner, place))),
+            ExpressionKind::Binary(operator, left, right) => {
+                TermKind::Binary(*operator, Box::new(self.term(left, place)), Box::new(self.term(right, place)))
+            }
+            ExpressionKind::Vector(parts) => {
+                TermKind::Vector(parts.iter().map(|part| self.term(part, place)).collect())
+            }
+            ExpressionKind::If(choice) => {
+                let parts = [&choice.left, &choice.right, &choice.then, &choice.otherwise];
+                TermKind::If(choice.comparison, Box::new(parts.map(|part| self.term(part, place))))
+            }
+            ExpressionKind::Call(function, arguments) => return self.call(function, arguments, place),
+        };
+        Term { kind, span }
+    }
+
+    fn call(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
+        let span = function.span;
+        let mut terms: Vec<Term> = arguments.iter().map(|argument| self.term(argument, place)).collect();
+        let special = matches!(function.text.as_str(), "guess" | "integral");
+        let builtin = Builtin::named(&function.text);
+        let expected = if special { Some(1) } else { builtin.map(|(_, count)| count) };
+        match expected {
+            None => {
+                let near = near_miss(&function.text, Builtin::names()).map(str::to_owned);
+                self.fault(span, &GraphFault::UnknownFunction { name: function.text.clone(), near });
+            }
+            Some(expected) if expected != terms.len() => {
+                let (function, found) = (function.text.clone(), terms.len());
+                self.fault(span, &GraphFault::ArgumentCount { function, expected, found });
+            }
+            Some(_) => {}
+        }
+        if expected != Some(terms.len()) {
+            return Term { kind: TermKind::Number(0.0), span };
+        }
+        let kind = match (function.text.as_str(), builtin) {
+            ("guess", _) => {
+                if place != Place::Start && place != Place::Plain {
+                    self.fault(span, &GraphFault::GuessOutsideStart);
+                }
+                self.graph.guesses.push(terms.remove(0));
+                TermKind::Guess(self.graph.guesses.len() - 1)
+            }
+            ("integral", _) => {
+                if place != Place::Observed {
+                    self.fault(span, &GraphFault::IntegralOutsideObserve);
+                }
+                self.graph.integrals.push(Integral { value: terms.remove(0), dimension: Dimension::NONE });
+                TermKind::Integral(self.graph.integrals.len() - 1)
+            }
+            (_, Some((builtin, _))) => TermKind::Call(builtin, terms),
+            (_, None) => TermKind::Number(0.0),
+        };
+        Term { kind, span }
+    }
+
+    /// A name: a quantity, a property of one (`pin.flow`), or a component of either (`pin.flow.x`).
+    fn named(&mut self, name: &str, span: Span, place: Place<'_>) -> Term {
+        if let Some(reference) = self.quantity(name, place) {
+            return Term { kind: TermKind::Reference(reference), span };
+        }
+        if let Some((whole, last)) = name.rsplit_once('.')
+            && let Some(component) = ["x", "y", "z"].iter().position(|letter| *letter == last)
+            && let Some(reference) = self.quantity(whole, place)
+        {
+            let whole = Term { kind: TermKind::Reference(reference), span };
+            return Term { kind: TermKind::Component(Box::new(whole), component), span };
+        }
+        let near = near_miss(name, self.names.keys().map(String::as_str)).map(str::to_owned);
+        self.fault(span, &GraphFault::UnknownName { name: name.to_owned(), near });
+        Term { kind: TermKind::Number(0.0), span }
+    }
+
+    fn quantity(&self, name: &str, place: Place<'_>) -> Option<Reference> {
+        if let Place::Law(Some(variable)) = place
+            && variable == name
+        {
+            return Some(Reference::Variable);
+        }
+        match name {
+            "t" => return Some(Reference::Time),
+            "stored_energy" => return Some(Reference::StoredEnergy),
+            "supplied_power" => return Some(Reference::SuppliedPower),
+            "dissipated_power" => return Some(Reference::DissipatedPower),
+            _ => {}
+        }
+        match self.names.get(name) {
+            Some(Entity::Parameter(index)) => return Some(Reference::Parameter(*index)),
+            Some(Entity::Input(index)) => return Some(Reference::Input(*index)),
+            Some(Entity::Let(index)) => return Some(Reference::Let(*index)),
+            Some(Entity::Track(index)) => return Some(Reference::Track(*index)),
+            Some(Entity::Node(_)) | None => {}
+        }
+        let (whole, property) = name.rsplit_once('.')?;
+        let Some(Entity::Node(node)) = self.names.get(whole) else { return None };
+        self.property(*node, property)
+    }
+
+    fn property(&self, node: NodeId, property: &str) -> Option<Reference> {
+        if let Some(cardinality) = self.junctions.get(&node) {
+            debug_assert!(*cardinality > 0, "the parser gives 1 or 3");
+            return match property {
+                "flow" => Some(Reference::Flow(node)),
+                "effort" => Some(Reference::Effort(node)),
+                _ => None,
+            };
+        }
+        match property {
+            "flow" => Some(Reference::Flow(node)),
+            "effort" => Some(Reference::Effort(node)),
+            "power" => Some(Reference::Power(node)),
+            "energy" => Some(Reference::Energy(node)),
+            "q" => Some(Reference::Displacement(node)),
+            "p" => Some(Reference::Momentum(node)),
+            _ => None,
+        }
+    }
+
+    /// What a law may depend on: only the modulated kinds on states, storages never on inputs, starts on parameters.
+    fn dependencies(&mut self) {
+        use ElementKind as K;
+        let mut faults = Vec::new();
+        for node in &self.graph.nodes {
+            let NodeKind::Element(element) = &node.kind else { continue };
+            let depends = self.deep_references(element.law.term());
+            let linear = !matches!(element.law, Law::Of { .. });
+            let allowed = |reference: &Reference| match element.kind {
+                K::Se | K::Sf => is_given(*reference),
+                K::Tf | K::Gy => is_constant(*reference),
+                K::R if linear => is_constant(*reference),
+                K::I | K::C => !matches!(reference, Reference::Input(_)),
+                _ => true,
+            };
+            if let Some(reference) = depends.iter().find(|reference| !allowed(reference)) {
+                let (symbol, name, by) = (element.kind.symbol(), node.name.text.clone(), self.describe(*reference));
+                let fault = if matches!(element.kind, K::I | K::C) {
+                    GraphFault::NotConstant { what: format!("the law of {symbol} `{name}`"), by }
+                } else {
+                    GraphFault::Modulated { symbol, name, by }
+                };
+                faults.push(Fault::new(element.law.term().span, &fault));
+            }
+            if let Some(start) = &element.start {
+                faults.extend(self.start_depends(start, &node.name.text));
+            }
+        }
+        for track in &self.graph.tracks {
+            if let Some(start) = &track.start {
+                faults.extend(self.start_depends(start, &track.name.text));
+            }
+        }
+        self.faults.extend(faults);
+    }
+
+    fn start_depends(&self, start: &Term, name: &str) -> Option<Fault> {
+        let by = self.deep_references(start).into_iter().find(|reference| !is_constant(*reference))?;
+        let what = format!("the start value of `{name}`");
+        Some(Fault::new(start.span, &GraphFault::NotConstant { what, by: self.describe(by) }))
+    }
+
+    /// All references of a term, those behind its lets included.
+    fn deep_references(&self, term: &Term) -> Vec<Reference> {
+        let mut found = Vec::new();
+        term.references(&mut found);
+        let mut seen = vec![false; self.graph.lets.len()];
+        let mut next = 0;
+        while next < found.len() {
+            if let Reference::Let(index) = found[next]
+                && !std::mem::replace(&mut seen[index], true)
+            {
+                self.graph.lets[index].value.references(&mut found);
+            }
+            next += 1;
+        }
+        found
+    }
+
+    fn describe(&self, reference: Reference) -> String {
+        let node = |id: NodeId| &self.graph.node(id).name.text;
+        match reference {
+            Reference::Time => "the time".to_owned(),
+            Reference::Variable => "its own variable".to_owned(),
+            Reference::Parameter(index) => format!("parameter `{}`", self.graph.parameters[index].name.text),
+            Reference::Input(index) => format!("input `{}`", self.graph.inputs[index].name.text),
+            Reference::Let(index) => format!("`{}`", self.graph.lets[index].name.text),
+            Reference::Track(index) => format!("`{}`", self.graph.tracks[index].name.text),
+            Reference::Flow(id) => format!("the flow of `{}`", node(id)),
+            Reference::Effort(id) => format!("the effort of `{}`", node(id)),
+            Reference::Power(id) => format!("the power of `{}`", node(id)),
+            Reference::Energy(id) => format!("the energy of `{}`", node(id)),
+            Reference::Displacement(id) => format!("the displacement of `{}`", node(id)),
+            Reference::Momentum(id) => format!("the momentum of `{}`", node(id)),
+            Reference::StoredEnergy => "the stored energy".to_owned(),
+            Reference::SuppliedPower => "the supplied power".to_owned(),
+            Reference::DissipatedPower => "the dissipated power".to_owned(),
+        }
+    }
+
+    /// Shapes and units of outputs, gaps and integrals.
+    fn finish_outputs(&mut self) {
+        let efforts: Vec<Option<Dimension>> = self.graph.bonds.iter().map(|bond| Some(bond.effort)).collect();
+        let types = Types::new(&self.graph, &efforts);
+        let mut faults = Vec::new();
+        let mut observed = Vec::new();
+        for (observation, declared) in self.graph.observations.iter().zip(&self.observed) {
+            let (shape, quantity) = types.of(&observation.value, None, &mut faults);
+            let unit = match (declared, quantity) {
+                (Some(declared), Quantity::Known(found)) if *declared != found => {
+                    let what = format!("`{}` is declared in the first and has the second", observation.name);
+                    let fault = GraphFault::Units { what, left: *declared, right: found };
+                    faults.push(Fault::new(observation.value.span, &fault));
+                    String::new()
+                }
+                (Some(_), _) => observation.unit.clone(),
+                (None, Quantity::Known(found)) => found.to_string(),
+                (None, _) => "1".to_owned(),
+            };
+            observed.push((shape, unit));
+        }
+        let known = |quantity| if let Quantity::Known(dimension) = quantity { dimension } else { Dimension::NONE };
+        let closed: Vec<_> = self.graph.closes.iter().map(|close| types.of(&close.gap, None, &mut faults)).collect();
+        let integrands: Vec<_> =
+            self.graph.integrals.iter().map(|integral| types.of(&integral.value, None, &mut faults)).collect();
+        for (observation, (shape, unit)) in self.graph.observations.iter_mut().zip(observed) {
+            (observation.shape, observation.unit) = (shape, unit);
+        }
+        for (close, (shape, quantity)) in self.graph.closes.iter_mut().zip(closed) {
+            (close.shape, close.dimension) = (shape, known(quantity));
+        }
+        for (integral, (shape, quantity)) in self.graph.integrals.iter_mut().zip(integrands) {
+            integral.dimension = known(quantity);
+            if shape != Shape::Scalar {
+                let what = "an integrand".to_owned();
+                let fault = GraphFault::ShapeOf { what, expected: Shape::Scalar, found: shape };
+                faults.push(Fault::new(integral.value.span, &fault));
+            }
+        }
+        self.faults.extend(faults);
+    }
+}
+
+/// The law as the user wrote it.
+fn law_text(element: &ast::Element) -> String {
+    match &element.variable {
+        Some(variable) => format!("({}) = {}", variable.name.text, element.law),
+        None => element.law.to_string(),
+    }
+}
+
+/// Numbers: what a parameter's default may be made of.
+fn number(expression: &Expression) -> Option<f64> {
+    match &expression.kind {
+        ExpressionKind::Number(value) => Some(*value),
+        ExpressionKind::Negate(inner) => Some(-number(inner)?),
+        ExpressionKind::Binary(operator, left, right) => {
+            let (left, right) = (number(left)?, number(right)?);
+            Some(match operator {
+                ast::BinaryOperator::Add => left + right,
+                ast::BinaryOperator::Subtract => left - right,
+                ast::BinaryOperator::Multiply => left * right,
+                ast::BinaryOperator::Divide => left / right,
+            })
+        }
+        _ => None,
+    }
+}
+
+/// Parameters and numbers.
+fn is_constant(reference: Reference) -> bool {
+    matches!(reference, Reference::Parameter(_) | Reference::Let(_) | Reference::Variable)
+}
+
+/// What a source may follow: parameters, inputs, time.
+fn is_given(reference: Reference) -> bool {
+    is_constant(reference) || matches!(reference, Reference::Input(_) | Reference::Time)
+}

@@ -1,0 +1,171 @@
+//! Expressions with resolved names.
+//!
+//! In: `ast::Expression`. Out: [`Term`]. No longer occurs: a name as text.
+
+use proc_macro2::Span;
+
+use super::NodeId;
+use crate::ast::{BinaryOperator, Comparison};
+
+/// An expression with its place in the source.
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// What it is.
+    pub kind: TermKind,
+    /// The token to blame.
+    pub span: Span,
+}
+
+/// What an expression is.
+#[derive(Clone, Debug)]
+pub enum TermKind {
+    /// A number; its unit is what its place asks for.
+    Number(f64),
+    /// A quantity of the graph.
+    Reference(Reference),
+    /// One component (0, 1, 2) of a vector.
+    Component(Box<Term>, usize),
+    /// `-a`
+    Negate(Box<Term>),
+    /// `a + b` and its like.
+    Binary(BinaryOperator, Box<Term>, Box<Term>),
+    /// A function.
+    Call(Builtin, Vec<Term>),
+    /// A vector, or a matrix by its rows.
+    Vector(Vec<Term>),
+    /// `if left < right { then } else { otherwise }`
+    If(Comparison, Box<[Term; 4]>),
+    /// The solution of the assembly for this guess.
+    Guess(usize),
+    /// A time integral since t = 0.
+    Integral(usize),
+}
+
+/// A quantity of the graph.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Reference {
+    /// Time, s.
+    Time,
+    /// The variable of the law that the expression stands in.
+    Variable,
+    /// A parameter.
+    Parameter(usize),
+    /// An input.
+    Input(usize),
+    /// A named expression.
+    Let(usize),
+    /// A position or orientation.
+    Track(usize),
+    /// The flow of a 1-junction, or of an element's bond.
+    Flow(NodeId),
+    /// The effort of a 0-junction, or of an element's bond.
+    Effort(NodeId),
+    /// The power into an element, W.
+    Power(NodeId),
+    /// The energy stored in a C or I, J.
+    Energy(NodeId),
+    /// The displacement of a C.
+    Displacement(NodeId),
+    /// The momentum of an I.
+    Momentum(NodeId),
+    /// The energy of all storage elements, J.
+    StoredEnergy,
+    /// The power of all sources into the model, W.
+    SuppliedPower,
+    /// The power of all resistors out of the model, W.
+    DissipatedPower,
+}
+
+/// A function of the language.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[expect(missing_docs, reason = "the names are those of the language; `NAMES` lists them")]
+pub enum Builtin {
+    Sqrt,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan2,
+    Exp,
+    Ln,
+    Tanh,
+    Abs,
+    Pow,
+    Dot,
+    Cross,
+    Norm,
+    Skew,
+    Transpose,
+    Inverse,
+    Outer,
+    Identity,
+    Diagonal,
+    RotationX,
+    RotationY,
+    RotationZ,
+}
+
+/// Name, function and number of arguments.
+const NAMES: [(&str, Builtin, usize); 24] = [
+    ("sqrt", Builtin::Sqrt, 1),
+    ("sin", Builtin::Sin, 1),
+    ("cos", Builtin::Cos, 1),
+    ("tan", Builtin::Tan, 1),
+    ("asin", Builtin::Asin, 1),
+    ("acos", Builtin::Acos, 1),
+    ("atan2", Builtin::Atan2, 2),
+    ("exp", Builtin::Exp, 1),
+    ("ln", Builtin::Ln, 1),
+    ("tanh", Builtin::Tanh, 1),
+    ("abs", Builtin::Abs, 1),
+    ("pow", Builtin::Pow, 2),
+    ("dot", Builtin::Dot, 2),
+    ("cross", Builtin::Cross, 2),
+    ("norm", Builtin::Norm, 1),
+    ("skew", Builtin::Skew, 1),
+    ("transpose", Builtin::Transpose, 1),
+    ("inverse", Builtin::Inverse, 1),
+    ("outer", Builtin::Outer, 2),
+    ("identity", Builtin::Identity, 0),
+    ("diagonal", Builtin::Diagonal, 1),
+    ("rotation_x", Builtin::RotationX, 1),
+    ("rotation_y", Builtin::RotationY, 1),
+    ("rotation_z", Builtin::RotationZ, 1),
+];
+
+impl Builtin {
+    /// The function of this name with its number of arguments.
+    #[must_use]
+    pub fn named(name: &str) -> Option<(Self, usize)> {
+        NAMES.iter().find(|(known, ..)| *known == name).map(|&(_, builtin, arguments)| (builtin, arguments))
+    }
+
+    /// All names, for near misses.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        NAMES.iter().map(|(name, ..)| *name).chain(["guess", "integral"])
+    }
+
+    /// The function's name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        NAMES.iter().find(|(_, builtin, _)| *builtin == self).map_or("", |(name, ..)| name)
+    }
+}
+
+impl Term {
+    /// The references in the expression itself (not behind its lets), in the order of reading.
+    pub fn references(&self, found: &mut Vec<Reference>) {
+        match &self.kind {
+            TermKind::Reference(reference) => found.push(*reference),
+            TermKind::Number(_) | TermKind::Guess(_) | TermKind::Integral(_) => {}
+            TermKind::Component(inner, _) | TermKind::Negate(inner) => inner.references(found),
+            TermKind::Binary(_, left, right) => {
+                left.references(found);
+                right.references(found);
+            }
+            TermKind::Call(_, parts) | TermKind::Vector(parts) => parts.iter().for_each(|part| part.references(found)),
+            TermKind::If(_, parts) => parts.iter().for_each(|part| part.references(found)),
+        }
+    }
+}

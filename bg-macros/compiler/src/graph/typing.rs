@@ -1,0 +1,389 @@
+//! Shape and dimension of every expression.
+//!
+//! In: [`Term`]. Out: [`Typed`]; faults where shapes or units disagree. A number takes the unit that its place asks for
+//! (`Quantity::Any`); a quantity whose bond has no unit yet is `Quantity::Unknown` and disagrees with nothing.
+
+use std::cell::RefCell;
+
+use super::term::{Builtin, Reference, Term, TermKind};
+use super::{BondGraph, GraphFault, NodeId, NodeKind};
+use crate::ast::{BinaryOperator, TrackKind};
+use crate::fault::{Explain, Fault};
+use crate::units::Dimension;
+
+/// The shape of a value.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Shape {
+    /// A number.
+    Scalar,
+    /// Three components.
+    Vector,
+    /// Three rows of three.
+    Matrix,
+}
+
+impl Shape {
+    /// The shape of a bond's variables.
+    #[must_use]
+    pub fn of_cardinality(cardinality: usize) -> Self {
+        if cardinality == 1 { Self::Scalar } else { Self::Vector }
+    }
+
+    /// The names of the components behind a quantity's name: none, `_x`.., `_11`..
+    #[must_use]
+    pub fn suffixes(self) -> &'static [&'static str] {
+        match self {
+            Self::Scalar => &[""],
+            Self::Vector => &["_x", "_y", "_z"],
+            Self::Matrix => &["_11", "_12", "_13", "_21", "_22", "_23", "_31", "_32", "_33"],
+        }
+    }
+}
+
+impl std::fmt::Display for Shape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Scalar => "scalar",
+            Self::Vector => "vector",
+            Self::Matrix => "matrix",
+        })
+    }
+}
+
+/// What is known of a unit.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Quantity {
+    /// A bare number: any unit that fits.
+    Any,
+    /// Not known (yet).
+    Unknown,
+    /// This one.
+    Known(Dimension),
+}
+
+/// Shape and unit of an expression.
+pub type Typed = (Shape, Quantity);
+
+/// What the types of expressions depend on.
+pub struct Types<'a> {
+    graph: &'a BondGraph,
+    efforts: &'a [Option<Dimension>],
+    lets: RefCell<Vec<LetType>>,
+}
+
+/// A let's type, calculated when first asked for.
+#[derive(Clone, Copy)]
+enum LetType {
+    Open,
+    Entered,
+    Done(Typed),
+}
+
+impl<'a> Types<'a> {
+    /// Types where bond k has effort unit `efforts[k]`, if known.
+    pub fn new(graph: &'a BondGraph, efforts: &'a [Option<Dimension>]) -> Self {
+        Self { graph, efforts, lets: RefCell::new(vec![LetType::Open; graph.lets.len()]) }
+    }
+
+    /// The effort and flow unit of a bond.
+    pub fn bond_units(&self, bond: super::BondId) -> (Quantity, Quantity) {
+        match self.efforts[bond.0] {
+            Some(effort) => (Quantity::Known(effort), Quantity::Known(Dimension::WATT.per(effort))),
+            None => (Quantity::Unknown, Quantity::Unknown),
+        }
+    }
+
+    /// Shape and unit of `term`; `variable` is those of the law's variable.
+    pub fn of(&self, term: &Term, variable: Option<Typed>, faults: &mut Vec<Fault>) -> Typed {
+        Checker { types: self, variable, faults }.check(term)
+    }
+
+    /// Shape and unit without reporting faults.
+    pub fn silently(&self, term: &Term, variable: Option<Typed>) -> Typed {
+        self.of(term, variable, &mut Vec::new())
+    }
+
+    fn of_let(&self, index: usize, span: proc_macro2::Span, faults: &mut Vec<Fault>) -> Typed {
+        let state = self.lets.borrow()[index];
+        match state {
+            LetType::Done(typed) => typed,
+            LetType::Entered => {
+                let name = self.graph.lets[index].name.text.clone();
+                faults.push(Fault::new(span, &GraphFault::LetCycle { name }));
+                (Shape::Scalar, Quantity::Unknown)
+            }
+            LetType::Open => {
+                self.lets.borrow_mut()[index] = LetType::Entered;
+                let definition = &self.graph.lets[index];
+                let (shape, quantity) = self.silently(&definition.value, None);
+                let quantity = definition.dimension.map_or(quantity, Quantity::Known);
+                self.lets.borrow_mut()[index] = LetType::Done((shape, quantity));
+                (shape, quantity)
+            }
+        }
+    }
+
+    fn of_reference(&self, reference: Reference, variable: Option<Typed>) -> Typed {
+        let known = |dimension| (Shape::Scalar, Quantity::Known(dimension));
+        match reference {
+            Reference::Time => known(Dimension::SECOND),
+            Reference::Variable => variable.unwrap_or((Shape::Scalar, Quantity::Unknown)),
+            Reference::Parameter(index) => known(self.graph.parameters[index].dimension),
+            Reference::Input(index) => known(self.graph.inputs[index].dimension),
+            Reference::Let(_) => (Shape::Scalar, Quantity::Unknown),
+            Reference::Track(index) => match self.graph.tracks[index].kind {
+                TrackKind::Position => (Shape::Vector, Quantity::Known(Dimension::METRE)),
+                TrackKind::Orientation => (Shape::Matrix, Quantity::Known(Dimension::NONE)),
+            },
+            Reference::Flow(node) => self.of_node(node, |_, flow| flow),
+            Reference::Effort(node) => self.of_node(node, |effort, _| effort),
+            Reference::Displacement(node) => self.of_node(node, |_, flow| flow.times(Dimension::SECOND)),
+            Reference::Momentum(node) => self.of_node(node, |effort, _| effort.times(Dimension::SECOND)),
+            Reference::Power(_) | Reference::SuppliedPower | Reference::DissipatedPower => known(Dimension::WATT),
+            Reference::Energy(_) | Reference::StoredEnergy => known(Dimension::JOULE),
+        }
+    }
+
+    fn of_node(&self, node: NodeId, unit: impl Fn(Dimension, Dimension) -> Dimension) -> Typed {
+        let Some(&bond) = self.graph.node(node).bonds.first() else {
+            return (Shape::Scalar, Quantity::Unknown);
+        };
+        let shape = Shape::of_cardinality(self.graph.bond(bond).cardinality);
+        let quantity = match self.efforts[bond.0] {
+            Some(effort) => Quantity::Known(unit(effort, Dimension::WATT.per(effort))),
+            None => Quantity::Unknown,
+        };
+        (shape, quantity)
+    }
+}
+
+struct Checker<'a, 'g> {
+    types: &'a Types<'g>,
+    variable: Option<Typed>,
+    faults: &'a mut Vec<Fault>,
+}
+
+impl Checker<'_, '_> {
+    fn fault(&mut self, term: &Term, fault: &impl Explain) {
+        self.faults.push(Fault::new(term.span, fault));
+    }
+
+    fn check(&mut self, term: &Term) -> Typed {
+        match &term.kind {
+            TermKind::Number(_) => (Shape::Scalar, Quantity::Any),
+            TermKind::Reference(Reference::Let(index)) => self.types.of_let(*index, term.span, self.faults),
+            TermKind::Reference(reference) => self.types.of_reference(*reference, self.variable),
+            TermKind::Negate(inner) => self.check(inner),
+            TermKind::Component(inner, _) => {
+                let (shape, quantity) = self.check(inner);
+                if shape != Shape::Vector {
+                    self.fault(term, &GraphFault::NoComponent { found: shape });
+                }
+                (Shape::Scalar, quantity)
+            }
+            TermKind::Binary(operator, left, right) => self.binary(term, *operator, left, right),
+            TermKind::Call(builtin, arguments) => self.call(term, *builtin, arguments),
+            TermKind::Vector(parts) => self.vector(term, parts),
+            TermKind::If(_, parts) => {
+                let [left, right, then, otherwise] = &**parts;
+                self.alike(term, "compare", left, right);
+                self.alike(term, "choose between", then, otherwise)
+            }
+            TermKind::Guess(index) => {
+                let guess = self.types.graph.guesses[*index].clone();
+                self.check(&guess)
+            }
+            TermKind::Integral(index) => {
+                let integrand = self.types.graph.integrals[*index].value.clone();
+                let (_, quantity) = self.check(&integrand);
+                (Shape::Scalar, times(quantity, Quantity::Known(Dimension::SECOND)))
+            }
+        }
+    }
+
+    /// Two terms that must have the same shape and unit.
+    fn alike(&mut self, term: &Term, what: &'static str, left: &Term, right: &Term) -> Typed {
+        let (left_shape, left_unit) = self.check(left);
+        let (right_shape, right_unit) = self.check(right);
+        if left_shape != right_shape && !is_zero(left) && !is_zero(right) {
+            self.fault(term, &GraphFault::Shapes { what, left: left_shape, right: right_shape });
+        }
+        let shape = if is_zero(left) { right_shape } else { left_shape };
+        (shape, self.same_unit(term, what, left_unit, right_unit))
+    }
+
+    fn same_unit(&mut self, term: &Term, what: &str, left: Quantity, right: Quantity) -> Quantity {
+        match (left, right) {
+            (Quantity::Known(a), Quantity::Known(b)) if a != b => {
+                self.fault(term, &GraphFault::Units { what: format!("cannot {what} these"), left: a, right: b });
+                Quantity::Unknown
+            }
+            (Quantity::Known(dimension), _) | (_, Quantity::Known(dimension)) => Quantity::Known(dimension),
+            (Quantity::Unknown, _) | (_, Quantity::Unknown) => Quantity::Unknown,
+            (Quantity::Any, Quantity::Any) => Quantity::Any,
+        }
+    }
+
+    fn binary(&mut self, term: &Term, operator: BinaryOperator, left: &Term, right: &Term) -> Typed {
+        match operator {
+            BinaryOperator::Add => self.alike(term, "add", left, right),
+            BinaryOperator::Subtract => self.alike(term, "subtract", left, right),
+            BinaryOperator::Multiply => {
+                let (a, left_unit) = self.check(left);
+                let (b, right_unit) = self.check(right);
+                let shape = match (a, b) {
+                    (Shape::Scalar, other) | (other, Shape::Scalar) => other,
+                    (Shape::Matrix, other) => other,
+                    (Shape::Vector, _) => {
+                        self.fault(term, &GraphFault::Shapes { what: "multiply", left: a, right: b });
+                        a
+                    }
+                };
+                (shape, times(left_unit, right_unit))
+            }
+            BinaryOperator::Divide => {
+                let (a, left_unit) = self.check(left);
+                let (b, right_unit) = self.check(right);
+                if b != Shape::Scalar {
+                    self.fault(term, &GraphFault::Shapes { what: "divide", left: a, right: b });
+                }
+                (a, per(left_unit, right_unit))
+            }
+        }
+    }
+
+    fn vector(&mut self, term: &Term, parts: &[Term]) -> Typed {
+        let mut shape = None;
+        let mut unit = Quantity::Any;
+        if parts.len() != 3 {
+            let what = "a vector of other than three components".to_owned();
+            self.fault(term, &GraphFault::ShapeOf { what, expected: Shape::Vector, found: Shape::Scalar });
+        }
+        for part in parts {
+            let (part_shape, part_unit) = self.check(part);
+            let first = *shape.get_or_insert(part_shape);
+            if part_shape != first || part_shape == Shape::Matrix {
+                self.fault(part, &GraphFault::Shapes { what: "put into one vector", left: first, right: part_shape });
+            }
+            unit = self.same_unit(part, "put into one vector", unit, part_unit);
+        }
+        let shape = if shape == Some(Shape::Vector) { Shape::Matrix } else { Shape::Vector };
+        (shape, unit)
+    }
+
+    fn argument(&mut self, builtin: Builtin, argument: &Term, expected: Shape) -> Quantity {
+        let (found, unit) = self.check(argument);
+        if found != expected {
+            let what = format!("the argument of `{}`", builtin.name());
+            self.fault(argument, &GraphFault::ShapeOf { what, expected, found });
+        }
+        unit
+    }
+
+    fn number(&mut self, builtin: Builtin, argument: &Term) {
+        if let Quantity::Known(found) = self.argument(builtin, argument, Shape::Scalar)
+            && found != Dimension::NONE
+        {
+            let what = format!("the argument of `{}`", builtin.name());
+            self.fault(argument, &GraphFault::NotDimensionless { what, found });
+        }
+    }
+
+    fn call(&mut self, term: &Term, builtin: Builtin, arguments: &[Term]) -> Typed {
+        use Builtin as B;
+        use Shape::{Matrix, Scalar, Vector};
+        let pure = Quantity::Known(Dimension::NONE);
+        match builtin {
+            B::Sin | B::Cos | B::Tan | B::Asin | B::Acos | B::Exp | B::Ln | B::Tanh => {
+                self.number(builtin, &arguments[0]);
+                (Scalar, pure)
+            }
+            B::Sqrt => (Scalar, self.root(term, &arguments[0])),
+            B::Atan2 => {
+                self.argument(builtin, &arguments[0], Scalar);
+                self.alike(term, "compare", &arguments[0], &arguments[1]);
+                (Scalar, pure)
+            }
+            B::Abs => (Scalar, self.argument(builtin, &arguments[0], Scalar)),
+            B::Pow => (Scalar, self.power(&arguments[0], &arguments[1])),
+            B::Dot => (Scalar, self.pair(builtin, arguments, Vector)),
+            B::Cross => (Vector, self.pair(builtin, arguments, Vector)),
+            B::Outer => (Matrix, self.pair(builtin, arguments, Vector)),
+            B::Norm => (Scalar, self.argument(builtin, &arguments[0], Vector)),
+            B::Skew | B::Diagonal => (Matrix, self.argument(builtin, &arguments[0], Vector)),
+            B::Transpose => (Matrix, self.argument(builtin, &arguments[0], Matrix)),
+            B::Inverse => (Matrix, per(pure, self.argument(builtin, &arguments[0], Matrix))),
+            B::Identity => (Matrix, Quantity::Any),
+            B::RotationX | B::RotationY | B::RotationZ => {
+                self.number(builtin, &arguments[0]);
+                (Matrix, pure)
+            }
+        }
+    }
+
+    fn pair(&mut self, builtin: Builtin, arguments: &[Term], shape: Shape) -> Quantity {
+        let left = self.argument(builtin, &arguments[0], shape);
+        let right = self.argument(builtin, &arguments[1], shape);
+        times(left, right)
+    }
+
+    fn root(&mut self, term: &Term, argument: &Term) -> Quantity {
+        match self.argument(Builtin::Sqrt, argument, Shape::Scalar) {
+            Quantity::Known(found) => match found.root() {
+                Some(root) => Quantity::Known(root),
+                None => {
+                    self.fault(term, &GraphFault::NoRoot { found });
+                    Quantity::Unknown
+                }
+            },
+            other => other,
+        }
+    }
+
+    /// A power with a whole literal exponent keeps units; any other needs pure numbers.
+    fn power(&mut self, base: &Term, exponent: &Term) -> Quantity {
+        match exponent.kind {
+            TermKind::Number(n) if n.fract() == 0.0 && n.abs() <= 16.0 => {
+                match self.argument(Builtin::Pow, base, Shape::Scalar) {
+                    #[expect(clippy::cast_possible_truncation, reason = "whole and at most 16, tested above")]
+                    Quantity::Known(dimension) => Quantity::Known(dimension.power(n as i32)),
+                    other => other,
+                }
+            }
+            _ => {
+                self.number(Builtin::Pow, base);
+                self.number(Builtin::Pow, exponent);
+                Quantity::Known(Dimension::NONE)
+            }
+        }
+    }
+}
+
+/// A literal zero fits any shape and unit.
+fn is_zero(term: &Term) -> bool {
+    matches!(term.kind, TermKind::Number(0.0))
+}
+
+/// The unit of a product.
+fn times(left: Quantity, right: Quantity) -> Quantity {
+    combine(left, right, Dimension::times)
+}
+
+/// The unit of a quotient.
+fn per(left: Quantity, right: Quantity) -> Quantity {
+    combine(left, right, Dimension::per)
+}
+
+/// A bare number in a product may carry any unit, so the product may, too.
+fn combine(left: Quantity, right: Quantity, of: impl Fn(Dimension, Dimension) -> Dimension) -> Quantity {
+    match (left, right) {
+        (Quantity::Known(a), Quantity::Known(b)) => Quantity::Known(of(a, b)),
+        (Quantity::Unknown, _) | (_, Quantity::Unknown) => Quantity::Unknown,
+        (Quantity::Any, _) | (_, Quantity::Any) => Quantity::Any,
+    }
+}
+
+/// Whether a node is a junction.
+pub fn is_junction(kind: &NodeKind) -> bool {
+    matches!(kind, NodeKind::Zero | NodeKind::One)
+}

@@ -1,0 +1,81 @@
+//! What can be wrong with bodies, joints and their like.
+
+use crate::fault::Explain;
+
+/// A fault of the expansion.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
+pub enum MechanismFault {
+    UnknownBody { name: String, near: Option<String> },
+    UnknownPoint { body: String, point: String, near: Option<String> },
+    MissingClause { word: &'static str, name: String, clause: &'static str, why: &'static str },
+    SuperfluousClause { word: &'static str, name: String, clause: &'static str, why: &'static str },
+    NoMass { name: String },
+    MassTwice { name: String },
+    Twice { word: &'static str },
+    UnknownTarget { name: String, near: Option<String> },
+    WrongDrive { drive: &'static str, target: String, takes: &'static str },
+    SameBody { name: String, body: String },
+    SameAxes { name: String },
+    NoLaw { name: String },
+}
+
+use MechanismFault as F;
+
+impl Explain for MechanismFault {
+    fn code(&self) -> &'static str {
+        match self {
+            F::UnknownBody { .. } => "BG0201",
+            F::UnknownPoint { .. } => "BG0202",
+            F::MissingClause { .. } => "BG0203",
+            F::SuperfluousClause { .. } => "BG0204",
+            F::NoMass { .. } => "BG0205",
+            F::MassTwice { .. } => "BG0206",
+            F::Twice { .. } => "BG0207",
+            F::UnknownTarget { .. } => "BG0208",
+            F::WrongDrive { .. } => "BG0209",
+            F::SameBody { .. } => "BG0210",
+            F::SameAxes { .. } => "BG0211",
+            F::NoLaw { .. } => "BG0212",
+        }
+    }
+
+    fn message(&self) -> String {
+        match self {
+            F::UnknownBody { name, .. } => format!("there is no body `{name}`"),
+            F::UnknownPoint { body, point, .. } => format!("`{body}` has no point `{point}`"),
+            F::MissingClause { word, name, clause, why } => format!("{word} `{name}` has no `{clause}`: {why}"),
+            F::SuperfluousClause { word, name, clause, why } => {
+                format!("{word} `{name}` cannot have `{clause}`: {why}")
+            }
+            F::NoMass { name } => format!("body `{name}` has no mass"),
+            F::MassTwice { name } => format!("body `{name}` has both solids and given mass properties"),
+            F::Twice { word } => format!("`{word}` is given twice"),
+            F::UnknownTarget { name, .. } => format!("there is no joint, body or point `{name}` to drive"),
+            F::WrongDrive { drive, target, .. } => format!("a {drive} cannot drive `{target}`"),
+            F::SameBody { name, body } => format!("both ends of `{name}` are on `{body}`"),
+            F::SameAxes { name } => format!("the two axes of joint `{name}` are the same"),
+            F::NoLaw { name } => format!("contact `{name}` has no law"),
+        }
+    }
+
+    fn help(&self) -> String {
+        match self {
+            F::UnknownBody { near: Some(near), .. }
+            | F::UnknownPoint { near: Some(near), .. }
+            | F::UnknownTarget { near: Some(near), .. } => format!("did you mean `{near}`?"),
+            F::UnknownBody { name, .. } => format!("declare `body {name} {{ ... }}`"),
+            F::UnknownPoint { point, .. } => format!("add `point {point} = [x, y, z];` to it"),
+            F::MissingClause { clause, .. } => format!("add `{clause} ...;`"),
+            F::SuperfluousClause { clause, .. } => format!("remove `{clause}`"),
+            F::NoMass { .. } => "add a solid such as `cuboid [x, y, z];` with its `density`, or `mass` and `inertia`".to_owned(),
+            F::MassTwice { .. } => "remove the solids, or `mass`, `center` and `inertia`".to_owned(),
+            F::Twice { word } => format!("remove one `{word}`"),
+            F::UnknownTarget { .. } => "name a joint, a body, or a body's point".to_owned(),
+            F::WrongDrive { takes, .. } => format!("write `{takes} = ...`"),
+            F::SameBody { .. } => "join two bodies".to_owned(),
+            F::SameAxes { .. } => "give two different axes, such as `universal x y`".to_owned(),
+            F::NoLaw { .. } => "add one, such as `y: C = k, R = r;`".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Common pairs of factors in the products of a plan.
+//!
+//! In: a [`Plan`]. Out: the same plan, in which each pair of factors that several products have, or one product has more
+//! than once, is a product of its own; a divisor of many products is one reciprocal.
+//! Method: Hosangadi, Fallah, Kastner 2006, greedy two-term elimination on monomials, most frequent pair first; powers are
+//! pairs of equal factors, so that they are taken by squaring.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+use super::graph::number;
+use super::plan::{Cell, Plan};
+use super::rebuild::LONGEST;
+use super::table::Table;
+
+/// Two factors: ascending if they are multiplied (`true`), dividend and divisor otherwise.
+type Pair = (u32, u32, bool);
+
+/// Products with the same divisor from which on one reciprocal of it is cheaper: with two it would save one division for
+/// two multiplications, which is no fewer operations.
+const RECIPROCAL: usize = 3;
+
+struct Search<'p> {
+    plan: &'p mut Plan,
+    products: Vec<(u32, Vec<(u32, i32)>)>,
+    places: Table<Pair, Vec<u32>>,
+    queue: BinaryHeap<(u32, Reverse<Pair>)>,
+}
+
+/// Makes products of the pairs of factors that occur more than once.
+pub(super) fn share_factors(plan: &mut Plan) {
+    let mut products = Vec::new();
+    for cell in plan.post_order() {
+        if let Cell::Product(factors) = &plan.cells[cell as usize] {
+            products.push((cell, factors.clone()));
+        }
+    }
+    let mut search = Search { plan, products, places: Table::default(), queue: BinaryHeap::new() };
+    search.enter();
+    search.run();
+    let mut products = search.products;
+    share_divisors(plan, &mut products);
+    for (cell, factors) in products {
+        plan.cells[cell as usize] = Cell::Product(factors);
+    }
+}
+
+impl Search<'_> {
+    fn enter(&mut self) {
+        let mut found = Vec::new();
+        for product in 0..self.products.len() {
+            let factors = self.products[product].1.clone();
+            for (at, &first) in factors.iter().enumerate() {
+                for &second in factors[at..].iter().take(LONGEST) {
+                    self.note(product, first, second, &mut found);
+                }
+            }
+        }
+        self.enqueue(found);
+    }
+
+    fn run(&mut self) {
+        while let Some((stated, Reverse(pair))) = self.queue.pop() {
+            let places = self.verified(pair);
+            let count = places.iter().map(|place| place.1).sum();
+            if count < 2 {
+                continue;
+            }
+            if count < stated {
+                self.queue.push((count, Reverse(pair)));
+                continue;
+            }
+            self.replace(pair, &places);
+        }
+    }
+
+    fn note(&mut self, product: usize, first: (u32, i32), second: (u32, i32), found: &mut Vec<Pair>) {
+        let Some((pair, times)) = pair(first, second) else { return };
+        let places = self.places.entry(pair).or_default();
+        places.push(number(product));
+        if places.len() > 1 || times > 1 {
+            found.push(pair);
+        }
+    }
+
+    fn enqueue(&mut self, mut found: Vec<Pair>) {
+        found.sort_unstable();
+        found.dedup();
+        for pair in found {
+            let count = self.verified(pair).iter().map(|place| place.1).sum();
+            if count > 1 {
+                self.queue.push((count, Reverse(pair)));
+            }
+        }
+    }
+
+    /// The products in which the pair still is, and how many times.
+    fn verified(&self, wanted: Pair) -> Vec<(usize, u32)> {
+        let mut verified = Vec::new();
+        let mut last = None;
+        for &product in self.places.get(&wanted).map_or(&[][..], Vec::as_slice) {
+            if last.replace(product) == Some(product) {
+                continue;
+            }
+            let factors = &self.products[product as usize].1;
+            let find = |cell| factors.iter().find(|factor| factor.0 == cell).copied();
+            let (Some(first), Some(second)) = (find(wanted.0), find(wanted.1)) else { continue };
+            if let Some((found, times)) = pair(first, second) {
+                if found == wanted {
+                    verified.push((product as usize, times));
+                }
+            }
+        }
+        verified
+    }
+
+    fn replace(&mut self, pair: Pair, places: &[(usize, u32)]) {
+        let (first, second, multiplied) = pair;
+        let factors = match (first == second, multiplied) {
+            (true, _) => vec![(first, 2)],
+            (false, true) => vec![(first, 1), (second, 1)],
+            (false, false) if first < second => vec![(first, 1), (second, -1)],
+            (false, false) => vec![(second, -1), (first, 1)],
+        };
+        let inner = self.plan.intern(Cell::Product(factors));
+        let mut found = Vec::new();
+        for &(product, times) in places {
+            if self.products[product].0 != inner {
+                self.exchange(product, pair, times, inner, &mut found);
+            }
+        }
+        self.enqueue(found);
+    }
+
+    fn exchange(&mut self, product: usize, pair: Pair, times: u32, inner: u32, found: &mut Vec<Pair>) {
+        let factors = &mut self.products[product].1;
+        let mut direction = 1;
+        let times = times.cast_signed();
+        for factor in factors.iter_mut() {
+            if factor.0 == pair.0 {
+                direction = factor.1.signum();
+                factor.1 -= direction * times * if pair.0 == pair.1 { 2 } else { 1 };
+            } else if factor.0 == pair.1 {
+                factor.1 -= factor.1.signum() * times;
+            }
+        }
+        factors.retain(|factor| factor.1 != 0);
+        match factors.iter_mut().find(|factor| factor.0 == inner) {
+            Some(present) => present.1 += direction * times,
+            None => factors.push((inner, direction * times)),
+        }
+        let factors = factors.clone();
+        let Some(&new) = factors.iter().find(|factor| factor.0 == inner) else { return };
+        for &other in factors.iter().rev().take(LONGEST) {
+            self.note(product, other, new, found);
+        }
+    }
+}
+
+/// The pair of two factors of one product, and how many times they form it.
+fn pair(first: (u32, i32), second: (u32, i32)) -> Option<(Pair, u32)> {
+    let (left, right) = (first.1.unsigned_abs(), second.1.unsigned_abs());
+    if first.0 == second.0 {
+        return (left > 1).then_some(((first.0, first.0, true), left / 2));
+    }
+    let times = left.min(right);
+    let pair = match (first.1 > 0, second.1 > 0) {
+        (true, false) => (first.0, second.0, false),
+        (false, true) => (second.0, first.0, false),
+        _ => (first.0.min(second.0), first.0.max(second.0), true),
+    };
+    Some((pair, times))
+}
+
+/// Replaces divisors that many products have in common by their reciprocal.
+fn share_divisors(plan: &mut Plan, products: &mut [(u32, Vec<(u32, i32)>)]) {
+    let mut users: BTreeMap<Vec<(u32, i32)>, Vec<usize>> = BTreeMap::new();
+    for (at, (_, factors)) in products.iter().enumerate() {
+        let mut divisor: Vec<_> = factors.iter().copied().filter(|factor| factor.1 < 0).collect();
+        divisor.sort_unstable();
+        if !divisor.is_empty() {
+            users.entry(divisor).or_default().push(at);
+        }
+    }
+    for (divisor, users) in users {
+        if users.len() < RECIPROCAL {
+            continue;
+        }
+        let reciprocal = plan.intern(Cell::Product(divisor));
+        for at in users {
+            let (cell, factors) = &mut products[at];
+            if *cell != reciprocal {
+                factors.retain(|factor| factor.1 > 0);
+                factors.push((reciprocal, 1));
+            }
+        }
+    }
+}

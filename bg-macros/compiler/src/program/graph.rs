@@ -1,0 +1,266 @@
+//! The expressions of one routine, each split into a static coefficient and a dynamic core.
+//!
+//! In: values in any form. Out: cores in normal form: sums have no common coefficient and begin with a plus, products
+//! have no coefficient and no products within; equal cores are stored once.
+//! Method: hash-consing (Ershov 1958); a common coefficient is divided out only where that divides by numbers alone.
+
+use super::statics::Statics;
+use super::table::Table;
+use crate::expr::{Function, Id, Symbol};
+
+/// coefficient * core.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct Value {
+    /// A static value.
+    pub(super) coefficient: Id,
+    /// The index of a core.
+    pub(super) core: u32,
+}
+
+/// What changes while the routine's arguments change.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub(super) enum Core {
+    /// The number 1, the core of all static values.
+    One,
+    /// A symbol.
+    Symbol(Symbol),
+    /// A function of values.
+    Call(Function, Vec<Value>),
+    /// One of two values.
+    Select {
+        /// The switch's index.
+        switch: u32,
+        /// The value where the guard is negative.
+        negative: Value,
+        /// The value elsewhere.
+        positive: Value,
+    },
+    /// The sum of values, sorted by core.
+    Sum(Vec<Value>),
+    /// The product of core^exponent, sorted by core.
+    Product(Vec<(u32, i32)>),
+}
+
+/// The core of static values.
+pub(super) const ONE: u32 = 0;
+
+/// The cores of one routine.
+#[derive(Debug)]
+pub(super) struct Graph {
+    /// The cores by index.
+    pub(super) cores: Vec<Core>,
+    index: Table<Core, u32>,
+}
+
+impl Core {
+    /// Calls `visit` with each core that this one is made of, in order.
+    pub(super) fn children(&self, mut visit: impl FnMut(u32)) {
+        match self {
+            Self::One | Self::Symbol(_) => {}
+            Self::Call(_, values) | Self::Sum(values) => values.iter().for_each(|value| visit(value.core)),
+            Self::Select { negative, positive, .. } => {
+                visit(negative.core);
+                visit(positive.core);
+            }
+            Self::Product(factors) => factors.iter().for_each(|factor| visit(factor.0)),
+        }
+    }
+}
+
+impl Graph {
+    /// A graph with the core of static values.
+    pub(super) fn new() -> Self {
+        let mut graph = Self { cores: Vec::new(), index: Table::default() };
+        graph.intern(Core::One);
+        graph
+    }
+
+    /// The index of this core.
+    pub(super) fn intern(&mut self, core: Core) -> u32 {
+        if let Some(&known) = self.index.get(&core) {
+            return known;
+        }
+        let index = number(self.cores.len());
+        self.cores.push(core.clone());
+        self.index.insert(core, index);
+        index
+    }
+
+    /// The index of this core, if it is stored.
+    pub(super) fn find(&self, core: &Core) -> Option<u32> {
+        self.index.get(core).copied()
+    }
+
+    /// The factors of a core.
+    pub(super) fn factors(&self, core: u32) -> &[(u32, i32)] {
+        match &self.cores[core as usize] {
+            Core::Product(factors) => factors,
+            _ => &[],
+        }
+    }
+
+    /// The factors of a core as a list: none of the number 1, the core itself if it is no product.
+    pub(super) fn factor_list(&self, core: u32) -> Vec<(u32, i32)> {
+        match &self.cores[core as usize] {
+            Core::One => Vec::new(),
+            Core::Product(factors) => factors.clone(),
+            _ => vec![(core, 1)],
+        }
+    }
+
+    /// The core of this product of powers, none a product.
+    pub(super) fn power_product(&mut self, mut factors: Vec<(u32, i32)>) -> u32 {
+        factors.sort_unstable();
+        let mut merged: Vec<(u32, i32)> = Vec::with_capacity(factors.len());
+        for (core, exponent) in factors {
+            match merged.last_mut() {
+                Some(last) if last.0 == core => last.1 += exponent,
+                _ => merged.push((core, exponent)),
+            }
+        }
+        merged.retain(|factor| factor.1 != 0);
+        match merged[..] {
+            [] => ONE,
+            [(core, 1)] => core,
+            _ => self.intern(Core::Product(merged)),
+        }
+    }
+
+    /// The product of powers of values.
+    pub(super) fn product(&mut self, statics: &mut Statics, powers: &[(Value, i32)]) -> Value {
+        let mut coefficient = statics.one;
+        let mut factors = Vec::with_capacity(powers.len());
+        for &(value, exponent) in powers {
+            if value.coefficient != statics.one {
+                let power = statics.pool.powi(value.coefficient, exponent);
+                coefficient = statics.times(coefficient, power);
+            }
+            match &self.cores[value.core as usize] {
+                Core::One => {}
+                Core::Product(inner) => factors.extend(inner.iter().map(|&(core, inner)| (core, inner * exponent))),
+                _ => factors.push((value.core, exponent)),
+            }
+        }
+        Value { coefficient, core: self.power_product(factors) }
+    }
+
+    /// The sum of values.
+    pub(super) fn sum(&mut self, statics: &mut Statics, terms: Vec<Value>) -> Value {
+        let mut terms = merge(statics, terms);
+        match terms[..] {
+            [] => return Value { coefficient: statics.pool.zero(), core: ONE },
+            [only] => return only,
+            _ => {}
+        }
+        let content = content(statics, &terms);
+        if content != statics.one {
+            for term in &mut terms {
+                term.coefficient = statics.exact(term.coefficient, content).unwrap_or(term.coefficient);
+            }
+        }
+        Value { coefficient: content, core: self.intern(Core::Sum(terms)) }
+    }
+
+    /// A function's value; odd and even functions lose their argument's minus.
+    pub(super) fn call(&mut self, statics: &mut Statics, function: Function, mut arguments: Vec<Value>) -> Value {
+        let mut coefficient = statics.one;
+        let odd = matches!(function, Function::Sin | Function::Tan | Function::Asin | Function::Tanh);
+        if odd || matches!(function, Function::Cos | Function::Abs) {
+            let (negative, magnitude) = statics.magnitude(arguments[0].coefficient);
+            arguments[0].coefficient = magnitude;
+            coefficient = statics.signed(negative && odd, coefficient);
+        }
+        Value { coefficient, core: self.intern(Core::Call(function, arguments)) }
+    }
+
+    /// One of two values; what they have in common as coefficient goes outside.
+    pub(super) fn select(&mut self, statics: &mut Statics, switch: u32, negative: Value, positive: Value) -> Value {
+        let equal = negative.coefficient == positive.coefficient && negative.core != ONE && positive.core != ONE;
+        let mut branches = [negative, positive];
+        let mut coefficient = statics.one;
+        if equal {
+            coefficient = negative.coefficient;
+            branches = branches.map(|branch| Value { coefficient: statics.one, ..branch });
+        } else if statics.is_negative(negative.coefficient) {
+            coefficient = statics.signed(true, coefficient);
+            branches = branches
+                .map(|branch| Value { coefficient: statics.signed(true, branch.coefficient), core: branch.core });
+        }
+        let [negative, positive] = branches;
+        Value { coefficient, core: self.intern(Core::Select { switch, negative, positive }) }
+    }
+
+    /// All cores under these values, children first, in depth-first order from the values in order.
+    pub(super) fn post_order(&self, roots: &[Value]) -> Vec<u32> {
+        let mut seen = vec![false; self.cores.len()];
+        let mut order = Vec::new();
+        let mut pending: Vec<(u32, bool)> = roots.iter().rev().map(|root| (root.core, false)).collect();
+        while let Some((core, finished)) = pending.pop() {
+            if finished {
+                order.push(core);
+            } else if !std::mem::replace(&mut seen[core as usize], true) {
+                pending.push((core, true));
+                let first = pending.len();
+                self.cores[core as usize].children(|child| pending.push((child, false)));
+                pending[first..].reverse();
+            }
+        }
+        order
+    }
+
+    /// How often each core is used by the cores under these values and by the values themselves.
+    pub(super) fn uses(&self, order: &[u32], roots: &[Value]) -> Vec<u32> {
+        let mut uses = vec![0; self.cores.len()];
+        for root in roots {
+            uses[root.core as usize] += 1;
+        }
+        for &core in order {
+            self.cores[core as usize].children(|child| uses[child as usize] += 1);
+        }
+        uses
+    }
+}
+
+/// An index as stored.
+pub(super) fn number(index: usize) -> u32 {
+    u32::try_from(index).expect("a routine has fewer than 2^32 nodes")
+}
+
+/// Terms sorted by core, those of one core added up, zeros left out.
+fn merge(statics: &mut Statics, mut terms: Vec<Value>) -> Vec<Value> {
+    terms.sort_by_key(|term| term.core);
+    let mut merged: Vec<Value> = Vec::with_capacity(terms.len());
+    for term in terms {
+        match merged.last_mut() {
+            Some(last) if last.core == term.core => {
+                last.coefficient = statics.pool.add(last.coefficient, term.coefficient);
+            }
+            _ => merged.push(term),
+        }
+    }
+    merged.retain(|term| !statics.pool.is_zero(term.coefficient));
+    merged
+}
+
+/// What is divided out of a sum: a coefficient that is a factor of all others, with the sign of the first dynamic term.
+fn content(statics: &mut Statics, terms: &[Value]) -> Id {
+    let dynamic = || terms.iter().filter(|term| term.core != ONE);
+    let Some(first) = dynamic().next() else { return statics.one };
+    let negative = statics.is_negative(first.coefficient);
+    let sign = statics.signed(negative, statics.one);
+    if dynamic().any(|term| statics.is_unit(term.coefficient)) {
+        return sign;
+    }
+    let mut factor = first.coefficient;
+    for term in terms {
+        factor = statics.common(factor, term.coefficient).factor;
+    }
+    for term in dynamic() {
+        let Some(rest) = statics.exact(term.coefficient, factor) else { continue };
+        if statics.pool.as_number(rest).is_some() {
+            let (_, magnitude) = statics.magnitude(term.coefficient);
+            return statics.signed(negative, magnitude);
+        }
+    }
+    sign
+}

@@ -1,0 +1,95 @@
+//! What stands in front of a statement: documentation comments and visibility.
+
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+
+use super::{
+    SyntaxFault,
+    cursor::{Cursor, Parsed},
+    token::{TokenKind, joined},
+};
+
+/// The documentation comment in front of a statement.
+#[derive(Debug)]
+pub(super) struct Documentation {
+    /// Its lines joined by `\n`, each without its leading blank.
+    pub text: String,
+    /// Where it stands, when there is one.
+    pub span: Option<Span>,
+}
+
+impl Cursor<'_> {
+    /// The documentation comment ahead; notes attributes of other kinds.
+    pub fn documentation(&mut self) -> Documentation {
+        let (mut lines, mut span) = (Vec::new(), None);
+        while self.is("#") {
+            let inner = usize::from(self.symbol_ahead(1, "!"));
+            let Some(TokenKind::Group(group)) = self.ahead(1 + inner) else { break };
+            if group.delimiter() != Delimiter::Bracket {
+                break;
+            }
+            let comment = comment(group);
+            let start = self.advance();
+            for _ in 0..=inner {
+                self.advance();
+            }
+            match comment {
+                Some(comment) if inner == 0 => {
+                    span = Some(span.map_or(start, |first| joined(first, start)));
+                    lines.extend(comment.split('\n').map(line));
+                }
+                Some(_) => drop(self.note(start, &SyntaxFault::MisplacedDocumentation)),
+                None => drop(self.note(start, &SyntaxFault::Attribute)),
+            }
+        }
+        Documentation { text: lines.join("\n"), span }
+    }
+
+    /// `pub`, `pub(crate)` or nothing.
+    pub fn visibility(&mut self) -> Parsed<syn::Visibility> {
+        let Some(span) = self.eat_word("pub") else { return Ok(syn::Visibility::Inherited) };
+        let mut tokens: Vec<TokenTree> = vec![Ident::new("pub", span).into()];
+        if self.delimiter() == Some(Delimiter::Parenthesis)
+            && let Some(TokenKind::Group(group)) = self.peek()
+        {
+            tokens.push(flat(group).into());
+        }
+        match syn::parse2(tokens.iter().cloned().collect()) {
+            Ok(visibility) => {
+                for _ in 1..tokens.len() {
+                    self.advance();
+                }
+                Ok(visibility)
+            }
+            Err(_) => Err(self.unexpected("`(crate)`, `(super)` or `(in PATH)`")),
+        }
+    }
+}
+
+/// The text of `[doc = "text"]`.
+fn comment(group: &Group) -> Option<String> {
+    let mut tokens = group.stream().into_iter();
+    match (tokens.next(), tokens.next(), tokens.next(), tokens.next()) {
+        (Some(TokenTree::Ident(doc)), Some(TokenTree::Punct(equals)), Some(TokenTree::Literal(text)), None)
+            if doc == "doc" && equals.as_char() == '=' =>
+        {
+            match syn::Lit::new(text) {
+                syn::Lit::Str(text) => Some(text.value()),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}
+
+/// A line of a comment without its leading blank, and without carriage returns, which no comment may contain.
+fn line(text: &str) -> String {
+    text.strip_prefix(' ').unwrap_or(text).replace('\r', "")
+}
+
+/// The group without groups inside of it, which no visibility has: syn would recurse on them without a limit.
+fn flat(group: &Group) -> Group {
+    let stream: TokenStream = group.stream().into_iter().filter(|tree| !matches!(tree, TokenTree::Group(_))).collect();
+    let mut flat = Group::new(group.delimiter(), stream);
+    flat.set_span(group.span());
+    flat
+}

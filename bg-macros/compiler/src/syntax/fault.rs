@@ -1,0 +1,290 @@
+//! What a user can write that is no sentence of the language.
+
+use crate::fault::{Explain, near_miss};
+
+/// More words than a help line can list to advantage.
+const MANY: usize = 10;
+
+/// How many of them it lists instead; the table of a graph's words begins with as many typical ones.
+const SEVERAL: usize = 5;
+
+/// A fault of syntax.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SyntaxFault {
+    /// A statement begins with a word that begins none.
+    UnknownStatement {
+        /// Where it stands: `a graph`, `a scene`.
+        place: &'static str,
+        /// The word.
+        word: String,
+        /// The words that begin a statement there.
+        known: &'static [&'static str],
+    },
+    /// A token that cannot stand where it does.
+    Unexpected {
+        /// The token.
+        found: String,
+        /// What could stand there; the likeliest first.
+        expected: String,
+    },
+    /// A statement without its `;`.
+    MissingSemicolon {
+        /// The statement's last token.
+        behind: String,
+    },
+    /// `^` or `**` in an expression.
+    Power {
+        /// The operator.
+        operator: &'static str,
+        /// What is raised.
+        base: String,
+        /// The exponent.
+        exponent: String,
+    },
+    /// A unit that is no product of powers of symbols.
+    NotAUnit {
+        /// The token that does not belong there.
+        found: String,
+    },
+    /// An `if` without `else`.
+    IfWithoutElse,
+    /// A comparison or a logical operator that is not the condition of an `if`.
+    ComparisonOutsideIf {
+        /// The operator.
+        operator: &'static str,
+    },
+    /// `if a < b < c`, `if a < b && c < d`.
+    SecondComparison {
+        /// The operator behind the first comparison.
+        operator: &'static str,
+    },
+    /// `if a == b`, `if a != b`.
+    Equality {
+        /// The operator.
+        operator: &'static str,
+    },
+    /// A clause that stands twice.
+    Duplicate {
+        /// The clause, with quotes about its words.
+        clause: String,
+    },
+    /// A word that names no joint kind, drive, contact law or expectation.
+    UnknownKind {
+        /// What it should name: `a joint kind`.
+        what: &'static str,
+        /// The word.
+        word: String,
+        /// The words that do.
+        known: &'static [&'static str],
+    },
+    /// A word that needs an axis behind it has none.
+    MissingAxis {
+        /// The word: `revolute`, `along`.
+        of: String,
+        /// What stands there instead.
+        found: String,
+    },
+    /// A parameter or input without unit.
+    MissingUnit {
+        /// `parameter` or `input`.
+        what: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// A parameter without default.
+    MissingDefault {
+        /// Its name.
+        name: String,
+    },
+    /// Dots in a name that has none.
+    DottedName {
+        /// What it names: `the graph`.
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// What to write.
+        instead: String,
+    },
+    /// A name that Rust reserves.
+    ReservedName {
+        /// The name.
+        name: String,
+    },
+    /// A number with a suffix, in another base, or beyond all floating-point numbers.
+    NotANumber {
+        /// The literal.
+        text: String,
+    },
+    /// An expression nested too deeply.
+    TooDeep {
+        /// The deepest nesting.
+        limit: usize,
+    },
+    /// A junction's cardinality other than 1 and 3.
+    Cardinality {
+        /// What stands there.
+        found: String,
+    },
+    /// A documentation comment on a statement that has none.
+    MisplacedDocumentation,
+    /// An attribute other than a documentation comment.
+    Attribute,
+    /// A macro call without a graph.
+    NoGraph,
+}
+
+impl Explain for SyntaxFault {
+    fn code(&self) -> &'static str {
+        match self {
+            Self::UnknownStatement { .. } => "BG0101",
+            Self::Unexpected { .. } => "BG0102",
+            Self::MissingSemicolon { .. } => "BG0103",
+            Self::Power { .. } => "BG0104",
+            Self::NotAUnit { .. } => "BG0105",
+            Self::IfWithoutElse => "BG0106",
+            Self::ComparisonOutsideIf { .. } => "BG0107",
+            Self::SecondComparison { .. } => "BG0108",
+            Self::Equality { .. } => "BG0109",
+            Self::Duplicate { .. } => "BG0110",
+            Self::UnknownKind { .. } => "BG0111",
+            Self::MissingAxis { .. } => "BG0112",
+            Self::MissingUnit { .. } => "BG0113",
+            Self::MissingDefault { .. } => "BG0114",
+            Self::DottedName { .. } => "BG0115",
+            Self::ReservedName { .. } => "BG0116",
+            Self::NotANumber { .. } => "BG0117",
+            Self::TooDeep { .. } => "BG0118",
+            Self::Cardinality { .. } => "BG0119",
+            Self::MisplacedDocumentation => "BG0120",
+            Self::Attribute => "BG0121",
+            Self::NoGraph => "BG0122",
+        }
+    }
+
+    fn message(&self) -> String {
+        match self {
+            Self::UnknownStatement { place, word, .. } => format!("`{word}` begins no statement of {place}"),
+            Self::Unexpected { found, expected } => format!("found {found}, expected {expected}"),
+            Self::MissingSemicolon { behind } => format!("the statement that ends with {behind} has no `;`"),
+            Self::Power { operator, .. } => format!("found `{operator}`, which is no operator of an expression"),
+            Self::NotAUnit { found } => format!("found {found} in a unit, expected symbols such as in `kg*m^2/s`"),
+            Self::IfWithoutElse => "this `if` has no `else`, so that it has no value where its condition fails".into(),
+            Self::ComparisonOutsideIf { operator } => {
+                format!("found `{operator}` in a value, expected it only between `if` and `{{`")
+            }
+            Self::SecondComparison { operator } => {
+                format!("found `{operator}` behind a comparison, expected `{{`: an `if` compares once")
+            }
+            Self::Equality { operator } => format!("found `{operator}`, expected `<`, `<=`, `>` or `>=`"),
+            Self::Duplicate { clause } => format!("found a second {clause}, expected one"),
+            Self::UnknownKind { what, word, known } => {
+                format!("found `{word}`, expected {what}: {}", listed(known))
+            }
+            Self::MissingAxis { of, found } => format!("found {found} behind `{of}`, expected an axis"),
+            Self::MissingUnit { what, name } => format!("the {what} `{name}` has no unit"),
+            Self::MissingDefault { name } => format!("the parameter `{name}` has no default"),
+            Self::DottedName { what, name, .. } => format!("found `{name}`, expected a name without dots for {what}"),
+            Self::ReservedName { name } => format!("found `{name}` as a name, which Rust reserves"),
+            Self::NotANumber { text } if is_plain(text) => {
+                format!("found `{text}`, which is beyond all floating-point numbers")
+            }
+            Self::NotANumber { text } => format!("found `{text}`, expected a decimal number without a suffix"),
+            Self::TooDeep { limit } => format!("the expression is nested deeper than {limit} levels"),
+            Self::Cardinality { found } => format!("found {found}, expected a cardinality of 1 or 3"),
+            Self::MisplacedDocumentation => {
+                "only `graph`, `param`, `input` and `scene` have a documentation comment".into()
+            }
+            Self::Attribute => "found an attribute, expected none: the language has no attributes".into(),
+            Self::NoGraph => "found no graph, expected at least one".into(),
+        }
+    }
+
+    fn help(&self) -> String {
+        match self {
+            Self::UnknownStatement { word, known, .. } | Self::UnknownKind { word, known, .. } => {
+                suggested(word, known)
+            }
+            Self::Unexpected { found, expected } => likeliest(found, expected),
+            Self::MissingSemicolon { behind } => format!("write `;` behind {behind}"),
+            Self::Power { base, exponent, .. } => format!("write `pow({base}, {exponent})`"),
+            Self::NotAUnit { .. } => "write unit symbols joined by `*` and `/`, with whole powers, or `1`".into(),
+            Self::IfWithoutElse => "write `else { ... }` behind its block".into(),
+            Self::ComparisonOutsideIf { .. } => "write `if a < b { 1 } else { 0 }`".into(),
+            Self::SecondComparison { operator: "||" } => {
+                "chain a second `if`: `if a < b { e } else if c < d { e } else { f }`".into()
+            }
+            Self::SecondComparison { .. } => {
+                "nest a second `if`: `if a < b { if c < d { e } else { f } } else { f }`".into()
+            }
+            Self::Equality { .. } => "compare with `<`, `<=`, `>` or `>=`".into(),
+            Self::Duplicate { clause } => format!("remove one {clause}"),
+            Self::MissingAxis { of, .. } => format!("write `x`, `y` or `z` behind `{of}`"),
+            Self::MissingUnit { name, .. } => format!("write its unit behind its name, such as `{name}: N*m`"),
+            Self::MissingDefault { .. } => "write `= NUMBER` behind its unit".into(),
+            Self::DottedName { instead, .. } => format!("write `{instead}`"),
+            Self::ReservedName { name } if name == "_" => "write a word as its name".into(),
+            Self::ReservedName { name } => format!("write another name, such as `{}_`", name.trim_start_matches("r#")),
+            Self::NotANumber { text } => written_plainly(text),
+            Self::TooDeep { .. } => "name a part of it with `let`".into(),
+            Self::Cardinality { .. } => "write `[3]` for a multibond junction".into(),
+            Self::MisplacedDocumentation => "write `//` instead of `///`".into(),
+            Self::Attribute => "remove it".into(),
+            Self::NoGraph => "write `graph NAME { ... }`".into(),
+        }
+    }
+}
+
+/// The nearest of the known words, or all of them.
+fn suggested(word: &str, known: &[&'static str]) -> String {
+    match near_miss(word, known.iter().copied().filter(|_| word.chars().count() > 1)) {
+        Some(near) => format!("write `{near}`"),
+        None if known.len() == 1 => format!("write {}", listed(known)),
+        None if known.len() > MANY => format!("write a word that begins one, such as {}", listed(&known[..SEVERAL])),
+        None => format!("write one of {}", listed(known)),
+    }
+}
+
+/// What to write instead of `found`: the quoted word it was meant to be, or the first of the alternatives.
+fn likeliest(found: &str, expected: &str) -> String {
+    // Every second piece between backquotes is quoted.
+    let quoted = expected.split('`').skip(1).step_by(2);
+    let word = found.trim_matches('`');
+    if let Some(near) = near_miss(word, quoted.filter(|candidate| candidate.len().min(word.len()) > 1)) {
+        return format!("write `{near}`");
+    }
+    let mut end = expected.len();
+    let mut is_quoted = false;
+    for (at, mark) in expected.char_indices() {
+        is_quoted ^= mark == '`';
+        if !is_quoted && (mark == ',' || expected[at..].starts_with(" or ")) {
+            end = at;
+            break;
+        }
+    }
+    format!("write {} here", &expected[..end])
+}
+
+/// The words in quotes.
+fn listed(words: &[&'static str]) -> String {
+    words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// Whether a literal has decimal digits and no suffix.
+fn is_plain(text: &str) -> bool {
+    text.chars().all(|c| c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-' | '_'))
+}
+
+/// How to write the number that `text` means.
+fn written_plainly(text: &str) -> String {
+    let digits = text.trim_start_matches('-');
+    if is_plain(text) {
+        return "write a number below 1.8e308".into();
+    }
+    let other_base = ["0x", "0o", "0b"].iter().any(|base| digits.starts_with(base));
+    let end = digits.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(digits.len());
+    if other_base || end == digits.len() {
+        "write a decimal number such as `0.05` or `2e-3`".into()
+    } else {
+        format!("write `{}`", digits[..end].trim_end_matches(['e', 'E', '_']))
+    }
+}
