@@ -1,0 +1,118 @@
+//! The static description and the documentation of a generated model.
+//!
+//! In: graph, strokes, equations, operation counts. Out: a `Description` literal, a doc text.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::causality::{CausalGraph, End};
+use crate::equations::StateEquations;
+use crate::expr::{Symbol, text};
+use crate::graph::NodeKind;
+use crate::program::{Counts, Routine};
+
+/// The generated type's documentation: the user's, then the states and the operations.
+pub(super) fn documentation(docs: &str, equations: &StateEquations, routines: &[&Routine]) -> String {
+    let mut doc = String::from(docs);
+    doc.push_str("\n\n# States\n\n| index | name | unit | storage | causality |\n|---|---|---|---|---|\n");
+    for (index, state) in equations.states.iter().enumerate() {
+        doc.push_str(&format!("| {index} | `{}` | {} | {} | integral |\n", state.name, state.unit, state.storage));
+    }
+    doc.push_str("\n# Operations\n\n| function | additions | multiplications | divisions | functions | choices |\n");
+    doc.push_str("|---|---|---|---|---|---|\n");
+    for routine in routines {
+        let Counts { additions, multiplications, divisions, functions, choices } = routine.counts;
+        doc.push_str(&format!(
+            "| {} | {additions} | {multiplications} | {divisions} | {functions} | {choices} |\n",
+            routine.name
+        ));
+    }
+    doc
+}
+
+/// The `Description` literal.
+pub(super) fn description(causal: &CausalGraph, equations: &StateEquations, routines: &[&Routine]) -> TokenStream {
+    let graph = &causal.graph;
+    let (name, doc) = (&graph.name.text, &graph.docs);
+    let parameters = format_parameters(&graph.name.text);
+    let inputs = graph.inputs.iter().map(|input| {
+        let (name, unit, doc) = (&input.name.text, &input.unit, &input.docs);
+        quote!(::bg_model::description::InputInfo { name: #name, unit: #unit, doc: #doc })
+    });
+    let states = equations.states.iter().map(|state| {
+        let (name, unit, storage) = (&state.name, &state.unit, state.storage);
+        quote! {
+            ::bg_model::description::StateInfo { name: #name, unit: #unit, storage: #storage, causality: "integral" }
+        }
+    });
+    let outputs = equations.outputs.iter().map(|output| {
+        let (name, unit) = (&output.name, &output.unit);
+        quote!(::bg_model::description::OutputInfo { name: #name, unit: #unit })
+    });
+    let switches = equations.switches.iter().map(|switch| {
+        let (element, guard) = (&switch.element, guard_text(equations, switch.guard));
+        quote!(::bg_model::description::SwitchInfo { element: #element, guard: #guard })
+    });
+    let elements = graph.nodes.iter().map(|node| {
+        let (kind, name) = (node.kind.symbol(), &node.name.text);
+        let law = if let NodeKind::Element(element) = &node.kind { element.text.as_str() } else { "" };
+        quote!(::bg_model::description::ElementInfo { kind: #kind, name: #name, law: #law })
+    });
+    let bonds = bonds(causal);
+    let lines = &equations.texts;
+    let counts = routines.iter().map(|routine| {
+        let name = &routine.name;
+        let Counts { additions, multiplications, divisions, functions, choices } = routine.counts;
+        quote! {
+            (#name, ::bg_model::description::OperationCount {
+                additions: #additions, multiplications: #multiplications, divisions: #divisions,
+                functions: #functions, choices: #choices,
+            })
+        }
+    });
+    quote! {
+        ::bg_model::description::Description {
+            name: #name, doc: #doc, parameters: #parameters,
+            inputs: &[#(#inputs,)*], states: &[#(#states,)*], outputs: &[#(#outputs,)*],
+            switches: &[#(#switches,)*], elements: &[#(#elements,)*], bonds: &[#(#bonds,)*],
+            equations: &[#(#lines,)*], operations: &[#(#counts,)*],
+        }
+    }
+}
+
+/// The parameter table is that of the parameter struct.
+fn format_parameters(_name: &str) -> TokenStream {
+    quote!(PARAMETERS)
+}
+
+fn bonds(causal: &CausalGraph) -> impl Iterator<Item = TokenStream> {
+    let graph = &causal.graph;
+    graph.bonds.iter().zip(&causal.strokes).map(|(bond, stroke)| {
+        let (from, to) = (&graph.node(bond.from).name.text, &graph.node(bond.to).name.text);
+        let cardinality = bond.cardinality;
+        let stroke = match stroke {
+            End::From => quote!(From),
+            End::To => quote!(To),
+        };
+        let (effort, flow) = (bond.effort.to_string(), bond.flow().to_string());
+        quote! {
+            ::bg_model::description::BondInfo {
+                from: #from, to: #to, cardinality: #cardinality, stroke: ::bg_model::description::BondEnd::#stroke,
+                effort: #effort, flow: #flow,
+            }
+        }
+    })
+}
+
+/// A guard as text.
+fn guard_text(equations: &StateEquations, guard: crate::expr::Id) -> String {
+    let name = |symbol| match symbol {
+        Symbol::Time => "t".to_owned(),
+        Symbol::State(index) => equations.states[index as usize].name.clone(),
+        Symbol::Parameter(index) => equations.parameters[index as usize].name.text.clone(),
+        Symbol::Input(index) => equations.inputs[index as usize].name.text.clone(),
+        Symbol::Unknown(index) => format!("unknown_{index}"),
+        Symbol::Atom(index) => format!("atom_{index}"),
+    };
+    text(&equations.pool, guard, &name, &|switch| format!("guard {switch}"))
+}

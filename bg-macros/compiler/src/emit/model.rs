@@ -1,0 +1,358 @@
+//! The model type and its functions.
+//!
+//! In: equations and their programs. Out: a type that implements `bg_model::System` and `bg_model::Model`, generic over
+//! the scalar; flat single assignments over fixed-size vectors.
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::description;
+use super::items::{Given, identifier};
+use super::routine::{Names, operand, statements};
+use crate::causality::CausalGraph;
+use crate::equations::StateEquations;
+use crate::expr::{Id, Symbol};
+use crate::program::{Program, Request, Routine, schedule};
+
+/// The items of one model: parameters, inputs, the type, its functions, its description.
+pub fn model(causal: &CausalGraph, equations: &mut StateEquations) -> TokenStream {
+    let programs = Programs::new(equations);
+    let equations: &StateEquations = equations;
+    Emission { causal, equations, programs }.items()
+}
+
+/// The programs of all generated functions.
+struct Programs {
+    /// Functions of the running model; they share one constant table.
+    dynamic: Program,
+    /// First guesses, gaps and start state: functions of parameters and unknowns, each with its own constants.
+    starting: [Program; 3],
+}
+
+impl Programs {
+    fn new(equations: &mut StateEquations) -> Self {
+        let of = |ids: &mut dyn Iterator<Item = Id>| ids.collect::<Vec<Id>>();
+        let rates = of(&mut equations.states.iter().map(|state| state.rate));
+        let guards = of(&mut equations.switches.iter().map(|switch| switch.guard));
+        let outputs = of(&mut equations.outputs.iter().map(|output| output.value));
+        let projections = of(&mut equations.projections.iter().map(|&(_, id)| id));
+        let starts = of(&mut equations.states.iter().map(|state| state.start));
+        let gaps = of(&mut equations.gaps.iter().map(|gap| gap.value));
+        let guesses = equations.guesses.clone();
+        let stored = [equations.stored];
+        let powers = [equations.supplied, equations.dissipated];
+        let requests = [
+            Request { name: "rate", roots: &rates },
+            Request { name: "guards", roots: &guards },
+            Request { name: "outputs", roots: &outputs },
+            Request { name: "project", roots: &projections },
+            Request { name: "stored_energy", roots: &stored },
+            Request { name: "powers", roots: &powers },
+        ];
+        let dynamic = schedule(&mut equations.pool, &requests);
+        let mut alone = |name, roots: &[Id]| schedule(&mut equations.pool, &[Request { name, roots }]);
+        let starting = [alone("guesses", &guesses), alone("gaps", &gaps), alone("start_state", &starts)];
+        Self { dynamic, starting }
+    }
+}
+
+struct Emission<'a> {
+    causal: &'a CausalGraph,
+    equations: &'a StateEquations,
+    programs: Programs,
+}
+
+/// `let name = value;` for the symbols that a routine uses.
+fn bindings(routine: &[&Routine], names: &dyn Fn(Symbol) -> Option<TokenStream>) -> TokenStream {
+    let mut used: Vec<Symbol> = routine.iter().flat_map(|routine| routine.symbols()).collect();
+    used.sort_unstable();
+    used.dedup();
+    used.into_iter().filter_map(names).collect()
+}
+
+impl Emission<'_> {
+    fn items(&self) -> TokenStream {
+        let graph = &self.causal.graph;
+        let given = Given {
+            name: &graph.name.text,
+            visibility: &graph.visibility,
+            parameters: &graph.parameters,
+            inputs: &graph.inputs,
+        };
+        let structs = given.structs();
+        let (name, visibility) = (&identifier(&graph.name.text), &graph.visibility);
+        let (parameters, inputs) = (&given.parameters_name(), &given.inputs_name());
+        let routines: Vec<&Routine> = self.programs.dynamic.routines.iter().collect();
+        let doc = description::documentation(&graph.docs, self.equations, &routines);
+        let description = description::description(self.causal, self.equations, &routines);
+        let (states, switches, outputs) =
+            (self.equations.states.len(), self.equations.switches.len(), self.equations.outputs.len());
+        let constants = self.programs.dynamic.constants.results.len();
+        let has_inputs = !graph.inputs.is_empty();
+        let input_field = has_inputs.then(|| quote!(inputs: #inputs,));
+        let input_argument = has_inputs.then(|| quote!(, inputs: #inputs));
+        let input_value = has_inputs.then(|| quote!(inputs,));
+        let input_pass = has_inputs.then(|| quote!(, inputs));
+        let starting = self.starting();
+        let table = self.constant_table();
+        let system = self.system();
+        let model = self.model();
+        quote! {
+            #structs
+
+            #[doc = #doc]
+            #[derive(Clone, Debug)]
+            #visibility struct #name<S = f64> {
+                parameters: #parameters,
+                #input_field
+                constants: [S; #constants],
+            }
+
+            #[allow(missing_docs, clippy::all, clippy::pedantic)]
+            const _: () = {
+                use ::bg_model::scalar::Scalar;
+                use ::bg_model::nalgebra::SVector;
+
+                const N: usize = #states;
+                const G: usize = #switches;
+                const M: usize = #outputs;
+                static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
+                    ::std::sync::LazyLock::new(|| {
+                        let PARAMETERS = <#parameters as ::bg_model::parameters::Parameters>::table();
+                        #description
+                    });
+
+                impl #name {
+                    /// Number of states.
+                    pub const STATES: usize = N;
+                    /// Number of switches.
+                    pub const SWITCHES: usize = G;
+                    /// Number of scalar outputs.
+                    pub const OUTPUTS: usize = M;
+
+                    /// The model with these parameters, in `f64`.
+                    ///
+                    /// # Errors
+                    /// A parameter outside its range.
+                    pub fn new(parameters: #parameters #input_argument)
+                        -> Result<Self, ::bg_model::parameters::ParameterError>
+                    {
+                        Self::in_scalar(parameters #input_pass)
+                    }
+                }
+
+                impl<S: Scalar> #name<S> {
+                    /// The model with these parameters, calculating in `S`.
+                    ///
+                    /// # Errors
+                    /// A parameter outside its range.
+                    pub fn in_scalar(parameters: #parameters #input_argument)
+                        -> Result<Self, ::bg_model::parameters::ParameterError>
+                    {
+                        ::bg_model::parameters::Parameters::validate(&parameters)?;
+                        let constants = Self::constant_table(&parameters);
+                        Ok(Self { parameters, #input_value constants })
+                    }
+
+                    /// The parameters.
+                    pub fn parameters(&self) -> &#parameters {
+                        &self.parameters
+                    }
+
+                    /// What depends on parameters only.
+                    fn constant_table(parameters: &#parameters) -> [S; #constants] {
+                        #table
+                    }
+
+                    #starting
+                }
+
+                #system
+                #model
+            };
+        }
+    }
+
+    fn constant_table(&self) -> TokenStream {
+        let routine = &self.programs.dynamic.constants;
+        let parameters = self.parameter_bindings(&[routine]);
+        let (statements, results) = self.body(routine);
+        quote! { #parameters #statements [#(#results),*] }
+    }
+
+    /// Guesses, gaps and start state, each with its constants inside.
+    fn starting(&self) -> TokenStream {
+        let name = identifier(&format!("{}Parameters", self.causal.graph.name.text));
+        let unknowns = self.equations.guesses.len();
+        let functions = self.programs.starting.iter().map(|program| {
+            let routine = &program.routines[0];
+            let function = identifier(&routine.name);
+            let parameters = self.parameter_bindings(&[&program.constants, routine]);
+            let (constants, table) = self.body(&program.constants);
+            let (statements, results) = self.body(routine);
+            let length = results.len();
+            let entries = table.len();
+            quote! {
+                fn #function(parameters: &#name, u: &[S; #unknowns]) -> [S; #length] {
+                    #parameters
+                    let c: [S; #entries] = { #constants [#(#table),*] };
+                    #statements
+                    [#(#results),*]
+                }
+            }
+        });
+        quote! { #(#functions)* }
+    }
+
+    fn parameter_bindings(&self, routines: &[&Routine]) -> TokenStream {
+        bindings(routines, &|symbol| match symbol {
+            Symbol::Parameter(index) => {
+                let field = identifier(&self.equations.parameters[index as usize].name.text);
+                let name = self.symbol_name(symbol);
+                Some(quote!(let #name = S::from_f64(parameters.#field);))
+            }
+            _ => None,
+        })
+    }
+
+    /// Inputs and states that the routine uses.
+    fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
+        bindings(&[routine], &|symbol| {
+            let name = self.symbol_name(symbol);
+            match symbol {
+                Symbol::State(index) => {
+                    let index = Literal::usize_unsuffixed(index as usize);
+                    Some(quote!(let #name = x[#index];))
+                }
+                Symbol::Input(index) => {
+                    let field = identifier(&self.equations.inputs[index as usize].name.text);
+                    Some(quote!(let #name = self.inputs.#field.value(t);))
+                }
+                _ => None,
+            }
+        })
+    }
+
+    fn symbol_name(&self, symbol: Symbol) -> TokenStream {
+        let ident = match symbol {
+            Symbol::Time => format_ident!("t"),
+            Symbol::State(index) => state_identifier(&self.equations.states[index as usize].name),
+            Symbol::Parameter(index) => {
+                format_ident!("p_{}", self.equations.parameters[index as usize].name.text)
+            }
+            Symbol::Input(index) => format_ident!("u_{}", self.equations.inputs[index as usize].name.text),
+            Symbol::Unknown(index) => {
+                let index = Literal::usize_unsuffixed(index as usize);
+                return quote!(u[#index]);
+            }
+            Symbol::Atom(index) => format_ident!("atom_{index}"),
+        };
+        quote!(#ident)
+    }
+
+    fn body(&self, routine: &Routine) -> (TokenStream, Vec<TokenStream>) {
+        let names = Names {
+            symbol: &|symbol| self.symbol_name(symbol),
+            constant: &|index| {
+                let index = Literal::usize_unsuffixed(index as usize);
+                quote!(c[#index])
+            },
+            switch: &|index| {
+                let index = Literal::usize_unsuffixed(index as usize);
+                quote!(negative[#index])
+            },
+        };
+        let results = routine.results.iter().map(|result| operand(result, &names)).collect();
+        (statements(routine, &names), results)
+    }
+
+    /// The statements of a function of the running model, and its results.
+    fn function(&self, index: usize) -> (TokenStream, Vec<TokenStream>) {
+        let routine = &self.programs.dynamic.routines[index];
+        let bindings = self.dynamic_bindings(routine);
+        let (statements, results) = self.body(routine);
+        let body = quote! {
+            let c = &self.constants;
+            let [x] = &x.data.0;
+            #bindings
+            #statements
+        };
+        (body, results)
+    }
+
+    fn system(&self) -> TokenStream {
+        let name = identifier(&self.causal.graph.name.text);
+        let (rate, rates) = self.function(0);
+        let (guard, guards) = self.function(1);
+        let (project, projected) = self.function(3);
+        let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        quote! {
+            #[allow(unused_variables)]
+            impl<S: Scalar> ::bg_model::system::System<S, N, G> for #name<S> {
+                fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
+                    #rate
+                    dx.data.0 = [[#(#rates),*]];
+                }
+                fn guards(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], guards: &mut SVector<S, G>) {
+                    #guard
+                    guards.data.0 = [[#(#guards),*]];
+                }
+                fn project(&self, state: &mut SVector<S, N>) {
+                    let x = &*state;
+                    #project
+                    let [projected] = &mut state.data.0;
+                    #(projected[#indices] = #projected;)*
+                }
+                fn state_name(&self, index: usize) -> &'static str {
+                    DESCRIPTION.states.get(index).map_or("state", |state| state.name)
+                }
+            }
+        }
+    }
+
+    fn model(&self) -> TokenStream {
+        let name = identifier(&self.causal.graph.name.text);
+        let (output, outputs) = self.function(2);
+        let (energy, stored) = self.function(4);
+        let (power, powers) = self.function(5);
+        let (supplied, dissipated) = (&powers[0], &powers[1]);
+        let gaps = self.equations.gaps.iter().map(|gap| {
+            let (joint, component, unit) = (&gap.joint, gap.component, &gap.unit);
+            quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
+        });
+        quote! {
+            #[allow(unused_variables)]
+            impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for #name<S> {
+                fn description(&self) -> &'static ::bg_model::description::Description {
+                    &DESCRIPTION
+                }
+                fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
+                    static GAPS: &[::bg_model::assembly::Gap] = &[#(#gaps),*];
+                    let guess = #name::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
+                    let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
+                        gaps.copy_from_slice(&#name::<f64>::gaps(&self.parameters, unknowns));
+                    })?;
+                    let unknowns = unknowns.map(S::from_f64);
+                    Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
+                }
+                fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], y: &mut SVector<S, M>) {
+                    #output
+                    y.data.0 = [[#(#outputs),*]];
+                }
+                fn stored_energy(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> S {
+                    #energy
+                    #(#stored)*
+                }
+                fn powers(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> ::bg_model::system::Powers<S> {
+                    #power
+                    ::bg_model::system::Powers { supplied: #supplied, dissipated: #dissipated }
+                }
+            }
+        }
+    }
+}
+
+/// A state's name as an identifier.
+fn state_identifier(name: &str) -> Ident {
+    identifier(&name.replace('.', "_"))
+}

@@ -1,0 +1,278 @@
+//! Assembly: moves a guessed start pose until every loop is closed.
+//!
+//! In: the guessed coordinates and a function that gives the gaps of the joints. Out: the nearest coordinates, to first
+//! order, at which the gaps vanish to rounding, or the joints that stay open.
+//! Method: Gauss-Newton with a pseudo-inverse step (least norm, so coordinates that no gap depends on stay where they
+//! are), damped as Levenberg and Marquardt do where the plain step does not shrink the gaps.
+
+use nalgebra::{DMatrix, DVector, SVector};
+use thiserror::Error;
+
+/// The largest gap of a closed joint, in the gap's unit (m or rad).
+pub const CLOSED: f64 = 1e-10;
+
+/// One residual row: a component of the gap of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gap {
+    /// The joint's name.
+    pub joint: &'static str,
+    /// Which component, such as `x` or `angle`.
+    pub component: &'static str,
+    /// Its unit, `m` or `rad`.
+    pub unit: &'static str,
+}
+
+/// A gap that stays open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenGap {
+    /// Which gap.
+    pub gap: Gap,
+    /// Its signed size, in the gap's unit.
+    pub size: f64,
+}
+
+impl std::fmt::Display for OpenGap {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "`{}` by {:e} {} in {}", self.gap.joint, self.size, self.gap.unit, self.gap.component)
+    }
+}
+
+/// A mechanism that cannot be put together near the guess.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum AssemblyError {
+    /// Some joints stay open by more than [`CLOSED`].
+    #[error("the mechanism does not close: joint {largest} (allowed: {CLOSED:e}){}", also_open(.others))]
+    Open {
+        /// The largest gap.
+        largest: OpenGap,
+        /// The other joints that stay open, each with its largest gap.
+        others: Vec<OpenGap>,
+    },
+    /// A gap is not a finite number at the guess or near it.
+    #[error("the gap of joint `{}` in {} is not a finite number: {value}", .gap.joint, .gap.component)]
+    NonFinite {
+        /// Which gap.
+        gap: Gap,
+        /// Its value.
+        value: f64,
+    },
+}
+
+fn also_open(others: &[OpenGap]) -> String {
+    if others.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> = others.iter().map(OpenGap::to_string).collect();
+    format!("; also open: {}", names.join(", "))
+}
+
+/// The coordinates nearest to `guess`, to first order, at which all gaps are closed to rounding.
+///
+/// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates. Redundant gaps
+/// and coordinates without influence are allowed. With `U = 0` the gaps are only checked. Allocates.
+///
+/// # Errors
+/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 m or rad), [`AssemblyError::NonFinite`] if a gap is
+/// not a number.
+pub fn close<const U: usize>(
+    guess: [f64; U],
+    gaps: &'static [Gap],
+    residual: impl Fn(&[f64; U], &mut [f64]),
+) -> Result<[f64; U], AssemblyError> {
+    // Quadratic convergence needs some ten iterations; more only for far guesses, whose steps are limited.
+    const ITERATIONS: usize = 200;
+    let gaps_at = |coordinates: &SVector<f64, U>| {
+        let mut sizes = DVector::zeros(gaps.len());
+        residual(&coordinates.data.0[0], sizes.as_mut_slice());
+        sizes
+    };
+    let mut coordinates = SVector::from(guess);
+    let mut sizes = gaps_at(&coordinates);
+    check_finite(gaps, &sizes)?;
+    if U > 0 {
+        for _ in 0..ITERATIONS {
+            let jacobian = jacobian(&coordinates, gaps.len(), gaps_at);
+            check_finite_matrix(gaps, &jacobian)?;
+            let Some((nearer, smaller)) = shrink(&coordinates, &sizes, jacobian, gaps_at) else { break };
+            (coordinates, sizes) = (nearer, smaller);
+        }
+    }
+    check_closed(gaps, &sizes)?;
+    Ok(coordinates.data.0[0])
+}
+
+/// The derivatives of the gaps by five-point central differences; their error is of the order 1e-13 for mechanisms of
+/// the size of 1 m.
+fn jacobian<const U: usize>(
+    coordinates: &SVector<f64, U>,
+    rows: usize,
+    gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
+) -> DMatrix<f64> {
+    // Balances the truncation error d^4 / 30 against the rounding error 1e-16 / d.
+    const DISPLACEMENT: f64 = 1.0 / 1024.0;
+    let mut jacobian = DMatrix::zeros(rows, U);
+    for column in 0..U {
+        let d = DISPLACEMENT * coordinates[column].abs().max(1.0);
+        let moved = |by: f64| {
+            let mut displaced = *coordinates;
+            displaced[column] += by;
+            gaps_at(&displaced)
+        };
+        let near = (moved(d) - moved(-d)) * (2.0 / (3.0 * d));
+        let far = (moved(2.0 * d) - moved(-2.0 * d)) * (1.0 / (12.0 * d));
+        jacobian.set_column(column, &(near - far));
+    }
+    jacobian
+}
+
+/// The first damped step that shrinks the gaps' norm, with the new gaps; none if the norm has stopped falling.
+fn shrink<const U: usize>(
+    coordinates: &SVector<f64, U>,
+    sizes: &DVector<f64>,
+    jacobian: DMatrix<f64>,
+    gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
+) -> Option<(SVector<f64, U>, DVector<f64>)> {
+    // Singular values below this part of the largest one are rounding errors of the differences.
+    const RANK: f64 = 1e-10;
+    const DAMPINGS: [f64; 8] = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
+    let norm = sizes.norm();
+    if jacobian.is_empty() || norm == 0.0 {
+        return None;
+    }
+    let svd = jacobian.svd(true, true);
+    let (u, v_t) = (svd.u.as_ref()?, svd.v_t.as_ref()?);
+    let largest = svd.singular_values.max();
+    let projected = u.tr_mul(sizes);
+    DAMPINGS.iter().find_map(|damping| {
+        let lambda = damping * largest;
+        let weights = DVector::from_fn(projected.len(), |i, _| {
+            let sigma = svd.singular_values[i];
+            if sigma <= RANK * largest { 0.0 } else { -projected[i] * sigma / (sigma * sigma + lambda * lambda) }
+        });
+        let step = limited(v_t.tr_mul(&weights), coordinates);
+        let nearer = SVector::from_fn(|i, _| coordinates[i] + step[i]);
+        let smaller = gaps_at(&nearer);
+        (smaller.norm() < norm).then_some((nearer, smaller))
+    })
+}
+
+/// Shortens a long step, so that the pose is not thrown over into another one that closes as well.
+fn limited<const U: usize>(step: DVector<f64>, coordinates: &SVector<f64, U>) -> DVector<f64> {
+    // Half a radian, or half the size of the coordinates.
+    let longest = 0.5 * coordinates.amax().max(1.0);
+    let length = step.amax();
+    if length > longest { step * (longest / length) } else { step }
+}
+
+fn check_finite(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError> {
+    match gaps.iter().zip(sizes.iter()).find(|(_, size)| !size.is_finite()) {
+        Some((gap, value)) => Err(AssemblyError::NonFinite { gap: *gap, value: *value }),
+        None => Ok(()),
+    }
+}
+
+fn check_finite_matrix(gaps: &[Gap], jacobian: &DMatrix<f64>) -> Result<(), AssemblyError> {
+    (0..jacobian.ncols()).try_for_each(|column| check_finite(gaps, &jacobian.column(column).into_owned()))
+}
+
+fn check_closed(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError> {
+    let mut joints: Vec<OpenGap> = Vec::new();
+    for (gap, size) in gaps.iter().zip(sizes.iter()).filter(|(_, size)| size.abs() > CLOSED) {
+        match joints.iter_mut().find(|open| open.gap.joint == gap.joint) {
+            Some(open) if open.size.abs() >= size.abs() => {}
+            Some(open) => *open = OpenGap { gap: *gap, size: *size },
+            None => joints.push(OpenGap { gap: *gap, size: *size }),
+        }
+    }
+    joints.sort_by(|a, b| b.size.abs().total_cmp(&a.size.abs()));
+    if joints.is_empty() {
+        return Ok(());
+    }
+    let largest = joints.remove(0);
+    Err(AssemblyError::Open { largest, others: joints })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn gap(joint: &'static str, component: &'static str) -> Gap {
+        Gap { joint, component, unit: "m" }
+    }
+    static PIN: [Gap; 2] = [gap("pin", "x"), gap("pin", "y")];
+
+    /// Two links of lengths 0.3 and 0.5 m that must reach the point (0.6, y).
+    fn two_links(y: f64) -> impl Fn(&[f64; 2], &mut [f64]) {
+        move |q, r| {
+            r[0] = 0.3 * libm::cos(q[0]) + 0.5 * libm::cos(q[1]) - 0.6;
+            r[1] = 0.3 * libm::sin(q[0]) + 0.5 * libm::sin(q[1]) - y;
+        }
+    }
+
+    #[test]
+    fn a_loop_closes_to_rounding_on_the_side_of_the_guess() {
+        for side in [1.0, -1.0] {
+            let q = close([0.4 * side, -0.5 * side], &PIN, two_links(0.1)).unwrap();
+            let mut r = [1.0; 2];
+            two_links(0.1)(&q, &mut r);
+            assert!(r.iter().all(|r| r.abs() <= 2.3e-16), "{r:?}");
+            assert!((q[0] - q[1]) * side > 0.0, "{q:?}");
+        }
+    }
+
+    #[test]
+    fn a_loop_out_of_reach_names_its_joint_gap_and_unit() {
+        let error = close([0.4, -0.5], &PIN, two_links(2.0)).unwrap_err();
+        let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
+        assert_eq!((largest.gap, others.len()), (PIN[1], 0));
+        let (sum, reach) = (0.6_f64.hypot(2.0), 0.8);
+        assert!((largest.size + 2.0 * (1.0 - reach / sum)).abs() < 1e-6, "{error}");
+        assert!(error.to_string().contains("`pin` by -1.2") && error.to_string().contains(" m in y"), "{error}");
+    }
+
+    #[test]
+    fn coordinates_without_influence_stay_and_redundant_gaps_do_no_harm() {
+        static GAPS: [Gap; 3] = [gap("a", "x"), gap("a", "y"), gap("a", "again")];
+        let q = close([0.4, 7.0, -0.5], &GAPS, |q, r| {
+            two_links(0.1)(&[q[0], q[2]], &mut r[..2]);
+            r[2] = r[0] + r[1];
+        })
+        .unwrap();
+        assert_eq!(q[1], 7.0);
+        let alone = close([0.4, -0.5], &PIN, two_links(0.1)).unwrap();
+        assert!((q[0] - alone[0]).abs() < 1e-12 && (q[2] - alone[1]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_free_coordinate_pair_moves_as_little_as_possible() {
+        static ONE: [Gap; 1] = [gap("rod", "length")];
+        let q = close([3.0, 4.5], &ONE, |q, r| r[0] = q[0] + q[1] - 7.0).unwrap();
+        assert!((q[0] - 2.75).abs() < 1e-14 && (q[1] - 4.25).abs() < 1e-14, "{q:?}");
+    }
+
+    #[test]
+    fn without_coordinates_the_gaps_are_only_checked() {
+        assert_eq!(close([], &PIN, |_, r| r.fill(CLOSED)), Ok([]));
+        let error = close([], &PIN, |_, r| r.copy_from_slice(&[2e-10, -3e-10])).unwrap_err();
+        assert!(matches!(error, AssemblyError::Open { largest, .. } if largest.size == -3e-10));
+        assert_eq!(close([1.0], &[], |_, _| {}), Ok([1.0]));
+    }
+
+    #[test]
+    fn other_open_joints_are_listed_once_each() {
+        static GAPS: [Gap; 4] = [gap("a", "x"), gap("b", "x"), gap("b", "y"), gap("c", "x")];
+        let error = close([], &GAPS, |_, r| r.copy_from_slice(&[1e-3, 2e-3, -5e-3, 0.0])).unwrap_err();
+        let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
+        assert_eq!((largest.gap, largest.size), (GAPS[2], -5e-3));
+        assert_eq!(others.as_slice(), &[OpenGap { gap: GAPS[0], size: 1e-3 }]);
+        assert!(error.to_string().ends_with("also open: `a` by 1e-3 m in x"), "{error}");
+    }
+
+    #[test]
+    fn a_gap_that_is_no_number_is_an_error() {
+        let error = close([1.0, 1.0], &PIN, |_, r| r.copy_from_slice(&[0.0, f64::NAN])).unwrap_err();
+        assert!(matches!(error, AssemblyError::NonFinite { gap, .. } if gap == PIN[1]));
+        let error = close([0.0, 0.0], &PIN, |q, r| r.copy_from_slice(&[q[0].sqrt() - 1.0, q[1]])).unwrap_err();
+        assert!(matches!(error, AssemblyError::NonFinite { gap, .. } if gap == PIN[0]));
+    }
+}

@@ -1,0 +1,158 @@
+//! The static description of a model: what it consists of, as tables that a program and a reader can use.
+
+/// A model's tables. All texts are those of its source; units are SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    /// The graph's name.
+    pub name: &'static str,
+    /// Its documentation comment.
+    pub doc: &'static str,
+    /// Parameters in the order of declaration.
+    pub parameters: &'static [ParameterInfo],
+    /// Inputs in the order of declaration.
+    pub inputs: &'static [InputInfo],
+    /// States in the order of the state vector.
+    pub states: &'static [StateInfo],
+    /// Scalar outputs in the order of the output vector.
+    pub outputs: &'static [OutputInfo],
+    /// Switches in the order of the guards.
+    pub switches: &'static [SwitchInfo],
+    /// Elements and junctions.
+    pub elements: &'static [ElementInfo],
+    /// Bonds with their causal strokes.
+    pub bonds: &'static [BondInfo],
+    /// The equations in the order of evaluation, one line each.
+    pub equations: &'static [&'static str],
+    /// The number of operations of each generated function.
+    pub operations: &'static [(&'static str, OperationCount)],
+}
+
+/// A parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterInfo {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit, as written.
+    pub unit: &'static str,
+    /// Its default value.
+    pub default: f64,
+    /// Its documentation comment.
+    pub doc: &'static str,
+    /// The range that is allowed.
+    pub range: Range,
+}
+
+/// An interval of allowed values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// The lower end; minus infinity when there is none.
+    pub lower: f64,
+    /// Whether the lower end itself is allowed.
+    pub lower_included: bool,
+    /// The upper end; infinity when there is none.
+    pub upper: f64,
+    /// Whether the upper end itself is allowed.
+    pub upper_included: bool,
+}
+
+/// An input: a function of time given at run time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InputInfo {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit, as written.
+    pub unit: &'static str,
+    /// Its documentation comment.
+    pub doc: &'static str,
+}
+
+/// A state variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateInfo {
+    /// Its name, such as `rod.mass.p_x`.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What stores it: `I`, `C`, `position`, `orientation` or `integral`.
+    pub storage: &'static str,
+    /// Its causality: `integral`, or `recovered` where it is calculated from other states.
+    pub causality: &'static str,
+}
+
+/// A scalar output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputInfo {
+    /// Its name, such as `C2_x` or `R2_11`.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// A switch of a law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SwitchInfo {
+    /// The element whose law switches.
+    pub element: &'static str,
+    /// The guard as text; below zero the law's first branch holds.
+    pub guard: &'static str,
+}
+
+/// An element or a junction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementInfo {
+    /// `0`, `1`, `Se`, `Sf`, `I`, `C`, `R`, `TF`, `GY` or a modulated one.
+    pub kind: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// Its constitutive law as text; empty for a junction.
+    pub law: &'static str,
+}
+
+/// A bond.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BondInfo {
+    /// Where the half arrow starts.
+    pub from: &'static str,
+    /// Where the half arrow points; power is positive in this direction.
+    pub to: &'static str,
+    /// 1 for a scalar bond, 3 for a multibond of three.
+    pub cardinality: usize,
+    /// The end with the causal stroke: the one that receives the effort and gives the flow.
+    pub stroke: BondEnd,
+    /// Unit of the effort.
+    pub effort: &'static str,
+    /// Unit of the flow.
+    pub flow: &'static str,
+}
+
+/// One of a bond's two ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BondEnd {
+    /// The end where the half arrow starts.
+    From,
+    /// The end the half arrow points to.
+    To,
+}
+
+/// The operations of one generated function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct OperationCount {
+    /// Additions, subtractions and negations.
+    pub additions: usize,
+    /// Multiplications.
+    pub multiplications: usize,
+    /// Divisions.
+    pub divisions: usize,
+    /// Elementary functions.
+    pub functions: usize,
+    /// Choices between two branches.
+    pub choices: usize,
+}
+
+impl OperationCount {
+    /// All operations.
+    #[must_use]
+    pub const fn total(&self) -> usize {
+        self.additions + self.multiplications + self.divisions + self.functions + self.choices
+    }
+}

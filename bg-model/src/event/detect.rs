@@ -1,0 +1,209 @@
+//! Detection: has a guard been on the wrong side during a step, and where.
+//!
+//! Both ends of the step and a quartic in between, through the guard's values and slopes at the ends and its value in
+//! the middle, are looked at in every step; the middle state is that of the cubic Hermite polynomial, so this costs
+//! three evaluations of the guards and none of the rate. Only where that raises a suspicion the dense output is asked.
+
+use nalgebra::SVector;
+
+use super::{Crossing, Reading, Watch, check_finite, clearance, read};
+use crate::integrator::{Method, hermite};
+use crate::simulation::Stepper;
+use crate::system::System;
+
+/// The number of parts of a step at whose ends the dense output is looked at.
+const PARTS: usize = 8;
+/// A clearance below this part of its variation in the step is looked at closely.
+const NEAR: f64 = 0.5;
+/// Halvings of the distance to the start of the step on the search for a point on the right side.
+const HALVINGS: usize = 40;
+/// Steps of the search for a minimum by the golden section: they narrow it down to a thousandth of its interval.
+const GOLDEN_STEPS: usize = 14;
+
+/// A part of the step in which a guard crosses: parts of the step with their clearances.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bracket {
+    /// The end on the right side.
+    pub right: (f64, f64),
+    /// The end on the wrong side.
+    pub wrong: (f64, f64),
+}
+
+/// What is known of a guard's course in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Course {
+    /// It keeps to its side.
+    Clear,
+    /// It leaves its side right at the start.
+    WrongFromStart,
+    /// It crosses here first.
+    Crosses(Bracket),
+}
+
+impl<const G: usize> Watch<G> {
+    /// Looks for events in the step just made, whose end has been projected and whose rates are known at both ends.
+    ///
+    /// Shortens the step to the first event. Fails with the first guard that is not finite.
+    pub fn inspect<Sys, M, const N: usize>(
+        &mut self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+    ) -> Result<Option<Crossing<G>>, (usize, f64)>
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if G == 0 {
+            return Ok(None);
+        }
+        let (end, h) = (stepper.end, stepper.h);
+        self.end = read(stepper, end.t, &end.x, &end.rate, h);
+        check_finite(&self.end.value)?;
+        let value = self.end.value;
+        self.enlarge(&value);
+        let mut x = SVector::zeros();
+        hermite(&stepper.start, h, &end, 0.5, &mut x);
+        let middle = stepper.guards(stepper.start.t + 0.5 * h, &x);
+        let is_suspect = |k: usize| {
+            let negative = stepper.negative[k];
+            clearance(self.end.value[k], negative) < -self.noise(k) || self.is_near(k, negative, middle[k], h)
+        };
+        let suspects: [bool; G] = std::array::from_fn(is_suspect);
+        if !suspects.contains(&true) {
+            return Ok(None);
+        }
+        let courses = self.courses(stepper, &suspects);
+        Ok(self.first_crossing(stepper, &courses))
+    }
+
+    /// Whether guard `k` comes so near to zero in the step that it may dip to the wrong side and come back.
+    fn is_near(&self, k: usize, negative: bool, middle: f64, h: f64) -> bool {
+        const SAMPLES: usize = 16;
+        let noise = self.noise(k);
+        let side = |value: f64| clearance(value, negative);
+        let from = if self.start.value[k].abs() <= noise { 0.0 } else { side(self.start.value[k]) };
+        let (middle, to) = (side(middle), side(self.end.value[k]));
+        let (leaving, arriving) = (h * side(self.start.slope[k]), h * side(self.end.slope[k]));
+        let bulge = 16.0 * (middle - 0.5 * (from + to) - 0.125 * (leaving - arriving));
+        let quartic = |part: f64| {
+            let (rest, chord) = (1.0 - part, to - from);
+            let bend = (rest - part) * chord - rest * leaving + part * arriving;
+            rest * from + part * to - part * rest * bend + bulge * (part * rest) * (part * rest)
+        };
+        let (mut lowest, mut highest) = (f64::INFINITY, from.max(to));
+        for sample in 1..SAMPLES {
+            let value = quartic(sample as f64 / SAMPLES as f64);
+            (lowest, highest) = (lowest.min(value), highest.max(value));
+        }
+        highest > noise && lowest < NEAR * (highest - lowest.min(from).min(to))
+    }
+
+    /// The course of the suspects by the dense output; the other guards are clear.
+    fn courses<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        suspects: &[bool; G],
+    ) -> [Course; G]
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let mut values = [self.start.value; PARTS + 1];
+        for (part, value) in values.iter_mut().enumerate().take(PARTS).skip(1) {
+            *value = stepper.dense_guards(part as f64 / PARTS as f64);
+        }
+        values[PARTS] = self.end.value;
+        std::array::from_fn(|k| if suspects[k] { self.course(stepper, k, &values) } else { Course::Clear })
+    }
+
+    /// The course of guard `k`, whose values at the parts of the step are known.
+    fn course<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        values: &[SVector<f64, G>; PARTS + 1],
+    ) -> Course
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let noise = self.noise(k);
+        let clearances = values.map(|value| clearance(value[k], stepper.negative[k]));
+        let at = |part: usize| (part as f64 / PARTS as f64, clearances[part]);
+        let wrong = (1..=PARTS).find(|part| clearances[*part] < -noise);
+        // Every minimum in front of that may reach the wrong side between two parts.
+        let negative = stepper.negative[k];
+        let falls = |reading: &Reading<G>| clearance(reading.slope[k], negative) < 0.0;
+        let is_minimum = |part: &usize| {
+            let is_below = |other: usize| clearances[*part] <= clearances[other];
+            match *part {
+                0 => falls(&self.start) && is_below(1),
+                PARTS => !falls(&self.end) && is_below(PARTS - 1),
+                inside => is_below(inside - 1) && is_below(inside + 1),
+            }
+        };
+        let minima = (0..wrong.unwrap_or(PARTS + 1)).filter(is_minimum);
+        let dip = minima.map(|part| self.minimum(stepper, k, at(part).0)).find(|(_, value)| *value < -noise);
+        let Some(wrong) = dip.or(wrong.map(at)) else { return Course::Clear };
+        let right = (0..PARTS).rev().map(at).find(|(part, clearance)| *part < wrong.0 && *clearance > noise);
+        match right {
+            Some(right) => Course::Crosses(Bracket { right, wrong }),
+            None => self.bracket_near_start(stepper, k, wrong),
+        }
+    }
+
+    /// The lowest clearance of guard `k` near the part `near` of the step, by the golden section; stops
+    /// on the wrong side.
+    fn minimum<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        near: f64,
+    ) -> (f64, f64)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let width = 1.0 / PARTS as f64;
+        let mut at = |part: f64| (part, clearance(stepper.dense_guards(part)[k], stepper.negative[k]));
+        let (mut low, mut high) = ((near - width).max(0.0), (near + width).min(1.0));
+        let mut inner = at(high - GOLDEN * (high - low));
+        let mut outer = at(low + GOLDEN * (high - low));
+        for _ in 0..GOLDEN_STEPS {
+            let lower = if inner.1 < outer.1 { inner } else { outer };
+            if lower.1 < -self.noise(k) {
+                return lower;
+            }
+            if inner.1 < outer.1 {
+                (high, outer) = (outer.0, inner);
+                inner = at(high - GOLDEN * (high - low));
+            } else {
+                (low, inner) = (inner.0, outer);
+                outer = at(low + GOLDEN * (high - low));
+            }
+        }
+        if inner.1 < outer.1 { inner } else { outer }
+    }
+
+    /// The course of guard `k` that starts at zero and is on the wrong side at `wrong`.
+    fn bracket_near_start<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        mut wrong: (f64, f64),
+    ) -> Course
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        for _ in 0..HALVINGS {
+            let part = 0.5 * wrong.0;
+            let near = clearance(stepper.dense_guards(part)[k], stepper.negative[k]);
+            if near > self.noise(k) {
+                return Course::Crosses(Bracket { right: (part, near), wrong });
+            }
+            wrong = (part, near);
+        }
+        Course::WrongFromStart
+    }
+}

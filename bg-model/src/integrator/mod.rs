@@ -1,0 +1,105 @@
+//! Integration methods: how one step is made.
+//!
+//! In: a flow dx/dt = f(t, x) with its switches frozen, the step's start and its size. Out: the state at the end of the
+//! step with an error estimate, and on request the states in between. What steps are tried, accepted and recorded is the
+//! driver's business ([`crate::simulation`]).
+//!
+//! All methods calculate in `f64`. A method's coefficients are rounded to `f64`, so a wider number type would gain
+//! nothing. Every sum has a fixed order and nothing is fused: debug and release builds give the same bytes.
+
+mod dop853;
+mod hermite;
+mod rk4;
+mod tolerances;
+
+use nalgebra::SVector;
+
+pub use dop853::Dop853;
+pub(crate) use hermite::hermite;
+pub use rk4::Rk4;
+pub use tolerances::{Absolute, Scale, Tolerances};
+
+/// A smooth flow: a system with its switches frozen.
+pub trait Flow<const N: usize> {
+    /// Writes dx/dt at time `t` (s) and state `x` into `dx`.
+    fn rate(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>);
+}
+
+/// A point of a trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<const N: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// State.
+    pub x: SVector<f64, N>,
+    /// dx/dt at `t` and `x`.
+    pub rate: SVector<f64, N>,
+}
+
+impl<const N: usize> Point<N> {
+    /// The point at time `t` (s) and state `x`, its rate not yet known: zero.
+    #[must_use]
+    pub fn at(t: f64, x: SVector<f64, N>) -> Self {
+        Self { t, x, rate: SVector::zeros() }
+    }
+}
+
+/// How a method's steps are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepControl {
+    /// Steps of a fixed size.
+    Fixed {
+        /// The step, s.
+        step: f64,
+    },
+    /// Steps by the error estimate.
+    Adaptive {
+        /// The power of the step with which the error norm of a small step falls.
+        order: f64,
+    },
+}
+
+/// A one-step method with its work space. It holds the stages of the last attempt; a step allocates nothing.
+pub trait Method<const N: usize> {
+    /// The method's name.
+    fn name(&self) -> &'static str;
+
+    /// How its steps are to be chosen.
+    fn control(&self) -> StepControl;
+
+    /// Tries a step of size `h` (s) from `start`, whose rate is known, and writes the state reached into `end`.
+    ///
+    /// Gives the norm of the error estimate: up to 1 the step satisfies the tolerances. A fixed-step method gives 0. Not
+    /// a number where a stage is not.
+    fn attempt(
+        &mut self,
+        flow: &mut impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64;
+
+    /// The state with the largest error in the last attempt.
+    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize;
+
+    /// The first state whose rate was not finite in a stage of the last attempt, and that rate.
+    fn faulty_rate(&self) -> Option<(usize, f64)>;
+
+    /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
+    /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow.
+    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>);
+
+    /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
+    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>);
+}
+
+/// The first entry that is not finite, and its value.
+pub(crate) fn first_not_finite<const N: usize>(x: &SVector<f64, N>) -> Option<(usize, f64)> {
+    x.iter().copied().enumerate().find(|(_, value)| !value.is_finite())
+}
+
+/// Whether all entries are finite. Looks at all of them, which is faster than stopping at the first.
+pub(crate) fn is_finite<const N: usize>(x: &SVector<f64, N>) -> bool {
+    x.data.0[0].iter().fold(true, |finite, value| finite & value.is_finite())
+}

@@ -1,0 +1,117 @@
+//! Tolerances: how large the error of a step may be.
+//!
+//! In: what the user asks for. Out: the scale that every state's error is measured by, and norms by that scale.
+
+use nalgebra::SVector;
+
+/// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerances<const N: usize> {
+    /// The part that grows with the state; from [`Tolerances::SMALLEST_RELATIVE`].
+    pub relative: f64,
+    /// The part that does not.
+    pub absolute: Absolute<N>,
+}
+
+/// An absolute tolerance, positive.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Absolute<const N: usize> {
+    /// The same for all states, each in its own unit.
+    Scalar(f64),
+    /// One for each state, in its unit.
+    PerState(SVector<f64, N>),
+}
+
+impl<const N: usize> Tolerances<N> {
+    /// The smallest relative tolerance that makes sense in `f64`: ten times the rounding unit, as in Hairer's programs.
+    pub const SMALLEST_RELATIVE: f64 = 10.0 * f64::EPSILON;
+
+    /// The same absolute tolerance for all states.
+    #[must_use]
+    pub const fn new(relative: f64, absolute: f64) -> Self {
+        Self { relative, absolute: Absolute::Scalar(absolute) }
+    }
+}
+
+impl<const N: usize> Default for Tolerances<N> {
+    /// 1e-8 relative and 1e-10 absolute.
+    fn default() -> Self {
+        Self::new(1e-8, 1e-10)
+    }
+}
+
+/// Tolerances, one for each state: what errors are divided by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scale<const N: usize> {
+    /// The relative tolerance.
+    pub relative: f64,
+    /// The absolute tolerance of every state.
+    pub absolute: SVector<f64, N>,
+}
+
+impl<const N: usize> From<&Tolerances<N>> for Scale<N> {
+    fn from(tolerances: &Tolerances<N>) -> Self {
+        let absolute = match &tolerances.absolute {
+            Absolute::Scalar(absolute) => SVector::repeat(*absolute),
+            Absolute::PerState(absolute) => *absolute,
+        };
+        Self { relative: tolerances.relative, absolute }
+    }
+}
+
+impl<const N: usize> Scale<N> {
+    /// The allowed error of state `i` between the values `a` and `b`.
+    #[inline(always)]
+    #[must_use]
+    pub fn allowed(&self, i: usize, a: f64, b: f64) -> f64 {
+        let (a, b) = (a.abs(), b.abs());
+        self.absolute.data.0[0][i] + self.relative * if a > b { a } else { b }
+    }
+
+    /// The sum of the squares of `v_i` divided by the allowed error at state `x`.
+    #[must_use]
+    pub fn sum_of_squares(&self, v: &SVector<f64, N>, x: &SVector<f64, N>) -> f64 {
+        let mut squares = [0.0; N];
+        for (i, square) in squares.iter_mut().enumerate() {
+            let ratio = v.data.0[0][i] / self.allowed(i, x.data.0[0][i], 0.0);
+            *square = ratio * ratio;
+        }
+        sum(&squares)
+    }
+}
+
+/// The sum in four interleaved partial sums: a fixed order that does not wait for each addition.
+pub(super) fn sum<const N: usize>(terms: &[f64; N]) -> f64 {
+    let mut partial = [0.0; 4];
+    let (groups, rest) = terms.as_chunks::<4>();
+    for group in groups {
+        for (partial, term) in partial.iter_mut().zip(group) {
+            *partial += term;
+        }
+    }
+    for (partial, term) in partial.iter_mut().zip(rest) {
+        *partial += term;
+    }
+    (partial[0] + partial[1]) + (partial[2] + partial[3])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_allowed_error_takes_the_larger_end() {
+        let scale =
+            Scale::from(&Tolerances::<2> { relative: 0.1, absolute: Absolute::PerState(SVector::from([1.0, 2.0])) });
+        assert_eq!(scale.allowed(0, -30.0, 20.0), 4.0);
+        assert_eq!(scale.allowed(1, 0.0, -20.0), 4.0);
+        assert_eq!(scale.sum_of_squares(&SVector::from([4.0, 1.0]), &SVector::from([10.0, 20.0])), 4.0 + 0.0625);
+    }
+
+    #[test]
+    fn sums_of_every_length_count_each_term_once() {
+        assert_eq!(sum(&[1.0, 2.0, 4.0]), 7.0);
+        assert_eq!(sum(&[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0]), 511.0);
+        assert_eq!(sum::<0>(&[]), 0.0);
+    }
+}

@@ -1,0 +1,251 @@
+//! The driver: integrates a system over a span of time, step by step.
+//!
+//! In: a system, a method, the start, the span and the settings. Out: the state at the end, with samples and events told
+//! to an observer on the way, or a typed failure with the last good state. Switches change their branch at located
+//! instants only ([`crate::system::System`]); a step never runs over such an instant.
+
+mod observer;
+mod pace;
+mod sampling;
+mod settings;
+mod stepper;
+
+use nalgebra::SVector;
+
+pub use observer::{EachSample, Observer};
+pub use settings::{Samples, Settings, Span};
+pub(crate) use stepper::Stepper;
+
+use crate::event::Watch;
+use crate::failure::{Cause, Failure, Quantity};
+use crate::integrator::{Method, Point, Scale, StepControl, first_not_finite, is_finite};
+use crate::statistics::Statistics;
+use crate::system::System;
+use pace::Pace;
+use sampling::Sampling;
+
+/// Where a run has come to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finish<const N: usize, const G: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// State.
+    pub x: SVector<f64, N>,
+    /// The branches of the switches from `t` on.
+    pub negative: [bool; G],
+    /// What the run has cost.
+    pub statistics: Statistics,
+}
+
+/// The state at `span.t_end`, from `start` at `span.t0`.
+///
+/// The branches at the start follow from the signs of the guards there; a guard that is exactly zero is decided by its
+/// sign a little later. The observer gets the samples and events in the order of time. Nothing is allocated on the way.
+///
+/// # Errors
+/// [`Failure`]: input that cannot be, a number that is not finite, a step or an interval between events that rounding
+/// does not allow, or too many steps; with the last good state, which the failing step has not touched.
+pub fn integrate<Sys, M, O, const N: usize, const G: usize>(
+    system: &Sys,
+    method: &mut M,
+    start: &SVector<f64, N>,
+    span: Span,
+    settings: &Settings<N>,
+    observer: &mut O,
+) -> Result<Finish<N, G>, Failure<N, G>>
+where
+    Sys: System<f64, N, G>,
+    M: Method<N>,
+    O: Observer<N, G>,
+{
+    let control = method.control();
+    let mut run = Run {
+        stepper: Stepper::new(system, method, Scale::from(&settings.tolerances), Point::at(span.t0, *start)),
+        watch: Watch::new(),
+        pace: Pace::new(control, span, settings),
+        sampling: Sampling::new(&settings.samples, span),
+        span,
+        attempts: 0,
+        limit: settings.step_limit,
+    };
+    let outcome = settings::check(system, control, start, span, settings)
+        .map_err(Cause::from)
+        .and_then(|()| run.begin(control, settings))
+        .and_then(|()| run.advance_to_end(observer));
+    match outcome {
+        Ok(()) => Ok(run.finish()),
+        Err(cause) => Err(Failure { cause, last: Box::new(run.finish()) }),
+    }
+}
+
+/// A run under way.
+struct Run<'a, Sys, M, const N: usize, const G: usize> {
+    stepper: Stepper<'a, Sys, M, N, G>,
+    watch: Watch<G>,
+    pace: Pace,
+    sampling: Sampling<'a>,
+    span: Span,
+    attempts: u64,
+    limit: u64,
+}
+
+impl<Sys, M, const N: usize, const G: usize> Run<'_, Sys, M, N, G>
+where
+    Sys: System<f64, N, G>,
+    M: Method<N>,
+{
+    /// Finds the first step and the branches at the start.
+    fn begin(&mut self, control: StepControl, settings: &Settings<N>) -> Result<(), Cause> {
+        self.watch.begin_by_sign(&mut self.stepper);
+        self.stepper.evaluate_start();
+        self.check_start()?;
+        let longest = (self.span.t_end - self.span.t0).min(settings.largest_step);
+        if let (StepControl::Adaptive { order }, None, true) = (control, settings.first_step, longest > 0.0) {
+            let (_, mut flow, start, _, scale) = self.stepper.split();
+            let first = pace::first_step(&mut flow, start, scale, order, longest);
+            self.pace.begin(first);
+        }
+        self.watch.begin_by_probe(&mut self.stepper, self.pace.step());
+        self.stepper.end = self.stepper.start;
+        self.check_start()
+    }
+
+    fn check_start(&self) -> Result<(), Cause> {
+        match first_not_finite(&self.stepper.start.rate) {
+            Some(fault) => Err(self.not_finite(Quantity::Rate, fault, 0.0)),
+            None => self.watch.check_start().map_err(|fault| self.not_finite(Quantity::Guard, fault, 0.0)),
+        }
+    }
+
+    fn advance_to_end(&mut self, observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
+        self.sample(observer, self.span.t0);
+        while self.stepper.start.t < self.span.t_end {
+            self.try_steps()?;
+            let crossing = self.watch.inspect(&mut self.stepper);
+            let crossing = crossing.map_err(|fault| self.not_finite(Quantity::Guard, fault, self.stepper.h))?;
+            match crossing {
+                None => {
+                    self.accept(observer);
+                    self.watch.advance();
+                }
+                Some(crossing) => {
+                    if !crossing.is_at_start {
+                        self.accept(observer);
+                    }
+                    self.switch(crossing.switches, observer)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Tries steps until one satisfies the tolerances; its end is projected and the rate there is known.
+    fn try_steps(&mut self) -> Result<(), Cause> {
+        let t = self.stepper.start.t;
+        let mut error = 0.0_f64;
+        loop {
+            if self.pace.is_lost(t) {
+                return Err(self.lost(error));
+            }
+            if self.attempts >= self.limit {
+                return Err(Cause::TooManySteps { limit: self.limit, t, h: self.stepper.h });
+            }
+            self.attempts += 1;
+            let t_new = self.pace.next_end(t);
+            let h = t_new - t;
+            error = self.stepper.attempt(h);
+            self.stepper.end.t = t_new;
+            if error <= 1.0 && is_finite(&self.stepper.end.x) {
+                self.stepper.project();
+                self.stepper.evaluate_end();
+                if is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
+                    self.pace.accept(h, error);
+                    return Ok(());
+                }
+            }
+            if error <= 1.0 {
+                error = f64::NAN;
+            }
+            self.stepper.statistics.rejected += 1;
+            self.pace.reject(h, error);
+            if !self.pace.is_adaptive() {
+                return Err(self.lost(error));
+            }
+        }
+    }
+
+    /// Why no step from the start of the last attempt succeeds.
+    fn lost(&self, error: f64) -> Cause {
+        let Stepper { method, start, end, h, scale, .. } = &self.stepper;
+        if !error.is_finite() {
+            if let Some(fault) = method.faulty_rate() {
+                return self.not_finite(Quantity::Rate, fault, *h);
+            }
+            if let Some(fault) = first_not_finite(&end.x) {
+                return self.not_finite(Quantity::State, fault, *h);
+            }
+            if let Some(fault) = first_not_finite(&end.rate) {
+                return self.not_finite(Quantity::Rate, fault, *h);
+            }
+        }
+        let index = method.largest_error(start, scale, &end.x);
+        let state = self.stepper.system.state_name(index);
+        Cause::StepTooSmall { state, index, value: start.x[index], t: start.t, h: self.pace.step() }
+    }
+
+    fn not_finite(&self, quantity: Quantity, (index, value): (usize, f64), h: f64) -> Cause {
+        let name = match quantity {
+            Quantity::Guard => "switch",
+            Quantity::State | Quantity::Rate => self.stepper.system.state_name(index),
+        };
+        Cause::NonFinite { quantity, name, index, value, t: self.stepper.start.t, h }
+    }
+
+    /// Takes the step over: gives its samples and makes its end the start of the next one.
+    fn accept(&mut self, observer: &mut impl Observer<N, G>) {
+        self.stepper.statistics.record(self.stepper.h);
+        self.sampling.next_step();
+        let t = self.stepper.end.t;
+        self.sample(observer, t);
+        self.stepper.advance();
+        observer.step(t, self.span.t_end, &self.stepper.statistics);
+    }
+
+    /// Gives the samples up to the end of the step at `t`.
+    fn sample(&mut self, observer: &mut impl Observer<N, G>, t: f64) {
+        while let Some(instant) = self.sampling.next_up_to(t) {
+            if instant >= t {
+                observer.sample(t, &self.stepper.end.x, &self.stepper.negative);
+                continue;
+            }
+            let part = (instant - self.stepper.start.t) / self.stepper.h;
+            let mut x = self.stepper.dense(part.min(1.0));
+            self.stepper.system.project(&mut x);
+            observer.sample(instant, &x, &self.stepper.negative);
+        }
+    }
+
+    /// Lets the switches whose guards are at zero find their branches at the start of the next step.
+    fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
+        let t = self.stepper.start.t;
+        let before = self.stepper.negative;
+        self.watch.settle(&mut self.stepper, switches, self.pace.step());
+        self.check_start()?;
+        for (switch, before) in before.into_iter().enumerate() {
+            if self.stepper.negative[switch] != before {
+                self.stepper.statistics.events += 1;
+                observer.event(t, &self.stepper.start.x, switch, &self.stepper.negative);
+            }
+        }
+        if self.watch.is_crowded(t, self.span.t_end - self.span.t0) {
+            let switch = switches.iter().position(|switch| *switch).unwrap_or(0);
+            return Err(Cause::EventsAccumulate { switch, t });
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Finish<N, G> {
+        let Stepper { start, negative, statistics, .. } = self.stepper;
+        Finish { t: start.t, x: start.x, negative, statistics }
+    }
+}

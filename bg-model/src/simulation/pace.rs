@@ -1,0 +1,125 @@
+//! The pace: which step is tried next.
+//!
+//! In: the error norms of the steps tried. Out: the end of the next step. Source: the step-size control of Hairer's
+//! `dop853.f` without its stabilisation (beta = 0), and its estimate of the first step (function HINIT).
+
+use nalgebra::SVector;
+
+use super::settings::{Settings, Span};
+use crate::integrator::{Flow, Point, Scale, StepControl};
+
+/// The part of the step that would just satisfy the tolerances.
+const SAFETY: f64 = 0.9;
+/// Limits of the ratio of a step to the one before.
+const RATIO: [f64; 2] = [0.333, 6.0];
+/// The ratio after an attempt that gave no number.
+const RETREAT: f64 = 0.1;
+/// A step that would leave less than this part of itself to the end is stretched to it.
+const STRETCH: f64 = 0.01;
+
+/// Chooses steps.
+#[derive(Debug)]
+pub(super) struct Pace {
+    control: StepControl,
+    span: Span,
+    largest: f64,
+    /// The step to try, s.
+    step: f64,
+    /// Whether the last attempt was rejected.
+    rejected: bool,
+    /// Fixed steps end at t0 + grid * step.
+    grid: u64,
+}
+
+impl Pace {
+    pub fn new<const N: usize>(control: StepControl, span: Span, settings: &Settings<N>) -> Self {
+        let asked = match control {
+            StepControl::Fixed { step } => step,
+            StepControl::Adaptive { .. } => settings.first_step.unwrap_or(span.t_end - span.t0),
+        };
+        let largest = settings.largest_step;
+        Self { control, span, largest, step: asked.min(largest), rejected: false, grid: 1 }
+    }
+
+    /// The size of the next step if nothing is in its way, s.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Whether steps are chosen by the error.
+    pub fn is_adaptive(&self) -> bool {
+        matches!(self.control, StepControl::Adaptive { .. })
+    }
+
+    /// Takes an estimate of the first step, s.
+    pub fn begin(&mut self, step: f64) {
+        self.step = step.min(self.largest);
+    }
+
+    /// The end of the next step from `t` (s).
+    pub fn next_end(&mut self, t: f64) -> f64 {
+        let t_end = self.span.t_end;
+        if self.is_adaptive() {
+            let stretched = t + (1.0 + STRETCH) * self.step >= t_end;
+            return if stretched && t_end - t <= (1.0 + 1e-9) * self.largest { t_end } else { t + self.step };
+        }
+        let end_of = |grid: u64| self.span.t0 + grid as f64 * self.step;
+        while end_of(self.grid) <= t {
+            self.grid += 1;
+        }
+        // A sliver that rounding leaves at the end belongs to the last step; a billionth of the step is no error.
+        if end_of(self.grid) >= t_end - 1e-9 * self.step { t_end } else { end_of(self.grid) }
+    }
+
+    /// The step `h` (s) satisfied the tolerances with the error norm `error`.
+    pub fn accept(&mut self, h: f64, error: f64) {
+        if self.is_adaptive() {
+            let next = h * self.ratio(error);
+            let next = if self.rejected { next.min(h) } else { next };
+            self.step = next.min(self.largest);
+        }
+        self.rejected = false;
+    }
+
+    /// The step `h` (s) did not satisfy the tolerances; `error` is not a number where the step gave none.
+    pub fn reject(&mut self, h: f64, error: f64) {
+        self.rejected = true;
+        self.step = h * if error.is_finite() { self.ratio(error).min(SAFETY) } else { RETREAT };
+    }
+
+    /// Whether the step to try from `t` (s) is too small to be told apart from rounding.
+    pub fn is_lost(&self, t: f64) -> bool {
+        let span = self.span.t_end - self.span.t0;
+        self.step <= 16.0 * f64::EPSILON * t.abs().max(f64::EPSILON * span)
+    }
+
+    fn ratio(&self, error: f64) -> f64 {
+        let StepControl::Adaptive { order } = self.control else { return 1.0 };
+        (SAFETY * libm::pow(error, -1.0 / order)).clamp(RATIO[0], RATIO[1])
+    }
+}
+
+/// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.
+pub(super) fn first_step<const N: usize>(
+    flow: &mut impl Flow<N>,
+    start: &Point<N>,
+    scale: &Scale<N>,
+    order: f64,
+    longest: f64,
+) -> f64 {
+    // The factors are those of HINIT; where it takes 1e-6 for a state at rest, this part of the longest step is taken.
+    const AT_REST: f64 = 1e-6;
+    let rates = scale.sum_of_squares(&start.rate, &start.x);
+    let states = scale.sum_of_squares(&start.x, &start.x);
+    let is_at_rest = rates <= 1e-10 || states <= 1e-10;
+    let guess = if is_at_rest { AT_REST * longest } else { (states / rates).sqrt() * 0.01 }.min(longest);
+    let ahead = start.x + start.rate * guess;
+    let mut rate: SVector<f64, N> = SVector::zeros();
+    flow.rate(start.t + guess, &ahead, &mut rate);
+    let bend = scale.sum_of_squares(&(rate - start.rate), &start.x).sqrt() / guess;
+    let steepest = bend.max(rates.sqrt());
+    let step =
+        if steepest <= 1e-15 { (AT_REST * longest).max(guess * 1e-3) } else { libm::pow(0.01 / steepest, 1.0 / order) };
+    let step = step.min(100.0 * guess).min(longest);
+    if step > 0.0 { step } else { AT_REST * longest }
+}

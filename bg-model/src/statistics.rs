@@ -1,0 +1,50 @@
+//! Statistics: what a run has cost.
+
+use std::fmt;
+
+/// Counts of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Statistics {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Attempts that were rejected: by the error estimate, or because a number was not finite.
+    pub rejected: u64,
+    /// Evaluations of the rate, all of them.
+    pub rate_evaluations: u64,
+    /// Those of `rate_evaluations` that served the dense output only.
+    pub dense_evaluations: u64,
+    /// Evaluations of the guards, each of all guards at once.
+    pub guard_evaluations: u64,
+    /// Changes of a switch's branch after the start.
+    pub events: u64,
+    /// The smallest accepted step, s, those shortened to an event or to the end included; 0 before the first step.
+    pub smallest_step: f64,
+    /// The largest accepted step, s.
+    pub largest_step: f64,
+}
+
+impl Statistics {
+    /// Records an accepted step of size `h` (s).
+    pub(crate) fn record(&mut self, h: f64) {
+        self.smallest_step = if self.steps == 0 { h } else { self.smallest_step.min(h) };
+        self.largest_step = self.largest_step.max(h);
+        self.steps += 1;
+    }
+}
+
+impl fmt::Display for Statistics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} steps ({:.3e} to {:.3e} s), {} rejected, {} rates ({} for dense output), {} guards, {} events",
+            self.steps,
+            self.smallest_step,
+            self.largest_step,
+            self.rejected,
+            self.rate_evaluations,
+            self.dense_evaluations,
+            self.guard_evaluations,
+            self.events
+        )
+    }
+}

@@ -1,0 +1,64 @@
+//! What an integrator asks of a system, and what a run asks of a model.
+//!
+//! In: nothing. Out: the traits that `bond_graph!` implements and that a hand-written system can implement as well.
+
+use nalgebra::SVector;
+
+use crate::assembly::AssemblyError;
+use crate::description::Description;
+use crate::scalar::Scalar;
+
+/// A system of ordinary differential equations dx/dt = f(t, x) with `N` states and `G` switches.
+///
+/// A switch chooses between two branches of a law by the sign of its guard, a real function of time and state.
+/// Inside a step the branches stay as the integrator hands them over, so that f is smooth there; the integrator
+/// locates the guard's sign change and then changes the branch.
+pub trait System<S: Scalar, const N: usize, const G: usize> {
+    /// Writes dx/dt at time `t` (s) and state `x` into `dx`. `negative[k]` says that switch `k` is in the branch of its
+    /// negative guard. Allocates nothing.
+    fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>);
+
+    /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
+    fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _guards: &mut SVector<S, G>) {}
+
+    /// Moves `x` back onto the invariants that rounding and truncation leave (orthogonal orientations). Called once
+    /// after each accepted step, before the rate at the new state is evaluated.
+    fn project(&self, _x: &mut SVector<S, N>) {}
+
+    /// The name of state `index`, for messages.
+    fn state_name(&self, _index: usize) -> &'static str {
+        "state"
+    }
+}
+
+/// Power that crosses the boundary of a model, W.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Powers<S> {
+    /// Power that the sources (efforts, flows, modulated laws) give to the model, W; positive into the model.
+    pub supplied: S,
+    /// Power that the resistors take out of the model, W; not negative for passive laws.
+    pub dissipated: S,
+}
+
+/// A model that `bond_graph!` generated: a [`System`] that knows its start, its outputs and its energy.
+///
+/// `M` is the number of scalar outputs.
+pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: System<S, N, G> {
+    /// Elements, bonds, strokes, states, outputs and equations, as text and tables.
+    fn description(&self) -> &'static Description;
+
+    /// The start state at t = 0, loops closed.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] names the joint that stays open and its gap.
+    fn start(&self) -> Result<SVector<S, N>, AssemblyError>;
+
+    /// Writes the observed outputs, in the order of `description().outputs`.
+    fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], y: &mut SVector<S, M>);
+
+    /// The energy in all storage elements, J.
+    fn stored_energy(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> S;
+
+    /// The powers over the model's boundary, W: d(stored)/dt = supplied - dissipated.
+    fn powers(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> Powers<S>;
+}

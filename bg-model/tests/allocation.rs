@@ -1,0 +1,32 @@
+//! A run allocates nothing: neither for steps nor for samples, events and rejected attempts.
+
+mod problems;
+
+use bg_model::integrator::{Dop853, Method, Rk4};
+use bg_model::nalgebra::SVector;
+use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use problems::*;
+
+fn allocations<M: Method<2>>(mut method: M) -> (u64, u64, u64) {
+    let settings = Settings { samples: Samples::Every(0.01), ..settings(1e-9) };
+    let span = Span { t0: 0.0, t_end: 30.0 };
+    let (mut samples, mut events) = (0, 0);
+    let mut observer = EachSample(|_, _: &SVector<f64, 2>, _: &[bool; 1]| samples += 1);
+    let counted = allocation_counter::measure(|| {
+        let finish = integrate(&bilinear(), &mut method, &SVector::from([1.0, 0.0]), span, &settings, &mut observer);
+        events = finish.map_or(0, |finish| finish.statistics.events);
+    });
+    (counted.count_total, samples, events)
+}
+
+#[test]
+fn the_counter_counts() {
+    let counted = allocation_counter::measure(|| drop(std::hint::black_box(vec![1.0; 100])));
+    assert_eq!(counted.count_total, 1);
+}
+
+#[test]
+fn steps_samples_and_events_allocate_nothing() {
+    assert_eq!(allocations(Dop853::new()), (0, 3001, 13));
+    assert_eq!(allocations(Rk4::new(0.01)), (0, 3001, 13));
+}
