@@ -13,5 +13,6 @@ pub mod simulation;
 pub mod statistics;
 pub mod system;
 
+pub use bg_macros::bond_graph;
 pub use nalgebra;
 pub use serde;

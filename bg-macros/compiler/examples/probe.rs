@@ -18,6 +18,6 @@ fn main() {
         println!("causality {:?}", t0.elapsed());
         let t0 = std::time::Instant::now();
         let q = match equations::derive(&c) { Ok(s) => s, Err(f) => { for f in f { println!("{:?} {f}", f.span.start()); } return; } };
-        println!("equations {:?} states {} nodes {}", t0.elapsed(), q.states.len(), q.pool.len());
+        println!("equations {:?} states {} nodes {}", t0.elapsed(), q.states.len(), q.pool.len()); let mut q = q; let t0 = std::time::Instant::now(); let tokens = emit::model(&c, &mut q); println!("emit {:?}", t0.elapsed()); let text = tokens.to_string(); println!("bytes {}", text.len()); std::fs::write("/tmp/hs/out.rs", text).unwrap();
     }
 }

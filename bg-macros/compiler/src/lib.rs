@@ -1,12 +1,67 @@
-//! The compiler behind `bond_graph!`.
+//! The compiler behind `bond_graph!`: tokens of a multibond graph to tokens of flat Rust.
+//!
+//! Its stages are pure functions between named types, in this order:
+//!
+//! | function | from -> to | what no longer occurs after it |
+//! |---|---|---|
+//! | [`syntax::parse`] | tokens -> [`ast::Source`] | tokens |
+//! | [`mechanism::expand`] | [`ast::Graph`] -> [`ast::Graph`] | bodies, joints, springs, drives, contacts |
+//! | [`graph::resolve`] | [`ast::Graph`] -> [`graph::BondGraph`] | names, missing ports, unknown cardinalities and units |
+//! | [`causality::assign`] | -> [`causality::CausalGraph`] | a bond without a stroke |
+//! | [`equations::derive`] | -> [`equations::StateEquations`] | bonds, ports, junctions: scalars only from here |
+//! | [`program::schedule`] | -> [`program::Program`] | order left open: flat single assignment |
+//! | [`emit::model`] | -> tokens | |
+//!
+//! Every stage raises all its faults at once; a later stage sees only what an earlier one accepted.
 
 pub mod ast;
 pub mod causality;
+pub mod emit;
 pub mod equations;
 pub mod expr;
 pub mod fault;
 pub mod graph;
 pub mod mechanism;
 pub mod print;
+pub mod program;
 pub mod syntax;
 pub mod units;
+
+use proc_macro2::TokenStream;
+
+use crate::ast::{Graph, Source};
+use crate::fault::{Faults, Staged, compile_errors};
+
+/// Compiles one macro call. Faults come out as compile errors at their tokens, together with stubs of the promised items.
+#[must_use]
+pub fn compile(tokens: TokenStream) -> TokenStream {
+    let (source, faults) = syntax::parse_leniently(tokens);
+    let result = if faults.is_empty() { models(&source) } else { Err(faults) };
+    result.unwrap_or_else(|faults| {
+        let mut items = compile_errors(&faults);
+        items.extend(emit::stub(&source));
+        items
+    })
+}
+
+/// The models of all graphs, or the faults of all of them.
+fn models(source: &Source) -> Staged<TokenStream> {
+    let mut items = TokenStream::new();
+    let mut faults = Faults::new();
+    for graph in &source.graphs {
+        match model(graph) {
+            Ok(tokens) => items.extend(tokens),
+            Err(found) => faults.extend(found),
+        }
+    }
+    if faults.is_empty() { Ok(items) } else { Err(faults) }
+}
+
+/// All stages of one graph.
+fn model(graph: &Graph) -> Staged<TokenStream> {
+    let expanded = mechanism::expand(graph)?;
+    let resolved = graph::resolve(&expanded)?;
+    let causal = causality::assign(resolved)?;
+    let mut equations = equations::derive(&causal)?;
+    Ok(emit::model(&causal, &mut equations))
+}

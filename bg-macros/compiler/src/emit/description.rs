@@ -30,11 +30,10 @@ pub(super) fn documentation(docs: &str, equations: &StateEquations, routines: &[
     doc
 }
 
-/// The `Description` literal.
+/// The `Description` literal; `PARAMETERS` is the parameter struct's table.
 pub(super) fn description(causal: &CausalGraph, equations: &StateEquations, routines: &[&Routine]) -> TokenStream {
     let graph = &causal.graph;
     let (name, doc) = (&graph.name.text, &graph.docs);
-    let parameters = format_parameters(&graph.name.text);
     let inputs = graph.inputs.iter().map(|input| {
         let (name, unit, doc) = (&input.name.text, &input.unit, &input.docs);
         quote!(::bg_model::description::InputInfo { name: #name, unit: #unit, doc: #doc })
@@ -72,17 +71,12 @@ pub(super) fn description(causal: &CausalGraph, equations: &StateEquations, rout
     });
     quote! {
         ::bg_model::description::Description {
-            name: #name, doc: #doc, parameters: #parameters,
+            name: #name, doc: #doc, parameters: PARAMETERS,
             inputs: &[#(#inputs,)*], states: &[#(#states,)*], outputs: &[#(#outputs,)*],
             switches: &[#(#switches,)*], elements: &[#(#elements,)*], bonds: &[#(#bonds,)*],
             equations: &[#(#lines,)*], operations: &[#(#counts,)*],
         }
     }
-}
-
-/// The parameter table is that of the parameter struct.
-fn format_parameters(_name: &str) -> TokenStream {
-    quote!(PARAMETERS)
 }
 
 fn bonds(causal: &CausalGraph) -> impl Iterator<Item = TokenStream> {

@@ -3,6 +3,8 @@
 //! In: equations and their programs. Out: a type that implements `bg_model::System` and `bg_model::Model`, generic over
 //! the scalar; flat single assignments over fixed-size vectors.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -12,7 +14,7 @@ use super::routine::{Names, operand, statements};
 use crate::causality::CausalGraph;
 use crate::equations::StateEquations;
 use crate::expr::{Id, Symbol};
-use crate::program::{Program, Request, Routine, schedule};
+use crate::program::{Operand, Program, Request, Routine, schedule};
 
 /// The items of one model: parameters, inputs, the type, its functions, its description.
 pub fn model(causal: &CausalGraph, equations: &mut StateEquations) -> TokenStream {
@@ -62,12 +64,16 @@ struct Emission<'a> {
     programs: Programs,
 }
 
-/// `let name = value;` for the symbols that a routine uses.
-fn bindings(routine: &[&Routine], names: &dyn Fn(Symbol) -> Option<TokenStream>) -> TokenStream {
-    let mut used: Vec<Symbol> = routine.iter().flat_map(|routine| routine.symbols()).collect();
-    used.sort_unstable();
-    used.dedup();
-    used.into_iter().filter_map(names).collect()
+/// `let name = value;` for the symbols that some routines use.
+fn bindings(routines: &[&Routine], binding: &dyn Fn(Symbol) -> Option<TokenStream>) -> TokenStream {
+    let operands = routines.iter().flat_map(|routine| {
+        let inside = routine.assignments.iter().flat_map(|assignment| assignment.operation.operands());
+        inside.chain(routine.results.iter().copied())
+    });
+    let used: BTreeSet<Symbol> = operands
+        .filter_map(|operand| if let Operand::Symbol(symbol) = operand { Some(symbol) } else { None })
+        .collect();
+    used.into_iter().filter_map(binding).collect()
 }
 
 impl Emission<'_> {

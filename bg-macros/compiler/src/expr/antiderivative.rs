@@ -22,8 +22,8 @@ struct Shape {
 /// Coefficients, free of the symbol, of `wrt^n` and of `wrt^n * f(..)`.
 type Terms = BTreeMap<(u32, Option<Shape>), Id>;
 
-/// The antiderivative of `of` by `wrt` that is 0 at `wrt` = 0, where `of` is a sum of terms free of `wrt` times a power of
-/// `wrt` or times sin, cos, exp or tanh of an argument linear in `wrt`. A slope of such an argument must not be 0.
+/// The antiderivative of `of` by `wrt` that is 0 at `wrt` = 0, where `of` is a sum of terms free of `wrt` times a power
+/// of `wrt` or times sin, cos, exp or tanh of an argument linear in `wrt`. A slope of such an argument must not be 0.
 pub fn antiderivative(pool: &mut Pool, of: Id, wrt: Symbol) -> Option<Id> {
     let mut expansion = Expansion { pool, wrt, dependent: HashMap::new() };
     expansion.expand(of)?;

@@ -2,8 +2,8 @@
 //!
 //! In: a function and its arguments, or a switch and its branches. Out: a number, a node, a [`Node::Call`] or a
 //! [`Node::Select`], or one of these times -1.
-//! A function of numbers becomes a number only where that number is exact. Odd and even functions lose the sign of their
-//! argument.
+//! A function of numbers becomes a number only where that number is exact. Odd and even functions lose the sign of
+//! their argument.
 
 use super::{Function, Id, Node, Pool};
 

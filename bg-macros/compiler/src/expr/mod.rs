@@ -1,7 +1,7 @@
 //! Expressions as a graph with shared nodes, and the algebra on it.
 //!
-//! In: terms with resolved names, as calls of [`Pool`]'s constructors. Out: [`Id`]s of nodes in canonical form, and their
-//! derivatives, antiderivatives, values, texts and identities.
+//! In: terms with resolved names, as calls of [`Pool`]'s constructors. Out: [`Id`]s of nodes in canonical form, and
+//! their derivatives, antiderivatives, values, texts and identities.
 
 mod antiderivative;
 mod calculus;

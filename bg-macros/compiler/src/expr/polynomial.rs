@@ -3,9 +3,9 @@
 //! In: two nodes. Out: whether their difference is zero for all values of the atoms, as far as expansion shows it.
 //! Method: the difference is expanded into a sum of monomials over atoms: symbols, calls and switched values over
 //! expanded arguments, and reciprocals of what is not a monomial. The square of a square root is its argument, and
-//! denominators are multiplied out last. Each coefficient carries the sum of the sizes of all that it was added up from,
-//! and counts as zero where it is rounding beside that (running error analysis, Higham 2002, Accuracy and Stability of
-//! Numerical Algorithms, sec. 3.3).
+//! denominators are multiplied out last. Each coefficient carries the sum of the sizes of all that it was added up
+//! from, and counts as zero where it is rounding beside that (running error analysis, Higham 2002, Accuracy and
+//! Stability of Numerical Algorithms, sec. 3.3).
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -32,13 +32,15 @@ struct Coefficient {
 
 type Polynomial = BTreeMap<Monomial, Coefficient>;
 
-/// Whether `a` and `b` expand to the same sum of monomials. `true` is a proof up to the rounding of coefficients, wherever
-/// no denominator is zero; `false` may also mean that the expansion grew too large.
+/// Whether `a` and `b` expand to the same sum of monomials. `true` is a proof up to the rounding of coefficients,
+/// wherever no denominator is zero; `false` may also mean that the expansion grew too large.
 pub fn same_polynomial(pool: &mut Pool, a: Id, b: Id) -> bool {
     let difference = pool.sub(a, b);
-    let mut expansion =
-        Expansion { pool, known: HashMap::new(), parents: HashMap::new(), atoms: HashMap::new(), work: 0 };
-    expansion.vanishes(difference) == Some(true)
+    if pool.is_zero(difference) {
+        return true;
+    }
+    let mut expansion = Expansion::new(pool, &[a, b]);
+    expansion.vanishes(a, b) == Some(true)
 }
 
 /// An expansion under way. Every method gives none where it gives up.
@@ -53,17 +55,25 @@ struct Expansion<'p> {
     work: usize,
 }
 
-impl Expansion<'_> {
-    fn vanishes(&mut self, root: Id) -> Option<bool> {
-        let nodes = self.pool.reachable(&[root]);
-        for child in nodes.iter().flat_map(|id| children(self.pool.node(*id))) {
-            *self.parents.entry(child).or_default() += 1;
+impl<'p> Expansion<'p> {
+    fn new(pool: &'p mut Pool, roots: &[Id]) -> Self {
+        let mut parents = HashMap::new();
+        let nodes = pool.reachable(roots);
+        for id in nodes.iter().flat_map(|id| children(pool.node(*id))).chain(roots.iter().copied()) {
+            *parents.entry(id).or_default() += 1;
         }
-        for id in nodes {
+        Self { pool, known: HashMap::new(), parents, atoms: HashMap::new(), work: 0 }
+    }
+
+    /// Whether `a - b` is zero.
+    fn vanishes(&mut self, a: Id, b: Id) -> Option<bool> {
+        for id in self.pool.reachable(&[a, b]) {
             let polynomial = self.expanded(id)?;
             self.known.insert(id, polynomial);
         }
-        let mut rest = pruned(self.take(root));
+        let (mut rest, other) = (self.take(a), self.take(b));
+        self.add(&mut rest, &other, &constant(-1.0))?;
+        rest = pruned(rest);
         while let Some((denominator, exponent)) = self.denominator(&rest) {
             rest = pruned(self.cleared(&rest, denominator, exponent)?);
         }
@@ -140,12 +150,12 @@ impl Expansion<'_> {
     }
 
     fn times_power(&mut self, mut product: Polynomial, base: &Polynomial, exponent: i32) -> Option<Polynomial> {
-        if let Some(power) = power_of_monomial(base, exponent) {
-            return self.multiplied(&product, &power);
-        }
         if exponent < 0 {
             let reciprocal = self.reciprocal(base, exponent)?;
             return self.multiplied(&product, &reciprocal);
+        }
+        if let Some(power) = power_of_monomial(base, exponent) {
+            return self.multiplied(&product, &power);
         }
         for _ in 0..if base.is_empty() { 1 } else { exponent } {
             product = self.multiplied(&product, base)?;
@@ -153,7 +163,7 @@ impl Expansion<'_> {
         Some(product)
     }
 
-    /// A negative power of a polynomial of several monomials, as a power of an atom: the polynomial over its first
+    /// A negative power of a polynomial. That of several monomials is a power of an atom, the polynomial over its first
     /// coefficient. None where the polynomial is zero.
     fn reciprocal(&mut self, base: &Polynomial, exponent: i32) -> Option<Polynomial> {
         let base = pruned(base.clone());
@@ -284,7 +294,7 @@ fn include(sum: &mut Polynomial, monomial: Monomial, coefficient: Coefficient) {
 
 /// The polynomial without the monomials whose coefficients are rounding.
 fn pruned(mut polynomial: Polynomial) -> Polynomial {
-    polynomial.retain(|_, c| c.value.is_nan() || c.value.abs() > ROUNDING * c.size);
+    polynomial.retain(|_, c| !c.size.is_finite() || c.value.abs() > ROUNDING * c.size);
     polynomial
 }
 
@@ -337,8 +347,8 @@ mod tests {
         pool.sum(&products)
     }
 
-    /// R with R' = skew(w) R, the vector a, w, and the seeds of R'.
-    fn rotation(pool: &mut Pool) -> ([[Id; 3]; 3], [Id; 3], [Id; 3], BTreeMap<Symbol, Id>) {
+    /// R a, w, and the seeds of R' = skew(w) R.
+    fn rotated_vector(pool: &mut Pool) -> ([Id; 3], [Id; 3], BTreeMap<Symbol, Id>) {
         let symbols: [Id; 15] = states(pool);
         let r = [0, 1, 2].map(|row| [0, 1, 2].map(|column| symbols[3 * row + column]));
         let a = [9, 10, 11].map(|index| symbols[index]);
@@ -348,14 +358,13 @@ mod tests {
             let rate = cross(pool, w, r.map(|row| row[column]));
             seeds.extend((0..3).map(|row| (Symbol::State(3 * row + column as u32), rate[row as usize])));
         }
-        (r, a, w, seeds)
+        (r.map(|row| dot(pool, row, a)), w, seeds)
     }
 
     #[test]
     fn velocity_of_a_point_of_a_body() {
         let mut pool = Pool::new();
-        let (r, a, w, seeds) = rotation(&mut pool);
-        let arm = r.map(|row| dot(&mut pool, row, a));
+        let (arm, w, seeds) = rotated_vector(&mut pool);
         let velocity = derivative(&mut pool, &arm, &seeds);
         let expected = cross(&mut pool, w, arm);
         for (i, &rate) in velocity.iter().enumerate() {
@@ -367,11 +376,10 @@ mod tests {
     }
 
     #[test]
-    fn length_of_a_rotated_vector_is_not_constant_for_a_wrong_rate() {
+    fn length_of_a_rotated_vector_is_constant() {
         let mut pool = Pool::new();
-        let (r, a, _, mut seeds) = rotation(&mut pool);
+        let (arm, _, mut seeds) = rotated_vector(&mut pool);
         let zero = pool.zero();
-        let arm = r.map(|row| dot(&mut pool, row, a));
         let square = dot(&mut pool, arm, arm);
         let rate = derivative(&mut pool, &[square], &seeds)[0];
         assert!(same_polynomial(&mut pool, rate, zero));
@@ -465,6 +473,23 @@ mod tests {
         let zero = pool.linear(0.0, &terms);
         let fraction = pool.div(z, zero);
         assert!(!same_polynomial(&mut pool, fraction, z));
+    }
+
+    #[test]
+    fn infinite_and_vanishing_coefficients() {
+        let mut pool = Pool::new();
+        let [x, y] = states(&mut pool);
+        let (zero, infinite) = (pool.zero(), pool.scale(f64::INFINITY, x));
+        assert!(!same_polynomial(&mut pool, infinite, zero));
+        let sums = [(0.1, 0.1), (0.2, 0.2), (0.3, 0.3)].map(|(c, d)| pool.linear(c, &[(x, d), (y, 1.0)]));
+        let products = sums.map(|sum| pool.mul(sum, y));
+        let square = pool.powi(y, 2);
+        let noise = pool.linear(0.0, &[(products[0], 1.0), (products[1], 1.0), (products[2], -1.0), (square, -1.0)]);
+        assert!(same_polynomial(&mut pool, noise, zero));
+        let (split, whole) = (pool.linear(0.1 + 0.2, &[(x, 1.0)]), pool.linear(0.3, &[(x, 1.0)]));
+        assert!(split != whole && same_polynomial(&mut pool, split, whole));
+        let inverse = pool.powi(noise, -1);
+        assert!(!same_polynomial(&mut pool, inverse, zero));
     }
 
     #[test]

@@ -180,7 +180,7 @@ mod tests {
                     for (id, exponent) in factors {
                         let is_root = matches!(pool.node(*id), Node::Call(Function::Sqrt, _));
                         assert!(*exponent != 0 && pool.as_scaled(*id).is_none() && pool.as_number(*id).is_none());
-                        assert!(!matches!(pool.node(*id), Node::Product(_)) && !(is_root && exponent.abs() > 1));
+                        assert!(!matches!(pool.node(*id), Node::Product(_)) && (!is_root || exponent.abs() == 1));
                     }
                     assert!(factors.len() > 1 || factors[0].1 != 1);
                 }
@@ -193,7 +193,7 @@ mod tests {
     fn constructors_keep_values() {
         let environment =
             Environment { states: &[0.4, -1.3, 0.7, 2.1], negative: &[true, false], ..Environment::default() };
-        for seed in 0..100 {
+        for seed in 0..20 {
             let mut pool = Pool::new();
             let roots = random::Source::new(seed).expressions(&mut pool, 24);
             let values = evaluate(&pool, &roots, &environment);

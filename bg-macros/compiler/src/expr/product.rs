@@ -1,9 +1,9 @@
 //! Products and powers in canonical form.
 //!
 //! In: nodes with whole exponents. Out: a number, a node, a [`Node::Product`], or one of these times a number.
-//! Numbers and signs stand in front of the product, powers of one base are one factor, an inner product is flattened, and
-//! the square of a square root is its argument. `x/x` is 1 for every x; a zero factor makes the product 0, and 1/0 is the
-//! number infinity.
+//! Numbers and signs stand in front of the product, powers of one base are one factor, an inner product is flattened,
+//! and the square of a square root is its argument. `x/x` is 1 for every x; a zero factor makes the product 0, and 1/0
+//! is the number infinity.
 
 use std::collections::BTreeMap;
 

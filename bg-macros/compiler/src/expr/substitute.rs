@@ -1,6 +1,7 @@
 //! Substitution of symbols.
 //!
-//! In: nodes, and an expression for each symbol to be replaced. Out: the same nodes over the new symbols, in canonical form.
+//! In: nodes, and an expression for each symbol to be replaced. Out: the same nodes over the new symbols, in canonical
+//! form.
 
 use std::collections::HashMap;
 

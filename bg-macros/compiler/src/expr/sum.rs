@@ -1,14 +1,18 @@
 //! Sums in canonical form.
 //!
 //! In: a constant and nodes with coefficients. Out: a number, a node, or a [`Node::Sum`].
-//! Like terms are one term, and a scaled node (`2*x`) counts as that node. A sum inside a sum stays a node of its own, so
-//! that it can be shared, unless some of its terms merge with terms of the outer sum or cancel against terms of another
-//! inner sum. Where a sum has two or more addends (the constant counts), the coefficient of its first term is positive;
-//! its negative is that sum times -1, so `a - b` and `b - a` share a node.
+//! Like terms are one term, dropped where its coefficients cancel to rounding (`0.1*x + 0.2*x - 0.3*x`); a scaled node
+//! (`2*x`) counts as that node. A sum inside a sum stays a node of its own, so that it can be shared, unless some of
+//! its addends merge with addends of the outer sum or cancel against those of another inner sum. Where a sum has two or
+//! more addends (the constant counts), the coefficient of its first term is positive; its negative is that sum times
+//! -1, so `a - b` and `b - a` share a node.
 
 use std::collections::BTreeMap;
 
 use super::{Id, Node, Number, Pool};
+
+/// Coefficients cancel where their sum is below this part of them: it holds no digit of the exact sum.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A sum under construction.
 struct Draft {
@@ -19,13 +23,19 @@ struct Draft {
 impl Draft {
     /// Adds `coefficient * id` as it is.
     fn add(&mut self, id: Id, coefficient: f64) {
-        let total = self.terms.get(&id).map_or(coefficient, |present| present + coefficient);
+        let total = self.terms.get(&id).map_or(coefficient, |&present| combined(present, coefficient));
         if total == 0.0 {
             self.terms.remove(&id);
         } else {
             self.terms.insert(id, total);
         }
     }
+}
+
+/// The sum of two coefficients of one node; constants, in contrast, add up as at run time.
+fn combined(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    if sum.abs() <= ROUNDING * a.abs() && a.is_finite() { 0.0 } else { sum }
 }
 
 impl Pool {
@@ -118,7 +128,8 @@ impl Pool {
         for (_, factor, (constant, terms)) in &inner {
             constants += factor * constant;
             for (id, coefficient) in *terms {
-                *totals.entry(*id).or_default() += factor * coefficient.value();
+                let total = totals.entry(*id).or_default();
+                *total = combined(*total, factor * coefficient.value());
             }
         }
         let merges = |id: &Id| draft.terms.contains_key(id) || totals[id] == 0.0;
@@ -191,6 +202,8 @@ mod tests {
         let opposite = pool.linear(-4.0, &[(y, -2.0), (x, 3.0)]);
         assert_eq!(*pool.node(opposite), node(-4.0, &[(x, 3.0), (y, -2.0)]));
         assert_eq!(sum, pool.neg(opposite));
+        assert_eq!(pool.linear(0.0, &[(x, 0.1), (x, 0.2), (x, -0.3), (y, 1.0)]), y);
+        assert_eq!(pool.linear(0.1, &[(pool.one(), 0.2)]), pool.number(0.1 + 0.2));
     }
 
     #[test]

@@ -115,11 +115,10 @@ impl Search<'_, '_, '_> {
     /// Where the pair still is.
     fn verified(&mut self, pair: Pair) -> Vec<Place> {
         let mut verified = Vec::new();
-        let mut last = None;
-        for &sum in self.places.get(&pair).map_or(&[][..], Vec::as_slice) {
-            if last.replace(sum) == Some(sum) {
-                continue;
-            }
+        let mut sums = self.places.get(&pair).cloned().unwrap_or_default();
+        sums.sort_unstable();
+        sums.dedup();
+        for sum in sums {
             let terms = &self.sums[sum as usize].terms;
             let term = |core| terms.binary_search_by_key(&core, |term: &Value| term.core).ok().map(|at| terms[at]);
             let (Some(first), Some(second)) = (term(pair.0), term(pair.1)) else { continue };

@@ -47,10 +47,18 @@ impl Sweep<'_, '_> {
             }
             Node::Sum { terms, .. } if terms.iter().all(|term| self.is_static(term.0)) => fixed,
             Node::Product(factors) if factors.iter().all(|factor| self.is_static(factor.0)) => fixed,
-            Node::Call(_, arguments) if arguments.iter().all(|&argument| self.is_static(argument)) => fixed,
+            // A function of numbers is an operation of the routine that evaluates the constants.
+            Node::Call(_, arguments)
+                if self.parameters == Parameters::Static
+                    && arguments.iter().all(|&argument| self.is_static(argument)) =>
+            {
+                fixed
+            }
+
             Node::Sum { constant, terms } => self.sum(constant.value(), terms.iter().map(|&(t, c)| (t, c.value()))),
             Node::Product(factors) => {
-                let powers: Vec<_> = factors.iter().map(|&(factor, exponent)| (self.values[&factor], exponent)).collect();
+                let powers: Vec<_> =
+                    factors.iter().map(|&(factor, exponent)| (self.values[&factor], exponent)).collect();
                 self.graph.product(self.statics, &powers)
             }
             Node::Call(function, arguments) => {
@@ -76,7 +84,8 @@ impl Sweep<'_, '_> {
             if value.core == ONE {
                 fixed.push((value.coefficient, factor));
             } else {
-                values.push(Value { coefficient: self.statics.pool.scale(factor, value.coefficient), core: value.core });
+                values
+                    .push(Value { coefficient: self.statics.pool.scale(factor, value.coefficient), core: value.core });
             }
         }
         if constant != 0.0 || !fixed.is_empty() {

@@ -97,18 +97,17 @@ impl Search<'_> {
     /// The products in which the pair still is, and how many times.
     fn verified(&self, wanted: Pair) -> Vec<(usize, u32)> {
         let mut verified = Vec::new();
-        let mut last = None;
-        for &product in self.places.get(&wanted).map_or(&[][..], Vec::as_slice) {
-            if last.replace(product) == Some(product) {
-                continue;
-            }
+        let mut products = self.places.get(&wanted).cloned().unwrap_or_default();
+        products.sort_unstable();
+        products.dedup();
+        for product in products {
             let factors = &self.products[product as usize].1;
             let find = |cell| factors.iter().find(|factor| factor.0 == cell).copied();
             let (Some(first), Some(second)) = (find(wanted.0), find(wanted.1)) else { continue };
-            if let Some((found, times)) = pair(first, second) {
-                if found == wanted {
-                    verified.push((product as usize, times));
-                }
+            if let Some((found, times)) = pair(first, second)
+                && found == wanted
+            {
+                verified.push((product as usize, times));
             }
         }
         verified

@@ -86,11 +86,6 @@ impl Graph {
         index
     }
 
-    /// The index of this core, if it is stored.
-    pub(super) fn find(&self, core: &Core) -> Option<u32> {
-        self.index.get(core).copied()
-    }
-
     /// The factors of a core.
     pub(super) fn factors(&self, core: u32) -> &[(u32, i32)] {
         match &self.cores[core as usize] {

@@ -174,10 +174,10 @@ impl Sweep<'_, '_, '_> {
             return self.plan.intern(Cell::Static(magnitude));
         }
         let mut factors = self.graph.factor_list(core);
-        if magnitude == self.statics.one {
-            if let [(only, 1)] = factors[..] {
-                return self.cells[only as usize];
-            }
+        if magnitude == self.statics.one
+            && let [(only, 1)] = factors[..]
+        {
+            return self.cells[only as usize];
         }
         for factor in &mut factors {
             factor.0 = self.cells[factor.0 as usize];

@@ -9,7 +9,12 @@ use super::statics::Statics;
 use super::table::Table;
 
 /// The graph of the same roots, its sums regrouped.
-pub(super) fn rebuild(statics: &mut Statics, graph: &Graph, roots: &[Value], grouping: Grouping) -> (Graph, Vec<Value>) {
+pub(super) fn rebuild(
+    statics: &mut Statics,
+    graph: &Graph,
+    roots: &[Value],
+    grouping: Grouping,
+) -> (Graph, Vec<Value>) {
     let order = graph.post_order(roots);
     let uses = graph.uses(&order, roots);
     let mut sweep = Sweep {

@@ -1,0 +1,387 @@
+//! What the paper says its figures show, checked on a trajectory.
+//!
+//! In: a trajectory. Out: each statement with what was measured and whether it holds. With other parameters than the
+//! paper's a statement may honestly not hold; that is a finding, not a fault.
+
+use std::f64::consts::TAU;
+
+use serde::Serialize;
+
+use crate::figures::continued;
+use crate::trajectory::{AXES, Trajectory, TrajectoryError};
+
+/// A statement of the paper and what the run says to it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Check {
+    /// The figures it is about, such as `Fig. 4`.
+    pub figure: &'static str,
+    /// The paper's statement.
+    pub statement: &'static str,
+    /// What was measured, with units.
+    pub measured: String,
+    /// Whether it holds.
+    pub holds: bool,
+}
+
+/// What stands still moves less than this: m, rad or a part of the moving component. The model is exact there; what is
+/// left is rounding.
+const STILL: f64 = 1e-9;
+/// A path is a circle where its radius is off by less than this part. The crank's pin is compliant: in the paper's case it
+/// gives way by 0.7 mm, a fiftieth of the radius.
+const ROUND: f64 = 0.05;
+/// What moves, moves by more than this, m or rad: a fiftieth of the crank's throw of 0.075 m.
+const MOVING: f64 = 1.5e-3;
+/// Frame and guide move together where their angles differ by less than this part of the frame's swing. Their coupling is
+/// compliant: in the paper's case it gives way by a twelfth.
+const TOGETHER: f64 = 0.2;
+/// "At the start" is the first part of a run, s.
+const START: f64 = 1.0;
+
+/// All statements about a trajectory.
+///
+/// # Errors
+/// A column is missing.
+pub fn check(trajectory: &Trajectory) -> Result<Vec<Check>, TrajectoryError> {
+    if trajectory.times.is_empty() {
+        return Ok(Vec::new());
+    }
+    let data = Data { trajectory };
+    Ok(vec![
+        data.crank_vectors()?,
+        data.crank_axis()?,
+        data.crank_angular_momentum()?,
+        data.crank_path()?,
+        data.rod_angular_momentum()?,
+        data.rod_oscillates()?,
+        data.rod_moves()?,
+        data.rod_plane()?,
+        data.frame_slides()?,
+        data.frame_descends()?,
+        data.frame_plane()?,
+        data.guide_angular_momentum()?,
+    ])
+}
+
+struct Data<'a> {
+    trajectory: &'a Trajectory,
+}
+
+type Measured = Result<Check, TrajectoryError>;
+
+impl Data<'_> {
+    fn series(&self, name: &str) -> Result<Vec<f64>, TrajectoryError> {
+        self.trajectory.series(name)
+    }
+
+    /// The angle of a link about z, rad, whole turns counted.
+    fn angle(&self, link: u8) -> Result<Vec<f64>, TrajectoryError> {
+        let (sine, cosine) = (self.series(&format!("R{link}_21"))?, self.series(&format!("R{link}_11"))?);
+        Ok(continued(sine.iter().zip(&cosine).map(|(sine, cosine)| sine.atan2(*cosine))))
+    }
+
+    /// The largest change of any component of a link's z axis since the start, and of its z coordinate.
+    fn out_of_plane(&self, link: u8) -> Result<(f64, f64), TrajectoryError> {
+        let mut axis = 0.0;
+        for row in 1..=3 {
+            axis = f64::max(axis, largest_change(&self.series(&format!("R{link}_{row}3"))?));
+        }
+        Ok((axis, largest_change(&self.series(&format!("C{link}_z"))?)))
+    }
+
+    fn crank_vectors(&self) -> Measured {
+        let mut deviation: f64 = 0.0;
+        for column in [1, 2] {
+            let [x, y, z] = [1, 2, 3].map(|row| self.series(&format!("R2_{row}{column}")));
+            let (x, y, z) = (x?, y?, z?);
+            for k in 0..x.len() {
+                deviation = deviation.max((x[k].hypot(y[k]) - 1.0).abs()).max(z[k].abs());
+            }
+        }
+        let turns = span(&self.angle(2)?) / TAU;
+        Ok(Check {
+            figure: "Fig. 4",
+            statement: "The crank's x and y unit vectors run on circles.",
+            measured: format!("{turns:.2} turns; off the unit circle by {} at most", small(deviation)),
+            holds: deviation < STILL && turns >= 1.0,
+        })
+    }
+
+    fn crank_axis(&self) -> Measured {
+        let (axis, _) = self.out_of_plane(2)?;
+        Ok(Check {
+            figure: "Fig. 4",
+            statement: "The crank's z unit vector stands still.",
+            measured: format!("largest change of a component {}", small(axis)),
+            holds: axis < STILL,
+        })
+    }
+
+    fn crank_angular_momentum(&self) -> Measured {
+        let [x, y, z] = AXES.map(|axis| self.series(&format!("h2_{axis}")));
+        let across = largest(&x?).max(largest(&y?));
+        let along = span(&z?);
+        Ok(Check {
+            figure: "Fig. 5",
+            statement: "Only the z component of the crank's angular momentum varies.",
+            measured: format!("z varies by {along:.4} N m s, x and y are {} N m s at most", small(across)),
+            holds: along > 0.0 && across < STILL * along,
+        })
+    }
+
+    fn crank_path(&self) -> Measured {
+        let (x, y) = (self.series("C2_x")?, self.series("C2_y")?);
+        let radii: Vec<f64> = x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).collect();
+        let mean = radii.iter().sum::<f64>() / radii.len() as f64;
+        let deviation = radii.iter().map(|radius| (radius - mean).abs()).fold(0.0, f64::max);
+        let turns = span(&continued(y.iter().zip(&x).map(|(y, x)| y.atan2(*x)))) / TAU;
+        Ok(Check {
+            figure: "Fig. 7",
+            statement: "C2 runs on a circle.",
+            measured: format!("{turns:.2} turns; radius {mean:.6} m, off by {} m at most", small(deviation)),
+            holds: deviation < ROUND * mean && turns >= 1.0,
+        })
+    }
+
+    fn rod_angular_momentum(&self) -> Measured {
+        let (h, angle) = (self.series("h3_z")?, self.angle(2)?);
+        let start = angle[0];
+        let peak = |turn: f64| {
+            let inside = |angle: f64| (turn..turn + 1.0).contains(&((angle - start).abs() / TAU));
+            h.iter().zip(&angle).filter(|(_, angle)| inside(**angle)).map(|(h, _)| h.abs()).fold(0.0, f64::max)
+        };
+        let (first, second) = (peak(0.0), peak(1.0));
+        Ok(Check {
+            figure: "Fig. 8",
+            statement: "The rod's angular momentum grows at first, from the constant torque.",
+            measured: format!("largest |h3_z| {first:.3} N m s in the crank's first turn, {second:.3} in its second"),
+            holds: second > first,
+        })
+    }
+
+    fn rod_moves(&self) -> Measured {
+        let (x, y) = (span(&self.series("C3_x")?), span(&self.series("C3_y")?));
+        Ok(Check {
+            figure: "Fig. 11",
+            statement: "The rod moves in x and y.",
+            measured: format!("C3 covers {x:.4} m in x and {y:.4} m in y"),
+            holds: x > MOVING && y > MOVING,
+        })
+    }
+
+    fn rod_oscillates(&self) -> Measured {
+        let angle = self.angle(3)?;
+        let (reversals, range) = (reversals(&angle, MOVING), span(&angle));
+        Ok(Check {
+            figure: "Fig. 10",
+            statement: "The rod oscillates about z.",
+            measured: format!("{reversals} reversals within {range:.4} rad"),
+            holds: reversals >= 2 && range < TAU / 2.0,
+        })
+    }
+
+    fn rod_plane(&self) -> Measured {
+        let (axis, z) = self.out_of_plane(3)?;
+        Ok(Check {
+            figure: "Fig. 10, 11",
+            statement: "The rod's z does not change.",
+            measured: format!("largest change: C3_z {} m, z unit vector {}", small(z), small(axis)),
+            holds: axis < STILL && z < STILL,
+        })
+    }
+
+    fn frame_slides(&self) -> Measured {
+        let x = self.series("C4_x")?;
+        let (reversals, range) = (reversals(&x, MOVING), span(&x));
+        Ok(Check {
+            figure: "Fig. 15",
+            statement: "The frame slides to and fro in x.",
+            measured: format!("{reversals} reversals within {range:.4} m"),
+            holds: reversals >= 2,
+        })
+    }
+
+    fn frame_descends(&self) -> Measured {
+        let (y, frame, guide) = (self.series("C4_y")?, self.angle(4)?, self.angle(5)?);
+        // Half of the samples are enough strokes for a mean.
+        let late = &y[y.len() / 2..];
+        let descent = y[0] - late.iter().sum::<f64>() / late.len() as f64;
+        let swing = span(&frame);
+        let apart = frame.iter().zip(&guide).map(|(frame, guide)| (frame - guide).abs()).fold(0.0, f64::max);
+        Ok(Check {
+            figure: "Fig. 14, 15",
+            statement: "The frame moves downward with the guide.",
+            measured: format!(
+                "C4 is {descent:.4} m lower in the mean of the second half than at the start; the frame swings by {swing:.4} rad, \
+                 the guide with it within {apart:.4} rad"
+            ),
+            holds: descent > MOVING && apart < TOGETHER * swing,
+        })
+    }
+
+    fn frame_plane(&self) -> Measured {
+        let (axis, z) = self.out_of_plane(4)?;
+        Ok(Check {
+            figure: "Fig. 14, 15",
+            statement: "The frame's z stays.",
+            measured: format!("largest change: C4_z {} m, z unit vector {}", small(z), small(axis)),
+            holds: axis < STILL && z < STILL,
+        })
+    }
+
+    fn guide_angular_momentum(&self) -> Measured {
+        let (times, h) = (&self.trajectory.times, self.series("h5_z")?);
+        let early = times.partition_point(|&t| t <= START);
+        let settled = times.partition_point(|&t| t <= times[times.len() - 1] / 2.0).max(early);
+        let (peak, after) = (largest(&h[..early]), largest(&h[settled..]));
+        let measured = if settled < h.len() {
+            format!(
+                "from rest to |h5_z| = {peak:.3} N m s in the first {START} s; later, in the second half, {after:.3} at most"
+            )
+        } else {
+            format!("from rest to |h5_z| = {peak:.3} N m s in the first {START} s; the run ends before it settles")
+        };
+        Ok(Check {
+            figure: "Fig. 17",
+            statement: "The guide's angular momentum changes sharply at the start, from the sudden torque.",
+            measured,
+            holds: peak > after && settled < h.len(),
+        })
+    }
+}
+
+/// A deviation as text.
+fn small(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
+}
+
+/// The largest value without its sign.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().map(|value| value.abs()).fold(0.0, f64::max)
+}
+
+/// The largest difference from the first value.
+fn largest_change(values: &[f64]) -> f64 {
+    values.iter().map(|value| (value - values[0]).abs()).fold(0.0, f64::max)
+}
+
+/// The largest value less the smallest.
+fn span(values: &[f64]) -> f64 {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
+    high - low
+}
+
+/// How often the values turn back by more than `threshold`.
+fn reversals(values: &[f64], threshold: f64) -> usize {
+    let mut count = 0;
+    // The farthest value since the last reversal, and the direction; 0 before the first motion.
+    let (mut farthest, mut direction) = (values[0], 0.0);
+    for &value in values {
+        if direction == 0.0 {
+            if (value - farthest).abs() > threshold {
+                direction = (value - farthest).signum();
+                farthest = value;
+            }
+        } else if (value - farthest) * direction > 0.0 {
+            farthest = value;
+        } else if (farthest - value) * direction > threshold {
+            count += 1;
+            direction = -direction;
+            farthest = value;
+        }
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::{Column, reference_columns};
+
+    /// A hacksaw as the paper describes it, from simple motions: crank at constant speed after a short start.
+    fn synthetic(change: impl Fn(f64, &str, f64) -> f64) -> Trajectory {
+        let names = reference_columns();
+        let columns = names.iter().map(|name| Column { name: name.clone(), unit: String::new() }).collect();
+        let mut trajectory = Trajectory::new(columns);
+        for k in 0..=2000 {
+            let t = f64::from(k) / 500.0;
+            let crank = 20.0 * t;
+            let swing = 0.35 * (1.0 - (-2.0 * t).exp());
+            let angles = [crank, 0.1 * crank.sin(), swing, swing];
+            let value = |name: &str| -> f64 {
+                let link = usize::from(name.as_bytes()[1] - b'2');
+                let angle = angles[link];
+                match (name.as_bytes()[0], &name[3..], link) {
+                    (b'R', "11" | "22", _) => angle.cos(),
+                    (b'R', "21", _) => angle.sin(),
+                    (b'R', "12", _) => -angle.sin(),
+                    (b'R', "33", _) => 1.0,
+                    (b'C', "x", 0) => 0.0375 * angle.cos(),
+                    (b'C', "y", 0) => 0.0375 * angle.sin(),
+                    (b'C', "x", 1 | 2) => 0.5 + 0.04 * crank.cos(),
+                    (b'C', "y", 1 | 2) => 0.01 * crank.sin() - 0.1 * swing,
+                    (b'h', "z", 0) => 0.01 + 0.002 * crank.sin(),
+                    (b'h', "z", 1) => (1.0 - (-t).exp()) * crank.sin(),
+                    (b'h', "z", 3) => crank.sin() * (1.0 + (-t).exp()),
+                    _ => 0.0,
+                }
+            };
+            trajectory.push(t, names.iter().map(|name| change(t, name, value(name))).collect());
+        }
+        trajectory
+    }
+
+    /// The statements that do not hold.
+    fn broken(trajectory: &Trajectory) -> Vec<&'static str> {
+        check(trajectory).unwrap().into_iter().filter(|check| !check.holds).map(|check| check.statement).collect()
+    }
+
+    #[test]
+    fn every_statement_holds_for_a_motion_as_the_paper_describes_it() {
+        assert_eq!(broken(&synthetic(|_, _, value| value)), [""; 0]);
+        assert_eq!(check(&synthetic(|_, _, value| value)).unwrap().len(), 12);
+    }
+
+    #[test]
+    fn each_statement_fails_where_its_own_motion_is_broken() {
+        let cases: [(&str, &str, fn(f64, f64) -> f64); 12] = [
+            ("R2_11", "The crank's x and y unit vectors run on circles.", |_, value| 1.001 * value),
+            ("R2_13", "The crank's z unit vector stands still.", |t, _| 1e-6 * t),
+            ("h2_x", "Only the z component of the crank's angular momentum varies.", |t, _| 1e-6 * t),
+            ("C2_x", "C2 runs on a circle.", |_, value| 1.3 * value),
+            ("h3_z", "The rod's angular momentum grows at first, from the constant torque.", |t, value| {
+                (-5.0 * t).exp() * value
+            }),
+            ("C3_y", "The rod moves in x and y.", |_, _| 0.3),
+            ("R3_21", "The rod oscillates about z.", |_, _| 0.0),
+            ("C3_z", "The rod's z does not change.", |t, _| 1e-6 * t),
+            ("C4_x", "The frame slides to and fro in x.", |t, _| t),
+            ("C4_y", "The frame moves downward with the guide.", |t, _| t),
+            ("C4_z", "The frame's z stays.", |t, _| 1e-6 * t),
+            (
+                "h5_z",
+                "The guide's angular momentum changes sharply at the start, from the sudden torque.",
+                |t, value| t * value,
+            ),
+        ];
+        for (column, statement, motion) in cases {
+            let trajectory = synthetic(|t, name, value| if name == column { motion(t, value) } else { value });
+            assert_eq!(broken(&trajectory), [statement], "{column}");
+        }
+    }
+
+    #[test]
+    fn a_single_sample_and_none_give_no_panic() {
+        let mut trajectory = synthetic(|_, _, value| value);
+        trajectory.times.truncate(1);
+        trajectory.rows.truncate(1);
+        assert!(!broken(&trajectory).is_empty());
+        assert_eq!(check(&Trajectory::default()).unwrap(), []);
+    }
+
+    #[test]
+    fn a_reversal_is_a_turn_back_beyond_the_threshold() {
+        assert_eq!(reversals(&[0.0, 1.0, 2.0, 1.9, 3.0, 0.0, 2.0], 0.5), 2);
+        assert_eq!(reversals(&[0.0, 0.1, 0.0, 0.1], 0.5), 0);
+    }
+}

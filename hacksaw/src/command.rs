@@ -1,0 +1,261 @@
+//! The command line: what a user asks for, and what it comes to.
+//!
+//! In: arguments. Out: a run with its files and the summary on stdout, or one line `error: ...` on stderr.
+//! Exit codes: 0 done; 1 the run failed, what it had is written; 2 the input cannot be used, nothing was run.
+
+use std::ffi::OsString;
+use std::io::{IsTerminal, Write, stderr, stdout};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use bg_model::parameters::Parameters;
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use thiserror::Error;
+
+use crate::checks;
+use crate::mechanism::{Hacksaw, HacksawParameters};
+use crate::output::{OutputError, Places};
+use crate::parameters::{self, SettingError};
+use crate::run::{self, RunSettings, Simulation};
+use crate::summary::Summary;
+
+/// Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says about them.
+#[derive(Debug, Parser)]
+#[command(name = "hacksaw", version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run the hacksaw (also what `hacksaw` alone does)
+    Run(RunArguments),
+    /// List the parameters: name, default, unit, meaning
+    Parameters {
+        /// Print them as a file for --params
+        #[arg(long)]
+        toml: bool,
+    },
+}
+
+#[derive(Debug, Args)]
+struct RunArguments {
+    /// Set a parameter; can be given again and again, the last one counts. Comes after --params
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+
+    /// Read parameters from a TOML file of lines `name = value`
+    #[arg(long, value_name = "FILE.toml")]
+    params: Option<PathBuf>,
+
+    /// End of the run, s
+    #[arg(long, value_name = "SECONDS", default_value = "5", allow_negative_numbers = true)]
+    t_end: f64,
+
+    /// Relative tolerance of each step
+    #[arg(long, value_name = "NUMBER", default_value = "1e-8", allow_negative_numbers = true)]
+    rtol: f64,
+
+    /// Absolute tolerance of each step, in SI units [default: 1e-4 of --rtol]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    atol: Option<f64>,
+
+    /// Output interval of the CSV file, s. Figures and checks always use 0.002 s or finer
+    #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_negative_numbers = true)]
+    step: f64,
+
+    /// Write the trajectory here instead of trajectory.csv in --out
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+
+    /// Directory for figures, index.html, summary.txt, summary.json and trajectory.csv; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+
+    /// Draw no figures and no overview page; together with --csv nothing is written but that file
+    #[arg(long)]
+    no_figures: bool,
+}
+
+/// The atol that goes with a given rtol, as a part of it: momenta are of the order of 1 and springs give way by 1e-4 m.
+const ATOL_OF_RTOL: f64 = 1e-4;
+/// The most rows of a CSV file: some hundred MB.
+const MOST_ROWS: f64 = 500_000.0;
+
+/// Input that cannot be used.
+#[derive(Debug, Error)]
+enum InputError {
+    #[error(transparent)]
+    Setting(#[from] SettingError),
+    #[error("{name} {value}: must be {range}")]
+    Range { name: &'static str, value: f64, range: String },
+    #[error("--step {step}: gives more than {MOST_ROWS} rows until {t_end} s; choose a longer one")]
+    Rows { step: f64, t_end: f64 },
+    #[error(transparent)]
+    Model(#[from] bg_model::parameters::ParameterError),
+    #[error(transparent)]
+    Start(#[from] bg_model::assembly::AssemblyError),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+/// Does what the arguments ask for and gives the exit code.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = command().try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
+    let outcome = match cli {
+        Err(fault) if fault.use_stderr() => return refuse(&one_line(&fault)),
+        // Help and version; a reader that has gone away is no fault.
+        Err(help) => {
+            let _ = help.print();
+            return ExitCode::SUCCESS;
+        }
+        Ok(Cli { command: Some(Command::Parameters { toml }), .. }) => {
+            let defaults = HacksawParameters::default();
+            print(&if toml { parameters::to_toml(&defaults) } else { parameters::table::<HacksawParameters>() });
+            return ExitCode::SUCCESS;
+        }
+        Ok(Cli { command: Some(Command::Run(arguments)), .. } | Cli { command: None, run: arguments }) => {
+            simulate(&arguments)
+        }
+    };
+    outcome.unwrap_or_else(|fault| refuse(&fault.to_string()))
+}
+
+/// The command line with the parameters in its help.
+fn command() -> clap::Command {
+    let help = format!(
+        "Parameters (name, default, unit, meaning); defaults < --params < --set:\n{}\n\
+         Exit code: 0 done, 1 the run failed (what it had is written), 2 the input cannot be used.",
+        parameters::table::<HacksawParameters>()
+    );
+    Cli::command().after_help(help.clone()).mut_subcommand("run", |run| run.after_help(help))
+}
+
+fn simulate(arguments: &RunArguments) -> Result<ExitCode, InputError> {
+    let values: HacksawParameters = parameters::merge(arguments.params.as_deref(), &arguments.set)?;
+    let changed = changed(&values);
+    let settings = settings(arguments)?;
+    let model = Hacksaw::new(values)?;
+    let places = Places::new(&arguments.out, arguments.csv.as_deref(), !arguments.no_figures);
+    places.prepare()?;
+
+    let bar = progress_bar(settings.t_end);
+    let simulation = run::run(&model, &settings, |t| bar.set_position(ticks(t)))?;
+    bar.finish_and_clear();
+    match report(&simulation, &settings, &places, changed) {
+        Ok(()) => {}
+        Err(fault) => return Ok(fail(&fault.to_string())),
+    }
+    Ok(match &simulation.failure {
+        Some(failure) => fail(&format!("the run failed: {failure}")),
+        None => ExitCode::SUCCESS,
+    })
+}
+
+/// Writes the files and prints the summary.
+fn report(
+    simulation: &Simulation,
+    settings: &RunSettings,
+    places: &Places,
+    changed_parameters: Vec<String>,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let trajectory = &simulation.trajectory;
+    let mut summary = Summary::new(simulation, settings, checks::check(trajectory)?)?;
+    summary.changed_parameters = changed_parameters;
+    places.write(&trajectory.at(&settings.output_times()), trajectory, &mut summary)?;
+    let written: String = match (&places.directory, summary.files.len()) {
+        (Some(directory), count) if places.csv.starts_with(directory) => {
+            format!("{count} files in {}", directory.display())
+        }
+        (Some(directory), count) => {
+            format!("{} and {} files in {}", places.csv.display(), count - 1, directory.display())
+        }
+        (None, _) => places.csv.display().to_string(),
+    };
+    let page = if places.figures { "; open index.html there" } else { "" };
+    print(&format!("{summary}\nwritten: {written}{page}\n"));
+    Ok(())
+}
+
+fn settings(arguments: &RunArguments) -> Result<RunSettings, InputError> {
+    let above_zero = |name, value: f64| {
+        let range = "a finite number above 0".to_owned();
+        if value.is_finite() && value > 0.0 { Ok(value) } else { Err(InputError::Range { name, value, range }) }
+    };
+    let t_end = above_zero("--t-end", arguments.t_end)?;
+    let step = above_zero("--step", arguments.step)?;
+    let rtol = above_zero("--rtol", arguments.rtol)?;
+    let smallest = bg_model::integrator::Tolerances::<0>::SMALLEST_RELATIVE;
+    if !(smallest..1.0).contains(&rtol) {
+        let range = format!("at least {smallest:.1e}, which rounding allows, and below 1");
+        return Err(InputError::Range { name: "--rtol", value: rtol, range });
+    }
+    let atol = above_zero("--atol", arguments.atol.unwrap_or(ATOL_OF_RTOL * rtol))?;
+    if t_end / step > MOST_ROWS {
+        return Err(InputError::Rows { step, t_end });
+    }
+    Ok(RunSettings { t_end, rtol, atol, step })
+}
+
+/// The parameters that differ from their defaults, as `name = value unit`.
+fn changed(values: &HacksawParameters) -> Vec<String> {
+    let table = HacksawParameters::table().iter().enumerate();
+    let changed = table.filter(|(index, info)| values.value(*index) != info.default);
+    changed
+        .map(|(index, info)| {
+            let text = format!("{} = {} {}", info.name, parameters::number(values.value(index)), info.unit);
+            text.trim_end().to_owned()
+        })
+        .collect()
+}
+
+/// A thousand ticks a second of simulated time.
+fn ticks(t: f64) -> u64 {
+    (t * 1e3) as u64
+}
+
+/// A bar over simulated time on a terminal, nothing in a pipe.
+fn progress_bar(t_end: f64) -> ProgressBar {
+    // Ten times a second is steady to the eye and costs nothing.
+    let target =
+        if stderr().is_terminal() { ProgressDrawTarget::stderr_with_hz(10) } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(ticks(t_end).max(1)), target);
+    let style = ProgressStyle::with_template("simulating {bar:40} {percent:>3} % of {msg}, {eta} to go");
+    bar.set_style(style.expect("the template is well formed").progress_chars("\u{2501}\u{2578}\u{2500}"));
+    bar.set_message(format!("{t_end} s"));
+    bar
+}
+
+/// Prints to stdout. A reader that has gone away is no fault: the files are written all the same.
+fn print(text: &str) {
+    let mut stdout = stdout().lock();
+    let _ = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+}
+
+fn complain(message: &str) {
+    let _ = writeln!(stderr(), "error: {message}");
+}
+
+fn refuse(message: &str) -> ExitCode {
+    complain(message);
+    ExitCode::from(2)
+}
+
+fn fail(message: &str) -> ExitCode {
+    complain(message);
+    ExitCode::FAILURE
+}
+
+/// What clap says in several lines, in one.
+fn one_line(fault: &clap::Error) -> String {
+    let text = fault.render().to_string();
+    let told =
+        text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let told: Vec<&str> = told.filter(|line| !line.is_empty()).collect();
+    let line = told.join("; ");
+    line.strip_prefix("error: ").unwrap_or(&line).to_owned()
+}

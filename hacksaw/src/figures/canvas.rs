@@ -1,0 +1,130 @@
+//! The sheet a figure is drawn on, and the finished SVG text.
+//!
+//! In: a heading and what draws below it. Out: SVG of 960 x 540 CSS pixels that scales with the page. The drawing crate
+//! places every point at whole units, so the sheet is drawn ten times as large and shown at a tenth ([`UNITS`]): curves
+//! are then smooth to a tenth of a pixel.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::FontStyle;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::FigureError;
+use super::palette::{INK, PAPER, PENCIL, dark_style};
+
+/// Units of drawing for one CSS pixel.
+pub const UNITS: i32 = 10;
+/// Width of a figure, CSS pixels.
+const WIDTH: i32 = 960;
+/// Height of a figure, CSS pixels.
+const HEIGHT: i32 = 540;
+/// Margin about everything, CSS pixels.
+const MARGIN: i32 = 20;
+/// Height of the heading with the space below it, CSS pixels.
+const HEADING: i32 = 42;
+
+/// A rectangle of the sheet.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// A rectangle in CSS pixels, relative to its area.
+#[derive(Clone, Copy, Debug)]
+pub struct Rectangle {
+    /// Left edge.
+    pub x: i32,
+    /// Upper edge.
+    pub y: i32,
+    /// Width.
+    pub width: i32,
+    /// Height.
+    pub height: i32,
+}
+
+impl Rectangle {
+    /// What is below the heading.
+    pub const CONTENT: Self =
+        Self { x: MARGIN, y: MARGIN + HEADING, width: WIDTH - 2 * MARGIN, height: HEIGHT - 2 * MARGIN - HEADING };
+
+    /// The part of `area` that this covers.
+    pub fn of<'a>(self, area: &Area<'a>) -> Area<'a> {
+        area.clone().shrink((self.x * UNITS, self.y * UNITS), (self.width * UNITS, self.height * UNITS))
+    }
+}
+
+/// Draws a figure: its heading, and below it what `draw` puts into [`Rectangle::CONTENT`].
+pub fn figure(heading: &str, draw: impl FnOnce(&Area) -> Result<(), FigureError>) -> Result<String, FigureError> {
+    let mut svg = String::new();
+    {
+        let size = ((WIDTH * UNITS) as u32, (HEIGHT * UNITS) as u32);
+        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        area.fill(&PAPER.light).map_err(drawing)?;
+        let mut style = text(18, INK.light, HPos::Left);
+        style.font = style.font.style(FontStyle::Bold);
+        write(&area, heading, (MARGIN, MARGIN), &style)?;
+        draw(&area)?;
+        area.present().map_err(drawing)?;
+    }
+    Ok(finish(&svg, heading))
+}
+
+/// A text style: size in CSS pixels, hanging from its position.
+pub fn text(pixels: i32, colour: RGBColor, horizontal: HPos) -> TextStyle<'static> {
+    // The drawing crate divides the size by 1.24 on its way to SVG.
+    let size = f64::from(pixels * UNITS) * 1.24;
+    ("sans-serif", size).into_font().color(&colour).pos(Pos::new(horizontal, VPos::Top))
+}
+
+/// The style of tick labels and axis descriptions.
+pub fn label() -> TextStyle<'static> {
+    text(12, PENCIL.light, HPos::Center)
+}
+
+/// Writes one line with its upper left, middle or right at `at` (CSS pixels).
+pub fn write(area: &Area, line: &str, at: (i32, i32), style: &TextStyle<'static>) -> Result<(), FigureError> {
+    area.draw(&Text::new(line.to_owned(), (at.0 * UNITS, at.1 * UNITS), style.clone())).map_err(drawing)
+}
+
+/// The drawing crate's fault as ours.
+pub fn drawing(fault: impl std::fmt::Display) -> FigureError {
+    FigureError::Drawing(fault.to_string())
+}
+
+/// Shows the sheet at a tenth, adds the dark colours, sets subscripts.
+fn finish(svg: &str, heading: &str) -> String {
+    let (_, body) = svg.split_once('>').expect("the backend starts with the svg tag");
+    let (width, height) = (WIDTH * UNITS, HEIGHT * UNITS);
+    let opening = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {width} {height}\" \
+         role=\"img\" aria-label=\"{heading}\">"
+    );
+    let joins = "<style>polyline{stroke-linejoin:round;stroke-linecap:round}</style>";
+    format!("{opening}\n{}{joins}\n{}", dark_style(), subscripts(body))
+}
+
+/// Sets the index of `h_2x`, `C_4y` and the like as a subscript.
+fn subscripts(body: &str) -> String {
+    let mut parts = body.split('_');
+    let mut set = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (index, rest) = part.split_at(part.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(part.len()));
+        let (same_line, after) = rest.split_at(rest.find("</text>").unwrap_or(rest.len()));
+        // A quarter of the line down at three quarters of the size, and back up; a blank at the start would be lost.
+        let same_line = same_line.trim();
+        set += &format!(
+            "<tspan dy=\"0.25em\" font-size=\"75%\">{index}</tspan><tspan dx=\"0.3em\" dy=\"-0.1875em\">{same_line}</tspan>{after}"
+        );
+    }
+    set
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_index_becomes_a_subscript() {
+        let set = subscripts("<text>h_2x in N m s\n</text><text>t in s</text>");
+        let tspans =
+            "<tspan dy=\"0.25em\" font-size=\"75%\">2x</tspan><tspan dx=\"0.3em\" dy=\"-0.1875em\">in N m s</tspan>";
+        assert_eq!(set, format!("<text>h{tspans}</text><text>t in s</text>"));
+    }
+}

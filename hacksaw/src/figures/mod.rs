@@ -1,0 +1,204 @@
+//! The paper's Figures 4 to 19, drawn as SVG from a trajectory.
+//!
+//! In: a [`Trajectory`]. Out: one SVG text for each entry of [`FIGURES`]. [`FIGURES`] is the only place that says which
+//! figure shows what; [`momentum`], [`orientation`] and [`path`] draw the three kinds of figure.
+//!
+//! Every figure has 16 : 9 and follows the reader's light or dark colour scheme ([`palette`]). Curves are thinned to what
+//! the eye can see at the drawn size ([`thinning`]), so a file stays below 300 kB whatever the output interval.
+
+mod canvas;
+mod momentum;
+mod orientation;
+mod palette;
+mod panel;
+mod path;
+mod thinning;
+
+use thiserror::Error;
+
+pub use orientation::continued;
+
+use crate::trajectory::{Trajectory, TrajectoryError};
+
+/// What a figure shows of its link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// The paths of the tips of the link's unit vectors, and its rotation over time.
+    Orientation,
+    /// The angular momentum about the centre of mass, inertial axes, over time.
+    AngularMomentum,
+    /// The momentum, inertial axes, over time.
+    Momentum,
+    /// The path of the centre of mass in the plane of motion, and its coordinates over time.
+    Path,
+}
+
+/// Whether the paper's text says what a figure shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Assignment {
+    /// The text says it.
+    Stated,
+    /// Deduced from the order of the figures about it.
+    Deduced,
+}
+
+/// A figure of the paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Figure {
+    /// Its number in the paper.
+    pub number: u8,
+    /// The link, 2 to 5.
+    pub link: u8,
+    /// What is shown.
+    pub quantity: Quantity,
+    /// How far this is certain.
+    pub assignment: Assignment,
+}
+
+/// Figures 4 to 19.
+///
+/// The paper's text fixes figures 4, 5, 7 (crank), 8, 10, 11 (rod), 14, 15 (frame) and 17 (guide); it calls the others
+/// "momenta, orientation and path of the links". Sixteen figures are four quantities of each of four links, link after
+/// link. For the crank 4, 5 and 7 leave 6 to the momentum; for the rod 8, 10 and 11 leave 9 to the momentum; for the frame
+/// 14 and 15 leave 12 and 13 to the momenta, in the rod's order; for the guide 17 in second place is the crank's order.
+pub const FIGURES: [Figure; 16] = {
+    use Assignment::{Deduced, Stated};
+    use Quantity::{AngularMomentum, Momentum, Orientation, Path};
+    [
+        figure(4, 2, Orientation, Stated),
+        figure(5, 2, AngularMomentum, Stated),
+        figure(6, 2, Momentum, Deduced),
+        figure(7, 2, Path, Stated),
+        figure(8, 3, AngularMomentum, Stated),
+        figure(9, 3, Momentum, Deduced),
+        figure(10, 3, Orientation, Stated),
+        figure(11, 3, Path, Stated),
+        figure(12, 4, AngularMomentum, Deduced),
+        figure(13, 4, Momentum, Deduced),
+        figure(14, 4, Orientation, Stated),
+        figure(15, 4, Path, Stated),
+        figure(16, 5, Orientation, Deduced),
+        figure(17, 5, AngularMomentum, Stated),
+        figure(18, 5, Momentum, Deduced),
+        figure(19, 5, Path, Deduced),
+    ]
+};
+
+const fn figure(number: u8, link: u8, quantity: Quantity, assignment: Assignment) -> Figure {
+    Figure { number, link, quantity, assignment }
+}
+
+/// A figure that cannot be drawn.
+#[derive(Debug, Error)]
+pub enum FigureError {
+    /// The trajectory lacks a column.
+    #[error(transparent)]
+    Trajectory(#[from] TrajectoryError),
+    /// The trajectory has no sample.
+    #[error("there is no sample to draw")]
+    Empty,
+    /// The drawing crate refuses.
+    #[error("drawing failed: {0}")]
+    Drawing(String),
+}
+
+impl Figure {
+    /// The link's name.
+    #[must_use]
+    pub const fn link_name(&self) -> &'static str {
+        match self.link {
+            2 => "crank",
+            3 => "rod",
+            4 => "frame",
+            _ => "guide",
+        }
+    }
+
+    /// What the figure shows, such as `Angular momentum of the crank`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let (link, name) = (self.link, self.link_name());
+        match self.quantity {
+            Quantity::Orientation => format!("Orientation of the {name}"),
+            Quantity::AngularMomentum => format!("Angular momentum of the {name}"),
+            Quantity::Momentum => format!("Momentum of the {name}"),
+            Quantity::Path => format!("Path of C{link}, the {name}'s centre of mass"),
+        }
+    }
+
+    /// The figure's file name, such as `figure_05_crank_angular_momentum.svg`.
+    #[must_use]
+    pub fn file_name(&self) -> String {
+        let quantity = match self.quantity {
+            Quantity::Orientation => "orientation",
+            Quantity::AngularMomentum => "angular_momentum",
+            Quantity::Momentum => "momentum",
+            Quantity::Path => "path",
+        };
+        format!("figure_{:02}_{}_{quantity}.svg", self.number, self.link_name())
+    }
+
+    /// Draws the figure.
+    ///
+    /// # Errors
+    /// A trajectory without samples or without the link's columns.
+    pub fn draw(&self, trajectory: &Trajectory) -> Result<String, FigureError> {
+        if trajectory.times.is_empty() {
+            return Err(FigureError::Empty);
+        }
+        let heading = format!("Figure {}. {}", self.number, self.title());
+        match self.quantity {
+            Quantity::Orientation => orientation::draw(&heading, trajectory, self.link),
+            Quantity::AngularMomentum => momentum::draw(&heading, trajectory, 'h', self.link),
+            Quantity::Momentum => momentum::draw(&heading, trajectory, 'p', self.link),
+            Quantity::Path => path::draw(&heading, trajectory, self.link),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::{Column, reference_columns};
+
+    fn trajectory(samples: usize, value: impl Fn(usize, usize) -> f64) -> Trajectory {
+        let columns: Vec<Column> =
+            reference_columns().into_iter().map(|name| Column { name, unit: String::new() }).collect();
+        let mut trajectory = Trajectory::new(columns.clone());
+        for k in 0..samples {
+            trajectory.push(k as f64 * 1e-4, (0..columns.len()).map(|c| value(k, c)).collect());
+        }
+        trajectory
+    }
+
+    #[test]
+    fn the_table_has_every_figure_once_and_every_quantity_of_every_link() {
+        assert!(FIGURES.iter().map(|f| f.number).eq(4..=19));
+        for link in 2..=5 {
+            for quantity in [Quantity::Orientation, Quantity::AngularMomentum, Quantity::Momentum, Quantity::Path] {
+                assert_eq!(FIGURES.iter().filter(|f| f.link == link && f.quantity == quantity).count(), 1);
+            }
+        }
+        assert_eq!(FIGURES[1].file_name(), "figure_05_crank_angular_momentum.svg");
+    }
+
+    #[test]
+    fn a_noisy_run_of_many_samples_stays_below_300_kb() {
+        // A linear congruence as noise: the worst case for thinning.
+        let noisy = trajectory(50_000, |k, c| ((k * 7919 + c * 104_729) % 10_007) as f64 / 10_007.0);
+        for figure in FIGURES {
+            let svg = figure.draw(&noisy).unwrap();
+            assert!(svg.len() < 300_000, "{} has {} bytes", figure.file_name(), svg.len());
+            assert!(svg.contains(&format!("Figure {}.", figure.number)));
+        }
+    }
+
+    #[test]
+    fn a_single_sample_and_huge_values_are_drawn() {
+        for figure in FIGURES {
+            figure.draw(&trajectory(1, |_, _| 0.0)).unwrap();
+            figure.draw(&trajectory(3, |k, _| 1e200 * k as f64)).unwrap();
+            assert!(matches!(figure.draw(&trajectory(0, |_, _| 0.0)), Err(FigureError::Empty)));
+        }
+    }
+}

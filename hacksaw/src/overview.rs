@@ -1,0 +1,110 @@
+//! The overview page: one HTML file with all figures, the summary and the checks.
+//!
+//! In: the summary and the figures that were drawn. Out: HTML text. It links the figures' files beside it, so every image
+//! follows the reader's light or dark colour scheme, and needs nothing from elsewhere.
+
+use std::fmt::Write;
+
+use crate::figures::{Assignment, Figure};
+use crate::summary::Summary;
+
+/// The page's colours and layout; light and dark as the reader prefers.
+const STYLE: &str = "
+:root { color-scheme: light dark; --paper: #ffffff; --sheet: #f6f8fa; --ink: #1f2328; --pencil: #59636e; --line: #d1d9e0;
+  --holds: #1a7f37; --fails: #b35900; }
+@media (prefers-color-scheme: dark) { :root { --paper: #0d1117; --sheet: #161b22; --ink: #e6edf3; --pencil: #9198a1;
+  --line: #3d444d; --holds: #3fb950; --fails: #f0883e; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 2rem 1.5rem 4rem; max-width: 1500px; background: var(--paper); color: var(--ink);
+  font: 16px/1.5 system-ui, sans-serif; }
+h1 { font-size: 1.8rem; margin: 0 0 .3rem; } h2 { font-size: 1.25rem; margin: 2.5rem 0 .8rem; }
+p { max-width: 75ch; margin: .3rem 0; color: var(--pencil); }
+p.failure { color: var(--fails); font-weight: 600; }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: .25rem 1.5rem; margin: 0; }
+dt { color: var(--pencil); } dd { margin: 0; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
+table { border-collapse: collapse; width: 100%; } th { text-align: left; color: var(--pencil); font-weight: 500; }
+th, td { padding: .4rem .8rem .4rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
+td:first-child, td:last-child { white-space: nowrap; }
+.holds { color: var(--holds); } .fails { color: var(--fails); }
+.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 620px), 1fr)); gap: 1.2rem; }
+figure { margin: 0; border: 1px solid var(--line); border-radius: 8px; overflow: hidden; background: var(--sheet); }
+figure img { display: block; width: 100%; height: auto; }
+figcaption { padding: .3rem 1.2rem .6rem; color: var(--pencil); font-size: .85rem; }
+a { color: inherit; }
+";
+
+/// The page. `figures` are those that were drawn; `data` is where the CSV file is, as seen from the page.
+#[must_use]
+pub fn page(summary: &Summary, figures: &[Figure], data: Option<&str>) -> String {
+    let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Power hacksaw</title>\n";
+    write_into(&mut page, format_args!("<style>{STYLE}</style>\n</head>\n<body>\n<h1>Power hacksaw</h1>\n"));
+    page += "<p>The five-link power hacksaw of \u{201C}Modeling and Simulation of Power Hacksaw Machine Using Bond \
+             Graph\u{201D}, compiled from its multibond graph and run.</p>\n";
+    if let Some(failure) = &summary.failure {
+        let reached = summary.reached_s;
+        let line = format!("The run failed: {failure}. What follows shows it up to t = {reached} s.");
+        write_into(&mut page, format_args!("<p class=\"failure\">{}</p>\n", escaped(&line)));
+    }
+    page += "<h2>Summary</h2>\n<dl>\n";
+    for (name, text) in summary.lines() {
+        write_into(&mut page, format_args!("<dt>{name}</dt><dd>{}</dd>\n", escaped(&text)));
+    }
+    if let Some(data) = data {
+        let data = escaped(data);
+        write_into(&mut page, format_args!("<dt>trajectory</dt><dd><a href=\"{data}\">{data}</a></dd>\n"));
+    }
+    page += "</dl>\n";
+    checks(&mut page, summary);
+    gallery(&mut page, figures);
+    page += "</body>\n</html>\n";
+    page
+}
+
+fn checks(page: &mut String, summary: &Summary) {
+    *page += "<h2>What the paper says its figures show</h2>\n<table>\n";
+    *page += "<tr><th>Figure</th><th>Statement</th><th>Measured</th><th></th></tr>\n";
+    for check in &summary.checks {
+        let (class, verdict) =
+            if check.holds { ("holds", "\u{2713} holds") } else { ("fails", "\u{2717} does not hold") };
+        write_into(
+            page,
+            format_args!(
+                "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"{class}\">{verdict}</td></tr>\n",
+                escaped(check.figure),
+                escaped(check.statement),
+                escaped(&check.measured)
+            ),
+        );
+    }
+    *page += "</table>\n";
+}
+
+fn gallery(page: &mut String, figures: &[Figure]) {
+    *page +=
+        "<h2>Figures 4 to 19</h2>\n<p>Each link in turn: orientation, momenta and path.</p>\n<div class=\"figures\">\n";
+    for figure in figures {
+        let (file, title) = (figure.file_name(), escaped(&figure.title()));
+        let caption = match figure.assignment {
+            Assignment::Stated => "Number and content as the paper's text says.",
+            Assignment::Deduced => "Number deduced from the order of the figures about it.",
+        };
+        write_into(
+            page,
+            format_args!(
+                "<figure id=\"figure-{0}\"><a href=\"{file}\"><img src=\"{file}\" alt=\"Figure {0}. {title}\" width=\"960\" \
+                 height=\"540\"></a><figcaption>{caption}</figcaption></figure>\n",
+                figure.number
+            ),
+        );
+    }
+    *page += "</div>\n";
+}
+
+fn write_into(page: &mut String, text: std::fmt::Arguments) {
+    page.write_fmt(text).expect("writing to a string cannot fail");
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

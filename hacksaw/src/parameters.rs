@@ -1,0 +1,253 @@
+//! The parameters of a run: defaults, then a TOML file, then `--set`, each by name and each checked.
+//!
+//! In: the parameters' table of the model, a file's text, `NAME=VALUE` texts. Out: checked parameters, or one line that says
+//! what to change. Generic over the model's parameter struct, which is seen by name only.
+
+use std::path::{Path, PathBuf};
+
+use bg_model::parameters::{ParameterError, Parameters};
+use thiserror::Error;
+
+/// A parameter setting that cannot be used.
+#[derive(Debug, Error)]
+pub enum SettingError {
+    /// No parameter has this name.
+    #[error("{place}: there is no parameter `{name}`{}", near_miss(.near.as_ref()))]
+    Unknown {
+        /// `--set` or the file.
+        place: String,
+        /// The name that was asked for.
+        name: String,
+        /// The parameter with the most similar name.
+        near: Option<String>,
+    },
+    /// A value outside its range.
+    #[error("{place}: {fault}")]
+    Range {
+        /// `--set` or the file.
+        place: String,
+        /// Which parameter, value and range.
+        fault: ParameterError,
+    },
+    /// A `--set` without `=`.
+    #[error("--set {0}: give it as NAME=VALUE, for example --set torque=12")]
+    NoValue(String),
+    /// A value that is no number.
+    #[error("{place}: the value of `{name}` must be a number, and `{value}` is none")]
+    NotANumber {
+        /// `--set` or the file.
+        place: String,
+        /// The parameter's name.
+        name: String,
+        /// The text or the kind of value found.
+        value: String,
+    },
+    /// A file that cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A file that is no TOML.
+    #[error("{} is not valid TOML: line {line}, column {column}: {message}", path.display())]
+    Toml {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column, counted from 1.
+        column: usize,
+        /// What the parser says.
+        message: String,
+    },
+}
+
+fn near_miss(near: Option<&String>) -> String {
+    match near {
+        Some(near) => format!("; did you mean `{near}`?"),
+        None => "; `hacksaw parameters` lists them".to_owned(),
+    }
+}
+
+/// The model's defaults, changed by the file and then by the `NAME=VALUE` texts in their order.
+///
+/// # Errors
+/// The first setting that cannot be used.
+pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<P, SettingError> {
+    let mut parameters = P::default();
+    if let Some(path) = file {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| SettingError::Unreadable { path: path.to_owned(), source })?;
+        set_from_toml(&mut parameters, path, &text)?;
+    }
+    for setting in settings {
+        let (name, value) = setting.split_once('=').ok_or_else(|| SettingError::NoValue(setting.clone()))?;
+        let (name, value) = (name.trim(), value.trim());
+        let number = value.parse().map_err(|_| SettingError::NotANumber {
+            place: format!("--set {setting}"),
+            name: name.to_owned(),
+            value: value.to_owned(),
+        });
+        // An unknown name is the better message where both are wrong.
+        let number = if parameters.get(name).is_some() { number? } else { 0.0 };
+        set(&mut parameters, &format!("--set {setting}"), name, number)?;
+    }
+    Ok(parameters)
+}
+
+/// The parameters as a TOML file that `--params` reads, each with its meaning as a comment.
+#[must_use]
+pub fn to_toml<P: Parameters>(parameters: &P) -> String {
+    let mut text = String::new();
+    for (index, info) in P::table().iter().enumerate() {
+        let unit = if info.unit.is_empty() { "1" } else { info.unit };
+        text += &format!("# {} [{unit}]\n{} = {:?}\n", one_line(info.doc), info.name, parameters.value(index));
+    }
+    text
+}
+
+/// The parameters as a table for the terminal: name, default, unit, meaning.
+#[must_use]
+pub fn table<P: Parameters>() -> String {
+    let rows = P::table();
+    let width = |text: fn(&bg_model::description::ParameterInfo) -> String| {
+        rows.iter().map(|info| text(info).chars().count()).max().unwrap_or(0)
+    };
+    let value = |info: &bg_model::description::ParameterInfo| number(info.default);
+    let (names, values, units) = (width(|i| i.name.to_owned()), width(value), width(|i| i.unit.to_owned()));
+    rows.iter()
+        .map(|info| {
+            let line = format!(
+                "  {:names$}  {:>values$} {:units$}  {}",
+                info.name,
+                number(info.default),
+                info.unit,
+                one_line(info.doc)
+            );
+            line.trim_end().to_owned() + "\n"
+        })
+        .collect()
+}
+
+/// A number as a person writes it: `1e7`, not `10000000`.
+#[must_use]
+pub fn number(value: f64) -> String {
+    let plain = format!("{value}");
+    let scientific = format!("{value:e}");
+    // Six characters hold every default below 1e5 as it stands in the paper's tables.
+    if plain.len() > 6 && scientific.len() < plain.len() { scientific } else { plain }
+}
+
+fn one_line(doc: &str) -> String {
+    doc.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn set_from_toml<P: Parameters>(parameters: &mut P, path: &Path, text: &str) -> Result<(), SettingError> {
+    let entries: toml::Table = text.parse().map_err(|fault: toml::de::Error| {
+        let before = &text[..fault.span().map_or(0, |span| span.start).min(text.len())];
+        SettingError::Toml {
+            path: path.to_owned(),
+            line: before.matches('\n').count() + 1,
+            column: before.chars().rev().take_while(|&c| c != '\n').count() + 1,
+            message: one_line(fault.message()),
+        }
+    })?;
+    let place = path.display().to_string();
+    for (name, value) in &entries {
+        let number = match value {
+            toml::Value::Float(number) => *number,
+            // Every whole number that a parameter can sensibly have is exact in f64.
+            toml::Value::Integer(number) => *number as f64,
+            _ if parameters.get(name).is_none() => 0.0,
+            other => {
+                let (place, name) = (place.clone(), name.clone());
+                return Err(SettingError::NotANumber { place, name, value: one_line(&other.to_string()) });
+            }
+        };
+        set(parameters, &place, name, number)?;
+    }
+    Ok(())
+}
+
+fn set<P: Parameters>(parameters: &mut P, place: &str, name: &str, value: f64) -> Result<(), SettingError> {
+    let place = place.to_owned();
+    parameters.set(name, value).map_err(|fault| match fault {
+        ParameterError::Unknown { name } => SettingError::Unknown { place, near: nearest::<P>(&name), name },
+        fault => SettingError::Range { place, fault },
+    })
+}
+
+/// The parameter whose name is most similar to `name`, if any is similar.
+fn nearest<P: Parameters>(name: &str) -> Option<String> {
+    // Jaro-Winkler similarity; clap uses 0.7 for its own near misses.
+    const SIMILAR: f64 = 0.7;
+    let wanted = name.to_lowercase();
+    P::table()
+        .iter()
+        .map(|info| (strsim::jaro_winkler(&wanted, info.name), info.name))
+        .filter(|(similarity, _)| *similarity > SIMILAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| name.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::HacksawParameters;
+
+    fn merge_text(toml: &str, settings: &[&str]) -> Result<HacksawParameters, SettingError> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), toml).unwrap();
+        let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
+        merge(Some(file.path()), &settings)
+    }
+
+    fn fault(toml: &str, settings: &[&str]) -> String {
+        merge_text(toml, settings).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_file_beats_defaults_and_a_setting_beats_the_file() {
+        let parameters = merge_text("torque = 12\nr_cut = 80.5\n", &["torque=14", "torque=15"]).unwrap();
+        assert_eq!(parameters.get("torque"), Some(15.0));
+        assert_eq!(parameters.get("r_cut"), Some(80.5));
+        assert_eq!(parameters.get("r_return"), HacksawParameters::default().get("r_return"));
+    }
+
+    #[test]
+    fn each_fault_is_one_line_that_names_its_place() {
+        assert_eq!(fault("", &["torqe=1"]), "--set torqe=1: there is no parameter `torqe`; did you mean `torque`?");
+        assert_eq!(fault("", &["zzz=1"]), "--set zzz=1: there is no parameter `zzz`; `hacksaw parameters` lists them");
+        assert!(fault("", &["k_23=-1"]).starts_with("--set k_23=-1: parameter `k_23` = -1 N/m is out of range"));
+        assert!(fault("", &["torque=NaN"]).contains("a finite number"));
+        assert!(fault("", &["torque=ten"]).ends_with("must be a number, and `ten` is none"));
+        assert!(fault("", &["torque"]).contains("NAME=VALUE"));
+        assert!(fault("torqe = 1", &[]).contains("did you mean `torque`?"));
+        assert!(fault("torque = nan", &[]).contains("a finite number"));
+        assert!(fault("torque = 'ten'", &[]).contains("must be a number"));
+        assert!(fault("torque = 1\ntorque = = 2", &[]).contains("line 2, column 10"));
+        assert!(fault("[torque]\nx = 1", &[]).contains("must be a number"));
+        for (toml, settings) in [("torqe = 1", &[][..]), ("a = [1,\n2", &[]), ("", &["k_2=-1"])] {
+            assert!(!fault(toml, settings).contains('\n'));
+        }
+    }
+
+    #[test]
+    fn the_written_file_reads_back() {
+        let mut parameters = HacksawParameters::default();
+        parameters.set("torque", 1.0 / 3.0).unwrap();
+        let back = merge_text(&to_toml(&parameters), &[]).unwrap();
+        for index in 0..HacksawParameters::table().len() {
+            assert_eq!(back.value(index), parameters.value(index));
+        }
+    }
+
+    #[test]
+    fn numbers_as_written_by_a_person() {
+        assert_eq!(number(1e7), "1e7");
+        assert_eq!(number(9.81), "9.81");
+        assert_eq!(number(7850.0), "7850");
+    }
+}

@@ -1,0 +1,156 @@
+//! The run: a hacksaw integrated over its time, its outputs sampled.
+//!
+//! In: a model and what is asked of the run. Out: the trajectory and the statistics; of a run that fails, those up to the
+//! failure and its cause. Method: Dormand and Prince's explicit method of order 8 with switchings located as events.
+
+use std::time::{Duration, Instant};
+
+use bg_model::assembly::AssemblyError;
+use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::nalgebra::SVector;
+use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
+use bg_model::statistics::Statistics;
+use bg_model::system::Model;
+
+use crate::trajectory::{Column, Trajectory, sample_times};
+
+/// What is asked of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunSettings {
+    /// The end of the run, s; it starts at 0.
+    pub t_end: f64,
+    /// Relative tolerance of each step.
+    pub rtol: f64,
+    /// Absolute tolerance of each step, in each state's SI unit.
+    pub atol: f64,
+    /// The output interval of the CSV file, s.
+    pub step: f64,
+}
+
+/// The interval of the samples that figures, checks and summary are made from, s: more than forty in each turn of the
+/// paper's crank, whatever the output interval.
+const FINE: f64 = 0.002;
+/// The most of these samples: a long run has them farther apart.
+const MOST_FINE: f64 = 20_000.0;
+
+impl RunSettings {
+    /// The times of the CSV file's rows, s.
+    #[must_use]
+    pub fn output_times(&self) -> Vec<f64> {
+        sample_times(self.step, self.t_end)
+    }
+
+    /// The times of all samples, s: those of the CSV file and those that the figures need.
+    fn sample_times(&self) -> Vec<f64> {
+        let mut times = self.output_times();
+        times.extend(sample_times(FINE.max(self.t_end / MOST_FINE), self.t_end));
+        times.sort_unstable_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+}
+
+/// What a run gives.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// The outputs at the sample times that were reached.
+    pub trajectory: Trajectory,
+    /// What the run took.
+    pub effort: Effort,
+    /// Why the run stopped before its end, if it did: when, and which state.
+    pub failure: Option<String>,
+}
+
+/// What a run took.
+#[derive(Clone, Debug, Default)]
+pub struct Effort {
+    /// The states that are integrated.
+    pub states: usize,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected steps.
+    pub rejected: u64,
+    /// Evaluations of the rate function.
+    pub rate_evaluations: u64,
+    /// Switchings: sign changes of a guard.
+    pub events: u64,
+    /// The times of the switchings, s.
+    pub event_times: Vec<f64>,
+    /// Time on the wall clock.
+    pub wall: Duration,
+}
+
+/// Integrates `model` from its start. `progress` is told the time reached, s, after each step.
+///
+/// # Errors
+/// The start pose cannot be assembled. A run that fails later is no error here: see [`Simulation::failure`].
+pub fn run<Mo, const N: usize, const G: usize, const M: usize>(
+    model: &Mo,
+    settings: &RunSettings,
+    progress: impl FnMut(f64),
+) -> Result<Simulation, AssemblyError>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    let clock = Instant::now();
+    let start = model.start()?;
+    let columns = model.description().outputs.iter();
+    let columns = columns.map(|output| Column { name: output.name.to_owned(), unit: output.unit.to_owned() }).collect();
+    let mut recorder = Recorder {
+        model,
+        outputs: SVector::zeros(),
+        trajectory: Trajectory::new(columns),
+        event_times: Vec::new(),
+        progress,
+    };
+    let span = Span { t0: 0.0, t_end: settings.t_end };
+    let integration = Settings {
+        tolerances: Tolerances::new(settings.rtol, settings.atol),
+        samples: Samples::At(settings.sample_times()),
+        ..Settings::default()
+    };
+    let result = integrate(model, &mut Dop853::new(), &start, span, &integration, &mut recorder);
+    let (statistics, failure) = match result {
+        Ok(finish) => (finish.statistics, None),
+        Err(failure) => (failure.last.statistics, Some(failure.to_string())),
+    };
+    let Recorder { trajectory, event_times, .. } = recorder;
+    let effort = Effort {
+        states: N,
+        steps: statistics.steps,
+        rejected: statistics.rejected,
+        rate_evaluations: statistics.rate_evaluations,
+        events: statistics.events,
+        event_times,
+        wall: clock.elapsed(),
+    };
+    Ok(Simulation { trajectory, effort, failure })
+}
+
+/// Evaluates the model's outputs at every sample.
+struct Recorder<'a, Mo, F, const M: usize> {
+    model: &'a Mo,
+    outputs: SVector<f64, M>,
+    trajectory: Trajectory,
+    event_times: Vec<f64>,
+    progress: F,
+}
+
+impl<Mo, F, const N: usize, const G: usize, const M: usize> Observer<N, G> for Recorder<'_, Mo, F, M>
+where
+    Mo: Model<f64, N, G, M>,
+    F: FnMut(f64),
+{
+    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+        self.model.outputs(t, x, negative, &mut self.outputs);
+        self.trajectory.push(t, self.outputs.as_slice().to_vec());
+    }
+
+    fn event(&mut self, t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {
+        self.event_times.push(t);
+    }
+
+    fn step(&mut self, t: f64, _t_end: f64, _statistics: &Statistics) {
+        (self.progress)(t);
+    }
+}
