@@ -7,6 +7,8 @@ pub struct Description {
     pub name: &'static str,
     /// Its documentation comment.
     pub doc: &'static str,
+    /// The graph in bond-graph words: what the mechanism words stand for.
+    pub graph: &'static str,
     /// Parameters in the order of declaration.
     pub parameters: &'static [ParameterInfo],
     /// Inputs in the order of declaration.

@@ -344,7 +344,9 @@ mod tests {
 
     #[test]
     fn each_statement_fails_where_its_own_motion_is_broken() {
-        let cases: [(&str, &str, fn(f64, f64) -> f64); 12] = [
+        // The new value of a column from time and old value.
+        type Motion = fn(f64, f64) -> f64;
+        let cases: [(&str, &str, Motion); 12] = [
             ("R2_11", "The crank's x and y unit vectors run on circles.", |_, value| 1.001 * value),
             ("R2_13", "The crank's z unit vector stands still.", |t, _| 1e-6 * t),
             ("h2_x", "Only the z component of the crank's angular momentum varies.", |t, _| 1e-6 * t),

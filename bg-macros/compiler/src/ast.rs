@@ -35,6 +35,7 @@ pub struct Name {
 
 /// A statement of a graph.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a graph has few statements, and they are matched everywhere")]
 pub enum Item {
     /// `param NAME: UNIT = DEFAULT, at least 0;`
     Parameter(Parameter),
@@ -50,7 +51,7 @@ pub enum Item {
     Chain(Vec<Name>),
     /// `position NAME of JUNCTION start E;`, `orientation NAME of JUNCTION start E;`
     Track(Track),
-    /// `close NAME: UNIT = E;` a gap of joint NAME that the assembly of the start closes.
+    /// `close NAME = E;` a gap of joint NAME that the assembly of the start closes.
     Close(Close),
     /// `observe { NAME: UNIT = E; E; ... }`
     Observe(Vec<Observation>),

@@ -12,7 +12,8 @@
 //! | [`program::schedule`] | -> [`program::Program`] | order left open: flat single assignment |
 //! | [`emit::model`] | -> tokens | |
 //!
-//! Every stage raises all its faults at once; a later stage sees only what an earlier one accepted.
+//! Every stage raises all its faults at once; a later stage sees only what an earlier one accepted. [`stages::stages`] gives
+//! every stage's result as text.
 
 pub mod ast;
 pub mod causality;
@@ -24,6 +25,7 @@ pub mod graph;
 pub mod mechanism;
 pub mod print;
 pub mod program;
+pub mod stages;
 pub mod syntax;
 pub mod units;
 
@@ -63,5 +65,5 @@ fn model(graph: &Graph) -> Staged<TokenStream> {
     let resolved = graph::resolve(&expanded)?;
     let causal = causality::assign(resolved)?;
     let mut equations = equations::derive(&causal)?;
-    Ok(emit::model(&causal, &mut equations))
+    Ok(emit::model(&expanded.to_string(), &causal, &mut equations))
 }

@@ -132,7 +132,14 @@ where
                     if !crossing.is_at_start {
                         self.accept(observer);
                     }
+                    let before = self.stepper.negative;
+                    let h = self.stepper.h;
                     self.switch(crossing.switches, observer)?;
+                    if crossing.is_at_start && self.stepper.negative == before && self.pace.is_adaptive() {
+                        // The branch is right, so the step was too long for the guard's course.
+                        self.stepper.statistics.rejected += 1;
+                        self.pace.reject(h, f64::NAN);
+                    }
                 }
             }
         }

@@ -109,15 +109,15 @@ pub(super) fn first_step<const N: usize>(
 ) -> f64 {
     // The factors are those of HINIT; where it takes 1e-6 for a state at rest, this part of the longest step is taken.
     const AT_REST: f64 = 1e-6;
-    let rates = scale.sum_of_squares(&start.rate, &start.x);
-    let states = scale.sum_of_squares(&start.x, &start.x);
-    let is_at_rest = rates <= 1e-10 || states <= 1e-10;
-    let guess = if is_at_rest { AT_REST * longest } else { (states / rates).sqrt() * 0.01 }.min(longest);
+    let rates = scale.norm(&start.rate, &start.x);
+    let states = scale.norm(&start.x, &start.x);
+    let is_at_rest = rates <= 1e-5 || states <= 1e-5;
+    let guess = if is_at_rest { AT_REST * longest } else { states / rates * 0.01 }.min(longest);
     let ahead = start.x + start.rate * guess;
     let mut rate: SVector<f64, N> = SVector::zeros();
     flow.rate(start.t + guess, &ahead, &mut rate);
-    let bend = scale.sum_of_squares(&(rate - start.rate), &start.x).sqrt() / guess;
-    let steepest = bend.max(rates.sqrt());
+    let bend = scale.norm(&(rate - start.rate), &start.x) / guess;
+    let steepest = bend.max(rates);
     let step =
         if steepest <= 1e-15 { (AT_REST * longest).max(guess * 1e-3) } else { libm::pow(0.01 / steepest, 1.0 / order) };
     let step = step.min(100.0 * guess).min(longest);

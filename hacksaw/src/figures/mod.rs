@@ -1,10 +1,10 @@
 //! The paper's Figures 4 to 19, drawn as SVG from a trajectory.
 //!
 //! In: a [`Trajectory`]. Out: one SVG text for each entry of [`FIGURES`]. [`FIGURES`] is the only place that says which
-//! figure shows what; [`momentum`], [`orientation`] and [`path`] draw the three kinds of figure.
+//! figure shows what; `momentum`, `orientation` and `path` draw the three kinds of figure.
 //!
-//! Every figure has 16 : 9 and follows the reader's light or dark colour scheme ([`palette`]). Curves are thinned to what
-//! the eye can see at the drawn size ([`thinning`]), so a file stays below 300 kB whatever the output interval.
+//! Every figure has 16 : 9 and follows the reader's light or dark colour scheme (`palette`). Curves are thinned to what
+//! the eye can see at the drawn size (`thinning`), so a file stays below 300 kB whatever the output interval.
 
 mod canvas;
 mod momentum;

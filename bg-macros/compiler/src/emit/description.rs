@@ -7,7 +7,7 @@ use quote::quote;
 
 use crate::causality::{CausalGraph, End};
 use crate::equations::StateEquations;
-use crate::expr::{Symbol, text};
+use crate::expr::text;
 use crate::graph::NodeKind;
 use crate::program::{Counts, Routine};
 
@@ -31,7 +31,12 @@ pub(super) fn documentation(docs: &str, equations: &StateEquations, routines: &[
 }
 
 /// The `Description` literal; `PARAMETERS` is the parameter struct's table.
-pub(super) fn description(causal: &CausalGraph, equations: &StateEquations, routines: &[&Routine]) -> TokenStream {
+pub(super) fn description(
+    expanded: &str,
+    causal: &CausalGraph,
+    equations: &StateEquations,
+    routines: &[&Routine],
+) -> TokenStream {
     let graph = &causal.graph;
     let (name, doc) = (&graph.name.text, &graph.docs);
     let inputs = graph.inputs.iter().map(|input| {
@@ -71,7 +76,7 @@ pub(super) fn description(causal: &CausalGraph, equations: &StateEquations, rout
     });
     quote! {
         ::bg_model::description::Description {
-            name: #name, doc: #doc, parameters: PARAMETERS,
+            name: #name, doc: #doc, graph: #expanded, parameters: PARAMETERS,
             inputs: &[#(#inputs,)*], states: &[#(#states,)*], outputs: &[#(#outputs,)*],
             switches: &[#(#switches,)*], elements: &[#(#elements,)*], bonds: &[#(#bonds,)*],
             equations: &[#(#lines,)*], operations: &[#(#counts,)*],
@@ -100,13 +105,5 @@ fn bonds(causal: &CausalGraph) -> impl Iterator<Item = TokenStream> {
 
 /// A guard as text.
 fn guard_text(equations: &StateEquations, guard: crate::expr::Id) -> String {
-    let name = |symbol| match symbol {
-        Symbol::Time => "t".to_owned(),
-        Symbol::State(index) => equations.states[index as usize].name.clone(),
-        Symbol::Parameter(index) => equations.parameters[index as usize].name.text.clone(),
-        Symbol::Input(index) => equations.inputs[index as usize].name.text.clone(),
-        Symbol::Unknown(index) => format!("unknown_{index}"),
-        Symbol::Atom(index) => format!("atom_{index}"),
-    };
-    text(&equations.pool, guard, &name, &|switch| format!("guard {switch}"))
+    text(&equations.pool, guard, &|symbol| equations.symbol_name(symbol), &|switch| format!("guard_{switch}"))
 }

@@ -16,11 +16,12 @@ use crate::equations::StateEquations;
 use crate::expr::{Id, Symbol};
 use crate::program::{Operand, Program, Request, Routine, schedule};
 
-/// The items of one model: parameters, inputs, the type, its functions, its description.
-pub fn model(causal: &CausalGraph, equations: &mut StateEquations) -> TokenStream {
+/// The items of one model: parameters, inputs, the type, its functions, its description. `expanded` is the graph in
+/// bond-graph words as text.
+pub fn model(expanded: &str, causal: &CausalGraph, equations: &mut StateEquations) -> TokenStream {
     let programs = Programs::new(equations);
     let equations: &StateEquations = equations;
-    Emission { causal, equations, programs }.items()
+    Emission { expanded, causal, equations, programs }.items()
 }
 
 /// The programs of all generated functions.
@@ -59,6 +60,7 @@ impl Programs {
 }
 
 struct Emission<'a> {
+    expanded: &'a str,
     causal: &'a CausalGraph,
     equations: &'a StateEquations,
     programs: Programs,
@@ -90,7 +92,7 @@ impl Emission<'_> {
         let (parameters, inputs) = (&given.parameters_name(), &given.inputs_name());
         let routines: Vec<&Routine> = self.programs.dynamic.routines.iter().collect();
         let doc = description::documentation(&graph.docs, self.equations, &routines);
-        let description = description::description(self.causal, self.equations, &routines);
+        let description = description::description(self.expanded, self.causal, self.equations, &routines);
         let (states, switches, outputs) =
             (self.equations.states.len(), self.equations.switches.len(), self.equations.outputs.len());
         let constants = self.programs.dynamic.constants.results.len();

@@ -10,7 +10,6 @@ use crate::program::{Operand, Operation, Routine};
 
 /// The tokens of what a routine refers to.
 #[derive(Clone, Copy)]
-#[expect(missing_debug_implementations, reason = "closures have none")]
 pub struct Names<'a> {
     /// A symbol.
     pub symbol: &'a dyn Fn(Symbol) -> TokenStream,
@@ -83,4 +82,61 @@ fn method(function: Function) -> Ident {
         other => other.name(),
     };
     Ident::new(name, Span::call_site())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::Pool;
+    use crate::program::{Request, schedule};
+
+    fn rendered(routine: &Routine) -> (String, Vec<String>) {
+        let names = Names {
+            symbol: &|symbol| match symbol {
+                Symbol::State(index) => {
+                    let name = format_ident!("x{index}");
+                    quote! { #name }
+                }
+                _ => quote! { p },
+            },
+            constant: &|index| {
+                let index = proc_macro2::Literal::u32_unsuffixed(index);
+                quote! { c[#index] }
+            },
+            switch: &|_| quote! { below },
+        };
+        let results = routine.results.iter().map(|result| operand(result, &names).to_string()).collect();
+        (statements(routine, &names).to_string(), results)
+    }
+
+    #[test]
+    fn text_of_a_routine() {
+        let mut pool = Pool::new();
+        let [x, y] = [0, 1].map(|index| pool.symbol(Symbol::State(index)));
+        let mass = pool.symbol(Symbol::Parameter(0));
+        let quotient = pool.div(x, mass);
+        let angle = pool.call(Function::Atan2, &[x, y]);
+        let power = pool.call(Function::Pow, &[y, angle]);
+        let half = pool.scale(0.5, power);
+        let choice = pool.select(0, quotient, half);
+        let opposite = pool.neg(x);
+        let program = schedule(&mut pool, &[Request { name: "rate", roots: &[choice, opposite, x] }]);
+        let (text, results) = rendered(&program.routines[0]);
+        assert_eq!(
+            text,
+            "let v0 = x0 * c [0] ; let v1 = x0 . atan2 (x1) ; let v2 = x1 . powf (v1) ; \
+             let v3 = S :: from_f64 (0.5f64) * v2 ; let v4 = if below { v0 } else { v3 } ; let v5 = - x0 ;"
+        );
+        assert_eq!(results, ["v4", "v5", "x0"]);
+        assert_eq!(rendered(&program.constants).0, "let v0 = S :: from_f64 (1f64) / p ;");
+    }
+
+    #[test]
+    fn negative_numbers_are_literals() {
+        let mut pool = Pool::new();
+        let x = pool.symbol(Symbol::State(0));
+        let root = pool.scale(-2.5, x);
+        let program = schedule(&mut pool, &[Request { name: "rate", roots: &[root] }]);
+        assert_eq!(rendered(&program.routines[0]).0, "let v0 = x0 * S :: from_f64 (- 2.5f64) ;");
+    }
 }

@@ -547,6 +547,7 @@ impl Resolver {
                     String::new()
                 }
                 (Some(_), _) => observation.unit.clone(),
+                (None, Quantity::Known(Dimension::JOULE)) if is_energy(&observation.value) => "J".to_owned(),
                 (None, Quantity::Known(found)) => found.to_string(),
                 (None, _) => "1".to_owned(),
             };
@@ -580,6 +581,11 @@ fn law_text(element: &ast::Element) -> String {
         Some(variable) => format!("({}) = {}", variable.name.text, element.law),
         None => element.law.to_string(),
     }
+}
+
+/// An energy, which has the dimension of a torque but reads as J.
+fn is_energy(term: &Term) -> bool {
+    matches!(term.kind, TermKind::Reference(Reference::Energy(_) | Reference::StoredEnergy))
 }
 
 /// Numbers: what a parameter's default may be made of.

@@ -82,14 +82,12 @@ impl<'a> Expansion<'a> {
                     expansion.joints.insert(&joint.name.text, joint);
                 }
                 Item::Ground(ground) => {
-                    if expansion.ground.replace(ground).is_some() {
-                        expansion.fault(ground.span, &MechanismFault::Twice { word: GROUND });
-                    }
+                    let twice = expansion.ground.replace(ground).is_some();
+                    expansion.only_once(twice, ground.span, GROUND);
                 }
                 Item::Gravity(gravity) => {
-                    if std::mem::replace(&mut expansion.has_gravity, true) {
-                        expansion.fault(gravity.span, &MechanismFault::Twice { word: "gravity" });
-                    }
+                    let twice = std::mem::replace(&mut expansion.has_gravity, true);
+                    expansion.only_once(twice, gravity.span, "gravity");
                 }
                 _ => {}
             }
@@ -112,6 +110,12 @@ impl<'a> Expansion<'a> {
                 Item::Contact(contact) => self.contact(contact),
                 other => self.items.push(other.clone()),
             }
+        }
+    }
+
+    fn only_once(&mut self, twice: bool, span: Span, word: &'static str) {
+        if twice {
+            self.fault(span, &MechanismFault::Twice { word });
         }
     }
 

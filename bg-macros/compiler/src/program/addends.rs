@@ -31,6 +31,8 @@ struct Search<'g, 's, 'p> {
     queue: BinaryHeap<(i64, Reverse<Pair>)>,
     /// How many sums contain this coefficient's magnitude times this core.
     scaled: Table<(Id, u32), i64>,
+    /// In how many sums each core was at first; a core of one sum forms no common pair. Cores beyond the end are new.
+    members: Vec<u32>,
 }
 
 /// A pair in one sum.
@@ -50,8 +52,10 @@ pub(super) fn share_addends(statics: &mut Statics, graph: &mut Graph, roots: &[V
             sums.push(Sum { core, terms: terms.clone() });
         }
     }
-    let mut search =
-        Search { graph, statics, sums, places: Table::default(), queue: BinaryHeap::new(), scaled: Table::default() };
+    let mut members = vec![0; graph.cores.len()];
+    sums.iter().flat_map(|sum| &sum.terms).for_each(|term| members[term.core as usize] += 1);
+    let (places, queue, scaled) = (Table::default(), BinaryHeap::new(), Table::default());
+    let mut search = Search { graph, statics, sums, places, queue, scaled, members };
     search.enter();
     search.run();
     for Sum { core, terms } in search.sums {
@@ -91,6 +95,10 @@ impl Search<'_, '_, '_> {
 
     /// Notes the pair of these terms; `found` gets it when it occurs a second time or more.
     fn note(&mut self, sum: usize, first: Value, second: Value, found: &mut Vec<Pair>) {
+        let single = |term: Value| self.members.get(term.core as usize).is_some_and(|&sums| sums < 2);
+        if single(first) || single(second) {
+            return;
+        }
         for (pair, _) in pairs(self.statics, first, second).into_iter().flatten() {
             let places = self.places.entry(pair).or_default();
             places.push(u32::try_from(sum).expect("fewer than 2^32 sums"));
@@ -181,6 +189,9 @@ impl Search<'_, '_, '_> {
         let inner = self.graph.sum(self.statics, terms.to_vec());
         if let Core::Sum(terms) = self.graph.cores[inner.core as usize].clone() {
             terms.into_iter().for_each(|term| self.count(term, 1));
+        }
+        if let Some(members) = self.members.get_mut(inner.core as usize) {
+            *members += u32::try_from(places.len()).unwrap_or(u32::MAX);
         }
         let mut found = Vec::new();
         for place in places {

@@ -25,6 +25,8 @@ struct Search<'p> {
     products: Vec<(u32, Vec<(u32, i32)>)>,
     places: Table<Pair, Vec<u32>>,
     queue: BinaryHeap<(u32, Reverse<Pair>)>,
+    /// In how many products each cell was at first; cells beyond the end are new.
+    members: Vec<u32>,
 }
 
 /// Makes products of the pairs of factors that occur more than once.
@@ -35,7 +37,9 @@ pub(super) fn share_factors(plan: &mut Plan) {
             products.push((cell, factors.clone()));
         }
     }
-    let mut search = Search { plan, products, places: Table::default(), queue: BinaryHeap::new() };
+    let mut members = vec![0; plan.cells.len()];
+    products.iter().flat_map(|product| &product.1).for_each(|factor| members[factor.0 as usize] += 1);
+    let mut search = Search { plan, products, places: Table::default(), queue: BinaryHeap::new(), members };
     search.enter();
     search.run();
     let mut products = search.products;
@@ -76,6 +80,10 @@ impl Search<'_> {
 
     fn note(&mut self, product: usize, first: (u32, i32), second: (u32, i32), found: &mut Vec<Pair>) {
         let Some((pair, times)) = pair(first, second) else { return };
+        let single = |cell: u32| self.members.get(cell as usize).is_some_and(|&products| products < 2);
+        if times < 2 && (single(pair.0) || single(pair.1)) {
+            return;
+        }
         let places = self.places.entry(pair).or_default();
         places.push(number(product));
         if places.len() > 1 || times > 1 {
@@ -122,6 +130,9 @@ impl Search<'_> {
             (false, false) => vec![(second, -1), (first, 1)],
         };
         let inner = self.plan.intern(Cell::Product(factors));
+        if let Some(members) = self.members.get_mut(inner as usize) {
+            *members += number(places.len());
+        }
         let mut found = Vec::new();
         for &(product, times) in places {
             if self.products[product].0 != inner {

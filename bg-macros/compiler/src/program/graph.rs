@@ -149,9 +149,13 @@ impl Graph {
         }
         let content = content(statics, &terms);
         if content != statics.one {
-            for term in &mut terms {
-                term.coefficient = statics.exact(term.coefficient, content).unwrap_or(term.coefficient);
-            }
+            let divided =
+                |term: &Value| Some(Value { coefficient: statics.exact(term.coefficient, content)?, ..*term });
+            let divided: Option<Vec<Value>> = terms.iter().map(divided).collect();
+            let Some(divided) = divided else {
+                return Value { coefficient: statics.one, core: self.intern(Core::Sum(terms)) };
+            };
+            terms = divided;
         }
         Value { coefficient: content, core: self.intern(Core::Sum(terms)) }
     }

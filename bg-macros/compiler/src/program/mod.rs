@@ -164,7 +164,7 @@ impl Operation {
     }
 }
 
-/// Rounds of grouping and sharing; a third one finds nothing in any mechanism tried.
+/// Rounds of grouping and sharing; a third one saves less than 0.02 % of the operations of the random graphs in the tests.
 const ROUNDS: usize = 2;
 
 /// Routines of the requests with few operations. The pool gains nodes of parameters and numbers.

@@ -83,8 +83,8 @@ impl<'a> Statics<'a> {
         if negative { self.pool.neg(id) } else { id }
     }
 
-    /// The common factor of two values and what it leaves of them: it takes the first value's number, so that the
-    /// first remainder is positive and has no number.
+    /// The common factor of two values and what it leaves of them. It takes the first value's number, so that the first
+    /// remainder is positive and has no number, unless the second remainder would leave the range of numbers.
     pub(super) fn common(&mut self, first: Id, second: Id) -> Common {
         if first == self.one {
             return Common { factor: first, first, second };
@@ -93,7 +93,8 @@ impl<'a> Statics<'a> {
             return known;
         }
         let (left, right) = (self.monomial(first), self.monomial(second));
-        let factor = Monomial { number: left.number, factors: shared(&left.factors, &right.factors) };
+        let number = if (right.number / left.number).is_normal() { left.number } else { 1.0 };
+        let factor = Monomial { number, factors: shared(&left.factors, &right.factors) };
         let result = Common {
             first: self.compose(&quotient(&left, &factor)),
             second: self.compose(&quotient(&right, &factor)),
@@ -103,13 +104,14 @@ impl<'a> Statics<'a> {
         result
     }
 
-    /// `dividend` over `divisor`, if that divides by nothing but numbers.
+    /// `dividend` over `divisor`, if that divides by nothing but numbers and stays in their range.
     pub(super) fn exact(&mut self, dividend: Id, divisor: Id) -> Option<Id> {
         let (left, right) = (self.monomial(dividend), self.monomial(divisor));
         if shared(&left.factors, &right.factors) != right.factors {
             return None;
         }
-        Some(self.compose(&quotient(&left, &right)))
+        let quotient = quotient(&left, &right);
+        quotient.number.is_normal().then(|| self.compose(&quotient))
     }
 
     fn monomial(&mut self, id: Id) -> Monomial {

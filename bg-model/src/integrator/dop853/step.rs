@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use super::tableau::{A1, A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, B, B3, C, E5, Row};
 use super::{Dop853, STAGES};
-use crate::integrator::tolerances::sum;
+use crate::integrator::tolerances::largest;
 use crate::integrator::{Flow, Point, Scale};
 
 /// The rates of all stages.
@@ -60,25 +60,23 @@ impl<const N: usize> Dop853<N> {
 
     /// Writes the state at the end of the step and gives the norm of its error.
     ///
-    /// The norm: with the root mean squares e5 and e3 of the scaled differences to the methods of orders 5 and 3,
+    /// The norm: with the largest e5 and e3 of the scaled differences to the methods of orders 5 and 3,
     /// h e5 e5 / sqrt(e5 e5 + e3 e3 / 100) (Hairer, Norsett, Wanner, section II.10).
     pub(super) fn finish_step(&self, start: &Point<N>, h: f64, scale: &Scale<N>, end: &mut SVector<f64, N>) -> f64 {
-        let (mut squares5, mut squares3) = ([0.0; N], [0.0; N]);
+        let (mut errors5, mut errors3) = ([0.0; N], [0.0; N]);
         for i in 0..N {
             let from = start.x.data.0[0][i];
             let slope = B.combine(&self.k, i);
             let to = from + h * slope;
             let allowed = scale.allowed(i, from, to);
-            let error5 = E5.combine(&self.k, i) / allowed;
-            let error3 = (slope - B3.combine(&self.k, i)) / allowed;
             end.data.0[0][i] = to;
-            squares5[i] = error5 * error5;
-            squares3[i] = error3 * error3;
+            errors5[i] = (E5.combine(&self.k, i) / allowed).abs();
+            errors3[i] = ((slope - B3.combine(&self.k, i)) / allowed).abs();
         }
-        let (square5, square3) = (sum(&squares5), sum(&squares3));
-        let both = square5 + 0.01 * square3;
+        let (error5, error3) = (largest(&errors5), largest(&errors3));
+        let both = error5 * error5 + 0.01 * error3 * error3;
         // Both differences vanish exactly at a state of rest.
-        if both == 0.0 { 0.0 } else { h.abs() * square5 / (both * N as f64).sqrt() }
+        if both == 0.0 { 0.0 } else { h.abs() * error5 * error5 / both.sqrt() }
     }
 
     /// The scaled difference to the method of order 5, for each state.

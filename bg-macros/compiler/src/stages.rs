@@ -1,0 +1,176 @@
+//! Every stage's result as text, for snapshots, for programs that show a model, for the curious.
+//!
+//! In: tokens. Out: for each graph its stages in their order; faults where a stage raises them.
+
+use std::fmt::Write;
+
+use proc_macro2::TokenStream;
+
+use crate::ast::TrackKind;
+use crate::causality::{CausalGraph, End};
+use crate::equations::StateEquations;
+use crate::expr::{Id, Symbol, text};
+use crate::fault::Staged;
+use crate::graph::{BondGraph, NodeKind, Storage};
+use crate::program::{Operand, Operation, Program, Request, Routine, schedule};
+use crate::{causality, equations, graph, mechanism, syntax};
+
+/// One stage of one graph.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// The graph's name.
+    pub graph: String,
+    /// `source`, `expanded`, `resolved`, `causal`, `equations` or `program`.
+    pub name: &'static str,
+    /// The stage's result.
+    pub text: String,
+}
+
+/// The stages of every graph in a macro call.
+///
+/// # Errors
+/// The faults of the first graph that has any.
+pub fn stages(tokens: TokenStream) -> Staged<Vec<Stage>> {
+    let source = syntax::parse(tokens)?;
+    let mut stages = Vec::new();
+    for graph in &source.graphs {
+        let name = &graph.name.text;
+        let mut push = |stage, text| stages.push(Stage { graph: name.clone(), name: stage, text });
+        push("source", graph.to_string());
+        let expanded = mechanism::expand(graph)?;
+        push("expanded", expanded.to_string());
+        let resolved = graph::resolve(&expanded)?;
+        push("resolved", resolved_text(&resolved));
+        let causal = causality::assign(resolved)?;
+        push("causal", causal_text(&causal));
+        let mut equations = equations::derive(&causal)?;
+        push("equations", equations_text(&equations));
+        let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
+        let program = schedule(&mut equations.pool, &[Request { name: "rate", roots: &rates }]);
+        push("program", program_text(&equations, &program));
+    }
+    Ok(stages)
+}
+
+/// Nodes, bonds with cardinality and units, states.
+fn resolved_text(graph: &BondGraph) -> String {
+    let mut out = String::new();
+    for node in &graph.nodes {
+        let _ = write!(out, "{} {}", node.kind.symbol(), node.name.text);
+        if let NodeKind::Element(element) = &node.kind {
+            let _ = write!(out, ": {}", element.text);
+        }
+        out.push('\n');
+    }
+    for bond in &graph.bonds {
+        let (from, to) = (&graph.node(bond.from).name.text, &graph.node(bond.to).name.text);
+        let _ = writeln!(out, "{from} -> {to} [{}] effort {} flow {}", bond.cardinality, bond.effort, bond.flow());
+    }
+    for storage in &graph.storages {
+        if let Storage::Track(index) = storage {
+            let track = &graph.tracks[*index];
+            let kind = if track.kind == TrackKind::Position { "position" } else { "orientation" };
+            let _ = writeln!(out, "{kind} {} of {}", track.name.text, graph.node(track.junction).name.text);
+        }
+    }
+    out
+}
+
+/// Bonds with their strokes: the bar is at the end that receives the effort.
+fn causal_text(causal: &CausalGraph) -> String {
+    let graph = &causal.graph;
+    let mut out = String::new();
+    for (bond, stroke) in graph.bonds.iter().zip(&causal.strokes) {
+        let (from, to) = (&graph.node(bond.from).name.text, &graph.node(bond.to).name.text);
+        let arrow = match stroke {
+            End::From => "|->",
+            End::To => "->|",
+        };
+        let _ = writeln!(out, "{from} {arrow} {to}");
+    }
+    out
+}
+
+/// Causal equations as text, then every state's start and rate, every output, every guard.
+fn equations_text(equations: &StateEquations) -> String {
+    let mut out = String::new();
+    for line in &equations.texts {
+        let _ = writeln!(out, "{line}");
+    }
+    let show = |id: Id| {
+        text(&equations.pool, id, &|symbol| equations.symbol_name(symbol), &|switch| format!("guard_{switch}"))
+    };
+    out.push('\n');
+    for state in &equations.states {
+        let (name, unit, storage) = (&state.name, &state.unit, state.storage);
+        let _ = writeln!(out, "{name} [{unit}] of {storage}, start {}", show(state.start));
+        let _ = writeln!(out, "    {name}' = {}", show(state.rate));
+    }
+    for (index, switch) in equations.switches.iter().enumerate() {
+        let _ = writeln!(out, "guard_{index} of {}: {}", switch.element, show(switch.guard));
+    }
+    for output in &equations.outputs {
+        let _ = writeln!(out, "output {} [{}] = {}", output.name, output.unit, show(output.value));
+    }
+    for gap in &equations.gaps {
+        let _ = writeln!(out, "gap of {} {} [{}] = {}", gap.joint, gap.component, gap.unit, show(gap.value));
+    }
+    let _ = writeln!(out, "stored = {}", show(equations.stored));
+    let _ = writeln!(out, "supplied = {}", show(equations.supplied));
+    let _ = writeln!(out, "dissipated = {}", show(equations.dissipated));
+    out
+}
+
+/// The flat single assignment of the rate function.
+fn program_text(equations: &StateEquations, program: &Program) -> String {
+    let mut out = String::new();
+    routine_text(equations, &program.constants, &mut out);
+    for routine in &program.routines {
+        routine_text(equations, routine, &mut out);
+    }
+    out
+}
+
+fn routine_text(equations: &StateEquations, routine: &Routine, out: &mut String) {
+    let operand = |operand: &Operand| match operand {
+        Operand::Number(value) => value.to_string(),
+        Operand::Symbol(symbol) => equations.symbol_name(*symbol),
+        Operand::Constant(index) => format!("c{index}"),
+        Operand::Temporary(index) => format!("v{index}"),
+    };
+    let _ = writeln!(out, "{}: {} operations", routine.name, routine.counts.total());
+    for assignment in &routine.assignments {
+        let text = match &assignment.operation {
+            Operation::Add(a, b) => format!("{} + {}", operand(a), operand(b)),
+            Operation::Subtract(a, b) => format!("{} - {}", operand(a), operand(b)),
+            Operation::Multiply(a, b) => format!("{} * {}", operand(a), operand(b)),
+            Operation::Divide(a, b) => format!("{} / {}", operand(a), operand(b)),
+            Operation::Negate(a) => format!("-{}", operand(a)),
+            Operation::Call(function, arguments) => {
+                let arguments: Vec<String> = arguments.iter().map(operand).collect();
+                format!("{}({})", function.name(), arguments.join(", "))
+            }
+            Operation::Select { switch, negative, positive } => {
+                format!("if guard_{switch} < 0 {{ {} }} else {{ {} }}", operand(negative), operand(positive))
+            }
+        };
+        let _ = writeln!(out, "    v{} = {text}", assignment.target);
+    }
+    let results: Vec<String> = routine.results.iter().map(operand).collect();
+    let _ = writeln!(out, "    -> {}", results.join(", "));
+}
+
+impl StateEquations {
+    /// A symbol's name in texts.
+    #[must_use]
+    pub fn symbol_name(&self, symbol: Symbol) -> String {
+        match symbol {
+            Symbol::Time => "t".to_owned(),
+            Symbol::State(index) => self.states[index as usize].name.clone(),
+            Symbol::Parameter(index) => self.parameters[index as usize].name.text.clone(),
+            Symbol::Input(index) => self.inputs[index as usize].name.text.clone(),
+            Symbol::Unknown(index) => format!("unknown_{}", index + 1),
+            Symbol::Atom(index) => format!("atom_{index}"),
+        }
+    }
+}
