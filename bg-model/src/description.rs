@@ -9,6 +9,8 @@ pub struct Description {
     pub doc: &'static str,
     /// The graph in bond-graph words: what the mechanism words stand for.
     pub graph: &'static str,
+    /// What a scene left out, state by state, with the reason; empty for the literal model of a graph.
+    pub reduction: &'static str,
     /// Parameters in the order of declaration.
     pub parameters: &'static [ParameterInfo],
     /// Inputs in the order of declaration.

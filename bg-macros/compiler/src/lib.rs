@@ -5,10 +5,12 @@
 //! | function | from -> to | what no longer occurs after it |
 //! |---|---|---|
 //! | [`syntax::parse`] | tokens -> [`ast::Source`] | tokens |
+//! | [`scene::variants`] | [`ast::Graph`] -> the literal graph and one for each scene | scenes |
 //! | [`mechanism::expand`] | [`ast::Graph`] -> [`ast::Graph`] | bodies, joints, springs, drives, contacts |
 //! | [`graph::resolve`] | [`ast::Graph`] -> [`graph::BondGraph`] | names, missing ports, unknown cardinalities and units |
 //! | [`causality::assign`] | -> [`causality::CausalGraph`] | a bond without a stroke |
 //! | [`equations::derive`] | -> [`equations::StateEquations`] | bonds, ports, junctions: scalars only from here |
+//! | [`reduce::for_scene`] | -> [`equations::StateEquations`] | states and parameters that the scene does not need |
 //! | [`program::schedule`] | -> [`program::Program`] | order left open: flat single assignment |
 //! | [`emit::model`] | -> tokens | |
 //!
@@ -25,14 +27,20 @@ pub mod graph;
 pub mod mechanism;
 pub mod print;
 pub mod program;
+pub mod reduce;
+pub mod scene;
 pub mod stages;
 pub mod syntax;
 pub mod units;
 
 use proc_macro2::TokenStream;
 
-use crate::ast::{Graph, Source};
+use crate::ast::Source;
+use crate::causality::CausalGraph;
+use crate::equations::StateEquations;
 use crate::fault::{Faults, Staged, compile_errors};
+use crate::reduce::Report;
+use crate::scene::Variant;
 
 /// Compiles one macro call. Faults come out as compile errors at their tokens, together with stubs of the promised items.
 #[must_use]
@@ -51,19 +59,44 @@ fn models(source: &Source) -> Staged<TokenStream> {
     let mut items = TokenStream::new();
     let mut faults = Faults::new();
     for graph in &source.graphs {
-        match model(graph) {
-            Ok(tokens) => items.extend(tokens),
+        match scene::variants(graph) {
+            Ok(variants) => each_variant(&variants, &mut items, &mut faults),
             Err(found) => faults.extend(found),
         }
     }
     if faults.is_empty() { Ok(items) } else { Err(faults) }
 }
 
-/// All stages of one graph.
-fn model(graph: &Graph) -> Staged<TokenStream> {
-    let expanded = mechanism::expand(graph)?;
+/// The model of every variant; a fault of the literal graph is not repeated for its scenes.
+fn each_variant(variants: &[Variant], items: &mut TokenStream, faults: &mut Faults) {
+    for variant in variants {
+        match model(variant) {
+            Ok(tokens) => items.extend(tokens),
+            Err(found) => {
+                faults.extend(found);
+                if variant.scene.is_none() {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// All stages of one model.
+fn model(variant: &Variant) -> Staged<TokenStream> {
+    let expanded = mechanism::expand(&variant.graph)?;
     let resolved = graph::resolve(&expanded)?;
     let causal = causality::assign(resolved)?;
-    let mut equations = equations::derive(&causal)?;
-    Ok(emit::model(&expanded.to_string(), &causal, &mut equations))
+    let (mut equations, report) = reduced(variant, &causal)?;
+    Ok(emit::model(&expanded.to_string(), &causal, &mut equations, report.as_ref()))
+}
+
+/// The equations of a variant: those of a scene are reduced to what it needs.
+fn reduced(variant: &Variant, causal: &CausalGraph) -> Staged<(StateEquations, Option<Report>)> {
+    let equations = equations::derive(causal)?;
+    let Some(scene) = &variant.scene else { return Ok((equations, None)) };
+    let tuned = scene::tuned(scene, &equations.parameters)?;
+    let (equations, report) = reduce::for_scene(equations, &tuned);
+    scene::check(scene, &report)?;
+    Ok((equations, Some(report)))
 }

@@ -13,14 +13,15 @@ use crate::expr::{Id, Symbol, text};
 use crate::fault::Staged;
 use crate::graph::{BondGraph, NodeKind, Storage};
 use crate::program::{Operand, Operation, Program, Request, Routine, schedule};
-use crate::{causality, equations, graph, mechanism, syntax};
+use crate::scene::Variant;
+use crate::{causality, equations, graph, mechanism, reduce, scene, syntax};
 
 /// One stage of one graph.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The graph's name.
     pub graph: String,
-    /// `source`, `expanded`, `resolved`, `causal`, `equations` or `program`.
+    /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, and `program`.
     pub name: &'static str,
     /// The stage's result.
     pub text: String,
@@ -34,22 +35,36 @@ pub fn stages(tokens: TokenStream) -> Staged<Vec<Stage>> {
     let source = syntax::parse(tokens)?;
     let mut stages = Vec::new();
     for graph in &source.graphs {
-        let name = &graph.name.text;
-        let mut push = |stage, text| stages.push(Stage { graph: name.clone(), name: stage, text });
-        push("source", graph.to_string());
-        let expanded = mechanism::expand(graph)?;
-        push("expanded", expanded.to_string());
-        let resolved = graph::resolve(&expanded)?;
-        push("resolved", resolved_text(&resolved));
-        let causal = causality::assign(resolved)?;
-        push("causal", causal_text(&causal));
-        let mut equations = equations::derive(&causal)?;
-        push("equations", equations_text(&equations));
-        let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
-        let program = schedule(&mut equations.pool, &[Request { name: "rate", roots: &rates }]);
-        push("program", program_text(&equations, &program));
+        for variant in scene::variants(graph)? {
+            of_variant(&variant, &mut stages)?;
+        }
     }
     Ok(stages)
+}
+
+fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
+    let name = &variant.graph.name.text;
+    let mut push = |stage, text| stages.push(Stage { graph: name.clone(), name: stage, text });
+    push("source", variant.graph.to_string());
+    let expanded = mechanism::expand(&variant.graph)?;
+    push("expanded", expanded.to_string());
+    let resolved = graph::resolve(&expanded)?;
+    push("resolved", resolved_text(&resolved));
+    let causal = causality::assign(resolved)?;
+    push("causal", causal_text(&causal));
+    let mut equations = equations::derive(&causal)?;
+    push("equations", equations_text(&equations));
+    if let Some(scene) = &variant.scene {
+        let tuned = scene::tuned(scene, &equations.parameters)?;
+        let (reduced, report) = reduce::for_scene(equations, &tuned);
+        equations = reduced;
+        push("reduction", report.to_string());
+        push("reduced", equations_text(&equations));
+    }
+    let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
+    let program = schedule(&mut equations.pool, &[Request { name: "rate", roots: &rates }]);
+    push("program", program_text(&equations, &program));
+    Ok(())
 }
 
 /// Nodes, bonds with cardinality and units, states.

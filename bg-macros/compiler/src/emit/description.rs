@@ -30,14 +30,23 @@ pub(super) fn documentation(docs: &str, equations: &StateEquations, routines: &[
     doc
 }
 
+/// Texts of a description that earlier stages made.
+pub(super) struct Texts<'a> {
+    /// The graph in bond-graph words.
+    pub(super) expanded: &'a str,
+    /// What a scene left out and why; empty for a literal model.
+    pub(super) reduction: &'a str,
+}
+
 /// The `Description` literal; `PARAMETERS` is the parameter struct's table.
 pub(super) fn description(
-    expanded: &str,
+    texts: &Texts<'_>,
     causal: &CausalGraph,
     equations: &StateEquations,
     routines: &[&Routine],
 ) -> TokenStream {
     let graph = &causal.graph;
+    let Texts { expanded, reduction } = texts;
     let (name, doc) = (&graph.name.text, &graph.docs);
     let inputs = graph.inputs.iter().map(|input| {
         let (name, unit, doc) = (&input.name.text, &input.unit, &input.docs);
@@ -76,7 +85,7 @@ pub(super) fn description(
     });
     quote! {
         ::bg_model::description::Description {
-            name: #name, doc: #doc, graph: #expanded, parameters: PARAMETERS,
+            name: #name, doc: #doc, graph: #expanded, reduction: #reduction, parameters: PARAMETERS,
             inputs: &[#(#inputs,)*], states: &[#(#states,)*], outputs: &[#(#outputs,)*],
             switches: &[#(#switches,)*], elements: &[#(#elements,)*], bonds: &[#(#bonds,)*],
             equations: &[#(#lines,)*], operations: &[#(#counts,)*],

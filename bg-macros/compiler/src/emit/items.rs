@@ -20,9 +20,11 @@ pub(super) fn identifier(name: &str) -> Ident {
     Ident::new(name, Span::call_site())
 }
 
-/// A literal `f64`, infinities included.
+/// A literal `f64`; infinities and not-a-number by their names.
 pub(super) fn number(value: f64) -> TokenStream {
-    if value == f64::INFINITY {
+    if value.is_nan() {
+        quote!(f64::NAN)
+    } else if value == f64::INFINITY {
         quote!(f64::INFINITY)
     } else if value == f64::NEG_INFINITY {
         quote!(f64::NEG_INFINITY)

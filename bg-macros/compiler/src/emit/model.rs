@@ -14,14 +14,21 @@ use super::routine::{Names, operand, statements};
 use crate::causality::CausalGraph;
 use crate::equations::StateEquations;
 use crate::expr::{Id, Symbol};
+use crate::reduce::Report;
 use crate::program::{Operand, Program, Request, Routine, schedule};
 
 /// The items of one model: parameters, inputs, the type, its functions, its description. `expanded` is the graph in
-/// bond-graph words as text.
-pub fn model(expanded: &str, causal: &CausalGraph, equations: &mut StateEquations) -> TokenStream {
+/// bond-graph words as text, `report` what a scene left out of it.
+pub fn model(
+    expanded: &str,
+    causal: &CausalGraph,
+    equations: &mut StateEquations,
+    report: Option<&Report>,
+) -> TokenStream {
     let programs = Programs::new(equations);
+    let reduction = report.map(ToString::to_string).unwrap_or_default();
     let equations: &StateEquations = equations;
-    Emission { expanded, causal, equations, programs }.items()
+    Emission { expanded, causal, equations, reduction, programs }.items()
 }
 
 /// The programs of all generated functions.
@@ -63,6 +70,7 @@ struct Emission<'a> {
     expanded: &'a str,
     causal: &'a CausalGraph,
     equations: &'a StateEquations,
+    reduction: String,
     programs: Programs,
 }
 
@@ -84,7 +92,7 @@ impl Emission<'_> {
         let given = Given {
             name: &graph.name.text,
             visibility: &graph.visibility,
-            parameters: &graph.parameters,
+            parameters: &self.equations.parameters,
             inputs: &graph.inputs,
         };
         let structs = given.structs();
@@ -92,7 +100,12 @@ impl Emission<'_> {
         let (parameters, inputs) = (&given.parameters_name(), &given.inputs_name());
         let routines: Vec<&Routine> = self.programs.dynamic.routines.iter().collect();
         let doc = description::documentation(&graph.docs, self.equations, &routines);
-        let description = description::description(self.expanded, self.causal, self.equations, &routines);
+        let description = description::description(
+            &description::Texts { expanded: self.expanded, reduction: &self.reduction },
+            self.causal,
+            self.equations,
+            &routines,
+        );
         let (states, switches, outputs) =
             (self.equations.states.len(), self.equations.switches.len(), self.equations.outputs.len());
         let constants = self.programs.dynamic.constants.results.len();

@@ -5,6 +5,7 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
+use super::items::number;
 use crate::expr::{Function, Symbol};
 use crate::program::{Operand, Operation, Routine};
 
@@ -33,7 +34,10 @@ pub fn statements(routine: &Routine, names: &Names) -> TokenStream {
 /// The tokens of an operand.
 pub fn operand(operand: &Operand, names: &Names) -> TokenStream {
     match *operand {
-        Operand::Number(value) => quote! { S::from_f64(#value) },
+        Operand::Number(value) => {
+            let value = number(value);
+            quote! { S::from_f64(#value) }
+        }
         Operand::Symbol(symbol) => (names.symbol)(symbol),
         Operand::Constant(index) => (names.constant)(index),
         Operand::Temporary(index) => {

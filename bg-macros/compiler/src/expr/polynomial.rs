@@ -43,6 +43,17 @@ pub fn same_polynomial(pool: &mut Pool, a: Id, b: Id) -> bool {
     expansion.vanishes(a, b) == Some(true)
 }
 
+/// The monomials of `of` over its atoms with their coefficients; none where the expansion grows too large.
+pub fn monomials(pool: &mut Pool, of: Id) -> Option<BTreeMap<Box<[(Id, i32)]>, f64>> {
+    let mut expansion = Expansion::new(pool, &[of]);
+    for id in expansion.pool.reachable(&[of]) {
+        let polynomial = expansion.expanded(id)?;
+        expansion.known.insert(id, polynomial);
+    }
+    let polynomial = pruned(expansion.take(of));
+    Some(polynomial.into_iter().map(|(monomial, coefficient)| (monomial, coefficient.value)).collect())
+}
+
 /// An expansion under way. Every method gives none where it gives up.
 struct Expansion<'p> {
     pool: &'p mut Pool,

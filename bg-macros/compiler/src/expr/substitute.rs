@@ -7,12 +7,38 @@ use std::collections::HashMap;
 
 use super::{Id, Node, Pool, Symbol, children};
 
+/// What becomes of a switch.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Branch {
+    /// It stays, under this index.
+    Kept(u32),
+    /// Its guard is negative always.
+    Negative,
+    /// Its guard is never negative.
+    Positive,
+}
+
 /// The roots with every symbol replaced for which `replace` gives an expression. Replacements are not searched again.
 pub fn substitute(pool: &mut Pool, roots: &[Id], replace: &dyn Fn(Symbol) -> Option<Id>) -> Vec<Id> {
+    substitute_switched(pool, roots, replace, &Branch::Kept)
+}
+
+/// As [`substitute`]; every switched value becomes what `branch` says of its switch.
+pub fn substitute_switched(
+    pool: &mut Pool,
+    roots: &[Id],
+    replace: &dyn Fn(Symbol) -> Option<Id>,
+    branch: &dyn Fn(u32) -> Branch,
+) -> Vec<Id> {
     let mut images: HashMap<Id, Id> = HashMap::new();
     for id in pool.reachable(roots) {
         let image = match *pool.node(id) {
             Node::Symbol(symbol) => replace(symbol).unwrap_or(id),
+            Node::Select { switch, negative, positive } => match branch(switch) {
+                Branch::Kept(kept) => pool.select(kept, images[&negative], images[&positive]),
+                Branch::Negative => images[&negative],
+                Branch::Positive => images[&positive],
+            },
             _ => pool.rebuild(id, &images),
         };
         images.insert(id, image);

@@ -1,0 +1,228 @@
+//! Scenes: the uses of one mechanism, each a graph of its own.
+//!
+//! In: one `ast::Graph` with scenes. Out: the literal graph, and for each scene the graph without what it leaves out and
+//! with what it watches. No longer occurs: `Item::Scene`.
+
+use std::collections::BTreeSet;
+
+use crate::ast::{Expectation, Graph, Item, Name, Rigid, Scene};
+use crate::fault::{Explain, Fault, Staged, near_miss};
+use crate::graph::Parameter;
+use crate::reduce::{Fate, Report};
+
+/// A fault of a scene.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
+pub enum SceneFault {
+    SameName { name: String },
+    UnknownPart { name: String, near: Option<String> },
+    UnknownParameter { name: String, near: Option<String> },
+    NotPlanar { scene: String, states: Vec<String> },
+    StateCount { scene: String, expected: usize, states: Vec<String> },
+    Rigid { scene: String },
+}
+
+use SceneFault as F;
+
+/// How many states a message lists.
+const LISTED: usize = 40;
+
+impl Explain for SceneFault {
+    fn code(&self) -> &'static str {
+        match self {
+            F::SameName { .. } => "BG0601",
+            F::UnknownPart { .. } => "BG0602",
+            F::UnknownParameter { .. } => "BG0603",
+            F::NotPlanar { .. } => "BG0604",
+            F::StateCount { .. } => "BG0605",
+            F::Rigid { .. } => "BG0606",
+        }
+    }
+
+    fn message(&self) -> String {
+        match self {
+            F::SameName { name } => format!("there are two models called `{name}`"),
+            F::UnknownPart { name, .. } => format!("the mechanism has no part `{name}` to leave out"),
+            F::UnknownParameter { name, .. } => format!("there is no parameter `{name}` to tune"),
+            F::NotPlanar { scene, states } => {
+                format!("scene `{scene}` is not planar: these are not proved constant: {}", list(states))
+            }
+            F::StateCount { scene, expected, states } => {
+                format!("scene `{scene}` integrates {} states, not {expected}: {}", states.len(), list(states))
+            }
+            F::Rigid { scene } => format!("scene `{scene}` asks for rigid joints, which this compiler cannot make"),
+        }
+    }
+
+    fn help(&self) -> String {
+        match self {
+            F::SameName { .. } => "give one of them another name".to_owned(),
+            F::UnknownPart { near: Some(near), .. } | F::UnknownParameter { near: Some(near), .. } => {
+                format!("did you mean `{near}`?")
+            }
+            F::UnknownPart { .. } => "name a joint, contact, spring, drive or element".to_owned(),
+            F::UnknownParameter { .. } => "name a parameter of the graph".to_owned(),
+            F::NotPlanar { .. } => {
+                "find what moves them: a tuned parameter out of the plane, a start value, a force".to_owned()
+            }
+            F::StateCount { .. } => "correct the number, or what the scene watches and tunes".to_owned(),
+            F::Rigid { .. } => "remove `rigid`: the joints stay compliant".to_owned(),
+        }
+    }
+}
+
+fn list(states: &[String]) -> String {
+    let more = states.len().saturating_sub(LISTED);
+    let text = states[..states.len().min(LISTED)].join(", ");
+    if more == 0 { text } else { format!("{text} and {more} more") }
+}
+
+/// A model to compile: the literal graph, or the graph of a scene.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    /// The graph under the model's name, without scenes.
+    pub graph: Graph,
+    /// The scene; none for the literal graph.
+    pub scene: Option<Scene>,
+}
+
+/// The literal graph and one variant for each scene.
+///
+/// # Errors
+/// Two models of one name, parts to leave out that there are not.
+pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
+    let mut faults = Vec::new();
+    let items: Vec<Item> = source.items.iter().filter(|item| !matches!(item, Item::Scene(_))).cloned().collect();
+    let literal = Graph { items, ..source.clone() };
+    let mut names = BTreeSet::from([source.name.text.clone()]);
+    let mut variants = vec![Variant { graph: literal.clone(), scene: None }];
+    for item in &source.items {
+        let Item::Scene(scene) = item else { continue };
+        if !names.insert(scene.name.text.clone()) {
+            let name = scene.name.text.clone();
+            faults.push(Fault::new(scene.name.span, &F::SameName { name }));
+        }
+        if !matches!(scene.rigid, Rigid::None) {
+            let scene_name = scene.name.text.clone();
+            faults.push(Fault::new(scene.name.span, &F::Rigid { scene: scene_name }));
+        }
+        let items = left(&literal.items, &scene.without, &mut faults);
+        variants.push(Variant { graph: watched(&literal, items, scene), scene: Some(scene.clone()) });
+    }
+    if faults.is_empty() { Ok(variants) } else { Err(faults) }
+}
+
+/// The scene's graph: its observations in place of the graph's, if it has any.
+fn watched(literal: &Graph, mut items: Vec<Item>, scene: &Scene) -> Graph {
+    if !scene.observe.is_empty() {
+        items.retain(|item| !matches!(item, Item::Observe(_)));
+        items.push(Item::Observe(scene.observe.clone()));
+    }
+    let docs = if scene.docs.is_empty() { literal.docs.clone() } else { scene.docs.clone() };
+    Graph { docs, visibility: literal.visibility.clone(), name: scene.name.clone(), items }
+}
+
+/// The items without some parts and the bonds that end at them.
+fn left(items: &[Item], without: &[Name], faults: &mut Vec<Fault>) -> Vec<Item> {
+    for name in without {
+        let parts = || items.iter().filter_map(part_name);
+        if parts().all(|part| part.text != name.text) {
+            let near = near_miss(&name.text, parts().map(|part| part.text.as_str())).map(str::to_owned);
+            faults.push(Fault::new(name.span, &F::UnknownPart { name: name.text.clone(), near }));
+        }
+    }
+    let goes = |name: &Name| without.iter().any(|gone| gone.text == name.text);
+    let mut left = Vec::new();
+    for item in items {
+        match item {
+            Item::Chain(chain) => {
+                let pieces = chain.split(goes).filter(|piece| piece.len() > 1);
+                left.extend(pieces.map(|piece| Item::Chain(piece.to_vec())));
+            }
+            _ if part_name(item).is_some_and(goes) => {}
+            _ => left.push(item.clone()),
+        }
+    }
+    left
+}
+
+/// The name of a part that a scene can leave out.
+fn part_name(item: &Item) -> Option<&Name> {
+    match item {
+        Item::Joint(joint) => Some(&joint.name),
+        Item::Contact(contact) => Some(&contact.name),
+        Item::Spring(spring) => Some(&spring.name),
+        Item::Drive(drive) => Some(&drive.name),
+        Item::Element(element) => Some(&element.name),
+        _ => None,
+    }
+}
+
+/// For each parameter whether the scene tunes it.
+///
+/// # Errors
+/// Names that are no parameters.
+pub fn tuned(scene: &Scene, parameters: &[Parameter]) -> Staged<Vec<bool>> {
+    let Some(tune) = &scene.tune else { return Ok(vec![true; parameters.len()]) };
+    let known = || parameters.iter().map(|parameter| parameter.name.text.as_str());
+    let faults: Vec<Fault> = tune
+        .iter()
+        .filter(|name| known().all(|parameter| parameter != name.text))
+        .map(|name| {
+            let near = near_miss(&name.text, known()).map(str::to_owned);
+            Fault::new(name.span, &F::UnknownParameter { name: name.text.clone(), near })
+        })
+        .collect();
+    if faults.is_empty() {
+        Ok(known().map(|parameter| tune.iter().any(|name| name.text == parameter)).collect())
+    } else {
+        Err(faults)
+    }
+}
+
+/// What the scene asserts of its reduction.
+///
+/// # Errors
+/// An assertion that does not hold, with the states that break it.
+pub fn check(scene: &Scene, report: &Report) -> Staged<()> {
+    let name = &scene.name.text;
+    let mut faults = Vec::new();
+    for expectation in &scene.expect {
+        match expectation {
+            Expectation::Planar(span) => {
+                let states = out_of_plane(report);
+                if !states.is_empty() {
+                    faults.push(Fault::new(*span, &F::NotPlanar { scene: name.clone(), states }));
+                }
+            }
+            Expectation::States(expected, span) => {
+                let states = integrated(report);
+                if states.len() != *expected {
+                    let fault = F::StateCount { scene: name.clone(), expected: *expected, states };
+                    faults.push(Fault::new(*span, &fault));
+                }
+            }
+        }
+    }
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
+}
+
+fn integrated(report: &Report) -> Vec<String> {
+    let fates = report.fates.iter().filter(|(_, fate)| *fate == Fate::Integrated);
+    fates.map(|(state, _)| state.name.clone()).collect()
+}
+
+/// The pose components out of the x-y plane that are not proved constant.
+fn out_of_plane(report: &Report) -> Vec<String> {
+    let leaves_plane = |storage: &str, name: &str| match storage {
+        "position" => name.ends_with("_z"),
+        "orientation" => ["_13", "_23", "_31", "_32", "_33"].iter().any(|suffix| name.ends_with(suffix)),
+        _ => false,
+    };
+    let moves = |fate: &Fate| !matches!(fate, Fate::Constant(_));
+    let fates = report.fates.iter();
+    fates
+        .filter(|(state, fate)| moves(fate) && leaves_plane(state.storage, &state.name))
+        .map(|(state, _)| state.name.clone())
+        .collect()
+}

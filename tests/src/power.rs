@@ -1,0 +1,97 @@
+//! The power balance of a model at states drawn at random.
+
+use bg_model::nalgebra::SVector;
+use bg_model::system::{Model, Powers};
+
+use crate::dual::Dual;
+
+/// Numbers that look random and are the same every time (SplitMix64, Steele, Lea and Flood 2014).
+#[derive(Clone, Debug)]
+pub struct Draw(u64);
+
+impl Draw {
+    /// The sequence of this seed.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// The next number, between -1 and 1.
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        (z >> 11) as f64 * 2.0_f64.powi(-52) - 1.0
+    }
+
+    /// A rotation matrix, row by row: that of a random quaternion.
+    fn rotation(&mut self) -> [f64; 9] {
+        let [a, b, c, d] = std::array::from_fn(|_| self.next() + 1e-3);
+        let square = a * a + b * b + c * c + d * d;
+        [
+            a * a + b * b - c * c - d * d,
+            2.0 * (b * c - a * d),
+            2.0 * (b * d + a * c),
+            2.0 * (b * c + a * d),
+            a * a - b * b + c * c - d * d,
+            2.0 * (c * d - a * b),
+            2.0 * (b * d - a * c),
+            2.0 * (c * d + a * b),
+            a * a - b * b - c * c + d * d,
+        ]
+        .map(|entry| entry / square)
+    }
+}
+
+/// A state drawn at random: storages and positions anywhere near their start, orientations any rotation.
+pub fn state<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, draw: &mut Draw) -> SVector<f64, N>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    let mut x = model.start().expect("the mechanism closes");
+    let states = model.description().states;
+    let mut index = 0;
+    while index < N {
+        if states[index].storage == "orientation" {
+            x.as_mut_slice()[index..index + 9].copy_from_slice(&draw.rotation());
+            index += 9;
+        } else {
+            x[index] += (1.0 + x[index].abs()) * draw.next();
+            index += 1;
+        }
+    }
+    x
+}
+
+/// |d(stored)/dt - supplied + dissipated| at time `t` and state `x`, divided by the sum of the magnitudes of all powers
+/// into single states: what rounding leaves of a balance that holds.
+///
+/// The rate of the energy is a sum of exact derivatives: one pass with dual numbers for each state, and one for the time.
+pub fn imbalance<A, B, const N: usize, const G: usize, const M: usize>(
+    model: &A,
+    twin: &B,
+    t: f64,
+    x: &SVector<f64, N>,
+) -> f64
+where
+    A: Model<f64, N, G, M>,
+    B: Model<Dual, N, G, M>,
+{
+    let mut guards = SVector::<f64, G>::zeros();
+    model.guards(t, x, &[false; G], &mut guards);
+    let negative = std::array::from_fn(|k| guards[k] < 0.0);
+    let mut rate = SVector::zeros();
+    model.rate(t, x, &negative, &mut rate);
+    let Powers { supplied, dissipated } = model.powers(t, x, &negative);
+    let along = |index: Option<usize>| {
+        let seeded = SVector::<Dual, N>::from_fn(|k, _| Dual::new(x[k], if Some(k) == index { 1.0 } else { 0.0 }));
+        let time = Dual::new(t, if index.is_none() { 1.0 } else { 0.0 });
+        twin.stored_energy(time, &seeded, &negative).slope * index.map_or(1.0, |k| rate[k])
+    };
+    let parts: Vec<f64> = (0..N).map(Some).chain([None]).map(along).collect();
+    let change: f64 = parts.iter().sum();
+    let scale = parts.iter().map(|part| part.abs()).sum::<f64>() + supplied.abs() + dissipated.abs();
+    if scale == 0.0 { 0.0 } else { (change - supplied + dissipated).abs() / scale }
+}

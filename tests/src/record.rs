@@ -1,0 +1,159 @@
+//! A run of a model with its outputs by name.
+
+use bg_model::failure::Failure;
+use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::nalgebra::SVector;
+use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
+use bg_model::statistics::Statistics;
+use bg_model::system::Model;
+
+/// The outputs of a run at its sample times.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// Sample times, s.
+    pub times: Vec<f64>,
+    /// The times of the switchings, s.
+    pub events: Vec<f64>,
+    /// What the run has cost.
+    pub statistics: Statistics,
+    names: Vec<&'static str>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Record {
+    /// Output `name` at every sample.
+    ///
+    /// # Panics
+    /// There is no such output.
+    #[must_use]
+    pub fn series(&self, name: &str) -> Vec<f64> {
+        let column = self.names.iter().position(|known| *known == name);
+        let column = column.unwrap_or_else(|| panic!("no output `{name}` in {:?}", self.names));
+        self.rows.iter().map(|row| row[column]).collect()
+    }
+
+    /// The vector output `name` at every sample.
+    #[must_use]
+    pub fn vectors(&self, name: &str) -> Vec<[f64; 3]> {
+        let [x, y, z] = ["x", "y", "z"].map(|axis| self.series(&format!("{name}_{axis}")));
+        (0..x.len()).map(|k| [x[k], y[k], z[k]]).collect()
+    }
+
+    /// Output `name` at the end.
+    #[must_use]
+    pub fn last(&self, name: &str) -> f64 {
+        self.series(name).last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// The largest deviation of output `name` from `truth` of time.
+    pub fn deviation(&self, name: &str, truth: impl Fn(f64) -> f64) -> f64 {
+        let pairs = self.times.iter().zip(self.series(name));
+        pairs.map(|(&t, value)| (value - truth(t)).abs()).fold(0.0, f64::max)
+    }
+
+    /// The largest deviation of output `name` from its value at the start.
+    #[must_use]
+    pub fn drift(&self, name: &str) -> f64 {
+        let first = self.series(name)[0];
+        self.deviation(name, |_| first)
+    }
+
+    /// The largest magnitude of output `name`.
+    #[must_use]
+    pub fn largest(&self, name: &str) -> f64 {
+        self.deviation(name, |_| 0.0)
+    }
+
+    /// The largest of |stored(t) - stored(0) - supplied(t) + dissipated(t)| by the outputs of these names, J. An output
+    /// that the model does not have counts as zero.
+    #[must_use]
+    pub fn imbalance(&self) -> f64 {
+        let series = |name: &str| {
+            if self.names.contains(&name) { self.series(name) } else { vec![0.0; self.times.len()] }
+        };
+        let (stored, supplied, dissipated) = (series("stored"), series("supplied"), series("dissipated"));
+        let residual = |k: usize| (stored[k] - stored[0] - supplied[k] + dissipated[k]).abs();
+        (0..self.times.len()).map(residual).fold(0.0, f64::max)
+    }
+}
+
+/// `count` + 1 instants from 0 to `end`.
+#[must_use]
+pub fn instants(end: f64, count: u32) -> Vec<f64> {
+    (0..=count).map(|k| end * f64::from(k) / f64::from(count)).collect()
+}
+
+/// Runs `model` from its start over `times` with relative and absolute tolerance `tolerance`.
+///
+/// # Panics
+/// The start does not close, or the run fails.
+pub fn record<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, times: &[f64], tolerance: f64) -> Record
+where
+    Mo: Model<f64, N, G, M>,
+{
+    let start = model.start().expect("the mechanism closes");
+    record_from(model, &start, times, tolerance)
+}
+
+/// Runs `model` from the state `start`, otherwise as [`record`].
+///
+/// # Panics
+/// The run fails.
+pub fn record_from<Mo, const N: usize, const G: usize, const M: usize>(
+    model: &Mo,
+    start: &SVector<f64, N>,
+    times: &[f64],
+    tolerance: f64,
+) -> Record
+where
+    Mo: Model<f64, N, G, M>,
+{
+    attempt(model, start, times, tolerance).unwrap_or_else(|failure| panic!("{failure}"))
+}
+
+fn attempt<Mo, const N: usize, const G: usize, const M: usize>(
+    model: &Mo,
+    start: &SVector<f64, N>,
+    times: &[f64],
+    tolerance: f64,
+) -> Result<Record, Failure<N, G>>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    let mut recorder = Recorder { model, outputs: SVector::<f64, M>::zeros(), times: Vec::new(), rows: Vec::new(), events: Vec::new() };
+    let span = Span { t0: 0.0, t_end: times.last().copied().unwrap_or(0.0) };
+    let settings = Settings {
+        // Stretches and momenta of stiff joints are small numbers: the absolute tolerance lies well below them.
+        tolerances: Tolerances::new(tolerance, 1e-3 * tolerance),
+        samples: Samples::At(times.to_vec()),
+        step_limit: 5_000_000,
+        ..Settings::default()
+    };
+    let finish = integrate(model, &mut Dop853::new(), start, span, &settings, &mut recorder)?;
+    let Recorder { times, rows, events, .. } = recorder;
+    let names = model.description().outputs.iter().map(|output| output.name).collect();
+    Ok(Record { times, events, statistics: finish.statistics, names, rows })
+}
+
+struct Recorder<'a, Mo, const M: usize> {
+    model: &'a Mo,
+    outputs: SVector<f64, M>,
+    times: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+    events: Vec<f64>,
+}
+
+impl<Mo, const N: usize, const G: usize, const M: usize> Observer<N, G> for Recorder<'_, Mo, M>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+        self.model.outputs(t, x, negative, &mut self.outputs);
+        self.times.push(t);
+        self.rows.push(self.outputs.as_slice().to_vec());
+    }
+
+    fn event(&mut self, t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {
+        self.events.push(t);
+    }
+}

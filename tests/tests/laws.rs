@@ -1,0 +1,117 @@
+//! Laws that hold for every model: the power balance at any state, and that the order of declaration changes nothing.
+
+use bg_model::input::Input;
+use bg_model::system::Model;
+use bond_graph_tests::dual::Dual;
+use bond_graph_tests::examples as models;
+use bond_graph_tests::power::{Draw, imbalance, state};
+use bond_graph_tests::record::{Record, instants, record};
+
+/// What rounding leaves of the balance: sums of some hundred powers, some of them differences of large numbers.
+const ROUNDING: f64 = 1e-12;
+
+fn balance<A, B, const N: usize, const G: usize, const M: usize>(model: &A, twin: &B)
+where
+    A: Model<f64, N, G, M>,
+    B: Model<Dual, N, G, M>,
+{
+    let mut draw = Draw::new(2);
+    let mut largest: f64 = 0.0;
+    for _ in 0..25 {
+        let x = state(model, &mut draw);
+        let t = 1.0 + draw.next();
+        let found = imbalance(model, twin, t, &x);
+        assert!(found <= ROUNDING, "{}: {found:e} at {x:?}", model.description().name);
+        largest = largest.max(found);
+    }
+    println!("{}: {N} states, {largest:.1e}", model.description().name);
+}
+
+/// One test a model: d(stored)/dt = supplied - dissipated at 25 random states.
+macro_rules! power_is_balanced {
+    ($($test:ident: $module:ident $model:ident ($parameters:ident $(, $inputs:ident { $($input:ident),* })?);)*) => {$(
+        #[test]
+        fn $test() {
+            use models::$module::{$model, $parameters $(, $inputs)?};
+            let model = $model::new($parameters::default() $(, $inputs { $($input: Input::constant(0.7)),* })?);
+            let twin = $model::<Dual>::in_scalar(
+                $parameters::default() $(, $inputs { $($input: Input::constant(0.7)),* })?
+            );
+            balance(&model.unwrap(), &twin.unwrap());
+        }
+    )*};
+}
+
+mod power_is_balanced {
+    use super::*;
+
+    power_is_balanced! {
+        mass_spring_damper: mass_spring_damper MassSpringDamper (MassSpringDamperParameters, MassSpringDamperInputs { force });
+        rlc_circuit: rlc_circuit RlcCircuit (RlcCircuitParameters, RlcCircuitInputs { voltage });
+        dc_motor: dc_motor DcMotor (DcMotorParameters, DcMotorInputs { voltage });
+        hydraulic_cylinder: hydraulic_cylinder HydraulicCylinder (HydraulicCylinderParameters, HydraulicCylinderInputs { pump_flow });
+        slider_crank: slider_crank SliderCrank (SliderCrankParameters);
+        double_pendulum: double_pendulum DoublePendulum (DoublePendulumParameters);
+        spinning_top: spinning_top SpinningTop (SpinningTopParameters);
+        hacksaw_with_motor: hacksaw_with_motor HacksawWithMotor (HacksawWithMotorParameters, HacksawWithMotorInputs { voltage });
+        charged_capacitor: sources ChargedCapacitor (ChargedCapacitorParameters);
+        stiffness_and_compliance: sources StiffnessAndCompliance (StiffnessAndComplianceParameters);
+        modulated_gyrator: modulated ModulatedGyrator (ModulatedGyratorParameters);
+        modulated_lever: modulated ModulatedLever (ModulatedLeverParameters);
+        modulated_resistance: modulated ModulatedResistance (ModulatedResistanceParameters);
+        modulated_sources: modulated ModulatedSources (ModulatedSourcesParameters);
+        duffing: nonlinear Duffing (DuffingParameters);
+        pendulum: nonlinear Pendulum (PendulumParameters);
+        relativistic_mass: nonlinear RelativisticMass (RelativisticMassParameters);
+        unequal_damper: nonlinear UnequalDamper (UnequalDamperParameters);
+        rectifier: nonlinear Rectifier (RectifierParameters);
+        free_body: free_body FreeBody (FreeBodyParameters);
+        orbit: orbit Orbit (OrbitParameters);
+        drives: drives Drives (DrivesParameters);
+        pushed_plate: drives PushedPlate (PushedPlateParameters);
+        sliding_block: contact SlidingBlock (SlidingBlockParameters);
+        plate_on_revolute: joints PlateOnRevolute (PlateOnRevoluteParameters);
+        plate_on_revolute_inertial: joints PlateOnRevoluteInertial (PlateOnRevoluteInertialParameters);
+        plate_on_revolute_per_axis: joints PlateOnRevolutePerAxis (PlateOnRevolutePerAxisParameters);
+        plate_on_prismatic: joints PlateOnPrismatic (PlateOnPrismaticParameters);
+        plate_on_prismatic_inertial: joints PlateOnPrismaticInertial (PlateOnPrismaticInertialParameters);
+        plate_on_spherical: joints PlateOnSpherical (PlateOnSphericalParameters);
+        plate_on_cylindrical: joints PlateOnCylindrical (PlateOnCylindricalParameters);
+        plate_on_universal: joints PlateOnUniversal (PlateOnUniversalParameters);
+        plate_on_universal_zx: joints PlateOnUniversalZx (PlateOnUniversalZxParameters);
+        plate_on_fixed: joints PlateOnFixed (PlateOnFixedParameters);
+        plate_on_fixed_inertial: joints PlateOnFixedInertial (PlateOnFixedInertialParameters);
+        forward: permuted Forward (ForwardParameters);
+        chain: permuted Chain (ChainParameters);
+    }
+}
+
+/// Equal up to the rounding that another order of sums leaves in an adaptive run.
+fn same_numbers(a: &Record, b: &Record, outputs: &[&str]) {
+    for name in outputs {
+        let (left, right) = (a.series(name), b.series(name));
+        let apart = left.iter().zip(&right).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        println!("{name}: {apart:.1e}{}", if left == right { ", to the bit" } else { "" });
+        assert!(apart <= 1e-11 * (1.0 + a.largest(name)), "{name}: {apart:e}");
+    }
+}
+
+#[test]
+fn the_order_of_declaration_changes_nothing_in_a_bond_graph() {
+    use models::permuted::{Backward, BackwardParameters, Forward, ForwardParameters};
+    let times = instants(3.0, 30);
+    let forward = record(&Forward::new(ForwardParameters::default()).unwrap(), &times, 1e-10);
+    let backward = record(&Backward::new(BackwardParameters::default()).unwrap(), &times, 1e-10);
+    same_numbers(&forward, &backward, &["a", "b", "wall", "spring", "stored"]);
+    assert_eq!(forward.statistics.events, backward.statistics.events);
+    assert!(forward.statistics.events > 2);
+}
+
+#[test]
+fn the_order_of_declaration_changes_nothing_in_a_mechanism() {
+    use models::permuted::{Chain, ChainBackward, ChainBackwardParameters, ChainParameters};
+    let times = instants(1.0, 30);
+    let forward = record(&Chain::new(ChainParameters::default()).unwrap(), &times, 1e-10);
+    let backward = record(&ChainBackward::new(ChainBackwardParameters::default()).unwrap(), &times, 1e-10);
+    same_numbers(&forward, &backward, &["first_x", "first_y", "first_z", "second_x", "second_y", "h_x", "h_z", "stored"]);
+}

@@ -1,0 +1,40 @@
+//! Two gyrators bring their flows to one junction and nothing its effort.
+
+use bg_model::bond_graph;
+use bg_model::integrator::Dop853;
+use bg_model::simulation::{Settings, Span, integrate};
+use bg_model::system::{Model, System};
+
+bond_graph! {
+    graph Motor {
+        param winding: Ohm = 0.8, above 0;
+        Se supply = 12;
+        0 node: electrical;
+        GY first = 1;
+        GY second = 2;
+        0 common: electrical;
+        supply -> node -> first -> common;
+        node -> second -> common;
+    }
+}
+
+fn main() {
+    let mut parameters = MotorParameters::default();
+    parameters.winding = 2.0;
+    let motor = Motor::new(parameters).expect("in range");
+    let start = motor.start().expect("closed");
+    let span = Span { t0: 0.0, t_end: 1e-3 };
+    let finish = integrate(&motor, &mut Dop853::new(), &start, span, &Settings::default(), &mut ()).expect("runs");
+    let mut rate = finish.x;
+    motor.rate(finish.t, &finish.x, &finish.negative, &mut rate);
+    let power = motor.powers(finish.t, &finish.x, &finish.negative);
+    println!(
+        "{} {} {} {} {} {}",
+        motor.description().name,
+        motor.parameters().winding,
+        Motor::STATES,
+        Motor::OUTPUTS,
+        motor.stored_energy(finish.t, &finish.x, &finish.negative),
+        power.supplied - power.dissipated,
+    );
+}

@@ -1,0 +1,43 @@
+//! A transformer that would not conserve power.
+
+use bg_model::bond_graph;
+use bg_model::integrator::Dop853;
+use bg_model::simulation::{Settings, Span, integrate};
+use bg_model::system::{Model, System};
+
+bond_graph! {
+    graph Motor {
+        param winding: Ohm = 0.8, above 0;
+        Se supply = 12;
+        1 armature;
+        I L = 2e-3;
+        R Ra = winding;
+        TF bend(i) = 2 * i * i;
+        1 other: electrical;
+        C capacitor(q) = 1e4 * q;
+        supply -> armature -> L;
+        armature -> Ra;
+        armature -> bend -> other -> capacitor;
+    }
+}
+
+fn main() {
+    let mut parameters = MotorParameters::default();
+    parameters.winding = 2.0;
+    let motor = Motor::new(parameters).expect("in range");
+    let start = motor.start().expect("closed");
+    let span = Span { t0: 0.0, t_end: 1e-3 };
+    let finish = integrate(&motor, &mut Dop853::new(), &start, span, &Settings::default(), &mut ()).expect("runs");
+    let mut rate = finish.x;
+    motor.rate(finish.t, &finish.x, &finish.negative, &mut rate);
+    let power = motor.powers(finish.t, &finish.x, &finish.negative);
+    println!(
+        "{} {} {} {} {} {}",
+        motor.description().name,
+        motor.parameters().winding,
+        Motor::STATES,
+        Motor::OUTPUTS,
+        motor.stored_energy(finish.t, &finish.x, &finish.negative),
+        power.supplied - power.dissipated,
+    );
+}
