@@ -1,8 +1,531 @@
-//! The procedural macro `bond_graph!`.
+//! The procedural macro `bond_graph!`. Its documentation is the reference of the language; users get it as
+//! `bg_model::bond_graph`, together with what generated code needs at run time.
 
 use proc_macro::TokenStream;
 
-/// Compiles multibond graphs to Rust types that run.
+/// Compiles multibond graphs of mechanisms, machines and circuits to Rust types that run.
+///
+/// A call holds one or more graphs. Each becomes a model type, a parameter struct and, where it has inputs, an input struct
+/// ([generated items](#generated-items)). Everything the compiler cannot accept is a compile error at the token to change,
+/// with a code and one action as help ([faults](#faults)).
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A direct-current motor with friction in its bearing.
+///     pub graph Motor {
+///         param winding: Ohm = 0.8, above 0;
+///         param coil: H = 2e-3, above 0;
+///         param constant: N*m/A = 0.05;
+///         param rotor: kg*m^2 = 1e-3, above 0;
+///         input voltage: V;
+///
+///         Se supply = voltage;
+///         1 armature; I L = coil; R Ra = winding;
+///         GY motor = constant;
+///         1 shaft; I J = rotor; R bearing(w) = 1e-3 * w + 0.02 * tanh(w / 0.1);
+///
+///         supply -> armature -> L; armature -> Ra; armature -> motor -> shaft -> J; shaft -> bearing;
+///         observe { current: A = armature.flow; speed: rad/s = shaft.flow }
+///     }
+/// }
+/// # fn main() { assert_eq!((Motor::STATES, Motor::OUTPUTS), (2, 2)); }
+/// ```
+///
+/// The language has two vocabularies. **Bond-graph words** are the field's own: junctions, elements, half arrows.
+/// **Mechanism words** (`body`, `joint`, ...) are shorthand for fragments of multibond graph; the compiler replaces them by
+/// bond-graph words first, and `Description::graph` of every model is that expanded graph as text. Both mix freely: a motor's
+/// shaft can be bonded to a joint's free axis.
+///
+/// # Statements
+///
+/// ```text
+/// call      = { graph }
+/// graph     = [visibility] "graph" NAME "{" { statement } "}"
+/// statement = param | input | let | junction | element | chain | position | orientation | close | observe
+///           | ground | gravity | body | joint | spring | drive | contact
+/// ```
+///
+/// Order is free: a name may be used before it is declared. States and outputs keep the order of declaration. A statement
+/// ends with `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in front of `graph`,
+/// `param` and `input` and become the documentation of the generated items.
+///
+/// Names are Rust identifiers, Rust's keywords excluded. Names of `let`s, junctions, elements, tracks and outputs may have
+/// dots (`pin.slip`); those of graphs, parameters, inputs, bodies, points, joints, springs, drives and contacts have none.
+/// All of a graph's names are different. The word `scene` is reserved.
+///
+/// ## `param`, `input`, `let`
+///
+/// ```text
+/// param = "param" NAME ":" UNIT "=" NUMBERS { "," ("above" | "at" "least" | "below" | "at" "most") NUMBERS } ";"
+/// input = "input" NAME ":" UNIT ";"
+/// let   = "let" NAME [":" UNIT] "=" EXPRESSION ";"
+/// ```
+///
+/// - A **parameter** stays the same during a run. Its default and the ends of its range are made of numbers and `+ - * /`.
+///   The range is checked by the generated `new`.
+/// - An **input** is a function of time, given at run time as a `bg_model::input::Input`: a constant or a closure.
+/// - A **let** names an expression. A unit, where given, is checked.
+///
+/// ## Junctions: `0`, `1`
+///
+/// ```text
+/// junction = ("0" | "1") NAME ["[3]"] [":" DOMAIN] { "," NAME ["[3]"] [":" DOMAIN] } ";"
+/// ```
+///
+/// A 0-junction has one effort, its flows balance; a 1-junction has one flow, its efforts balance. `[3]` makes a multibond
+/// junction of three components. The domain fixes the units of effort and flow. It may be left out where a source, a
+/// parameter or a neighbour behind a two-port fixes them.
+///
+/// | domain | effort | flow | displacement (C) | momentum (I) |
+/// |---|---|---|---|---|
+/// | `translation` | N | m/s | m | kg\*m/s |
+/// | `rotation` | N\*m | rad/s | rad | kg\*m^2/s |
+/// | `electrical` | V | A | C | Wb |
+/// | `hydraulic` | Pa | m^3/s | m^3 | Pa\*s |
+/// | `thermal` | K | W/K | J/K | K\*s |
+///
+/// ## Chains of half arrows
+///
+/// ```text
+/// chain = NAME "->" NAME { "->" NAME } ";"
+/// ```
+///
+/// Each `->` is a bond. **Power is positive along the half arrow, always.** A one-port (source, I, C, R) has exactly one
+/// bond; a two-port (TF, GY) has one in and one out, so it stands inside a chain. Conventions: half arrows point from
+/// sources into the graph and from junctions into I, C and R. Then an R dissipates positive power, and the momentum and
+/// displacement of I and C have the sign of the junction's effort and flow.
+///
+/// ## Elements
+///
+/// ```text
+/// element = KIND NAME ["(" ["effort" | "flow"] NAME ")"] "=" EXPRESSION { clause } ";"
+/// clause  = "in" EXPRESSION | "at" EXPRESSION | "start" EXPRESSION | "energy" EXPRESSION
+/// ```
+///
+/// Without a variable the law is linear in the expression. With one, `R bearing(w) = ...`, the expression is the law itself.
+///
+/// | word | linear law `= E` | law of a variable |
+/// |---|---|---|
+/// | `Se`, `MSe` | effort E | - |
+/// | `Sf`, `MSf` | flow E | - |
+/// | `I` | flow = momentum / E | `I a(p) = ...` flow from momentum |
+/// | `C` | effort = E \* displacement, or displacement / E: the unit of E says whether it is a stiffness or a compliance | `C a(q) = ...` effort from displacement |
+/// | `R`, `MR` | effort = E \* flow, in either causality | `R a(f) = ...` effort from flow; `R a(effort e) = ...` flow from effort |
+/// | `TF`, `MTF` | flow out = E \* flow in, effort in = E \* effort out | `TF a(f) = ...` flow out from flow in; `TF a(effort e) = ...` effort out from effort in |
+/// | `GY`, `MGY` | effort in = E \* flow out, effort out = E \* flow in | - |
+///
+/// - A transformer's law must be linear in its variable; the other variable comes back through the transposed matrix, so that
+///   power is conserved. It may change the cardinality: `TF lift(v) = dot([0, 1, 0], v)` joins a multibond to a scalar one.
+/// - What a law may depend on: `Se`, `Sf` on parameters, inputs and time; `TF`, `GY` and a linear `R` on parameters; the words
+///   with an `M`, and the law of a variable of an R, on everything: states, flows, efforts, inputs, time; `I` and `C` on
+///   everything but inputs.
+/// - `in R` (only I): the matrix of the law is constant in the axes that the orientation R turns.
+/// - `at E` (only C): the displacement is E, which the poses determine, and no state of its own. The compiler proves that E
+///   changes with the flow of the C's bond: the difference of dE/dt, by the chain rule along the tracked junctions, and that
+///   flow must vanish as a polynomial identity. Otherwise BG0505.
+/// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
+/// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it may be
+///   left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the law.
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A mass on a hardening spring, with dry friction and a force from outside.
+///     graph Shaker {
+///         param mass: kg = 2, above 0;
+///         param stiffness: N/m = 500, above 0;
+///         param hardening: N/m^3 = 1e4, at least 0;
+///         input push: N;
+///
+///         1 slide: translation;
+///         I body = mass start 0.1;
+///         C spring(q) = stiffness * q + hardening * pow(q, 3);
+///         R friction(v) = 5 * tanh(v / 0.01);
+///         Se force = push;
+///
+///         force -> slide -> body; slide -> spring; slide -> friction;
+///         observe { speed: m/s = slide.flow; spring.energy; friction.power }
+///     }
+///     /// A tank behind a throttle whose valve closes in time: a modulated R, a given energy.
+///     graph Tank {
+///         param throttle: Pa*s/m^3 = 2e6, above 0;
+///         param capacity: m^3/Pa = 1e-6, above 0;
+///         param closing: s = 10, above 0;
+///         Se pump = 2e5;
+///         1 pipe; MR valve = throttle * (1 + t / closing);
+///         0 tank; C air(q) = q / capacity energy q * q / (2 * capacity);
+///         pump -> pipe -> valve; pipe -> tank -> air;
+///         observe { pressure: Pa = tank.effort }
+///     }
+/// }
+/// # fn main() { assert_eq!((Shaker::STATES, Tank::STATES), (2, 1)); }
+/// ```
+///
+/// ## `position`, `orientation`, `close`
+///
+/// ```text
+/// position    = "position" NAME "of" JUNCTION ["start" EXPRESSION] ";"
+/// orientation = "orientation" NAME "of" JUNCTION ["start" EXPRESSION] ";"
+/// close       = "close" NAME "=" EXPRESSION ";"
+/// ```
+///
+/// Tracks are kinematic states that follow a 1-junction of cardinality 3. A **position** is the integral of its flow: three
+/// states. An **orientation** is the rotation matrix from the body's axes to the inertial ones, R' = \[w x\] R with the
+/// angular velocity w in inertial axes: nine states. After each accepted step, and in dense output, the integrator calls
+/// `System::project`: one Newton-Schulz step R (3 - R^T R) / 2 towards the nearest orthogonal matrix. `close` states a gap,
+/// scalar or vector, that the assembly makes zero at the start ([start poses](#start-poses)).
+///
+/// # Expressions
+///
+/// | | |
+/// |---|---|
+/// | numbers | `2`, `0.05`, `2e-3`, `1_000` |
+/// | operators | `+ - * /`, unary `-`, parentheses; products bind before sums. There is no `^`: write `pow(a, 3)` |
+/// | vectors, matrices | `[a, b, c]`; a matrix is a vector of its three rows. The components of a named vector are `name.x`, `name.y`, `name.z` |
+/// | choice | `if a < b { e } else { f }`, also `<= > >=`, `else if` ([events](#events)) |
+/// | time and energy | `t` in s; `stored_energy` in J; `supplied_power`, `dissipated_power` in W |
+/// | junctions | `NAME.flow` of a 1-junction, `NAME.effort` of a 0-junction |
+/// | elements | `NAME.flow`, `NAME.effort` of its bond (of a two-port's bond in), signs along the half arrow; `NAME.power` into it; `NAME.energy`, `NAME.q` of a C, `NAME.energy`, `NAME.p` of an I |
+///
+/// Shapes: scalars, vectors of three, 3 x 3 matrices. A scalar times anything, matrix times vector and matrix times matrix are
+/// products; two vectors need `dot`, `cross` or `outer`. Sums want equal shapes.
+///
+/// | function | gives | units |
+/// |---|---|---|
+/// | `sin cos tan asin acos exp ln tanh` (a) | the function of a scalar, angles in rad | of a pure number; a pure number |
+/// | `atan2(y, x)` | the angle of (x, y), rad | y and x alike |
+/// | `sqrt(a)`, `abs(a)` | of a scalar | the root; the same |
+/// | `pow(a, b)` | a to the power b | any unit with a whole number b, else pure numbers |
+/// | `dot(a, b)`, `cross(a, b)`, `outer(a, b)` | scalar, vector, matrix a b^T | the product |
+/// | `norm(a)`, `skew(a)`, `diagonal(a)` | length; the matrix \[a x\]; the diagonal matrix, of a vector | the same |
+/// | `transpose(A)`, `inverse(A)` | of a matrix | the same; its reciprocal |
+/// | `identity()` | the unit matrix | any |
+/// | `rotation_x(a)`, `rotation_y(a)`, `rotation_z(a)` | the rotation matrix about an axis, rad | of a pure number; a pure number |
+/// | `guess(a)` | an unknown of the assembly, first guessed as a; only in starts | the same |
+/// | `integral(a)` | the time integral of a scalar since t = 0, a state of its own; only in `observe` | times s |
+///
+/// # Units
+///
+/// Coherent SI only, so that no factor ever enters: `kg m s A K mol cd rad Hz N Pa J W C V F Ohm S Wb T H sr lm kat`, joined by
+/// `*` and `/`, with whole powers: `kg*m^2/s`, `1/s`; `1` is a pure number. Each `/` is for the one factor behind it: `N*m*s/rad`,
+/// `W/m^2/K`. `rad` and `sr` are pure numbers, as in the SI, so a torque and an energy have the same unit.
+///
+/// Every law, bond, start value and output is checked; a fault names the two units that disagree. A bare number takes the unit
+/// that its place asks for. As a factor it may carry any unit, so a product with a bare number is not checked: use a `param` or
+/// a `let` with a unit where a check is wanted.
+///
+/// # Mechanism words
+///
+/// ## `ground`, `gravity`
+///
+/// ```text
+/// ground  = "ground" "{" { "point" NAME "=" EXPRESSION ";" } "}"
+/// gravity = "gravity" EXPRESSION ";"
+/// ```
+///
+/// `ground` is the inertial frame with its named points (m). `gravity [0, -9.81, 0];` (m/s^2) gives every body a weight at its
+/// centre of mass. A weight is an `Se`: its power counts as supplied, not as stored.
+///
+/// ## `body`
+///
+/// ```text
+/// body  = "body" NAME "{" { part | setting | point | start } "}"
+/// part  = ( "cuboid" EDGES | "cylinder" "radius" E "length" E "along" AXIS | "sphere" "radius" E )
+///         { "at" E | "turned" E | "density" E } ";"
+/// setting = "density" E ";" | "mass" E ";" | "center" E ";" | "inertia" E ";"
+/// point = "point" NAME "=" E ";"
+/// start = "start" [POINT] "at" E ";" | "start" "turned" E ";" | "start" "velocity" E ";" | "start" "spin" E ";"
+/// ```
+///
+/// A rigid body. Its mass, centre of mass and inertia tensor are the sums over its **parts** (`at`: the part's centre; `turned`:
+/// its orientation; both in the body's axes), or **given**: `mass` (kg), `center` (m, the origin when left out) and `inertia`
+/// about the centre (kg\*m^2: three principal moments or a matrix). The start pose is that of the origin or of a point (m,
+/// inertial axes) and a rotation matrix; `velocity` (m/s) is that of the centre of mass, `spin` (rad/s) the angular velocity, both
+/// in inertial axes. What is left out is zero, or unturned.
+///
+/// It stands for two multibond 1-junctions, `NAME.translation` (velocity of the centre of mass) and `NAME.rotation` (angular
+/// velocity), both in inertial axes, with `I NAME.linear`, and `I NAME.angular` whose tensor turns with the body. There is no
+/// gyroscopic term, because h' is the sum of the moments in inertial axes.
+///
+/// | name | |
+/// |---|---|
+/// | `NAME.position`, `.velocity` | of the centre of mass, inertial axes |
+/// | `NAME.orientation`, `.x_axis`, `.y_axis`, `.z_axis` | the rotation matrix, its columns |
+/// | `NAME.angular_velocity` | inertial axes |
+/// | `NAME.angle` | of the body's x axis about the inertial z, -pi to pi |
+/// | `NAME.momentum` or `.p`, `.angular_momentum` or `.h` | about the centre of mass, inertial axes |
+/// | `NAME.kinetic_energy`, `.mass`, `.center`, `.tensor` | the last two in the body's axes |
+/// | `NAME.POINT.position`, `.velocity`, `.arm` | of a point or of `origin`; the arm is from the centre of mass, inertial axes |
+/// | `NAME.weight` | the `Se` of the weight |
+///
+/// ## `joint`
+///
+/// ```text
+/// joint = "joint" NAME ":" KIND "(" END "->" END ")" "{" { clause } "}"
+/// KIND  = "revolute" AXIS | "prismatic" AXIS | "spherical" | "cylindrical" AXIS | "universal" AXIS AXIS | "fixed"
+/// END   = BODY "." POINT | BODY | "ground" "." POINT | "ground"
+/// clause = "stiffness" E ";" | "damping" E ";" | "tilt" "stiffness" E ";" | "tilt" "damping" E ";" | "frame" "inertial" ";"
+/// ```
+///
+/// A compliant joint: a C and an R on each direction that it holds. Stiffness (N/m) holds translations, tilt stiffness (N\*m/rad)
+/// rotations; both are needed where the joint holds such a direction. Damping may be left out. One number is for all directions,
+/// a vector has one for each axis.
+///
+/// **The relative motion is that of the second end to the first, and forces and moments are those on the second body**, their
+/// opposites act on the first. Axes are the first body's (`universal x y`: x of the first, y of the second body). A pin whose
+/// stiffness is one number is kept in inertial axes. Held rotations are measured as direction cosines of the two bodies' axes,
+/// which equal the angles while these are small, and cost no states. With `frame inertial` they are the integrals of the relative
+/// angular velocity in inertial axes, one state each.
+///
+/// | name | |
+/// |---|---|
+/// | `NAME.force` | on the second body, inertial axes, N |
+/// | `NAME.moment` | on the second body, inertial axes, N\*m; where the joint holds or drives a rotation |
+/// | `NAME.gap` | second end minus first end, inertial axes, m |
+/// | `NAME.x_offset` and its like | the gap in the first body's axes, of held axes of a joint with a slide or with a stiffness for each axis |
+/// | `NAME.angle`, `.speed` | of the free rotation of revolute and cylindrical joints, rad, rad/s |
+/// | `NAME.travel` | of the free translation of prismatic and cylindrical joints, m |
+/// | `NAME.spin`, `NAME.slide` | the 1-junctions of the free axes, to bond to: `gearbox -> pin.spin;` |
+/// | `NAME.slip.flow`, `NAME.twist.flow` | relative velocity, relative angular velocity, inertial axes |
+///
+/// ## `spring`, `contact`
+///
+/// ```text
+/// spring  = "spring" NAME "(" END "->" END ")" "{" { ("stiffness" | "damping" | "length") E ";" } "}"
+/// contact = "contact" NAME "(" END "->" END "along" AXIS ")" "{" { AXIS ":" LAW { "," LAW } ";" } "}"
+/// LAW     = ("C" | "R") ["(" VARIABLE ")"] "=" E
+/// ```
+///
+/// A **spring** pulls along the line between its ends; `length` is the unloaded one (0 when left out). Names: `NAME.force` on the
+/// second end, `NAME.distance`, `NAME.spring.energy`.
+///
+/// A **contact** lets the first end slide along a line of the second body: laws for each axis of the second body act at the place of
+/// the first end. Names: `NAME.force` on the second body, `NAME.gap`, `NAME.speed` along the line, and for each axis with laws the
+/// elements `NAME.x_damper`, `NAME.y_spring` and so on.
+///
+/// ## `drive`
+///
+/// ```text
+/// drive = "drive" NAME "on" TARGET ("torque" | "force") "=" E ";"
+///       | "drive" NAME "on" JOINT "speed" "=" E "{" "stiffness" E ";" ["damping" E ";"] "}"
+/// ```
+///
+/// On a joint: a torque about or a force along its free axis, a scalar, on the second body, its opposite on the first. On a body: a
+/// torque, a vector in inertial axes. On a point of a body, or a body for its origin: a force, a vector in inertial axes. A prescribed
+/// speed acts through a compliant coupling, since an inertia behind a flow source would be in derivative causality. `NAME` is the
+/// source's element; `NAME.power` is minus the power that it gives.
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A crank at prescribed speed, a rod to a slider that rubs against a plate, a return spring.
+///     pub graph SliderCrank {
+///         param speed: rad/s = 6;
+///         param rub: N*s/m = 20, at least 0;
+///         gravity [0, -9.81, 0];
+///         ground { point O = [0, 0, 0]; point wall = [0.8, 0, 0]; }
+///         body crank {
+///             cuboid [0.1, 0.03, 0.02] density 7850;
+///             point O = [-0.05, 0, 0]; point A = [0.05, 0, 0];
+///             start O at [0, 0, 0];
+///         }
+///         body rod {
+///             cylinder radius 0.01 length 0.3 along x density 2700;
+///             point A = [-0.15, 0, 0]; point B = [0.15, 0, 0];
+///             start A at [0.1, 0, 0]; start turned rotation_z(guess(0));
+///         }
+///         body slider { mass 0.5; inertia [1e-3, 1e-3, 1e-3]; start at [guess(0.4), 0, 0]; }
+///
+///         joint pin_o: revolute z (ground.O -> crank.O) { stiffness 1e6; damping 100; tilt stiffness 1e3; tilt damping 1; }
+///         joint pin_a: revolute z (crank.A -> rod.A) { stiffness 1e6; damping 100; tilt stiffness 1e3; tilt damping 1; }
+///         joint pin_b: spherical (rod.B -> slider) { stiffness 1e6; damping 100; }
+///         joint slide: prismatic x (ground.O -> slider) { stiffness 1e6; damping 100; tilt stiffness 1e3; tilt damping 1; }
+///
+///         drive motor on pin_o speed = speed { stiffness 50; damping 1; }
+///         spring pull (ground.wall -> slider) { stiffness 200; length 0.4; }
+///         contact plate (ground.O -> slider along x) { x: R(v) = if v < 0 { rub * v } else { 2 * rub * v }; }
+///
+///         observe { angle: rad = pin_o.angle; travel: m = slide.travel; force: N = norm(pin_b.force); plate.speed }
+///     }
+/// }
+/// use bg_model::system::Model;
+///
+/// let model = SliderCrank::new(SliderCrankParameters { speed: 8.0, ..Default::default() })?;
+/// assert!(model.start().is_ok());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Start poses
+///
+/// Start values are expressions of parameters. `guess(E)` in a body's start is an unknown: before a run the assembly moves all of
+/// them from their guesses until every joint's gap is closed to 1e-10 m or rad (`Model::start`). It names the joint and its gap where
+/// that fails. Without guesses the gaps are only checked. The method is Gauss-Newton with the least step, damped where needed.
+///
+/// # Causality
+///
+/// Strokes are assigned by the sequential procedure (SCAP): sources, then laws that work one way only (laws of a variable), then I and
+/// C in integral causality, in the order of declaration, then what is left; each assignment is propagated before the next. Only
+/// integral causality is accepted:
+///
+/// - two causes for one effort or flow: BG0401, none: BG0402;
+/// - an I or C whose state others already determine: BG0403. Put a C with an R in between, or merge the two;
+/// - a law of a variable that would have to run backwards: BG0404;
+/// - a variable that needs itself, through resistors or modulation: BG0501, with the members of the loop.
+///
+/// # Events
+///
+/// The comparison of an `if` becomes a switch with a real-valued guard: `a - b` for `<` and `<=`, `b - a` for `>` and `>=`; below zero
+/// the first branch holds. Equal comparisons share a switch. Within a step every switch keeps its branch, so that the law is smooth
+/// there. Where a guard changes its sign, the step is repeated, shortened to that instant, with real steps of the method until the
+/// guard is zero to rounding; then the branch is decided by the guard's sign just behind the event. A comparison that depends on
+/// parameters only has a switch, too, which never changes.
+///
+/// # Energy
+///
+/// `stored_energy` is the energy in all I and C, `supplied_power` that of all sources into the model (weights and drives included, and
+/// what modulated storages take up), `dissipated_power` that of all R out of it: d(stored)/dt = supplied - dissipated.
+///
+/// # `observe`
+///
+/// ```text
+/// observe = "observe" "{" [NAME [":" UNIT] "="] EXPRESSION { (";" | ",") ... } "}"
+/// ```
+///
+/// What the model's `outputs` gives. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
+/// name the output is called like its expression.
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A motor turns a pendulum: electrical circuit and 3-D mechanism in one graph.
+///     graph Swing {
+///         param constant: N*m/A = 0.2;
+///         param winding: Ohm = 2, above 0;
+///         input voltage: V;
+///         gravity [0, -9.81, 0];
+///         ground { point pivot = [0, 0, 0]; }
+///         body arm { sphere radius 0.05 at [0.3, 0, 0] density 2700; point end = [0, 0, 0]; start end at [0, 0, 0]; }
+///         joint pin: revolute z (ground.pivot -> arm.end) { stiffness 1e5; damping 50; tilt stiffness 1e3; tilt damping 1; }
+///
+///         Se supply = voltage; 1 armature; R Ra = winding; I coil = 1e-3; GY motor = constant;
+///         supply -> armature -> Ra; armature -> coil; armature -> motor -> pin.spin;
+///
+///         observe { arm.angle; pin.force; electrical_energy: J = integral(-supply.power); lost: J = integral(dissipated_power) }
+///     }
+/// }
+/// use bg_model::system::Model;
+///
+/// let model = Swing::new(SwingParameters::default(), SwingInputs { voltage: 12.0.into() })?;
+/// let names: Vec<&str> = model.description().outputs.iter().map(|output| output.name).collect();
+/// assert_eq!(names, ["arm.angle", "pin.force_x", "pin.force_y", "pin.force_z", "electrical_energy", "lost"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Generated items
+///
+/// For `pub graph Motor` with the visibility of the graph:
+///
+/// | item | |
+/// |---|---|
+/// | `MotorParameters` | a struct of `f64` fields with units and defaults in their documentation; `Default`, serde's `Serialize` and `Deserialize` (unknown names refused, missing ones default), `bg_model::parameters::Parameters` for access by name |
+/// | `MotorInputs` | a struct of `bg_model::input::Input`; only where there are inputs |
+/// | `Motor<S = f64>` | the model, generic over the scalar; its documentation has the tables of states and of operation counts |
+/// | `Motor::STATES`, `SWITCHES`, `OUTPUTS` | the sizes |
+/// | `Motor::new(parameters)`, `Motor::new(parameters, inputs)` | checks the ranges and calculates what depends on parameters only; `in_scalar` is the same for any `S: Scalar` |
+/// | `impl System` | `rate`, `guards`, `project`, `state_name`; nothing is allocated |
+/// | `impl Model` | `start`, `outputs`, `stored_energy`, `powers`, `description` |
+///
+/// Generated code names `::bg_model` only: a crate that uses the macro needs that one dependency.
+///
+/// # Faults
+///
+/// All faults of a stage are reported at once; a later stage looks at a graph that the earlier ones accepted. With a fault, the promised items
+/// are still there as stubs, so that rustc adds no errors about missing types.
+///
+/// | code | meaning |
+/// |---|---|
+/// | **syntax** | |
+/// | BG0101 | a word that begins no statement here |
+/// | BG0102 | a token that does not fit here |
+/// | BG0103 | a missing `;` |
+/// | BG0104 | `^` or `**`: use `pow` |
+/// | BG0105 | not a unit |
+/// | BG0106 | an `if` without `else` |
+/// | BG0107 | a comparison outside an `if` |
+/// | BG0108 | a second comparison in an `if` |
+/// | BG0109 | `==` or `!=` |
+/// | BG0110 | a clause that stands twice |
+/// | BG0111 | an unknown kind of joint, drive or law |
+/// | BG0112 | a missing axis |
+/// | BG0113 | a parameter or input without a unit |
+/// | BG0114 | a parameter without a default |
+/// | BG0115 | a name with dots where none may be |
+/// | BG0116 | a name that Rust reserves |
+/// | BG0117 | not a decimal number, or beyond all floating-point numbers |
+/// | BG0118 | an expression nested too deeply |
+/// | BG0119 | a cardinality other than 1 and 3 |
+/// | BG0120 | a documentation comment where none may be |
+/// | BG0121 | an attribute |
+/// | BG0122 | a call without a graph |
+/// | **mechanism words** | |
+/// | BG0201 | no such body |
+/// | BG0202 | no such point of the body |
+/// | BG0203 | a clause that is missing, such as a stiffness |
+/// | BG0204 | a clause that cannot be there |
+/// | BG0205 | a body without mass |
+/// | BG0206 | a body with solids and given mass |
+/// | BG0207 | `ground` or `gravity` given twice |
+/// | BG0208 | a drive on something that is not there |
+/// | BG0209 | a drive of the wrong kind for its target |
+/// | BG0210 | both ends on one body |
+/// | BG0211 | a universal joint with twice the same axis |
+/// | BG0212 | a contact without a law |
+/// | **names, ports, shapes, units** | |
+/// | BG0301 | not a coherent SI unit |
+/// | BG0302 | a name declared twice |
+/// | BG0303 | an unknown name |
+/// | BG0304 | an unknown function |
+/// | BG0305 | an unknown energy domain |
+/// | BG0306 | a wrong number of arguments |
+/// | BG0307 | a bond to something that is neither junction nor element |
+/// | BG0308 | a one-port without a bond, or with several |
+/// | BG0309 | a two-port without one half arrow in and one out |
+/// | BG0310 | a junction without a bond |
+/// | BG0311 | a bond between different cardinalities |
+/// | BG0312 | a modulus that does not map the flows of a two-port |
+/// | BG0313 | two shapes that do not go together |
+/// | BG0314 | a shape that does not fit its place |
+/// | BG0315 | a component of something that is not a vector |
+/// | BG0316 | two units that disagree |
+/// | BG0317 | a function of a quantity with a unit |
+/// | BG0318 | a square root that has no unit |
+/// | BG0319 | a bond whose units nothing fixes |
+/// | BG0320 | a law whose unit does not fit its bond |
+/// | BG0321 | a bare number as the law of a C |
+/// | BG0322 | a law that needs the modulated word |
+/// | BG0323 | a start value or storage law that depends on what it may not |
+/// | BG0324 | a `let` that is defined by itself |
+/// | BG0325 | a track of something other than a 1-junction of cardinality 3 |
+/// | BG0326 | a clause that this element cannot have |
+/// | BG0327 | a range without a value |
+/// | BG0328 | a default outside its range |
+/// | BG0329 | a default or range that is not made of numbers |
+/// | BG0330 | `guess` outside a start |
+/// | BG0331 | `integral` outside `observe` |
+/// | BG0332 | a law of a variable that the element cannot have |
+/// | BG0333 | a graph without a bond |
+/// | **causality** | |
+/// | BG0401 | causal conflict: two bonds determine one effort or flow |
+/// | BG0402 | causal conflict: none determines it |
+/// | BG0403 | derivative causality |
+/// | BG0404 | a law that would have to work the other way round |
+/// | **equations** | |
+/// | BG0501 | algebraic loop |
+/// | BG0502 | a transformer's law that is not linear |
+/// | BG0503 | a stored energy that the compiler cannot find |
+/// | BG0504 | a given energy whose derivative is not the law |
+/// | BG0505 | a given displacement that does not change with the flow |
 #[proc_macro]
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
     bg_compiler::compile(tokens.into()).into()

@@ -148,5 +148,40 @@ bond_graph! {
             gap_15: m = norm(pin_c.gap);
             gap_45: m = norm([0, slot.y_offset, slot.z_offset]);
         }
+
+        /// The paper's case: the motion in the plane, every parameter adjustable that keeps it there.
+        scene Paper {
+            tune {
+                torque, crank_angle, gravity, density,
+                k_2, r_2, k_2r, r_2r, k_23, r_23, k_23r, r_23r, k_34, r_34, k_34r, r_34r,
+                k_15, r_15, k_15r, r_15r, k_45, r_45, k_45r, r_45r, k_work, r_work, r_cut, r_return
+            }
+            expect planar;
+            expect states = 29;
+        }
+        /// The three-dimensional motion, with the rod out of the plane where `rod_offset` puts it.
+        scene Full {
+            expect states = 81;
+        }
+        /// The angles of crank, rod, frame and guide only.
+        scene Angles {
+            observe {
+                crank_angle: rad = crank.angle; rod_angle: rad = rod.angle;
+                frame_angle: rad = frame.angle; guide_angle: rad = guide.angle;
+            }
+            tune { torque, r_cut, r_return }
+            expect planar;
+            expect states = 29;
+        }
+        /// The machine running free, the blade off the work.
+        scene FreeRun {
+            without { cut }
+            observe {
+                crank_speed: rad/s = pin_o.speed; C4: m = frame.position; F34: N = pin_b.force;
+            }
+            tune { torque, crank_angle }
+            expect planar;
+            expect states = 29;
+        }
     }
 }

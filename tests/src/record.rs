@@ -126,6 +126,8 @@ where
         // Stretches and momenta of stiff joints are small numbers: the absolute tolerance lies well below them.
         tolerances: Tolerances::new(tolerance, 1e-3 * tolerance),
         samples: Samples::At(times.to_vec()),
+        // The dense output of a step far beyond the fastest decay is worse than the step's end.
+        largest_step: times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max).max(1e-3),
         step_limit: 5_000_000,
         ..Settings::default()
     };

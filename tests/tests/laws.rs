@@ -7,8 +7,8 @@ use bond_graph_tests::examples as models;
 use bond_graph_tests::power::{Draw, imbalance, state};
 use bond_graph_tests::record::{Record, instants, record};
 
-/// What rounding leaves of the balance: sums of some hundred powers, some of them differences of large numbers.
-const ROUNDING: f64 = 1e-12;
+/// What rounding leaves of the balance, relative to the sum of all powers' magnitudes.
+const ROUNDING: f64 = 1e-14;
 
 fn balance<A, B, const N: usize, const G: usize, const M: usize>(model: &A, twin: &B)
 where

@@ -177,7 +177,9 @@ bond_graph! {
             crank_torque: N*m = shaft.effort;
             electrical_energy: J = integral(supply.effort * supply.flow);
             shaft_energy: J = integral(shaft.effort * pin_o.spin.flow);
+            spring_torque: N*m = shaft_spring.effort;
             heat: J = integral(resistance.power);
+            friction: J = integral(rotor_bearing.power + shaft_damper.power);
             stored: J = stored_energy;
             supplied: J = integral(supplied_power);
             dissipated: J = integral(dissipated_power);

@@ -4,7 +4,8 @@ use bg_model::bond_graph;
 
 bond_graph! {
     /// The 0-junction is the chamber with its pressure; the piston's area is the transformer to the rod. The throttle
-    /// obeys the law of a sharp-edged orifice, q = c a sqrt(2 p / rho), with the sign of the pressure.
+    /// obeys the law of a sharp-edged orifice, q = c a sqrt(2 p / rho), with the sign of the pressure. A step looks a
+    /// little beyond the switching before it is located, so each branch has a value there: `abs`.
     pub graph HydraulicCylinder {
         /// Area of the piston.
         param area: m^2 = 2e-3, above 0;
@@ -32,9 +33,9 @@ bond_graph! {
         0 chamber: hydraulic;
         C oil = compressibility start compressibility * load / area;
         R throttle(effort p) = if p < 0 {
-            -discharge * orifice * sqrt(-2 * p / density)
+            -discharge * orifice * sqrt(abs(2 * p / density))
         } else {
-            discharge * orifice * sqrt(2 * p / density)
+            discharge * orifice * sqrt(abs(2 * p / density))
         };
         TF piston(effort p) = p * area;
         1 rod: translation;

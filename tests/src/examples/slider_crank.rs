@@ -3,10 +3,10 @@
 use bg_model::bond_graph;
 
 bond_graph! {
-    /// The crank turns about the ground's point O, the slider slides on the x axis through O.
+    /// The crank with its flywheel turns about the ground's point O, the slider slides on the x axis through O.
     pub graph SliderCrank {
         /// Torque on the crank about z.
-        param torque: N*m = 1.5;
+        param torque: N*m = 3;
         /// Crank angle at the start, from the x axis.
         param crank_angle: rad = 0.4;
         /// Length of the crank between its pins.
@@ -14,7 +14,7 @@ bond_graph! {
         /// Length of the rod between its pins.
         param rod_length: m = 0.35, above 0;
         /// Stiffness of all pins and of the slide.
-        param stiffness: N/m = 2e5, above 0;
+        param stiffness: N/m = 5e5, above 0;
         /// Damping of all pins and of the slide.
         param damping: N*s/m = 200, at least 0;
         /// Stiffness of the held rotations.
@@ -26,6 +26,7 @@ bond_graph! {
         ground { point O = [0, 0, 0]; }
         body crank {
             cuboid [crank_length, 0.03, 0.02] density 7850;
+            cylinder radius 0.12 length 0.02 along z at [-crank_length / 2, 0, 0] density 7850;
             point O = [-crank_length / 2, 0, 0];
             point A = [crank_length / 2, 0, 0];
             start O at [0, 0, 0];

@@ -40,7 +40,7 @@ fn without_leakage_the_oil_is_a_spring_under_the_load() {
 #[test]
 fn the_throttle_switches_where_the_pressure_changes_its_sign() {
     let p = Parameters { load: 0.0, ..Parameters::default() };
-    let pump_flow = Input::function(|t| 1e-4 * (10.0 * t).sin());
+    let pump_flow = Input::function(|t| 1e-4 * (10.0 * t).cos());
     let model = HydraulicCylinder::new(p, Inputs { pump_flow }).unwrap();
     let run = record(&model, &instants(1.0, 200), 1e-10);
     let signs: Vec<bool> = run.series("pressure")[1..].iter().map(|pressure| *pressure < 0.0).collect();
