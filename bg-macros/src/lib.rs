@@ -52,7 +52,7 @@ use proc_macro::TokenStream;
 ///
 /// Names are Rust identifiers, Rust's keywords excluded. Names of `let`s, junctions, elements, tracks and outputs may have
 /// dots (`pin.slip`); those of graphs, parameters, inputs, bodies, points, joints, springs, drives and contacts have none.
-/// All of a graph's names are different. The word `scene` is reserved.
+/// All of a graph's names are different.
 ///
 /// ## `param`, `input`, `let`
 ///
@@ -392,7 +392,8 @@ use proc_macro::TokenStream;
 /// observe = "observe" "{" [NAME [":" UNIT] "="] EXPRESSION { (";" | ",") ... } "}"
 /// ```
 ///
-/// What the model's `outputs` gives. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
+/// What the model's `outputs` gives, in the order of declaration. A unit is worth writing: an angle reads as `1` without it, and so does
+/// what has lost its unit in a product with bare numbers, such as a `travel` along an axis of the ground. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
 /// name the output is called like its expression.
 ///
 /// ```
@@ -526,6 +527,13 @@ use proc_macro::TokenStream;
 /// | BG0503 | a stored energy that the compiler cannot find |
 /// | BG0504 | a given energy whose derivative is not the law |
 /// | BG0505 | a given displacement that does not change with the flow |
+/// | **scenes** | |
+/// | BG0601 | two models of one name |
+/// | BG0602 | no such part to leave out |
+/// | BG0603 | no such parameter to tune |
+/// | BG0604 | a scene that is not planar as expected |
+/// | BG0605 | a scene with another number of states than expected |
+/// | BG0606 | rigid joints, which this compiler cannot make |
 #[proc_macro]
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
     bg_compiler::compile(tokens.into()).into()

@@ -17,7 +17,7 @@ impl Draw {
     }
 
     /// The next number, between -1 and 1.
-    pub fn next(&mut self) -> f64 {
+    pub fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -28,7 +28,7 @@ impl Draw {
 
     /// A rotation matrix, row by row: that of a random quaternion.
     fn rotation(&mut self) -> [f64; 9] {
-        let [a, b, c, d] = std::array::from_fn(|_| self.next() + 1e-3);
+        let [a, b, c, d] = std::array::from_fn(|_| self.number() + 1e-3);
         let square = a * a + b * b + c * c + d * d;
         [
             a * a + b * b - c * c - d * d,
@@ -58,7 +58,7 @@ where
             x.as_mut_slice()[index..index + 9].copy_from_slice(&draw.rotation());
             index += 9;
         } else {
-            x[index] += (1.0 + x[index].abs()) * draw.next();
+            x[index] += (1.0 + x[index].abs()) * draw.number();
             index += 1;
         }
     }

@@ -120,7 +120,13 @@ fn attempt<Mo, const N: usize, const G: usize, const M: usize>(
 where
     Mo: Model<f64, N, G, M>,
 {
-    let mut recorder = Recorder { model, outputs: SVector::<f64, M>::zeros(), times: Vec::new(), rows: Vec::new(), events: Vec::new() };
+    let mut recorder = Recorder {
+        model,
+        outputs: SVector::<f64, M>::zeros(),
+        times: Vec::new(),
+        rows: Vec::new(),
+        events: Vec::new(),
+    };
     let span = Span { t0: 0.0, t_end: times.last().copied().unwrap_or(0.0) };
     let settings = Settings {
         // Stretches and momenta of stiff joints are small numbers: the absolute tolerance lies well below them.

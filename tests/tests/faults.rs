@@ -41,7 +41,10 @@ const SYNTAX: [(&str, &str); 22] = [
 const DEEP: &str = "deep";
 
 const MECHANISM: [(&str, &str); 12] = [
-    ("BG0201", "body rod { sphere radius 1; density 1; }\njoint pin: fixed (ground -> ▸rodd) { stiffness 1; tilt stiffness 1; }"),
+    (
+        "BG0201",
+        "body rod { sphere radius 1; density 1; }\njoint pin: fixed (ground -> ▸rodd) { stiffness 1; tilt stiffness 1; }",
+    ),
     (
         "BG0202",
         "body rod { sphere radius 1; density 1; point end = [0, 0, 0]; }\n\
@@ -112,11 +115,11 @@ const CAUSALITY: [(&str, &str); 4] = [
 ];
 
 const EQUATIONS: [(&str, &str); 5] = [
+    ("BG0501", "Se e = 1; 1 j: translation; R a = 1; 0 k; R b = 2; e -> j -> a; j -> ▸k -> b;"),
     (
-        "BG0501",
-        "Se e = 1; 1 j: translation; R a = 1; 0 k; R b = 2; e -> j -> a; j -> ▸k -> b;",
+        "BG0502",
+        "Se f = 1; 1 j: rotation; 1 k: translation; TF g(w) = 2 * w ▸* w; I m = 2; C c(x) = 2 * x; f -> j -> m; j -> g -> k -> c;",
     ),
-    ("BG0502", "Se f = 1; 1 j: rotation; 1 k: translation; TF g(w) = 2 * w ▸* w; I m = 2; C c(x) = 2 * x; f -> j -> m; j -> g -> k -> c;"),
     ("BG0503", "Se f = 1; 1 j: translation; I m = 2; C s(q) = 3 ▸* exp(sin(q / 1)); f -> j -> m; j -> s;"),
     ("BG0504", "Se f = 1; 1 j: translation; I m = 2; C s(q) = 3 * q energy 3 * q ▸* q; f -> j -> m; j -> s;"),
     (
@@ -289,4 +292,11 @@ fn the_faults_of_all_graphs_come_at_once() {
     for name in ["A", "B", "C"] {
         assert!(items.contains(&format!("pub struct {name} ")) || items.contains(&format!("struct {name} ")), "{name}");
     }
+}
+
+/// In a process of its own this ends by a stack overflow, so it is not run: `cargo test -- --ignored` would be ended too.
+#[test]
+#[ignore = "known fault of the compiler: a circle of lets is not found and overflows the stack"]
+fn a_circle_of_lets_is_a_fault() {
+    check_all("graph G {\nlet a = b; let b = ▸a;\nSe f = a; 1 j: translation; I m = 2; f -> j -> m;\n}", &["BG0324"]);
 }

@@ -83,7 +83,10 @@ fn run(t_end: f64, relative: f64, absolute: f64, instants: &[f64]) -> Run {
         let mut row = SVector::zeros();
         model.outputs(t, x, negative, &mut row);
         outputs.push(row);
-        stored = [if t == 0.0 { model.stored_energy(t, x, negative) } else { stored[0] }, model.stored_energy(t, x, negative)];
+        stored = [
+            if t == 0.0 { model.stored_energy(t, x, negative) } else { stored[0] },
+            model.stored_energy(t, x, negative),
+        ];
     });
     let span = Span { t0: 0.0, t_end };
     let finish = integrate(&model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the run ends");
@@ -144,22 +147,22 @@ fn check(t_end: f64, [relative, absolute]: [f64; 2], bound: f64, expected: [u64;
 
 #[test]
 fn one_second_at_loose_tolerances() {
-    check(1.0, [1e-8, 1e-10], 1e-5, [4985, 1086, 73_517, 12]);
+    check(1.0, [1e-8, 1e-10], 1e-5, [4985, 1086, 73_396, 12]);
 }
 
 #[test]
 fn one_second_at_close_tolerances() {
-    check(1.0, [1e-10, 1e-12], 1e-8, [8358, 1019, 113_146, 12]);
+    check(1.0, [1e-10, 1e-12], 1e-8, [8358, 1019, 113_124, 12]);
 }
 
 #[test]
 fn the_paper_s_five_seconds_at_the_default_tolerance() {
-    check(5.0, DEFAULT, 1e-5, [27_481, 5287, 394_651, 60]);
+    check(5.0, DEFAULT, 1e-5, [27_481, 5287, 394_211, 60]);
 }
 
 #[test]
 fn the_paper_s_five_seconds_at_a_close_tolerance() {
-    let run = check(5.0, CLOSE, 1e-8, [47_023, 4720, 621_845, 60]);
+    let run = check(5.0, CLOSE, 1e-8, [47_023, 4720, 621_834, 60]);
     assert_eq!(run.statistics.events, 60);
     assert!(imbalance(&run) < 1e-9, "{:e}", imbalance(&run));
 }

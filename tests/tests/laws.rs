@@ -19,7 +19,7 @@ where
     let mut largest: f64 = 0.0;
     for _ in 0..25 {
         let x = state(model, &mut draw);
-        let t = 1.0 + draw.next();
+        let t = 1.0 + draw.number();
         let found = imbalance(model, twin, t, &x);
         assert!(found <= ROUNDING, "{}: {found:e} at {x:?}", model.description().name);
         largest = largest.max(found);
@@ -113,5 +113,9 @@ fn the_order_of_declaration_changes_nothing_in_a_mechanism() {
     let times = instants(1.0, 30);
     let forward = record(&Chain::new(ChainParameters::default()).unwrap(), &times, 1e-10);
     let backward = record(&ChainBackward::new(ChainBackwardParameters::default()).unwrap(), &times, 1e-10);
-    same_numbers(&forward, &backward, &["first_x", "first_y", "first_z", "second_x", "second_y", "h_x", "h_z", "stored"]);
+    same_numbers(
+        &forward,
+        &backward,
+        &["first_x", "first_y", "first_z", "second_x", "second_y", "h_x", "h_z", "stored"],
+    );
 }

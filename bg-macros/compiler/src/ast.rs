@@ -165,6 +165,7 @@ pub enum ElementKind {
     Gy,
     MSe,
     MSf,
+    RSe,
     Mtf,
     Mgy,
     Mr,
@@ -431,6 +432,8 @@ pub struct Joint {
     pub tilt_damping: Option<Expression>,
     /// `frame inertial;`: held rotations are the integrals of the relative angular velocity in inertial axes.
     pub inertial: bool,
+    /// `rigid;`: an ideal joint, without stiffness and damping; its reactions keep the held motions zero.
+    pub rigid: bool,
 }
 
 /// A spring and damper along the line between two points.

@@ -183,7 +183,7 @@ impl Procedure<'_> {
 
     fn is_source(&self, node: NodeId) -> bool {
         use ElementKind as K;
-        self.graph.element(node).is_some_and(|element| matches!(element.kind, K::Se | K::MSe | K::Sf | K::MSf))
+        self.graph.element(node).is_some_and(|element| matches!(element.kind, K::Se | K::MSe | K::Sf | K::MSf | K::RSe))
     }
 
     fn is_storage(&self, node: NodeId) -> bool {
@@ -201,7 +201,7 @@ impl Procedure<'_> {
         use ElementKind as K;
         let Some(element) = self.graph.element(node) else { return Wish::Either };
         match (element.kind, &element.law) {
-            (K::Se | K::MSe | K::C, _) => Wish::GiveEffort,
+            (K::Se | K::MSe | K::RSe | K::C, _) => Wish::GiveEffort,
             (K::Sf | K::MSf | K::I, _) => Wish::ReceiveEffort,
             (_, Law::Of { role: Role::Flow, .. }) => Wish::GiveEffort,
             (_, Law::Of { role: Role::Effort, .. }) => Wish::ReceiveEffort,

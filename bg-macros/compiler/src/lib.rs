@@ -93,8 +93,11 @@ fn model(variant: &Variant) -> Staged<TokenStream> {
 
 /// The equations of a variant: those of a scene are reduced to what it needs.
 fn reduced(variant: &Variant, causal: &CausalGraph) -> Staged<(StateEquations, Option<Report>)> {
-    let equations = equations::derive(causal)?;
-    let Some(scene) = &variant.scene else { return Ok((equations, None)) };
+    let mut equations = equations::derive(causal)?;
+    let Some(scene) = &variant.scene else {
+        reduce::solve_reactions(&mut equations);
+        return Ok((equations, None));
+    };
     let tuned = scene::tuned(scene, &equations.parameters)?;
     let (equations, report) = reduce::for_scene(equations, &tuned);
     scene::check(scene, &report)?;

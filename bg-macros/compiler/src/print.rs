@@ -377,6 +377,7 @@ impl Display for Joint {
         setting(&mut entries, "tilt stiffness", self.tilt_stiffness.as_ref());
         setting(&mut entries, "tilt damping", self.tilt_damping.as_ref());
         entries.extend(self.inertial.then(|| "frame inertial;".into()));
+        entries.extend(self.rigid.then(|| "rigid;".into()));
         write!(f, "joint {}: {} ({})", self.name, self.kind, self.ends)?;
         settings(f, &entries)
     }

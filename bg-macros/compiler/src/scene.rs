@@ -19,7 +19,7 @@ pub enum SceneFault {
     UnknownParameter { name: String, near: Option<String> },
     NotPlanar { scene: String, states: Vec<String> },
     StateCount { scene: String, expected: usize, states: Vec<String> },
-    Rigid { scene: String },
+    UnknownJoint { name: String, near: Option<String> },
 }
 
 use SceneFault as F;
@@ -35,7 +35,7 @@ impl Explain for SceneFault {
             F::UnknownParameter { .. } => "BG0603",
             F::NotPlanar { .. } => "BG0604",
             F::StateCount { .. } => "BG0605",
-            F::Rigid { .. } => "BG0606",
+            F::UnknownJoint { .. } => "BG0606",
         }
     }
 
@@ -50,23 +50,23 @@ impl Explain for SceneFault {
             F::StateCount { scene, expected, states } => {
                 format!("scene `{scene}` integrates {} states, not {expected}: {}", states.len(), list(states))
             }
-            F::Rigid { scene } => format!("scene `{scene}` asks for rigid joints, which this compiler cannot make"),
+            F::UnknownJoint { name, .. } => format!("there is no joint `{name}` to make rigid"),
         }
     }
 
     fn help(&self) -> String {
         match self {
             F::SameName { .. } => "give one of them another name".to_owned(),
-            F::UnknownPart { near: Some(near), .. } | F::UnknownParameter { near: Some(near), .. } => {
-                format!("did you mean `{near}`?")
-            }
+            F::UnknownPart { near: Some(near), .. }
+            | F::UnknownParameter { near: Some(near), .. }
+            | F::UnknownJoint { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownPart { .. } => "name a joint, contact, spring, drive or element".to_owned(),
             F::UnknownParameter { .. } => "name a parameter of the graph".to_owned(),
             F::NotPlanar { .. } => {
                 "find what moves them: a tuned parameter out of the plane, a start value, a force".to_owned()
             }
             F::StateCount { .. } => "correct the number, or what the scene watches and tunes".to_owned(),
-            F::Rigid { .. } => "remove `rigid`: the joints stay compliant".to_owned(),
+            F::UnknownJoint { .. } => "name a joint of the graph, or write `rigid joints;`".to_owned(),
         }
     }
 }
@@ -102,11 +102,8 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
             let name = scene.name.text.clone();
             faults.push(Fault::new(scene.name.span, &F::SameName { name }));
         }
-        if !matches!(scene.rigid, Rigid::None) {
-            let scene_name = scene.name.text.clone();
-            faults.push(Fault::new(scene.name.span, &F::Rigid { scene: scene_name }));
-        }
-        let items = left(&literal.items, &scene.without, &mut faults);
+        let mut items = left(&literal.items, &scene.without, &mut faults);
+        stiffen(&mut items, &scene.rigid, &mut faults);
         variants.push(Variant { graph: watched(&literal, items, scene), scene: Some(scene.clone()) });
     }
     if faults.is_empty() { Ok(variants) } else { Err(faults) }
@@ -144,6 +141,26 @@ fn left(items: &[Item], without: &[Name], faults: &mut Vec<Fault>) -> Vec<Item> 
         }
     }
     left
+}
+
+/// Makes the joints rigid that the scene wants so.
+fn stiffen(items: &mut [Item], rigid: &Rigid, faults: &mut Vec<Fault>) {
+    if let Rigid::Some(names) = rigid {
+        let joints = || items.iter().filter_map(|item| if let Item::Joint(joint) = item { Some(&joint.name) } else { None });
+        for name in names.iter().filter(|name| joints().all(|joint| joint.text != name.text)) {
+            let near = near_miss(&name.text, joints().map(|joint| joint.text.as_str())).map(str::to_owned);
+            faults.push(Fault::new(name.span, &F::UnknownJoint { name: name.text.clone(), near }));
+        }
+    }
+    for item in items {
+        if let Item::Joint(joint) = item {
+            joint.rigid |= match rigid {
+                Rigid::None => false,
+                Rigid::All(_) => true,
+                Rigid::Some(names) => names.iter().any(|name| name.text == joint.name.text),
+            };
+        }
+    }
 }
 
 /// The name of a part that a scene can leave out.

@@ -60,6 +60,8 @@ fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
         equations = reduced;
         push("reduction", report.to_string());
         push("reduced", equations_text(&equations));
+    } else {
+        reduce::solve_reactions(&mut equations);
     }
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let program = schedule(&mut equations.pool, &[Request { name: "rate", roots: &rates }]);

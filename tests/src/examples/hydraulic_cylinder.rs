@@ -4,8 +4,8 @@ use bg_model::bond_graph;
 
 bond_graph! {
     /// The 0-junction is the chamber with its pressure; the piston's area is the transformer to the rod. The throttle
-    /// obeys the law of a sharp-edged orifice, q = c a sqrt(2 p / rho), with the sign of the pressure. A step looks a
-    /// little beyond the switching before it is located, so each branch has a value there: `abs`.
+    /// obeys the law of a sharp-edged orifice, q = c a sqrt(2 p / rho), with the sign of the pressure. Below the
+    /// transition pressure the flow is laminar: the root's infinite slope at zero is no physics.
     pub graph HydraulicCylinder {
         /// Area of the piston.
         param area: m^2 = 2e-3, above 0;
@@ -19,6 +19,8 @@ bond_graph! {
         param orifice: m^2 = 1e-6, at least 0;
         /// Discharge coefficient of the orifice.
         param discharge: 1 = 0.62, above 0;
+        /// Pressure over the orifice at which its flow becomes turbulent.
+        param transition: Pa = 1e4, above 0;
         /// Mass of piston, rod and load.
         param mass: kg = 150, above 0;
         /// Viscous friction of the piston.
@@ -32,10 +34,13 @@ bond_graph! {
         Sf pump = pump_flow;
         0 chamber: hydraulic;
         C oil = compressibility start compressibility * load / area;
-        R throttle(effort p) = if p < 0 {
-            -discharge * orifice * sqrt(abs(2 * p / density))
+        let turbulent = discharge * orifice * sqrt(2 / density);
+        R throttle(effort p) = if p < -transition {
+            -turbulent * sqrt(-p)
+        } else if p < transition {
+            turbulent * p / sqrt(transition)
         } else {
-            discharge * orifice * sqrt(abs(2 * p / density))
+            turbulent * sqrt(p)
         };
         TF piston(effort p) = p * area;
         1 rod: translation;

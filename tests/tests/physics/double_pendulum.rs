@@ -29,8 +29,14 @@ fn energy_is_kept_though_the_pins_vibrate() {
     let run = record(&DoublePendulum::new(p.clone()).unwrap(), &instants(4.0, 100), 1e-11);
     // Not the model's own sum: kinetic and potential energy from velocities, spins, heights and gaps.
     let [upper, lower, upper_v, lower_v, upper_w, lower_w, shoulder, elbow] = [
-        "upper_position", "lower_position", "upper_velocity", "lower_velocity", "upper_spin", "lower_spin",
-        "shoulder_gap", "elbow_gap",
+        "upper_position",
+        "lower_position",
+        "upper_velocity",
+        "lower_velocity",
+        "upper_spin",
+        "lower_spin",
+        "shoulder_gap",
+        "elbow_gap",
     ]
     .map(|name| run.vectors(name));
     let moment = |mass: f64, length: f64| mass * length * length / 12.0;
@@ -90,12 +96,7 @@ fn large_swings_are_those_of_the_rigid_pendulum_to_first_order_of_the_compliance
         let h = 0.5 * p.lower_mass * p.upper_length * p.lower_length * (s[0] - s[1]).sin();
         let force = [-g[0] * s[0].sin() - h * s[3] * s[3], -g[1] * s[1].sin() + h * s[2] * s[2]];
         let det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-        [
-            s[2],
-            s[3],
-            (m[1][1] * force[0] - m[0][1] * force[1]) / det,
-            (m[0][0] * force[1] - m[1][0] * force[0]) / det,
-        ]
+        [s[2], s[3], (m[1][1] * force[0] - m[0][1] * force[1]) / det, (m[0][0] * force[1] - m[1][0] * force[0]) / det]
     };
     let steps = 20_000;
     let h = end / f64::from(steps);

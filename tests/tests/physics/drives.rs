@@ -31,7 +31,8 @@ fn a_force_off_the_centre_turns_the_plate_as_well() {
     let work: Vec<f64> = run.series("axis_y").iter().map(|sine| p.force * arm * sine).collect();
     let residual = run.series("h_z").into_iter().zip(work).map(|(h, work)| (0.5 * h * h / moment - work).abs());
     within("turning", residual.fold(0.0, f64::max), 1e-9);
-    let rise = run.series("corner_y").into_iter().zip(run.series("supplied")).map(|(y, w)| (p.force * (y - 2.0) - w).abs());
+    let rise =
+        run.series("corner_y").into_iter().zip(run.series("supplied")).map(|(y, w)| (p.force * (y - 2.0) - w).abs());
     within("work", rise.fold(0.0, f64::max), 1e-9);
     within("energy", run.imbalance(), 1e-9);
     assert!(run.largest("h_z") > 0.5);

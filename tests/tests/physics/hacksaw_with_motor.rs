@@ -23,7 +23,12 @@ fn electrical_energy_becomes_heat_motion_and_cut_and_the_current_falls_as_the_cr
     // The starting current is nearly that of the blocked motor, then the back electromotive force takes over.
     let current = run.series("current");
     let peak = current.iter().copied().fold(0.0, f64::max);
-    println!("peak {peak} A of {}, at the end {} A, crank {} rad/s", voltage / p.winding, run.last("current"), run.last("crank_speed"));
+    println!(
+        "peak {peak} A of {}, at the end {} A, crank {} rad/s",
+        voltage / p.winding,
+        run.last("current"),
+        run.last("crank_speed")
+    );
     assert!((0.5..1.0).contains(&(peak * p.winding / voltage)), "{peak}");
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (early, late) = (mean(&current[20..120]), mean(&current[300..]));

@@ -38,14 +38,17 @@ fn without_leakage_the_oil_is_a_spring_under_the_load() {
 }
 
 #[test]
-fn the_throttle_switches_where_the_pressure_changes_its_sign() {
+fn the_throttle_switches_where_its_flow_becomes_laminar_or_turbulent() {
     let p = Parameters { load: 0.0, ..Parameters::default() };
+    let transition = p.transition;
     let pump_flow = Input::function(|t| 1e-4 * (10.0 * t).cos());
     let model = HydraulicCylinder::new(p, Inputs { pump_flow }).unwrap();
-    let run = record(&model, &instants(1.0, 200), 1e-10);
-    let signs: Vec<bool> = run.series("pressure")[1..].iter().map(|pressure| *pressure < 0.0).collect();
-    let changes = signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
-    assert!(changes >= 3, "{changes}");
+    let run = record(&model, &instants(1.0, 2000), 1e-10);
+    let level = |pressure: &f64| (*pressure >= -transition, *pressure >= transition);
+    let levels: Vec<_> = run.series("pressure").iter().map(level).collect();
+    let count = |a: bool, b: bool| usize::from(a != b);
+    let changes: usize = levels.windows(2).map(|w| count(w[0].0, w[1].0) + count(w[0].1, w[1].1)).sum();
+    assert!(changes >= 6, "{changes}");
     assert_eq!(run.events.len(), changes, "{:?}", run.events);
     within("energy", run.imbalance() / run.last("dissipated"), 1e-8);
     assert!(run.series("dissipated").windows(2).all(|pair| pair[0] <= pair[1]));

@@ -19,14 +19,7 @@ const END: f64 = 7.0;
 fn moved(run: &Record, k: usize) -> [f64; 6] {
     let entry = |name: &str| run.series(name)[k];
     let skew = |a: &str, b: &str| 0.5 * (entry(a) - entry(b));
-    [
-        entry("gap_x"),
-        entry("gap_y"),
-        entry("gap_z"),
-        skew("R_32", "R_23"),
-        skew("R_13", "R_31"),
-        skew("R_21", "R_12"),
-    ]
+    [entry("gap_x"), entry("gap_y"), entry("gap_z"), skew("R_32", "R_23"), skew("R_13", "R_31"), skew("R_21", "R_12")]
 }
 
 /// Pushes and turns one plate; `free` are its freedoms, x, y, z of translation, then of rotation.
@@ -37,14 +30,8 @@ macro_rules! holds {
             let free: [bool; 6] = $free.map(|free: u8| free == 1);
             for direction in 0..6 {
                 let mut p = plates::$parameters::default();
-                *[
-                    &mut p.force_x,
-                    &mut p.force_y,
-                    &mut p.force_z,
-                    &mut p.torque_x,
-                    &mut p.torque_y,
-                    &mut p.torque_z,
-                ][direction] = if direction < 3 { FORCE } else { TORQUE };
+                *[&mut p.force_x, &mut p.force_y, &mut p.force_z, &mut p.torque_x, &mut p.torque_y, &mut p.torque_z]
+                    [direction] = if direction < 3 { FORCE } else { TORQUE };
                 let times = instants(END, 14);
                 let run = record(&plates::$model::new(p).unwrap(), &times, 1e-11);
                 judge(&run, direction, free[direction]);
@@ -66,7 +53,11 @@ fn judge(run: &Record, direction: usize, free: bool) {
         if free {
             let way = 0.5 * load / inertia * t * t;
             let expected = if direction < 3 { way } else { way.sin() };
-            assert!((moved[direction] - expected).abs() < 1e-8, "{direction} at {t} s: {} {expected}", moved[direction]);
+            assert!(
+                (moved[direction] - expected).abs() < 1e-8,
+                "{direction} at {t} s: {} {expected}",
+                moved[direction]
+            );
         }
     }
     if !free {

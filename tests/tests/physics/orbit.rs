@@ -19,7 +19,8 @@ fn a_ball_circles_on_its_spring() {
     });
     within("position", apart(&run.vectors("position"), circle), 1e-8);
     within("mass", (run.series("mass")[0] / mass - 1.0).abs(), 1e-14);
-    let force = run.vectors("force").iter().map(|f| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()).collect::<Vec<_>>();
+    let force =
+        run.vectors("force").iter().map(|f| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()).collect::<Vec<_>>();
     within("pull", force.iter().map(|f| (f / pull - 1.0).abs()).fold(0.0, f64::max), 1e-8);
     assert!(run.vectors("force")[0][0] < 0.0, "the spring pulls the second end towards the first");
     within("energy", run.drift("stored"), 1e-9);

@@ -1,5 +1,7 @@
 use bg_model::input::Input;
-use bond_graph_tests::examples::rlc_circuit::{RlcCircuit, RlcCircuitInputs as Inputs, RlcCircuitParameters as Parameters};
+use bond_graph_tests::examples::rlc_circuit::{
+    RlcCircuit, RlcCircuitInputs as Inputs, RlcCircuitParameters as Parameters,
+};
 use bond_graph_tests::record::{instants, record};
 
 use super::truth::{oscillator, within};

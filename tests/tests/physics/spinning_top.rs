@@ -46,7 +46,10 @@ fn regular_precession_keeps_its_tilt_and_rate() {
         let radius = p.arm * tilt.sin() + outward;
         let height = p.arm * tilt.cos() + upward;
         let on_circle = |r: f64, z: f64| {
-            run.times.iter().map(move |t| [r * (precession * t).cos(), r * (precession * t).sin(), z]).collect::<Vec<_>>()
+            run.times
+                .iter()
+                .map(move |t| [r * (precession * t).cos(), r * (precession * t).sin(), z])
+                .collect::<Vec<_>>()
         };
         within("axis", apart(&run.vectors("axis"), on_circle(tilt.sin(), tilt.cos()).into_iter()), 1e-8);
         within("centre", apart(&run.vectors("center"), on_circle(radius, height).into_iter()), 1e-9);

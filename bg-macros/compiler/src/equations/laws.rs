@@ -19,6 +19,7 @@ impl Signals<'_> {
         self.own(node);
         match element.kind {
             K::Se | K::MSe => self.evaluate(element.law.term(), None),
+            K::RSe => self.reaction(node),
             K::C => {
                 let displacement = self.element_state(node);
                 self.storage_law(node, element, &displacement)
@@ -67,7 +68,7 @@ impl Signals<'_> {
             }
             K::Tf | K::Mtf => self.through_transformer(node, element, bond, Role::Flow),
             K::Gy | K::Mgy => self.through_gyrator(node, element, bond, Role::Flow),
-            K::Se | K::MSe | K::C => Value::zero(&mut self.pool, self.graph.bond(bond).cardinality),
+            K::Se | K::MSe | K::RSe | K::C => Value::zero(&mut self.pool, self.graph.bond(bond).cardinality),
         }
     }
 

@@ -7,6 +7,7 @@
 mod fault;
 mod kinematics;
 mod laws;
+mod reactions;
 mod signals;
 mod storage;
 mod terms;
@@ -14,7 +15,7 @@ mod text;
 mod value;
 
 use crate::causality::CausalGraph;
-use crate::expr::{Id, Pool};
+use crate::expr::{Id, Pool, Symbol};
 use crate::fault::Staged;
 use crate::graph::{Input, Parameter};
 
@@ -48,6 +49,8 @@ pub struct StateEquations {
     pub dissipated: Id,
     /// States with the expression that `project` gives them.
     pub projections: Vec<(usize, Id)>,
+    /// Reactions of rigid joints that are not solved for yet.
+    pub reactions: Vec<Reaction>,
     /// Effort and flow of every bond, component by component.
     pub bonds: Vec<(Vec<Id>, Vec<Id>)>,
     /// The equations of the causal graph as text, one line each.
@@ -67,6 +70,19 @@ pub struct State {
     pub start: Id,
     /// Its rate.
     pub rate: Id,
+}
+
+/// The reaction of a residual sink: the effort that keeps a flow at zero.
+#[derive(Clone, Debug)]
+pub struct Reaction {
+    /// The sink.
+    pub element: String,
+    /// The effort, an atom.
+    pub multiplier: Symbol,
+    /// The flow to be kept at zero.
+    pub flow: Id,
+    /// Its integral as the poses have it, where they do.
+    pub gap: Option<Id>,
 }
 
 /// One residual of the assembly.

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::value::Value;
 use super::{EquationFault, Gap, Output, State, StateEquations, Switch, storage, text};
-use crate::ast::TrackKind;
+use crate::ast::{ElementKind, TrackKind};
 use crate::causality::{CausalGraph, End};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
@@ -55,6 +55,8 @@ pub(super) struct Signals<'a> {
     /// First state and shape of every storage, in their order.
     pub(super) layout: Vec<(Storage, usize, Shape)>,
     pub(super) first_integral: usize,
+    /// First multiplier of every residual sink.
+    pub(super) reactions: BTreeMap<NodeId, u32>,
     pub(super) switches: Vec<Switch>,
     /// What is being evaluated, for the switches' names.
     pub(super) owner: String,
@@ -73,6 +75,7 @@ impl<'a> Signals<'a> {
             states: Vec::new(),
             layout: Vec::new(),
             first_integral: 0,
+            reactions: BTreeMap::new(),
             switches: Vec::new(),
             owner: String::new(),
             path: Vec::new(),
@@ -98,6 +101,7 @@ impl<'a> Signals<'a> {
         self.starts();
         let (guesses, gaps) = (self.guesses(), self.gaps());
         let projections = self.projections();
+        let reactions = self.reactions();
         let texts = text::equations(&self);
         if !self.faults.is_empty() {
             return Err(self.faults);
@@ -115,6 +119,7 @@ impl<'a> Signals<'a> {
             supplied,
             dissipated,
             projections,
+            reactions,
             bonds,
             texts,
         })
@@ -140,6 +145,12 @@ impl<'a> Signals<'a> {
                 let name = format!("{name}{suffix}");
                 self.states.push(State { name, unit: unit.clone(), storage: kind, start: zero, rate: zero });
             }
+        }
+        let mut multipliers = 0;
+        for node in self.elements(|kind| kind == ElementKind::RSe) {
+            self.reactions.insert(node, multipliers);
+            let bond = self.graph.node(node).bonds[0];
+            multipliers += u32::try_from(self.graph.bond(bond).cardinality).expect("1 or 3");
         }
         self.first_integral = self.states.len();
         let zero = self.pool.zero();

@@ -57,6 +57,7 @@ fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, letter: char) -> Str
                 .collect();
             let of = match element.kind {
                 ElementKind::Se | ElementKind::MSe | ElementKind::Sf | ElementKind::MSf => String::new(),
+                ElementKind::RSe => " kept by its reaction".to_owned(),
                 ElementKind::C if element.displacement.is_some() => " of its displacement in the poses".to_owned(),
                 ElementKind::C => format!(" of {}.q", definition.name.text),
                 ElementKind::I => format!(" of {}.p", definition.name.text),

@@ -91,7 +91,7 @@ fn one_port(types: &Types<'_>, element: &Element) -> Option<Dimension> {
     let (_, Quantity::Known(unit)) = types.silently(term, None) else { return None };
     match element.kind {
         ElementKind::Se | ElementKind::MSe => Some(unit),
-        ElementKind::Sf | ElementKind::MSf => Some(Dimension::WATT.per(unit)),
+        ElementKind::Sf | ElementKind::MSf | ElementKind::RSe => Some(Dimension::WATT.per(unit)),
         ElementKind::R | ElementKind::Mr => unit.times(Dimension::WATT).root(),
         ElementKind::I => unit.times(Dimension::WATT).per(Dimension::SECOND).root(),
         ElementKind::C => {
@@ -230,13 +230,15 @@ impl LawCheck<'_, '_> {
         let second = Quantity::Known(Dimension::SECOND);
         let source = matches!(
             self.element.kind,
-            ElementKind::Se | ElementKind::MSe | ElementKind::Sf | ElementKind::MSf
+            ElementKind::Se | ElementKind::MSe | ElementKind::Sf | ElementKind::MSf | ElementKind::RSe
         );
         // A linear law acts on a multibond by a number, by one number an axis, or by a tensor.
         let allowed = if source { shape } else if shape == Shape::Vector { found_shape } else { Shape::Scalar };
         match self.element.kind {
             ElementKind::Se | ElementKind::MSe => self.expect("the effort", term, (found_shape, found), allowed, &[effort]),
-            ElementKind::Sf | ElementKind::MSf => self.expect("the flow", term, (found_shape, found), allowed, &[flow]),
+            ElementKind::Sf | ElementKind::MSf | ElementKind::RSe => {
+                self.expect("the flow", term, (found_shape, found), allowed, &[flow]);
+            }
             ElementKind::I => {
                 let inertia = per(times(effort, second), flow);
                 self.expect("the inertia", term, (found_shape, found), allowed, &[inertia]);

@@ -313,6 +313,7 @@ impl ElementKind {
             Self::Gy => "GY",
             Self::MSe => "MSe",
             Self::MSf => "MSf",
+            Self::RSe => "rSe",
             Self::Mtf => "MTF",
             Self::Mgy => "MGY",
             Self::Mr => "MR",

@@ -294,7 +294,7 @@ impl Resolver {
         let clauses = [
             ("start", element.start.is_some(), matches!(kind, K::I | K::C)),
             ("energy", element.energy.is_some(), matches!(kind, K::I | K::C)),
-            ("at", element.displacement.is_some(), kind == K::C),
+            ("at", element.displacement.is_some(), matches!(kind, K::C | K::RSe)),
             ("in", element.frame.is_some(), kind == K::I),
         ];
         for (clause, given, fits) in clauses {

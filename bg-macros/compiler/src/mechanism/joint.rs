@@ -65,6 +65,7 @@ impl Expansion<'_> {
         let missing = |clause, why| MechanismFault::MissingClause { word: "joint", name: name.clone(), clause, why };
         match &joint.stiffness {
             Some(value) => self.bind(&format!("{name}.stiffness"), "N/m", value),
+            None if joint.rigid => {}
             None => {
                 complete = false;
                 self.fault(joint.name.span, &missing("stiffness", "its held translations need one"));
@@ -82,6 +83,7 @@ impl Expansion<'_> {
         match (&joint.tilt_stiffness, joint.kind.holds_rotation()) {
             (Some(value), true) => self.bind(&format!("{name}.tilt_stiffness"), "N*m/rad", value),
             (Some(value), false) => self.fault(value.span, &superfluous("tilt stiffness")),
+            (None, true) if joint.rigid => {}
             (None, true) => {
                 complete = false;
                 self.fault(joint.name.span, &missing("tilt stiffness", "its held rotations need one"));
@@ -99,17 +101,30 @@ impl Expansion<'_> {
     fn translations(&mut self, joint: &Joint, a: &End, b: &End) {
         let (name, span) = (&joint.name.text, joint.name.span);
         let slide = joint.kind.slide();
-        let per_axis = joint.stiffness.as_ref().is_some_and(is_vector) || joint.damping.as_ref().is_some_and(is_vector);
+        let has_axes = |value: &Option<Expression>| value.as_ref().is_some_and(is_vector);
+        let per_axis = !joint.rigid && (has_axes(&joint.stiffness) || has_axes(&joint.damping));
         if slide.is_none() && !per_axis {
             self.force_junction(span, name, (a, b), (a.arm.clone(), b.arm.clone()));
             self.text(
                 span,
                 &format!(
                     "let {name}.gap: m = {} - {};
-                     C {name}.spring = {name}.stiffness at {name}.gap; {name}.slip -> {name}.spring;
                      close {name} = {name}.gap;",
                     b.position, a.position
                 ),
+            );
+            if joint.rigid {
+                self.text(
+                    span,
+                    &format!(
+                        "rSe {name}.reaction = [0, 0, 0] at {name}.gap; {name}.slip -> {name}.reaction;"
+                    ),
+                );
+                return;
+            }
+            self.text(
+                span,
+                &format!("C {name}.spring = {name}.stiffness at {name}.gap; {name}.slip -> {name}.spring;"),
             );
             if joint.damping.is_some() {
                 self.text(span, &format!("R {name}.damper = {name}.damping; {name}.slip -> {name}.damper;"));
@@ -129,10 +144,17 @@ impl Expansion<'_> {
                     "1 {label}: translation; MTF {label}_axis(v) = dot({direction}, v);
                      {name}.slip -> {label}_axis -> {label};
                      let {label}_offset: m = dot({direction}, {name}.gap);
-                     C {label}_spring = {} at {label}_offset; {label} -> {label}_spring;
-                     close {name} = {label}_offset;",
-                    of_axis(joint.stiffness.as_ref(), &format!("{name}.stiffness"), axis)
+                     close {name} = {label}_offset;"
                 ),
+            );
+            if joint.rigid {
+                self.text(span, &format!("rSe {label}_reaction = 0 at {label}_offset; {label} -> {label}_reaction;"));
+                continue;
+            }
+            let stiffness = of_axis(joint.stiffness.as_ref(), &format!("{name}.stiffness"), axis);
+            self.text(
+                span,
+                &format!("C {label}_spring = {stiffness} at {label}_offset; {label} -> {label}_spring;"),
             );
             if joint.damping.is_some() {
                 let damping = of_axis(joint.damping.as_ref(), &format!("{name}.damping"), axis);
@@ -175,7 +197,7 @@ impl Expansion<'_> {
         }
         let alike = joint.tilt_stiffness.as_ref().is_none_or(|value| !is_vector(value))
             && joint.tilt_damping.as_ref().is_none_or(|value| !is_vector(value));
-        if joint.inertial && held.len() == 3 && alike {
+        if joint.inertial && !joint.rigid && held.len() == 3 && alike {
             self.text(
                 span,
                 &format!("C {name}.tilt_spring = {name}.tilt_stiffness; {name}.twist -> {name}.tilt_spring;"),
@@ -208,6 +230,18 @@ impl Expansion<'_> {
         let (name, span) = (&joint.name.text, joint.name.span);
         let label = format!("{name}.{}", rotation.label);
         let axis = AXES.into_iter().find(|axis| rotation.label.ends_with(axis.letter())).unwrap_or(Axis::X);
+        if joint.rigid {
+            let HeldRotation { direction, displacement, .. } = rotation;
+            self.text(
+                span,
+                &format!(
+                    "1 {label}: rotation; MTF {label}_axis(w) = dot({direction}, w);
+                     {name}.twist -> {label}_axis -> {label};
+                     rSe {label}_reaction = 0 at {displacement}; {label} -> {label}_reaction;"
+                ),
+            );
+            return;
+        }
         let (word, direction, at) = if joint.inertial {
             ("TF", format!("ground.{}_axis", axis.letter()), String::new())
         } else {

@@ -8,12 +8,14 @@ mod affine;
 mod equal;
 mod invariant;
 mod live;
+mod reaction;
 mod report;
 
 use crate::equations::StateEquations;
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 use crate::program::{Counts, Request, schedule};
 
+pub use reaction::solve as solve_reactions;
 pub use report::{Count, Fate, Report};
 
 /// Reduces the equations to what a scene needs. `tuned[k]` says that parameter `k` stays adjustable at run time.
@@ -31,6 +33,10 @@ pub fn for_scene(mut equations: StateEquations, tuned: &[bool]) -> (StateEquatio
     report.count("constant states folded", &mut equations);
     equal::merge(&mut equations, &mut report);
     report.count("equal states merged", &mut equations);
+    if !equations.reactions.is_empty() {
+        reaction::solve(&mut equations);
+        report.count("reactions solved", &mut equations);
+    }
     affine::recover(&mut equations, &mut report);
     report.count("affine states recovered", &mut equations);
     live::drop_unwatched(&mut equations, &mut report);
@@ -112,6 +118,10 @@ impl StateEquations {
         roots.extend(self.gaps.iter_mut().map(|gap| &mut gap.value));
         roots.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
         roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
+        for reaction in &mut self.reactions {
+            roots.push(&mut reaction.flow);
+            roots.extend(&mut reaction.gap);
+        }
         roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
         roots.extend(self.projections.iter_mut().map(|(_, id)| id));
         for (efforts, flows) in &mut self.bonds {

@@ -113,11 +113,18 @@ impl Cursor<'_> {
             tilt_stiffness: None,
             tilt_damping: None,
             inertial: false,
+            rigid: false,
         };
-        let mut inertial = None;
+        let (mut inertial, mut rigid) = (None, None);
         self.block_or_semicolon(&JOINT, |entry| {
             if entry.word() == Some("frame") {
                 return entry.inertial_frame(&mut inertial);
+            }
+            if entry.word() == Some("rigid") {
+                let span = entry.advance();
+                entry.fill(&mut rigid, (), "rigid", span);
+                entry.end_statement("");
+                return Ok(());
             }
             entry.setting(&mut [
                 ("stiffness", &mut joint.stiffness),
@@ -127,6 +134,7 @@ impl Cursor<'_> {
             ])
         });
         joint.inertial = inertial.is_some();
+        joint.rigid = rigid.is_some();
         Ok(joint)
     }
 

@@ -38,6 +38,7 @@ pub(super) const GRAPH: Place = Place {
         "GY",
         "MSe",
         "MSf",
+        "rSe",
         "MTF",
         "MGY",
         "MR",

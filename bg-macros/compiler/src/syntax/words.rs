@@ -3,7 +3,7 @@
 use crate::ast::{Axis, BinaryOperator, Comparison, DriveKind, ElementKind, Role, TrackKind};
 
 /// The elements' symbols.
-pub(crate) const ELEMENTS: [(&str, ElementKind); 12] = [
+pub(crate) const ELEMENTS: [(&str, ElementKind); 13] = [
     ("Se", ElementKind::Se),
     ("Sf", ElementKind::Sf),
     ("I", ElementKind::I),
@@ -13,6 +13,7 @@ pub(crate) const ELEMENTS: [(&str, ElementKind); 12] = [
     ("GY", ElementKind::Gy),
     ("MSe", ElementKind::MSe),
     ("MSf", ElementKind::MSf),
+    ("rSe", ElementKind::RSe),
     ("MTF", ElementKind::Mtf),
     ("MGY", ElementKind::Mgy),
     ("MR", ElementKind::Mr),
