@@ -5,9 +5,9 @@ use proc_macro::TokenStream;
 
 /// Compiles multibond graphs of mechanisms, machines and circuits to Rust types that run.
 ///
-/// A call holds one or more graphs. Each becomes a model type, a parameter struct and, where it has inputs, an input struct
-/// ([generated items](#generated-items)). Everything the compiler cannot accept is a compile error at the token to change,
-/// with a code and one action as help ([faults](#faults)).
+/// A call holds one or more graphs. Each becomes a model type, a parameter struct and, where it has inputs, an input
+/// struct ([generated items](#generated-items)). Everything the compiler cannot accept is a compile error at the token
+/// to change, with a code and one action as help ([faults](#faults)).
 ///
 /// ```
 /// # use bg_model::bond_graph;
@@ -33,9 +33,9 @@ use proc_macro::TokenStream;
 /// ```
 ///
 /// The language has two vocabularies. **Bond-graph words** are the field's own: junctions, elements, half arrows.
-/// **Mechanism words** (`body`, `joint`, ...) are shorthand for fragments of multibond graph; the compiler replaces them by
-/// bond-graph words first, and `Description::graph` of every model is that expanded graph as text. Both mix freely: a motor's
-/// shaft can be bonded to a joint's free axis.
+/// **Mechanism words** (`body`, `joint`, ...) are shorthand for fragments of multibond graph; the compiler replaces
+/// them by bond-graph words first, and `Description::graph` of every model is that expanded graph as text. Both mix
+/// freely: a motor's shaft can be bonded to a joint's free axis.
 ///
 /// # Statements
 ///
@@ -46,13 +46,13 @@ use proc_macro::TokenStream;
 ///           | ground | gravity | body | joint | spring | drive | contact
 /// ```
 ///
-/// Order is free: a name may be used before it is declared. States and outputs keep the order of declaration. A statement
-/// ends with `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in front of `graph`,
-/// `param` and `input` and become the documentation of the generated items.
+/// Order is free: a name may be used before it is declared. States and outputs keep the order of declaration. A
+/// statement ends with `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in
+/// front of `graph`, `param` and `input` and become the documentation of the generated items.
 ///
-/// Names are Rust identifiers, Rust's keywords excluded. Names of `let`s, junctions, elements, tracks and outputs may have
-/// dots (`pin.slip`); those of graphs, parameters, inputs, bodies, points, joints, springs, drives and contacts have none.
-/// All of a graph's names are different.
+/// Names are Rust identifiers, Rust's keywords excluded. Names of `let`s, junctions, elements, tracks and outputs may
+/// have dots (`pin.slip`); those of graphs, parameters, inputs, bodies, points, joints, springs, drives and contacts
+/// have none. All of a graph's names are different.
 ///
 /// ## `param`, `input`, `let`
 ///
@@ -62,8 +62,8 @@ use proc_macro::TokenStream;
 /// let   = "let" NAME [":" UNIT] "=" EXPRESSION ";"
 /// ```
 ///
-/// - A **parameter** stays the same during a run. Its default and the ends of its range are made of numbers and `+ - * /`.
-///   The range is checked by the generated `new`.
+/// - A **parameter** stays the same during a run. Its default and the ends of its range are made of numbers and `+ - *
+///   /`. The range is checked by the generated `new`.
 /// - An **input** is a function of time, given at run time as a `bg_model::input::Input`: a constant or a closure.
 /// - A **let** names an expression. A unit, where given, is checked.
 ///
@@ -73,9 +73,9 @@ use proc_macro::TokenStream;
 /// junction = ("0" | "1") NAME ["[3]"] [":" DOMAIN] { "," NAME ["[3]"] [":" DOMAIN] } ";"
 /// ```
 ///
-/// A 0-junction has one effort, its flows balance; a 1-junction has one flow, its efforts balance. `[3]` makes a multibond
-/// junction of three components. The domain fixes the units of effort and flow. It may be left out where a source, a
-/// parameter or a neighbour behind a two-port fixes them.
+/// A 0-junction has one effort, its flows balance; a 1-junction has one flow, its efforts balance. `[3]` makes a
+/// multibond junction of three components. The domain fixes the units of effort and flow. It may be left out where a
+/// source, a parameter or a neighbour behind a two-port fixes them.
 ///
 /// | domain | effort | flow | displacement (C) | momentum (I) |
 /// |---|---|---|---|---|
@@ -91,10 +91,10 @@ use proc_macro::TokenStream;
 /// chain = NAME "->" NAME { "->" NAME } ";"
 /// ```
 ///
-/// Each `->` is a bond. **Power is positive along the half arrow, always.** A one-port (source, I, C, R) has exactly one
-/// bond; a two-port (TF, GY) has one in and one out, so it stands inside a chain. Conventions: half arrows point from
-/// sources into the graph and from junctions into I, C and R. Then an R dissipates positive power, and the momentum and
-/// displacement of I and C have the sign of the junction's effort and flow.
+/// Each `->` is a bond. **Power is positive along the half arrow, always.** A one-port (source, I, C, R) has exactly
+/// one bond; a two-port (TF, GY) has one in and one out, so it stands inside a chain. Conventions: half arrows point
+/// from sources into the graph and from junctions into I, C and R. Then an R dissipates positive power, and the
+/// momentum and displacement of I and C have the sign of the junction's effort and flow.
 ///
 /// ## Elements
 ///
@@ -103,7 +103,8 @@ use proc_macro::TokenStream;
 /// clause  = "in" EXPRESSION | "at" EXPRESSION | "start" EXPRESSION | "energy" EXPRESSION
 /// ```
 ///
-/// Without a variable the law is linear in the expression. With one, `R bearing(w) = ...`, the expression is the law itself.
+/// Without a variable the law is linear in the expression. With one, `R bearing(w) = ...`, the expression is the law
+/// itself.
 ///
 /// | word | linear law `= E` | law of a variable |
 /// |---|---|---|
@@ -115,18 +116,20 @@ use proc_macro::TokenStream;
 /// | `TF`, `MTF` | flow out = E \* flow in, effort in = E \* effort out | `TF a(f) = ...` flow out from flow in; `TF a(effort e) = ...` effort out from effort in |
 /// | `GY`, `MGY` | effort in = E \* flow out, effort out = E \* flow in | - |
 ///
-/// - A transformer's law must be linear in its variable; the other variable comes back through the transposed matrix, so that
-///   power is conserved. It may change the cardinality: `TF lift(v) = dot([0, 1, 0], v)` joins a multibond to a scalar one.
-/// - What a law may depend on: `Se`, `Sf` on parameters, inputs and time; `TF`, `GY` and a linear `R` on parameters; the words
-///   with an `M`, and the law of a variable of an R, on everything: states, flows, efforts, inputs, time; `I` and `C` on
-///   everything but inputs.
+/// - A transformer's law must be linear in its variable; the other variable comes back through the transposed matrix,
+///   so that power is conserved. It may change the cardinality: `TF lift(v) = dot([0, 1, 0], v)` joins a multibond to a
+///   scalar one.
+/// - What a law may depend on: `Se`, `Sf` on parameters, inputs and time; `TF`, `GY` and a linear `R` on parameters;
+///   the words with an `M`, and the law of a variable of an R, on everything: states, flows, efforts, inputs, time; `I`
+///   and `C` on everything but inputs.
 /// - `in R` (only I): the matrix of the law is constant in the axes that the orientation R turns.
-/// - `at E` (only C): the displacement is E, which the poses determine, and no state of its own. The compiler proves that E
-///   changes with the flow of the C's bond: the difference of dE/dt, by the chain rule along the tracked junctions, and that
-///   flow must vanish as a polynomial identity. Otherwise BG0505.
+/// - `at E` (only C): the displacement is E, which the poses determine, and no state of its own. The compiler proves
+///   that E changes with the flow of the C's bond: the difference of dE/dt, by the chain rule along the tracked
+///   junctions, and that flow must vanish as a polynomial identity. Otherwise BG0505.
 /// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
-/// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it may be
-///   left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the law.
+/// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
+///   may be left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the
+///   law.
 ///
 /// ```
 /// # use bg_model::bond_graph;
@@ -170,11 +173,11 @@ use proc_macro::TokenStream;
 /// close       = "close" NAME "=" EXPRESSION ";"
 /// ```
 ///
-/// Tracks are kinematic states that follow a 1-junction of cardinality 3. A **position** is the integral of its flow: three
-/// states. An **orientation** is the rotation matrix from the body's axes to the inertial ones, R' = \[w x\] R with the
-/// angular velocity w in inertial axes: nine states. After each accepted step, and in dense output, the integrator calls
-/// `System::project`: one Newton-Schulz step R (3 - R^T R) / 2 towards the nearest orthogonal matrix. `close` states a gap,
-/// scalar or vector, that the assembly makes zero at the start ([start poses](#start-poses)).
+/// Tracks are kinematic states that follow a 1-junction of cardinality 3. A **position** is the integral of its flow:
+/// three states. An **orientation** is the rotation matrix from the body's axes to the inertial ones, R' = \[w x\] R
+/// with the angular velocity w in inertial axes: nine states. After each accepted step, and in dense output, the
+/// integrator calls `System::project`: one Newton-Schulz step R (3 - R^T R) / 2 towards the nearest orthogonal matrix.
+/// `close` states a gap, scalar or vector, that the assembly makes zero at the start ([start poses](#start-poses)).
 ///
 /// # Expressions
 ///
@@ -188,8 +191,8 @@ use proc_macro::TokenStream;
 /// | junctions | `NAME.flow` of a 1-junction, `NAME.effort` of a 0-junction |
 /// | elements | `NAME.flow`, `NAME.effort` of its bond (of a two-port's bond in), signs along the half arrow; `NAME.power` into it; `NAME.energy`, `NAME.q` of a C, `NAME.energy`, `NAME.p` of an I |
 ///
-/// Shapes: scalars, vectors of three, 3 x 3 matrices. A scalar times anything, matrix times vector and matrix times matrix are
-/// products; two vectors need `dot`, `cross` or `outer`. Sums want equal shapes.
+/// Shapes: scalars, vectors of three, 3 x 3 matrices. A scalar times anything, matrix times vector and matrix times
+/// matrix are products; two vectors need `dot`, `cross` or `outer`. Sums want equal shapes.
 ///
 /// | function | gives | units |
 /// |---|---|---|
@@ -207,13 +210,14 @@ use proc_macro::TokenStream;
 ///
 /// # Units
 ///
-/// Coherent SI only, so that no factor ever enters: `kg m s A K mol cd rad Hz N Pa J W C V F Ohm S Wb T H sr lm kat`, joined by
-/// `*` and `/`, with whole powers: `kg*m^2/s`, `1/s`; `1` is a pure number. Each `/` is for the one factor behind it: `N*m*s/rad`,
-/// `W/m^2/K`. `rad` and `sr` are pure numbers, as in the SI, so a torque and an energy have the same unit.
+/// Coherent SI only, so that no factor ever enters: `kg m s A K mol cd rad Hz N Pa J W C V F Ohm S Wb T H sr lm kat`,
+/// joined by `*` and `/`, with whole powers: `kg*m^2/s`, `1/s`; `1` is a pure number. Each `/` is for the one factor
+/// behind it: `N*m*s/rad`, `W/m^2/K`. `rad` and `sr` are pure numbers, as in the SI, so a torque and an energy have the
+/// same unit.
 ///
-/// Every law, bond, start value and output is checked; a fault names the two units that disagree. A bare number takes the unit
-/// that its place asks for. As a factor it may carry any unit, so a product with a bare number is not checked: use a `param` or
-/// a `let` with a unit where a check is wanted.
+/// Every law, bond, start value and output is checked; a fault names the two units that disagree. A bare number takes
+/// the unit that its place asks for. As a factor it may carry any unit, so a product with a bare number is not checked:
+/// use a `param` or a `let` with a unit where a check is wanted.
 ///
 /// # Mechanism words
 ///
@@ -224,8 +228,8 @@ use proc_macro::TokenStream;
 /// gravity = "gravity" EXPRESSION ";"
 /// ```
 ///
-/// `ground` is the inertial frame with its named points (m). `gravity [0, -9.81, 0];` (m/s^2) gives every body a weight at its
-/// centre of mass. A weight is an `Se`: its power counts as supplied, not as stored.
+/// `ground` is the inertial frame with its named points (m). `gravity [0, -9.81, 0];` (m/s^2) gives every body a weight
+/// at its centre of mass. A weight is an `Se`: its power counts as supplied, not as stored.
 ///
 /// ## `body`
 ///
@@ -238,15 +242,15 @@ use proc_macro::TokenStream;
 /// start = "start" [POINT] "at" E ";" | "start" "turned" E ";" | "start" "velocity" E ";" | "start" "spin" E ";"
 /// ```
 ///
-/// A rigid body. Its mass, centre of mass and inertia tensor are the sums over its **parts** (`at`: the part's centre; `turned`:
-/// its orientation; both in the body's axes), or **given**: `mass` (kg), `center` (m, the origin when left out) and `inertia`
-/// about the centre (kg\*m^2: three principal moments or a matrix). The start pose is that of the origin or of a point (m,
-/// inertial axes) and a rotation matrix; `velocity` (m/s) is that of the centre of mass, `spin` (rad/s) the angular velocity, both
-/// in inertial axes. What is left out is zero, or unturned.
+/// A rigid body. Its mass, centre of mass and inertia tensor are the sums over its **parts** (`at`: the part's centre;
+/// `turned`: its orientation; both in the body's axes), or **given**: `mass` (kg), `center` (m, the origin when left
+/// out) and `inertia` about the centre (kg\*m^2: three principal moments or a matrix). The start pose is that of the
+/// origin or of a point (m, inertial axes) and a rotation matrix; `velocity` (m/s) is that of the centre of mass,
+/// `spin` (rad/s) the angular velocity, both in inertial axes. What is left out is zero, or unturned.
 ///
-/// It stands for two multibond 1-junctions, `NAME.translation` (velocity of the centre of mass) and `NAME.rotation` (angular
-/// velocity), both in inertial axes, with `I NAME.linear`, and `I NAME.angular` whose tensor turns with the body. There is no
-/// gyroscopic term, because h' is the sum of the moments in inertial axes.
+/// It stands for two multibond 1-junctions, `NAME.translation` (velocity of the centre of mass) and `NAME.rotation`
+/// (angular velocity), both in inertial axes, with `I NAME.linear`, and `I NAME.angular` whose tensor turns with the
+/// body. There is no gyroscopic term, because h' is the sum of the moments in inertial axes.
 ///
 /// | name | |
 /// |---|---|
@@ -268,15 +272,15 @@ use proc_macro::TokenStream;
 /// clause = "stiffness" E ";" | "damping" E ";" | "tilt" "stiffness" E ";" | "tilt" "damping" E ";" | "frame" "inertial" ";"
 /// ```
 ///
-/// A compliant joint: a C and an R on each direction that it holds. Stiffness (N/m) holds translations, tilt stiffness (N\*m/rad)
-/// rotations; both are needed where the joint holds such a direction. Damping may be left out. One number is for all directions,
-/// a vector has one for each axis.
+/// A compliant joint: a C and an R on each direction that it holds. Stiffness (N/m) holds translations, tilt stiffness
+/// (N\*m/rad) rotations; both are needed where the joint holds such a direction. Damping may be left out. One number is
+/// for all directions, a vector has one for each axis.
 ///
-/// **The relative motion is that of the second end to the first, and forces and moments are those on the second body**, their
-/// opposites act on the first. Axes are the first body's (`universal x y`: x of the first, y of the second body). A pin whose
-/// stiffness is one number is kept in inertial axes. Held rotations are measured as direction cosines of the two bodies' axes,
-/// which equal the angles while these are small, and cost no states. With `frame inertial` they are the integrals of the relative
-/// angular velocity in inertial axes, one state each.
+/// **The relative motion is that of the second end to the first, and forces and moments are those on the second body**,
+/// their opposites act on the first. Axes are the first body's (`universal x y`: x of the first, y of the second body).
+/// A pin whose stiffness is one number is kept in inertial axes. Held rotations are measured as direction cosines of
+/// the two bodies' axes, which equal the angles while these are small, and cost no states. With `frame inertial` they
+/// are the integrals of the relative angular velocity in inertial axes, one state each.
 ///
 /// | name | |
 /// |---|---|
@@ -297,12 +301,12 @@ use proc_macro::TokenStream;
 /// LAW     = ("C" | "R") ["(" VARIABLE ")"] "=" E
 /// ```
 ///
-/// A **spring** pulls along the line between its ends; `length` is the unloaded one (0 when left out). Names: `NAME.force` on the
-/// second end, `NAME.distance`, `NAME.spring.energy`.
+/// A **spring** pulls along the line between its ends; `length` is the unloaded one (0 when left out). Names:
+/// `NAME.force` on the second end, `NAME.distance`, `NAME.spring.energy`.
 ///
-/// A **contact** lets the first end slide along a line of the second body: laws for each axis of the second body act at the place of
-/// the first end. Names: `NAME.force` on the second body, `NAME.gap`, `NAME.speed` along the line, and for each axis with laws the
-/// elements `NAME.x_damper`, `NAME.y_spring` and so on.
+/// A **contact** lets the first end slide along a line of the second body: laws for each axis of the second body act at
+/// the place of the first end. Names: `NAME.force` on the second body, `NAME.gap`, `NAME.speed` along the line, and for
+/// each axis with laws the elements `NAME.x_damper`, `NAME.y_spring` and so on.
 ///
 /// ## `drive`
 ///
@@ -311,10 +315,10 @@ use proc_macro::TokenStream;
 ///       | "drive" NAME "on" JOINT "speed" "=" E "{" "stiffness" E ";" ["damping" E ";"] "}"
 /// ```
 ///
-/// On a joint: a torque about or a force along its free axis, a scalar, on the second body, its opposite on the first. On a body: a
-/// torque, a vector in inertial axes. On a point of a body, or a body for its origin: a force, a vector in inertial axes. A prescribed
-/// speed acts through a compliant coupling, since an inertia behind a flow source would be in derivative causality. `NAME` is the
-/// source's element; `NAME.power` is minus the power that it gives.
+/// On a joint: a torque about or a force along its free axis, a scalar, on the second body, its opposite on the first.
+/// On a body: a torque, a vector in inertial axes. On a point of a body, or a body for its origin: a force, a vector in
+/// inertial axes. A prescribed speed acts through a compliant coupling, since an inertia behind a flow source would be
+/// in derivative causality. `NAME` is the source's element; `NAME.power` is minus the power that it gives.
 ///
 /// ```
 /// # use bg_model::bond_graph;
@@ -358,15 +362,16 @@ use proc_macro::TokenStream;
 ///
 /// # Start poses
 ///
-/// Start values are expressions of parameters. `guess(E)` in a body's start is an unknown: before a run the assembly moves all of
-/// them from their guesses until every joint's gap is closed to 1e-10 m or rad (`Model::start`). It names the joint and its gap where
-/// that fails. Without guesses the gaps are only checked. The method is Gauss-Newton with the least step, damped where needed.
+/// Start values are expressions of parameters. `guess(E)` in a body's start is an unknown: before a run the assembly
+/// moves all of them from their guesses until every joint's gap is closed to 1e-10 m or rad (`Model::start`). It names
+/// the joint and its gap where that fails. Without guesses the gaps are only checked. The method is Gauss-Newton with
+/// the least step, damped where needed.
 ///
 /// # Causality
 ///
-/// Strokes are assigned by the sequential procedure (SCAP): sources, then laws that work one way only (laws of a variable), then I and
-/// C in integral causality, in the order of declaration, then what is left; each assignment is propagated before the next. Only
-/// integral causality is accepted:
+/// Strokes are assigned by the sequential procedure (SCAP): sources, then laws that work one way only (laws of a
+/// variable), then I and C in integral causality, in the order of declaration, then what is left; each assignment is
+/// propagated before the next. Only integral causality is accepted:
 ///
 /// - two causes for one effort or flow: BG0401, none: BG0402;
 /// - an I or C whose state others already determine: BG0403. Put a C with an R in between, or merge the two;
@@ -375,16 +380,18 @@ use proc_macro::TokenStream;
 ///
 /// # Events
 ///
-/// The comparison of an `if` becomes a switch with a real-valued guard: `a - b` for `<` and `<=`, `b - a` for `>` and `>=`; below zero
-/// the first branch holds. Equal comparisons share a switch. Within a step every switch keeps its branch, so that the law is smooth
-/// there. Where a guard changes its sign, the step is repeated, shortened to that instant, with real steps of the method until the
-/// guard is zero to rounding; then the branch is decided by the guard's sign just behind the event. A comparison that depends on
-/// parameters only has a switch, too, which never changes.
+/// The comparison of an `if` becomes a switch with a real-valued guard: `a - b` for `<` and `<=`, `b - a` for `>` and
+/// `>=`; below zero the first branch holds. Equal comparisons share a switch. Within a step every switch keeps its
+/// branch, so that the law is smooth there. Where a guard changes its sign, the step is repeated, shortened to that
+/// instant, with real steps of the method until the guard is zero to rounding; then the branch is decided by the
+/// guard's sign just behind the event. A comparison that depends on parameters only has a switch, too, which never
+/// changes.
 ///
 /// # Energy
 ///
-/// `stored_energy` is the energy in all I and C, `supplied_power` that of all sources into the model (weights and drives included, and
-/// what modulated storages take up), `dissipated_power` that of all R out of it: d(stored)/dt = supplied - dissipated.
+/// `stored_energy` is the energy in all I and C, `supplied_power` that of all sources into the model (weights and
+/// drives included, and what modulated storages take up), `dissipated_power` that of all R out of it: d(stored)/dt =
+/// supplied - dissipated.
 ///
 /// # `observe`
 ///
@@ -392,8 +399,9 @@ use proc_macro::TokenStream;
 /// observe = "observe" "{" [NAME [":" UNIT] "="] EXPRESSION { (";" | ",") ... } "}"
 /// ```
 ///
-/// What the model's `outputs` gives, in the order of declaration. A unit is worth writing: an angle reads as `1` without it, and so does
-/// what has lost its unit in a product with bare numbers, such as a `travel` along an axis of the ground. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
+/// What the model's `outputs` gives, in the order of declaration. A unit is worth writing: an angle reads as `1`
+/// without it, and so does what has lost its unit in a product with bare numbers, such as a `travel` along an axis of
+/// the ground. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
 /// name the output is called like its expression.
 ///
 /// ```
@@ -441,8 +449,8 @@ use proc_macro::TokenStream;
 ///
 /// # Faults
 ///
-/// All faults of a stage are reported at once; a later stage looks at a graph that the earlier ones accepted. With a fault, the promised items
-/// are still there as stubs, so that rustc adds no errors about missing types.
+/// All faults of a stage are reported at once; a later stage looks at a graph that the earlier ones accepted. With a
+/// fault, the promised items are still there as stubs, so that rustc adds no errors about missing types.
 ///
 /// | code | meaning |
 /// |---|---|

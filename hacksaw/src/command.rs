@@ -8,16 +8,19 @@ use std::io::{IsTerminal, Write, stderr, stdout};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use bg_model::parameters::Parameters;
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::system::Model;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use thiserror::Error;
 
 use crate::checks;
-use crate::mechanism::{Hacksaw, HacksawParameters};
+use crate::mechanism::HacksawParameters;
 use crate::output::{OutputError, Places};
-use crate::parameters::{self, SettingError};
+use crate::parameters::{self, Chosen, SettingError};
+use crate::report::{self, Part};
 use crate::run::{self, RunSettings, Simulation};
+use crate::scenes::{Fixed, Scene, Visitor};
 use crate::summary::Summary;
 
 /// Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says about them.
@@ -34,6 +37,21 @@ struct Cli {
 enum Command {
     /// Run the hacksaw (also what `hacksaw` alone does)
     Run(RunArguments),
+    /// List the scenes, or say what a scene left out of the literal model and why
+    Scene {
+        /// The scene to report on; without it, one line for each
+        #[arg(value_name = "NAME")]
+        scene: Option<Scene>,
+    },
+    /// Print the multibond graph of a scene: elements, bonds with causal strokes, states, equations, operations
+    Graph {
+        /// The scene. All of one mechanism have the same graph but for what they are without; states, operations differ
+        #[arg(long, value_name = "NAME", default_value_t, value_enum)]
+        scene: Scene,
+        /// What to print; without it, an overview of counts, states and operations
+        #[arg(long, value_name = "PART", value_enum)]
+        part: Option<Part>,
+    },
     /// List the parameters: name, default, unit, meaning
     Parameters {
         /// Print them as a file for --params
@@ -44,6 +62,10 @@ enum Command {
 
 #[derive(Debug, Args)]
 struct RunArguments {
+    /// What to model: figures and checks need paper, full or literal; `hacksaw scene` says more
+    #[arg(long, value_name = "NAME", default_value_t, value_enum)]
+    scene: Scene,
+
     /// Set a parameter; can be given again and again, the last one counts. Comes after --params
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     set: Vec<String>,
@@ -95,8 +117,10 @@ enum InputError {
     Range { name: &'static str, value: f64, range: String },
     #[error("--step {step}: gives more than {MOST_ROWS} rows until {t_end} s; choose a longer one")]
     Rows { step: f64, t_end: f64 },
+    #[error("{place}: {fault}")]
+    Fixed { place: String, fault: Fixed },
     #[error(transparent)]
-    Model(#[from] bg_model::parameters::ParameterError),
+    Model(#[from] ParameterError),
     #[error(transparent)]
     Start(#[from] bg_model::assembly::AssemblyError),
     #[error(transparent)]
@@ -111,6 +135,14 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         // Help and version; a reader that has gone away is no fault.
         Err(help) => {
             let _ = help.print();
+            return ExitCode::SUCCESS;
+        }
+        Ok(Cli { command: Some(Command::Scene { scene }), .. }) => {
+            print(&scene.map_or_else(report::scenes, report::scene));
+            return ExitCode::SUCCESS;
+        }
+        Ok(Cli { command: Some(Command::Graph { scene, part }), .. }) => {
+            print(&report::graph(scene, part));
             return ExitCode::SUCCESS;
         }
         Ok(Cli { command: Some(Command::Parameters { toml }), .. }) => {
@@ -136,17 +168,14 @@ fn command() -> clap::Command {
 }
 
 fn simulate(arguments: &RunArguments) -> Result<ExitCode, InputError> {
-    let values: HacksawParameters = parameters::merge(arguments.params.as_deref(), &arguments.set)?;
-    let changed = changed(&values);
+    let chosen: Chosen<HacksawParameters> = parameters::merge(arguments.params.as_deref(), &arguments.set)?;
     let settings = settings(arguments)?;
-    let model = Hacksaw::new(values)?;
-    let places = Places::new(&arguments.out, arguments.csv.as_deref(), !arguments.no_figures);
-    places.prepare()?;
-
-    let bar = progress_bar(settings.t_end);
-    let simulation = run::run(&model, &settings, |t| bar.set_position(ticks(t)))?;
-    bar.finish_and_clear();
-    match report(&simulation, &settings, &places, changed) {
+    let scene = arguments.scene;
+    // Figures are drawn from the reference columns.
+    let figures = !arguments.no_figures && scene.has_reference_columns();
+    let places = Places::new(&arguments.out, arguments.csv.as_deref(), figures);
+    let simulation = scene.visit(Run { scene, chosen: &chosen, settings: &settings, places: &places })?;
+    match report(scene, &simulation, &settings, &places, changed(&chosen.values)) {
         Ok(()) => {}
         Err(fault) => return Ok(fail(&fault.to_string())),
     }
@@ -156,15 +185,47 @@ fn simulate(arguments: &RunArguments) -> Result<ExitCode, InputError> {
     })
 }
 
+/// Makes a scene's model and runs it, with the places tried before.
+struct Run<'a> {
+    scene: Scene,
+    chosen: &'a Chosen<HacksawParameters>,
+    settings: &'a RunSettings,
+    places: &'a Places,
+}
+
+impl Visitor for Run<'_> {
+    type Output = Result<Simulation, InputError>;
+
+    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
+        self,
+        new: fn(P) -> Result<Mo, ParameterError>,
+    ) -> Self::Output
+    where
+        P: Parameters,
+        Mo: Model<f64, N, G, M>,
+    {
+        let own = self.scene.parameters(&self.chosen.values);
+        let own = own.map_err(|fault| InputError::Fixed { place: self.chosen.places[fault.index].clone(), fault })?;
+        let model = new(own)?;
+        self.places.prepare()?;
+        let bar = progress_bar(self.settings.t_end);
+        let simulation = run::run(&model, self.settings, |t| bar.set_position(ticks(t)))?;
+        bar.finish_and_clear();
+        Ok(simulation)
+    }
+}
+
 /// Writes the files and prints the summary.
 fn report(
+    scene: Scene,
     simulation: &Simulation,
     settings: &RunSettings,
     places: &Places,
     changed_parameters: Vec<String>,
 ) -> Result<(), Box<dyn std::error::Error>> {
     let trajectory = &simulation.trajectory;
-    let mut summary = Summary::new(simulation, settings, checks::check(trajectory)?)?;
+    let checks = if trajectory.has_reference_columns() { checks::check(trajectory)? } else { Vec::new() };
+    let mut summary = Summary::new(&scene.name(), simulation, settings, checks)?;
     summary.changed_parameters = changed_parameters;
     places.write(&trajectory.at(&settings.output_times()), trajectory, &mut summary)?;
     let written: String = match (&places.directory, summary.files.len()) {

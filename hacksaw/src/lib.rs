@@ -3,6 +3,9 @@
 //! | module | question |
 //! |---|---|
 //! | [`mechanism`] | what the hacksaw is: its multibond graph, compiled |
+//! | [`scenes`] | which of its models a run takes: the literal one, or one with only what a scene needs |
+//! | [`agreement`] | how far a scene is from the literal model |
+//! | [`report`] | what a scene consists of and what it left out |
 //! | [`parameters`] | which values its parameters have in this run |
 //! | [`run`](mod@run) | how it moves: integration and samples |
 //! | [`trajectory`] | what was sampled, and the CSV file of it |
@@ -13,6 +16,7 @@
 //! | [`output`] | where the files go |
 //! | [`command`] | what the user asks for |
 
+pub mod agreement;
 pub mod checks;
 pub mod command;
 pub mod figures;
@@ -20,6 +24,8 @@ pub mod mechanism;
 pub mod output;
 pub mod overview;
 pub mod parameters;
+pub mod report;
 pub mod run;
+pub mod scenes;
 pub mod summary;
 pub mod trajectory;

@@ -71,12 +71,21 @@ fn near_miss(near: Option<&String>) -> String {
     }
 }
 
+/// The values chosen for a run, and where each was chosen.
+#[derive(Clone, Debug)]
+pub struct Chosen<P> {
+    /// The values.
+    pub values: P,
+    /// For each parameter of the table the last place that set it: a `--set` or a file; empty for a default.
+    pub places: Vec<String>,
+}
+
 /// The model's defaults, changed by the file and then by the `NAME=VALUE` texts in their order.
 ///
 /// # Errors
 /// The first setting that cannot be used.
-pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<P, SettingError> {
-    let mut parameters = P::default();
+pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<Chosen<P>, SettingError> {
+    let mut parameters = Chosen { values: P::default(), places: vec![String::new(); P::table().len()] };
     if let Some(path) = file {
         let text = std::fs::read_to_string(path)
             .map_err(|source| SettingError::Unreadable { path: path.to_owned(), source })?;
@@ -91,7 +100,7 @@ pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<
             value: value.to_owned(),
         });
         // An unknown name is the better message where both are wrong.
-        let number = if parameters.get(name).is_some() { number? } else { 0.0 };
+        let number = if parameters.values.get(name).is_some() { number? } else { 0.0 };
         set(&mut parameters, &format!("--set {setting}"), name, number)?;
     }
     Ok(parameters)
@@ -144,7 +153,7 @@ fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn set_from_toml<P: Parameters>(parameters: &mut P, path: &Path, text: &str) -> Result<(), SettingError> {
+fn set_from_toml<P: Parameters>(parameters: &mut Chosen<P>, path: &Path, text: &str) -> Result<(), SettingError> {
     let entries: toml::Table = text.parse().map_err(|fault: toml::de::Error| {
         let before = &text[..fault.span().map_or(0, |span| span.start).min(text.len())];
         SettingError::Toml {
@@ -160,7 +169,7 @@ fn set_from_toml<P: Parameters>(parameters: &mut P, path: &Path, text: &str) -> 
             toml::Value::Float(number) => *number,
             // Every whole number that a parameter can sensibly have is exact in f64.
             toml::Value::Integer(number) => *number as f64,
-            _ if parameters.get(name).is_none() => 0.0,
+            _ if parameters.values.get(name).is_none() => 0.0,
             other => {
                 let (place, name) = (place.clone(), name.clone());
                 return Err(SettingError::NotANumber { place, name, value: one_line(&other.to_string()) });
@@ -171,12 +180,16 @@ fn set_from_toml<P: Parameters>(parameters: &mut P, path: &Path, text: &str) -> 
     Ok(())
 }
 
-fn set<P: Parameters>(parameters: &mut P, place: &str, name: &str, value: f64) -> Result<(), SettingError> {
+fn set<P: Parameters>(parameters: &mut Chosen<P>, place: &str, name: &str, value: f64) -> Result<(), SettingError> {
     let place = place.to_owned();
-    parameters.set(name, value).map_err(|fault| match fault {
-        ParameterError::Unknown { name } => SettingError::Unknown { place, near: nearest::<P>(&name), name },
-        fault => SettingError::Range { place, fault },
-    })
+    parameters.values.set(name, value).map_err(|fault| match fault {
+        ParameterError::Unknown { name } => SettingError::Unknown { place: place.clone(), near: nearest::<P>(&name), name },
+        fault => SettingError::Range { place: place.clone(), fault },
+    })?;
+    if let Some(index) = P::table().iter().position(|info| info.name == name) {
+        parameters.places[index] = place;
+    }
+    Ok(())
 }
 
 /// The parameter whose name is most similar to `name`, if any is similar.
@@ -197,11 +210,15 @@ mod tests {
     use super::*;
     use crate::mechanism::HacksawParameters;
 
-    fn merge_text(toml: &str, settings: &[&str]) -> Result<HacksawParameters, SettingError> {
+    fn chosen(toml: &str, settings: &[&str]) -> Result<Chosen<HacksawParameters>, SettingError> {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), toml).unwrap();
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
         merge(Some(file.path()), &settings)
+    }
+
+    fn merge_text(toml: &str, settings: &[&str]) -> Result<HacksawParameters, SettingError> {
+        chosen(toml, settings).map(|chosen| chosen.values)
     }
 
     fn fault(toml: &str, settings: &[&str]) -> String {
@@ -214,6 +231,17 @@ mod tests {
         assert_eq!(parameters.get("torque"), Some(15.0));
         assert_eq!(parameters.get("r_cut"), Some(80.5));
         assert_eq!(parameters.get("r_return"), HacksawParameters::default().get("r_return"));
+    }
+
+    #[test]
+    fn the_last_place_that_set_a_parameter_is_known() {
+        let chosen = chosen("torque = 12\nr_cut = 80.5\n", &["torque=14", "torque=15"]).unwrap();
+        let place = |name: &str| {
+            &chosen.places[HacksawParameters::table().iter().position(|info| info.name == name).unwrap()]
+        };
+        assert_eq!(place("torque"), "--set torque=15");
+        assert!(!place("r_cut").is_empty());
+        assert_eq!(place("r_return"), "");
     }
 
     #[test]

@@ -6,7 +6,7 @@
 use std::time::{Duration, Instant};
 
 use bg_model::assembly::AssemblyError;
-use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::integrator::{Dop853, Method, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
@@ -96,6 +96,30 @@ pub fn run<Mo, const N: usize, const G: usize, const M: usize>(
 where
     Mo: Model<f64, N, G, M>,
 {
+    let integration = Settings {
+        tolerances: Tolerances::new(settings.rtol, settings.atol),
+        samples: Samples::At(settings.sample_times()),
+        step_limit: (STEPS_PER_SECOND * settings.t_end.max(1.0)) as u64,
+        ..Settings::default()
+    };
+    record(model, &mut Dop853::new(), settings.t_end, &integration, progress)
+}
+
+/// Integrates `model` from its start until `t_end` (s) as `integration` asks, with any method. `progress` is told the time
+/// reached, s, after each step.
+///
+/// # Errors
+/// As [`run`].
+pub fn record<Mo, const N: usize, const G: usize, const M: usize>(
+    model: &Mo,
+    method: &mut impl Method<N>,
+    t_end: f64,
+    integration: &Settings<N>,
+    progress: impl FnMut(f64),
+) -> Result<Simulation, AssemblyError>
+where
+    Mo: Model<f64, N, G, M>,
+{
     let clock = Instant::now();
     let start = model.start()?;
     let columns = model.description().outputs.iter();
@@ -107,14 +131,8 @@ where
         event_times: Vec::new(),
         progress,
     };
-    let span = Span { t0: 0.0, t_end: settings.t_end };
-    let integration = Settings {
-        tolerances: Tolerances::new(settings.rtol, settings.atol),
-        samples: Samples::At(settings.sample_times()),
-        step_limit: (STEPS_PER_SECOND * settings.t_end.max(1.0)) as u64,
-        ..Settings::default()
-    };
-    let result = integrate(model, &mut Dop853::new(), &start, span, &integration, &mut recorder);
+    let span = Span { t0: 0.0, t_end };
+    let result = integrate(model, method, &start, span, integration, &mut recorder);
     let (statistics, failure) = match result {
         Ok(finish) => (finish.statistics, None),
         Err(failure) => (failure.last.statistics, Some(failure.to_string())),

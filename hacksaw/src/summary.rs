@@ -14,6 +14,8 @@ use crate::trajectory::{Trajectory, TrajectoryError};
 /// What a run gives in numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// The scene.
+    pub scene: String,
     /// The parameters that differ from their defaults, as `name = value unit`.
     pub changed_parameters: Vec<String>,
     /// The end that was asked for, s.
@@ -40,19 +42,20 @@ pub struct Summary {
     pub wall_time_s: f64,
     /// Simulated time over wall time.
     pub times_real_time: f64,
-    /// Energy supplied until the end, J.
-    pub supplied_energy_j: f64,
+    /// Energy supplied until the end, J; this and the next three where the scene has the energies.
+    pub supplied_energy_j: Option<f64>,
     /// Energy dissipated until the end, J.
-    pub dissipated_energy_j: f64,
+    pub dissipated_energy_j: Option<f64>,
     /// Largest |stored - stored(0) - supplied + dissipated| over the samples, J.
-    pub energy_residual_j: f64,
+    pub energy_residual_j: Option<f64>,
     /// The same over the energy supplied until the end, if there is any.
     pub energy_residual: Option<f64>,
-    /// The joint with the largest gap, and that gap, m.
+    /// The joint with the largest gap, and that gap, m, where the scene has gaps.
     pub largest_gap: Option<(String, f64)>,
-    /// Mean, lowest and highest crank speed from [`SETTLED`] on, or over a shorter run as a whole, rad/s.
+    /// Mean, lowest and highest crank speed from [`SETTLED`] on, or over a shorter run as a whole, rad/s, where the scene has
+    /// the speed.
     pub crank_speed_rad_per_s: Option<[f64; 3]>,
-    /// The paper's statements.
+    /// The paper's statements; none where the scene lacks the columns they are about.
     pub checks: Vec<Check>,
     /// The files written.
     pub files: Vec<PathBuf>,
@@ -66,16 +69,23 @@ const JOINTS: [(&str, &str); 5] =
     [("gap_12", "pin O2"), ("gap_23", "pin A"), ("gap_34", "pin B"), ("gap_15", "pin O5"), ("gap_45", "slot")];
 
 impl Summary {
-    /// Summarises a run. Files and changed parameters are added by the caller.
+    /// Summarises a run of the scene called `scene`. Files and changed parameters are added by the caller.
     ///
     /// # Errors
-    /// The trajectory lacks an output.
-    pub fn new(simulation: &Simulation, settings: &RunSettings, checks: Vec<Check>) -> Result<Self, TrajectoryError> {
+    /// The trajectory lacks a column that belongs to one it has.
+    pub fn new(
+        scene: &str,
+        simulation: &Simulation,
+        settings: &RunSettings,
+        checks: Vec<Check>,
+    ) -> Result<Self, TrajectoryError> {
         let (trajectory, effort) = (&simulation.trajectory, &simulation.effort);
         let reached = trajectory.times.last().copied().unwrap_or(0.0);
         let wall = effort.wall.as_secs_f64();
-        let energy = Energy::of(trajectory)?;
+        let energy = trajectory.has("supplied_energy").then(|| Energy::of(trajectory)).transpose()?;
+        let with_supply = energy.as_ref().filter(|energy| energy.supplied != 0.0);
         Ok(Self {
+            scene: scene.to_owned(),
             changed_parameters: Vec::new(),
             t_end_s: settings.t_end,
             reached_s: reached,
@@ -89,10 +99,10 @@ impl Summary {
             events: effort.events,
             wall_time_s: wall,
             times_real_time: reached / wall,
-            supplied_energy_j: energy.supplied,
-            dissipated_energy_j: energy.dissipated,
-            energy_residual_j: energy.residual,
-            energy_residual: (energy.supplied != 0.0).then(|| energy.residual / energy.supplied.abs()),
+            energy_residual: with_supply.map(|energy| energy.residual / energy.supplied.abs()),
+            supplied_energy_j: energy.as_ref().map(|energy| energy.supplied),
+            dissipated_energy_j: energy.as_ref().map(|energy| energy.dissipated),
+            energy_residual_j: energy.as_ref().map(|energy| energy.residual),
             largest_gap: largest_gap(trajectory)?,
             crank_speed_rad_per_s: crank_speed(trajectory)?,
             checks,
@@ -103,7 +113,7 @@ impl Summary {
     /// The numbers as pairs of a name and a text with unit, in the order of reading.
     #[must_use]
     pub fn lines(&self) -> Vec<(&'static str, String)> {
-        let mut lines = vec![];
+        let mut lines = vec![("scene", self.scene.clone())];
         let time = if self.failure.is_some() {
             format!("{} s of {} s: the run failed", self.reached_s, self.t_end_s)
         } else {
@@ -111,7 +121,7 @@ impl Summary {
         };
         lines.push(("simulated time", time));
         let changed = if self.changed_parameters.is_empty() {
-            "all at their defaults: the paper's case".to_owned()
+            "all at their defaults".to_owned()
         } else {
             self.changed_parameters.join(", ")
         };
@@ -123,13 +133,16 @@ impl Summary {
         lines.push(("switching events", self.events.to_string()));
         let wall = format!("{:.3} s, {:.1} times faster than real time", self.wall_time_s, self.times_real_time);
         lines.push(("wall time", wall));
-        let energy = format!("{:.6} J supplied, {:.6} J dissipated", self.supplied_energy_j, self.dissipated_energy_j);
-        lines.push(("energy", energy));
-        let residual = match self.energy_residual {
-            Some(part) => format!("{part:.2e} of the energy supplied ({:.2e} J)", self.energy_residual_j),
-            None => format!("{:.2e} J; no energy was supplied", self.energy_residual_j),
-        };
-        lines.push(("energy balance residual", residual));
+        if let (Some(supplied), Some(dissipated)) = (self.supplied_energy_j, self.dissipated_energy_j) {
+            lines.push(("energy", format!("{supplied:.6} J supplied, {dissipated:.6} J dissipated")));
+        }
+        if let Some(joule) = self.energy_residual_j {
+            let residual = match self.energy_residual {
+                Some(part) => format!("{part:.2e} of the energy supplied ({joule:.2e} J)"),
+                None => format!("{joule:.2e} J; no energy was supplied"),
+            };
+            lines.push(("energy balance residual", residual));
+        }
         if let Some((joint, gap)) = &self.largest_gap {
             lines.push(("largest joint gap", format!("{gap:.3e} m, {joint}")));
         }
@@ -184,7 +197,7 @@ impl Energy {
 
 fn largest_gap(trajectory: &Trajectory) -> Result<Option<(String, f64)>, TrajectoryError> {
     let mut largest: Option<(String, f64)> = None;
-    for (column, joint) in JOINTS {
+    for (column, joint) in JOINTS.into_iter().filter(|(column, _)| trajectory.has(column)) {
         for gap in trajectory.series(column)? {
             if largest.as_ref().is_none_or(|(_, most)| gap > *most) {
                 largest = Some((joint.to_owned(), gap));
@@ -195,6 +208,9 @@ fn largest_gap(trajectory: &Trajectory) -> Result<Option<(String, f64)>, Traject
 }
 
 fn crank_speed(trajectory: &Trajectory) -> Result<Option<[f64; 3]>, TrajectoryError> {
+    if !trajectory.has("crank_speed") {
+        return Ok(None);
+    }
     let (speed, times) = (trajectory.series("crank_speed")?, &trajectory.times);
     let settled = times.partition_point(|&t| t < SETTLED);
     let from = if settled + 1 < speed.len() { settled } else { 0 };
@@ -225,10 +241,23 @@ mod tests {
         trajectory.push(3.0, vec![9.0, 10.0, 6.0, 60.0, 0.0, 0.0, 0.0, 2e-4, 0.0]);
         let simulation = Simulation { trajectory, effort: Effort::default(), failure: None };
         let settings = RunSettings { t_end: 3.0, rtol: 1e-8, atol: 1e-12, step: 1.0 };
-        let summary = Summary::new(&simulation, &settings, Vec::new()).unwrap();
-        assert_eq!(summary.energy_residual_j, 0.5);
+        let summary = Summary::new("paper", &simulation, &settings, Vec::new()).unwrap();
+        assert_eq!(summary.energy_residual_j, Some(0.5));
         assert_eq!(summary.energy_residual, Some(0.05));
         assert_eq!(summary.largest_gap, Some(("pin B".to_owned(), 3e-4)));
         assert_eq!(summary.crank_speed_rad_per_s, Some([50.0, 40.0, 60.0]));
+    }
+
+    #[test]
+    fn a_scene_without_the_columns_has_no_lines_of_them() {
+        let column = Column { name: "crank_angle".to_owned(), unit: "rad".to_owned() };
+        let mut trajectory = Trajectory::new(vec![column]);
+        trajectory.push(0.0, vec![0.0]);
+        let simulation = Simulation { trajectory, effort: Effort::default(), failure: None };
+        let settings = RunSettings { t_end: 1.0, rtol: 1e-8, atol: 1e-12, step: 1.0 };
+        let summary = Summary::new("angles", &simulation, &settings, Vec::new()).unwrap();
+        let names: Vec<_> = summary.lines().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names[0], "scene");
+        assert!(!names.iter().any(|name| name.contains("energy") || name.contains("gap") || name.contains("speed")));
     }
 }

@@ -117,13 +117,29 @@ impl Trajectory {
         part
     }
 
-    /// Writes the CSV file: `t` and the columns of [`reference_columns`], every number in the shortest form that reads back
-    /// to the same bits.
+    /// Whether column `name` is there.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.position(name).is_ok()
+    }
+
+    /// Whether all columns of [`reference_columns`] are there.
+    #[must_use]
+    pub fn has_reference_columns(&self) -> bool {
+        reference_columns().iter().all(|name| self.has(name))
+    }
+
+    /// Writes the CSV file: `t` and the columns of [`reference_columns`], or all columns where not all of those are there;
+    /// every number in the shortest form that reads back to the same bits.
     ///
     /// # Errors
-    /// A missing column, or a failure of `writer`.
+    /// A failure of `writer`.
     pub fn write_csv<W: Write>(&self, writer: W) -> Result<(), TrajectoryError> {
-        let names = reference_columns();
+        let names = if self.has_reference_columns() {
+            reference_columns()
+        } else {
+            self.columns.iter().map(|column| column.name.clone()).collect()
+        };
         let positions = names.iter().map(|name| self.position(name)).collect::<Result<Vec<_>, _>>()?;
         let mut csv = csv::Writer::from_writer(writer);
         csv.write_record(std::iter::once("t").chain(names.iter().map(String::as_str)))?;
@@ -220,6 +236,16 @@ mod tests {
     }
 
     #[test]
+    fn csv_has_all_columns_where_the_reference_columns_are_not_there() {
+        let columns = ["crank_speed", "C4_x"].map(|name| Column { name: name.to_owned(), unit: String::new() });
+        let mut trajectory = Trajectory::new(columns.to_vec());
+        trajectory.push(0.5, vec![2.0, 1e-9]);
+        let mut bytes = Vec::new();
+        trajectory.write_csv(&mut bytes).unwrap();
+        assert_eq!(String::from_utf8(bytes).unwrap(), "t,crank_speed,C4_x\n0.5,2.0,1e-9\n");
+    }
+
+    #[test]
     fn a_part_has_the_times_that_are_there() {
         let mut trajectory = Trajectory::new(Vec::new());
         (0..5).for_each(|k| trajectory.push(f64::from(k), Vec::new()));
@@ -228,7 +254,7 @@ mod tests {
 
     #[test]
     fn a_missing_column_is_named() {
-        let error = Trajectory::default().write_csv(Vec::new()).unwrap_err();
+        let error = Trajectory::default().series("C2_x").unwrap_err();
         assert_eq!(error.to_string(), "the trajectory has no column `C2_x`");
     }
 }

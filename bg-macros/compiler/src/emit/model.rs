@@ -28,7 +28,8 @@ pub fn model(
     let programs = Programs::new(equations);
     let reduction = report.map(ToString::to_string).unwrap_or_default();
     let equations: &StateEquations = equations;
-    Emission { expanded, causal, equations, reduction, programs }.items()
+    let states = state_identifiers(equations);
+    Emission { expanded, causal, equations, reduction, programs, states }.items()
 }
 
 /// The programs of all generated functions.
@@ -72,6 +73,7 @@ struct Emission<'a> {
     equations: &'a StateEquations,
     reduction: String,
     programs: Programs,
+    states: Vec<Ident>,
 }
 
 /// `let name = value;` for the symbols that some routines use.
@@ -257,7 +259,7 @@ impl Emission<'_> {
     fn symbol_name(&self, symbol: Symbol) -> TokenStream {
         let ident = match symbol {
             Symbol::Time => format_ident!("t"),
-            Symbol::State(index) => state_identifier(&self.equations.states[index as usize].name),
+            Symbol::State(index) => self.states[index as usize].clone(),
             Symbol::Parameter(index) => {
                 format_ident!("p_{}", self.equations.parameters[index as usize].name.text)
             }
@@ -373,7 +375,20 @@ impl Emission<'_> {
     }
 }
 
-/// A state's name as an identifier.
-fn state_identifier(name: &str) -> Ident {
-    identifier(&name.replace('.', "_"))
+/// The states' names as identifiers: readable, different from each other and from the functions' own names.
+fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
+    const OWN: [&str; 10] = ["t", "x", "c", "u", "y", "dx", "negative", "guards", "state", "projected"];
+    let mut used: BTreeSet<String> = OWN.into_iter().map(str::to_owned).collect();
+    let mut identifiers = Vec::new();
+    for (index, state) in equations.states.iter().enumerate() {
+        let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let mut name: String = state.name.chars().map(letter).collect();
+        let is_temporary = name.strip_prefix('v').is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()));
+        if is_temporary || syn::parse_str::<Ident>(&name).is_err() || !used.insert(name.clone()) {
+            name = format!("state_{index}_{name}");
+            used.insert(name.clone());
+        }
+        identifiers.push(identifier(&name));
+    }
+    identifiers
 }

@@ -154,9 +154,9 @@ impl<'a> Signals<'a> {
         }
         self.first_integral = self.states.len();
         let zero = self.pool.zero();
-        for (index, integral) in self.graph.integrals.iter().enumerate() {
+        for integral in &self.graph.integrals {
             let unit = integral.dimension.times(crate::units::Dimension::SECOND).to_string();
-            let name = format!("integral_{}", index + 1);
+            let name = integral.name.clone();
             self.states.push(State { name, unit, storage: "integral", start: zero, rate: zero });
         }
     }

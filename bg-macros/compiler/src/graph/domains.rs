@@ -246,8 +246,11 @@ impl LawCheck<'_, '_> {
             ElementKind::C => {
                 let stiffness = per(effort, times(flow, second));
                 let compliance = per(times(flow, second), effort);
+                let faults = self.faults.len();
                 self.expect("the law", term, (found_shape, found), allowed, &[stiffness, compliance]);
-                if found == Quantity::Any {
+                // `2 * k` is of the unit of k where that makes sense.
+                let found = if found == Quantity::Any { self.types.with_pure_numbers(term).1 } else { found };
+                if found != stiffness && found != compliance && self.faults.len() == faults {
                     let name = self.node.name.text.clone();
                     self.faults.push(Fault::new(term.span, &GraphFault::NumberForC { name }));
                 }

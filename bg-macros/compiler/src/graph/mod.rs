@@ -252,6 +252,8 @@ pub struct Observation {
 /// A time integral.
 #[derive(Clone, Debug)]
 pub struct Integral {
+    /// The name of its state: that of the output which asks for it.
+    pub name: String,
     /// The integrand.
     pub value: Term,
     /// The integrand's dimension.

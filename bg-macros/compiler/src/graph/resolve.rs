@@ -316,8 +316,13 @@ impl Resolver {
     }
 
     fn observe(&mut self, observation: &ast::Observation) {
+        let first = self.graph.integrals.len();
         let value = self.term(&observation.value, Place::Observed);
         let name = observation.name.as_ref().map_or_else(|| observation.value.to_string(), |name| name.text.clone());
+        let alone = matches!(value.kind, TermKind::Integral(_));
+        for (k, integral) in self.graph.integrals[first..].iter_mut().enumerate() {
+            integral.name = if alone { name.clone() } else { format!("{name}.integral_{}", k + 1) };
+        }
         let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
         let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
         if self.graph.observations.iter().any(|known| known.name == name) {
@@ -380,7 +385,8 @@ impl Resolver {
                 if place != Place::Observed {
                     self.fault(span, &GraphFault::IntegralOutsideObserve);
                 }
-                self.graph.integrals.push(Integral { value: terms.remove(0), dimension: Dimension::NONE });
+                let (value, name) = (terms.remove(0), String::new());
+                self.graph.integrals.push(Integral { name, value, dimension: Dimension::NONE });
                 TermKind::Integral(self.graph.integrals.len() - 1)
             }
             (_, Some((builtin, _))) => TermKind::Call(builtin, terms),

@@ -95,7 +95,13 @@ impl<'a> Types<'a> {
 
     /// Shape and unit of `term`; `variable` is those of the law's variable.
     pub fn of(&self, term: &Term, variable: Option<Typed>, faults: &mut Vec<Fault>) -> Typed {
-        Checker { types: self, variable, faults }.check(term)
+        Checker { types: self, variable, number: Quantity::Any, faults }.check(term)
+    }
+
+    /// Shape and unit where every bare number is a pure number.
+    pub fn with_pure_numbers(&self, term: &Term) -> Typed {
+        Checker { types: self, variable: None, number: Quantity::Known(Dimension::NONE), faults: &mut Vec::new() }
+            .check(term)
     }
 
     /// Shape and unit without reporting faults.
@@ -160,6 +166,8 @@ impl<'a> Types<'a> {
 struct Checker<'a, 'g> {
     types: &'a Types<'g>,
     variable: Option<Typed>,
+    /// The unit of a bare number.
+    number: Quantity,
     faults: &'a mut Vec<Fault>,
 }
 
@@ -170,7 +178,7 @@ impl Checker<'_, '_> {
 
     fn check(&mut self, term: &Term) -> Typed {
         match &term.kind {
-            TermKind::Number(_) => (Shape::Scalar, Quantity::Any),
+            TermKind::Number(_) => (Shape::Scalar, self.number),
             TermKind::Reference(Reference::Let(index)) => self.types.of_let(*index, term.span, self.faults),
             TermKind::Reference(reference) => self.types.of_reference(*reference, self.variable),
             TermKind::Negate(inner) => self.check(inner),
