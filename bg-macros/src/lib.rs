@@ -541,7 +541,7 @@ use proc_macro::TokenStream;
 /// | BG0603 | no such parameter to tune |
 /// | BG0604 | a scene that is not planar as expected |
 /// | BG0605 | a scene with another number of states than expected |
-/// | BG0606 | rigid joints, which this compiler cannot make |
+/// | BG0606 | no such joint to make rigid |
 #[proc_macro]
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
     bg_compiler::compile(tokens.into()).into()

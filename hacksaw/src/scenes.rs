@@ -40,8 +40,8 @@ pub trait Visitor {
         new: fn(P) -> Result<Mo, ParameterError>,
     ) -> Self::Output
     where
-        P: Parameters,
-        Mo: Model<f64, N, G, M>;
+        P: Parameters + 'static,
+        Mo: Model<f64, N, G, M> + 'static;
 }
 
 /// A value that a scene cannot take.

@@ -443,7 +443,6 @@ bond_graph! {
 }
 
 #[test]
-#[ignore = "known fault of the compiler: states `a.b.p` and `a_b.p` get one name in the generated code"]
 fn names_that_differ_by_a_dot_stay_apart() {
     let text = Alike::new(AlikeParameters::default()).expect("in range").description().graph;
     compare(text, |sample| Alike::new(set(&sample.parameters)).expect("in range"), 8);

@@ -1,0 +1,205 @@
+//! What every scene costs, and how the paper's compares with a model written by hand: prints a table.
+//!
+//! `cargo bench -p hacksaw --bench scenes`. Times are minima: of [`BATCHES`] batches of rate evaluations over states along
+//! the scene's own trajectory, the models taking turns so that all see the same machine; of [`RUNS`] runs of 5 s.
+#![allow(missing_docs)]
+
+mod planar;
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::nalgebra::SVector;
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use bg_model::system::Model;
+use hacksaw::agreement::{Steps, compare};
+use hacksaw::mechanism::{HacksawParameters, PaperParameters};
+use hacksaw::report::{rate_operations, table};
+use hacksaw::run::{RunSettings, run};
+use hacksaw::scenes::{Scene, Visitor};
+use hacksaw::trajectory::sample_times;
+use planar::Planar;
+
+const BATCHES: usize = 400;
+/// Passes over the states in a batch.
+const PASSES: usize = 20;
+const RUNS: usize = 5;
+/// The paper's run.
+const PAPER: RunSettings = RunSettings { t_end: 5.0, rtol: 1e-8, atol: 1e-12, step: 0.1 };
+/// What the hand-written model has in its rate: counted in its source, a sine and cosine pair as one.
+const BY_HAND: usize = 255;
+/// The part of the hand-written model's time that the paper's scene is to take at most.
+const GOAL: f64 = 0.6;
+
+/// One batch: nanoseconds for each rate evaluation.
+type Batch = Box<dyn Fn() -> f64>;
+
+fn main() {
+    // `cargo test` runs benches without this argument.
+    if !std::env::args().any(|argument| argument == "--bench") {
+        return;
+    }
+    let mut batches: Vec<Batch> = Scene::all().iter().map(|scene| scene.visit(Rates)).collect();
+    let (by_hand, disagreement) = planar_batch();
+    batches.push(by_hand);
+    let mut least = vec![f64::INFINITY; batches.len()];
+    for _ in 0..BATCHES {
+        for (least, batch) in least.iter_mut().zip(&batches) {
+            *least = least.min(batch());
+        }
+    }
+    let head = ["scene", "states", "operations", "ns a rate", "ms for 5 s", "steps", "largest deviation", "in"];
+    let mut rows = vec![head.map(str::to_owned)];
+    for (&scene, nanoseconds) in Scene::all().iter().zip(&least) {
+        let description = scene.description();
+        let (milliseconds, steps) = scene.visit(Wall);
+        let (deviation, column) = deviation(scene);
+        rows.push([
+            scene.name(),
+            description.states.len().to_string(),
+            rate_operations(description).total().to_string(),
+            format!("{nanoseconds:.1}"),
+            format!("{milliseconds:.1}"),
+            steps.to_string(),
+            format!("{deviation:.1e}"),
+            column,
+        ]);
+    }
+    let by_hand = least[least.len() - 1];
+    let mut last = ["by hand", "24", "", "", "", "", "", ""].map(str::to_owned);
+    last[2] = format!("{BY_HAND}");
+    last[3] = format!("{by_hand:.1}");
+    rows.push(last);
+    print!("{}", table(&rows));
+    let ratio = least[0] / by_hand;
+    println!(
+        "\nLargest deviation: of any output from the literal model's, over the largest value of its kind (1 where that is \
+         less), rtol 1e-8, 51 instants of 5 s.\n\
+         By hand: a planar model in body poses; accelerations agree with the paper's scene to {disagreement:.1e}.\n\
+         Paper's scene over by hand: {:.0} % (goal: at most {:.0} %).",
+        100.0 * ratio,
+        100.0 * GOAL
+    );
+}
+
+/// States of `model` along its run, a prime number of them, with the branches there.
+fn along<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo) -> Vec<(SVector<f64, N>, [bool; G])>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    let mut states = Vec::new();
+    let settings = Settings {
+        tolerances: Tolerances::new(PAPER.rtol, PAPER.atol),
+        samples: Samples::At(sample_times(PAPER.t_end / 61.0, PAPER.t_end)[1..].to_vec()),
+        ..Settings::default()
+    };
+    let start = model.start().expect("the paper's mechanism closes");
+    let mut observer = EachSample(|_, x: &SVector<f64, N>, negative: &[bool; G]| states.push((*x, *negative)));
+    let span = Span { t0: 0.0, t_end: PAPER.t_end };
+    integrate(model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the paper's case runs");
+    states
+}
+
+/// The least time of one evaluation, ns, in one batch over `states`.
+fn batch<X>(states: &[X], evaluate: impl Fn(&X)) -> f64 {
+    let clock = Instant::now();
+    for _ in 0..PASSES {
+        for state in states {
+            evaluate(black_box(state));
+        }
+    }
+    clock.elapsed().as_secs_f64() * 1e9 / (PASSES * states.len()) as f64
+}
+
+struct Rates;
+
+impl Visitor for Rates {
+    type Output = Batch;
+
+    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
+        self,
+        new: fn(P) -> Result<Mo, ParameterError>,
+    ) -> Batch
+    where
+        P: Parameters + 'static,
+        Mo: Model<f64, N, G, M> + 'static,
+    {
+        // The box must not borrow, so the model goes with it.
+        let states = along(&new(P::default()).expect("defaults are in their ranges"));
+        Box::new(move || {
+            let model = new(P::default()).expect("defaults are in their ranges");
+            let model = black_box(&model);
+            batch(&states, |(x, negative)| {
+                let mut rate = SVector::zeros();
+                model.rate(0.0, x, negative, &mut rate);
+                black_box(&rate);
+            })
+        })
+    }
+}
+
+/// The hand-written model over the states of the paper's scene, and its disagreement with that scene.
+fn planar_batch() -> (Batch, f64) {
+    let (states, disagreement) = planar_states();
+    let planar = Planar::new(&PaperParameters::default());
+    let evaluate = move || {
+        let planar = black_box(&planar);
+        batch(&states, |(state, cutting)| {
+            black_box(&planar.rate(state, *cutting));
+        })
+    };
+    (Box::new(evaluate), disagreement)
+}
+
+fn planar_states() -> (Vec<(planar::State, bool)>, f64) {
+    use bg_model::system::System;
+    let model = hacksaw::mechanism::Paper::new(PaperParameters::default()).expect("defaults are in their ranges");
+    let planar = Planar::new(&PaperParameters::default());
+    let names: Vec<&str> = Model::<f64, _, _, _>::description(&model).states.iter().map(|state| state.name).collect();
+    let index = |name: &str| names.iter().position(|other| *other == name).expect("a state of the paper's scene");
+    let mut most: f64 = 0.0;
+    let states = along(&model).into_iter().map(|(mut x, negative)| {
+        let state = planar.state(|name| x[index(name)]);
+        x[index("slot.tilt_spring.q_z")] = state[11] - state[8];
+        let mut rate = SVector::zeros();
+        model.rate(0.0, &x, &negative, &mut rate);
+        most = most.max(planar.disagreement(&planar.rate(&state, negative[0]), |name| rate[index(name)]));
+        (state, negative[0])
+    });
+    let states = states.collect();
+    (states, most)
+}
+
+struct Wall;
+
+impl Visitor for Wall {
+    type Output = (f64, u64);
+
+    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
+        self,
+        new: fn(P) -> Result<Mo, ParameterError>,
+    ) -> (f64, u64)
+    where
+        P: Parameters,
+        Mo: Model<f64, N, G, M>,
+    {
+        let model = new(P::default()).expect("defaults are in their ranges");
+        let runs = (0..RUNS).map(|_| run(&model, &PAPER, |_| {}).expect("the paper's mechanism closes").effort);
+        runs.map(|effort| (effort.wall.as_secs_f64() * 1e3, effort.steps))
+            .fold((f64::INFINITY, 0), |least, run| if run.0 < least.0 { run } else { least })
+    }
+}
+
+/// The largest deviation from the literal model over the magnitude of its kind, and its output.
+fn deviation(scene: Scene) -> (f64, String) {
+    let instants = sample_times(PAPER.step, PAPER.t_end);
+    let steps = Steps::ByError { rtol: PAPER.rtol, atol: PAPER.atol };
+    let agreement = compare(scene, &HacksawParameters::default(), steps, PAPER.t_end, &instants);
+    let agreement = agreement.expect("the paper's case runs");
+    let relative = agreement.deviations.iter().map(|deviation| {
+        (deviation.largest / deviation.magnitude.max(1.0), format!("{} at {} s", deviation.column.name, deviation.time))
+    });
+    relative.fold((0.0, String::new()), |most, this| if this.0 > most.0 { this } else { most })
+}

@@ -1,0 +1,296 @@
+//! How far a scene is from the literal model: the measured side of what the compiler proves about it.
+//!
+//! In: a scene, parameter values, the steps to take. Out: for each output that the literal model has as well the largest
+//! difference over the run. Both take the same method and tolerances; the energy integrals, which not every scene has,
+//! have no part in the choice of the steps. The literal counterpart of a scene without a contact has that contact's
+//! coefficients at zero and does not watch its switch.
+
+use std::error::Error;
+use std::f64::consts::TAU;
+
+use bg_model::assembly::AssemblyError;
+use bg_model::description::Description;
+use bg_model::integrator::{Absolute, Dop853, Rk4, Tolerances};
+use bg_model::nalgebra::SVector;
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::simulation::{Samples, Settings};
+use bg_model::system::{Model, Powers, System};
+
+use crate::mechanism::{Hacksaw, HacksawParameters};
+use crate::run::{Simulation, record};
+use crate::scenes::{Scene, Visitor};
+use crate::trajectory::{Column, LINKS, Trajectory};
+
+/// The steps that both models take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steps {
+    /// Those of the run, Dormand and Prince's method of order 8 with steps by the estimated error: relative and absolute
+    /// tolerance. Rounding in the estimate makes them differ a little between two models.
+    ByError {
+        /// Relative.
+        rtol: f64,
+        /// Absolute, in each state's SI unit.
+        atol: f64,
+    },
+    /// The same method with this step, s, whatever the error: the same steps but for those that end at an event.
+    Equal(f64),
+    /// The classical Runge-Kutta method of order 4 with this step, s.
+    Rk4(f64),
+}
+
+/// The largest difference in one output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deviation {
+    /// The output.
+    pub column: Column,
+    /// The largest |scene - literal|, in the output's unit.
+    pub largest: f64,
+    /// When, s.
+    pub time: f64,
+    /// The largest |literal| of the outputs of the same kind, in the same unit.
+    pub magnitude: f64,
+}
+
+impl Deviation {
+    /// The output's kind: its name without link and component, such as `C`, `R` or `gap`.
+    #[must_use]
+    pub fn kind(&self) -> &str {
+        kind(&self.column.name)
+    }
+}
+
+/// A scene beside the literal model.
+#[derive(Clone, Debug)]
+pub struct Agreement {
+    /// The scene's run.
+    pub scene: Simulation,
+    /// The literal model's.
+    pub literal: Simulation,
+    /// The outputs that both have, in the scene's order.
+    pub deviations: Vec<Deviation>,
+}
+
+impl Agreement {
+    /// For each kind of output the one with the largest difference, in the order of first appearance.
+    #[must_use]
+    pub fn by_kind(&self) -> Vec<Deviation> {
+        let mut kinds: Vec<Deviation> = Vec::new();
+        for deviation in &self.deviations {
+            match kinds.iter_mut().find(|other| other.kind() == deviation.kind()) {
+                Some(other) if other.largest < deviation.largest => *other = deviation.clone(),
+                Some(_) => {}
+                None => kinds.push(deviation.clone()),
+            }
+        }
+        kinds
+    }
+}
+
+/// Runs `scene` and the literal model until `t_end` (s) with the same `values` and compares them at `instants` (s).
+///
+/// # Errors
+/// Values that the scene does not take, and a run that fails.
+pub fn compare(
+    scene: Scene,
+    values: &HacksawParameters,
+    steps: Steps,
+    t_end: f64,
+    instants: &[f64],
+) -> Result<Agreement, Box<dyn Error>> {
+    let job = Job { steps, t_end, instants };
+    let reduced = scene.visit(Reduced { scene, values, job })?;
+    let literal = literal(scene, values, job)?;
+    let whole = with_angles(&literal.trajectory)?;
+    let deviations = deviations(&reduced.trajectory, &whole)?;
+    Ok(Agreement { scene: reduced, literal, deviations })
+}
+
+/// What to run.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    steps: Steps,
+    t_end: f64,
+    instants: &'a [f64],
+}
+
+impl Job<'_> {
+    fn run<Mo, const N: usize, const G: usize, const M: usize>(&self, model: &Mo) -> Result<Simulation, Box<dyn Error>>
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        // Larger than any error: what has it does not shorten a step.
+        const NEVER: f64 = 1e300;
+        let (relative, absolute, step) = match self.steps {
+            Steps::ByError { rtol, atol } => (rtol, atol, f64::INFINITY),
+            Steps::Equal(step) | Steps::Rk4(step) => (1.0, NEVER, step),
+        };
+        let states = model.description().states;
+        let absolute =
+            SVector::from_fn(|index, _| if states[index].storage == "integral" { NEVER } else { absolute });
+        let settings = Settings {
+            tolerances: Tolerances { relative, absolute: Absolute::PerState(absolute) },
+            first_step: step.is_finite().then_some(step),
+            largest_step: step,
+            samples: Samples::At(self.instants.to_vec()),
+            ..Settings::default()
+        };
+        let simulation = match self.steps {
+            Steps::Rk4(step) => record(model, &mut Rk4::new(step), self.t_end, &settings, |_| {})?,
+            _ => record(model, &mut Dop853::new(), self.t_end, &settings, |_| {})?,
+        };
+        match simulation.failure {
+            Some(failure) => Err(failure.into()),
+            None => Ok(simulation),
+        }
+    }
+}
+
+struct Reduced<'a> {
+    scene: Scene,
+    values: &'a HacksawParameters,
+    job: Job<'a>,
+}
+
+impl Visitor for Reduced<'_> {
+    type Output = Result<Simulation, Box<dyn Error>>;
+
+    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
+        self,
+        new: fn(P) -> Result<Mo, ParameterError>,
+    ) -> Self::Output
+    where
+        P: Parameters,
+        Mo: Model<f64, N, G, M>,
+    {
+        self.job.run(&new(self.scene.parameters(self.values)?)?)
+    }
+}
+
+/// The run of the literal model that `scene` stands for.
+fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Simulation, Box<dyn Error>> {
+    let mut values = values.clone();
+    if scene != Scene::FreeRun {
+        return job.run(&Hacksaw::new(values)?);
+    }
+    for name in ["r_cut", "r_return", "k_work", "r_work"] {
+        values.set(name, 0.0)?;
+    }
+    job.run(&Unswitched(Hacksaw::new(values)?))
+}
+
+/// A model with its one switch left in the branch of the positive guard: right where both branches are the same.
+struct Unswitched<Mo>(Mo);
+
+impl<Mo: System<f64, N, 1>, const N: usize> System<f64, N, 0> for Unswitched<Mo> {
+    fn rate(&self, t: f64, x: &SVector<f64, N>, _negative: &[bool; 0], dx: &mut SVector<f64, N>) {
+        self.0.rate(t, x, &[false], dx);
+    }
+
+    fn project(&self, x: &mut SVector<f64, N>) {
+        self.0.project(x);
+    }
+
+    fn state_name(&self, index: usize) -> &'static str {
+        self.0.state_name(index)
+    }
+}
+
+impl<Mo: Model<f64, N, 1, M>, const N: usize, const M: usize> Model<f64, N, 0, M> for Unswitched<Mo> {
+    fn description(&self) -> &'static Description {
+        self.0.description()
+    }
+
+    fn start(&self) -> Result<SVector<f64, N>, AssemblyError> {
+        self.0.start()
+    }
+
+    fn outputs(&self, t: f64, x: &SVector<f64, N>, _negative: &[bool; 0], y: &mut SVector<f64, M>) {
+        self.0.outputs(t, x, &[false], y);
+    }
+
+    fn stored_energy(&self, t: f64, x: &SVector<f64, N>, _negative: &[bool; 0]) -> f64 {
+        self.0.stored_energy(t, x, &[false])
+    }
+
+    fn powers(&self, t: f64, x: &SVector<f64, N>, _negative: &[bool; 0]) -> Powers<f64> {
+        self.0.powers(t, x, &[false])
+    }
+}
+
+/// The literal model's outputs and the links' angles about z, which its orientations determine.
+fn with_angles(literal: &Trajectory) -> Result<Trajectory, Box<dyn Error>> {
+    let mut whole = literal.clone();
+    for (link, name) in LINKS.iter().zip(["crank_angle", "rod_angle", "frame_angle", "guide_angle"]) {
+        whole.columns.push(Column { name: name.to_owned(), unit: "rad".to_owned() });
+        let (sine, cosine) = (literal.series(&format!("R{link}_21"))?, literal.series(&format!("R{link}_11"))?);
+        for (row, (sine, cosine)) in whole.rows.iter_mut().zip(sine.iter().zip(cosine)) {
+            row.push(sine.atan2(cosine));
+        }
+    }
+    Ok(whole)
+}
+
+fn deviations(scene: &Trajectory, literal: &Trajectory) -> Result<Vec<Deviation>, Box<dyn Error>> {
+    if scene.times != literal.times {
+        return Err("the two runs have different instants".into());
+    }
+    let mut magnitudes: Vec<(&str, f64)> = Vec::new();
+    for column in &literal.columns {
+        let largest = literal.series(&column.name)?.iter().map(|value| value.abs()).fold(0.0, f64::max);
+        match magnitudes.iter_mut().find(|(other, _)| *other == kind(&column.name)) {
+            Some((_, magnitude)) => *magnitude = magnitude.max(largest),
+            None => magnitudes.push((kind(&column.name), largest)),
+        }
+    }
+    let shared = scene.columns.iter().filter(|column| literal.has(&column.name));
+    let deviation = |column: &Column| {
+        let (ours, theirs) = (scene.series(&column.name)?, literal.series(&column.name)?);
+        let differences = ours.iter().zip(&theirs).map(|(ours, theirs)| {
+            let difference = ours - theirs;
+            // Angles jump by a turn where they leave -pi..pi.
+            let turns = if column.unit == "rad" { (difference / TAU).round() } else { 0.0 };
+            (difference - turns * TAU).abs()
+        });
+        let (largest, time) = differences.zip(&scene.times).fold((0.0, 0.0), |most, (difference, time)| {
+            // A NaN is the largest of all.
+            if difference <= most.0 { most } else { (difference, *time) }
+        });
+        let magnitude = magnitudes.iter().find(|(of, _)| *of == kind(&column.name)).map_or(0.0, |(_, most)| *most);
+        Ok(Deviation { column: column.clone(), largest, time, magnitude })
+    };
+    shared.map(deviation).collect()
+}
+
+/// A name without the link's number and the component.
+fn kind(name: &str) -> &str {
+    let word = name.find(|c: char| c.is_ascii_digit()).map_or(name, |digit| &name[..digit]);
+    word.trim_end_matches('_')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_are_names_without_numbers() {
+        let kinds = ["C2_x", "R3_11", "gap_12", "F45_x", "stored_energy", "crank_angle"].map(kind);
+        assert_eq!(kinds, ["C", "R", "gap", "F", "stored_energy", "crank_angle"]);
+    }
+
+    #[test]
+    fn the_largest_difference_of_each_output_is_found_and_turns_do_not_count() {
+        let column = |name: &str, unit: &str| Column { name: name.to_owned(), unit: unit.to_owned() };
+        let mut scene = Trajectory::new(vec![column("C2_x", "m"), column("crank_angle", "rad"), column("own", "m")]);
+        let mut literal = Trajectory::new(vec![column("crank_angle", "rad"), column("C2_x", "m"), column("C3_y", "m")]);
+        for (t, scene_row, literal_row) in
+            [(0.0, [1.0, 3.0, 0.0], [3.0, 1.0, 0.0]), (1.0, [2.0, -3.125, 0.0], [TAU - 3.0, 2.5, -8.0])]
+        {
+            scene.push(t, scene_row.to_vec());
+            literal.push(t, literal_row.to_vec());
+        }
+        let found = deviations(&scene, &literal).unwrap();
+        assert_eq!(found.len(), 2);
+        assert_eq!((found[0].largest, found[0].time, found[0].magnitude), (0.5, 1.0, 8.0));
+        assert!((found[1].largest - 0.125).abs() < 1e-15, "{}", found[1].largest);
+    }
+}
