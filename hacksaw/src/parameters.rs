@@ -183,7 +183,9 @@ fn set_from_toml<P: Parameters>(parameters: &mut Chosen<P>, path: &Path, text: &
 fn set<P: Parameters>(parameters: &mut Chosen<P>, place: &str, name: &str, value: f64) -> Result<(), SettingError> {
     let place = place.to_owned();
     parameters.values.set(name, value).map_err(|fault| match fault {
-        ParameterError::Unknown { name } => SettingError::Unknown { place: place.clone(), near: nearest::<P>(&name), name },
+        ParameterError::Unknown { name } => {
+            SettingError::Unknown { place: place.clone(), near: nearest::<P>(&name), name }
+        }
         fault => SettingError::Range { place: place.clone(), fault },
     })?;
     if let Some(index) = P::table().iter().position(|info| info.name == name) {
@@ -236,9 +238,8 @@ mod tests {
     #[test]
     fn the_last_place_that_set_a_parameter_is_known() {
         let chosen = chosen("torque = 12\nr_cut = 80.5\n", &["torque=14", "torque=15"]).unwrap();
-        let place = |name: &str| {
-            &chosen.places[HacksawParameters::table().iter().position(|info| info.name == name).unwrap()]
-        };
+        let place =
+            |name: &str| &chosen.places[HacksawParameters::table().iter().position(|info| info.name == name).unwrap()];
         assert_eq!(place("torque"), "--set torque=15");
         assert!(!place("r_cut").is_empty());
         assert_eq!(place("r_return"), "");

@@ -81,6 +81,114 @@ fn settings_beat_the_file_and_both_reach_the_model() {
 }
 
 #[test]
+fn a_parameter_goes_to_the_scene_or_is_refused_with_its_place() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    fs::write(path.join("p.toml"), "rod_offset = 0.025\n").unwrap();
+    let kept = "scene `paper` keeps `rod_offset` fixed at 0 m; use --scene full\n";
+    assert_eq!(refused(path, &["--set", "rod_offset=0.025"]), format!("error: --set rod_offset=0.025: {kept}"));
+    assert_eq!(refused(path, &["--params", "p.toml"]), format!("error: p.toml: {kept}"));
+    let line = refused(path, &["run", "--scene", "angles", "--set", "k_2=2e7"]);
+    assert!(line.ends_with("scene `angles` keeps `k_2` fixed at 1e7 N/m; use --scene paper\n"), "{line}");
+    assert!(refused(path, &["--scene", "angels"]).contains("angles"));
+    for more in [&["--set", "rod_offset=0"][..], &["--params", "p.toml", "--set", "rod_offset=0"]] {
+        hacksaw(path, &[&SHORT[..], &["--no-figures"], more].concat()).assert().success();
+    }
+    // With the rod out of the plane the motion is stiff beyond an explicit method but for a moment.
+    let arguments = ["--scene", "full", "--set", "rod_offset=0.025", "--t-end", "1e-4", "--no-figures"];
+    let output = hacksaw(path, &arguments).assert().success().get_output().clone();
+    assert!(String::from_utf8(output.stdout).unwrap().contains("rod_offset = 0.025 m"));
+}
+
+#[test]
+fn scenes_with_the_reference_columns_write_the_same_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let read = |scene: &str| {
+        let file = format!("{scene}.csv");
+        let arguments = [&["run", "--scene", scene, "--csv", &file, "--no-figures"], &SHORT[..]].concat();
+        let output = hacksaw(directory.path(), &arguments).assert().success().get_output().clone();
+        let summary = String::from_utf8(output.stdout).unwrap();
+        assert!(summary.contains("statements hold") && summary.contains("energy balance residual"), "{summary}");
+        fs::read_to_string(directory.path().join(file)).unwrap()
+    };
+    let texts = ["paper", "full", "literal"].map(read);
+    for text in &texts {
+        assert_eq!(text.lines().next(), texts[2].lines().next());
+        assert_eq!(text.lines().count(), texts[2].lines().count());
+    }
+}
+
+#[test]
+fn scenes_without_the_reference_columns_write_their_own_and_no_figures() {
+    let directory = tempfile::tempdir().unwrap();
+    let cases = [
+        (
+            "angles",
+            "t,crank_angle,rod_angle,frame_angle,guide_angle",
+            &["energy", "gap", "crank speed", "statements"][..],
+        ),
+        ("free-run", "t,crank_speed,C4_x,C4_y,C4_z,F34_x,F34_y,F34_z", &["energy", "gap", "statements"]),
+    ];
+    for (scene, header, absent) in cases {
+        let arguments = [&["run", "--scene", scene, "--out", scene], &SHORT[..]].concat();
+        let output = hacksaw(directory.path(), &arguments).assert().success().get_output().clone();
+        let summary = String::from_utf8(output.stdout).unwrap();
+        assert!(summary.lines().next().unwrap().ends_with(scene), "{summary}");
+        for word in absent {
+            assert!(!summary.contains(word), "{scene}: `{word}` in {summary}");
+        }
+        assert_eq!(summary.contains("crank speed"), scene == "free-run");
+        let out = directory.path().join(scene);
+        assert_eq!(fs::read_dir(&out).unwrap().count(), 3);
+        let csv = fs::read_to_string(out.join("trajectory.csv")).unwrap();
+        assert_eq!(csv.lines().next(), Some(header));
+        let json: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+        assert_eq!(json["scene"], scene);
+        assert!(json["supplied_energy_j"].is_null() && json["checks"].as_array().unwrap().is_empty());
+    }
+}
+
+#[test]
+fn scenes_and_graphs_are_printed() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = |arguments: &[&str]| {
+        let output = hacksaw(directory.path(), arguments).assert().success().get_output().clone();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let list = text(&["scene"]);
+    assert_eq!(list.lines().count(), 6);
+    assert!(list.lines().nth(1).unwrap().starts_with("  paper         31 "), "{list}");
+    let report = text(&["scene", "paper"]);
+    assert!(report.lines().nth(2).unwrap().starts_with("85 states: 46 constant; "), "{report}");
+    assert!(report.contains("  rod.position_z: constant: ") && report.contains("\n  rod_offset = 0 m\n"), "{report}");
+    assert!(text(&["scene", "literal"]).contains("84  integral_2 "));
+    assert!(text(&["graph"]).contains("129 bonds"));
+    assert!(text(&["graph", "--scene", "free-run"]).contains("113 bonds"));
+    assert!(text(&["graph", "--part", "source"]).contains("graph Paper {"));
+    assert!(text(&["graph", "--part", "bonds"]).contains(" ->|  "));
+    assert!(text(&["graph", "--part", "equations"]).contains("d(slot.tilt_spring.q)/dt = "));
+    assert!(text(&["graph", "--help"]).contains("equations"));
+    assert!(refused(directory.path(), &["graph", "--part", "bond"]).contains("bonds"));
+    assert!(refused(directory.path(), &["scene", "papers"]).contains("paper"));
+}
+
+#[test]
+fn a_reader_that_has_gone_away_is_no_fault() {
+    use std::process::{Command, Stdio};
+    for arguments in [&["graph", "--part", "source"][..], &["scene", "literal"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_hacksaw"))
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}: {output:?}");
+    }
+}
+
+#[test]
 fn bad_input_is_one_line_and_exit_code_2() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();

@@ -449,7 +449,6 @@ fn names_that_differ_by_a_dot_stay_apart() {
 }
 
 #[test]
-#[ignore = "known fault of the compiler: the guard of a switching energy keeps the atom of its proof"]
 fn a_storage_that_switches_has_an_energy_that_switches() {
     let text = "graph G { 1 j: translation; I m = 2; j -> m; j -> s;
         C s(q) = if q > 0.1 { 3 * q - 0.3 } else { 0 } energy if q > 0.1 { 1.5 * (q - 0.1) * (q - 0.1) } else { 0 }; }";

@@ -232,6 +232,16 @@ impl Procedure<'_> {
         let by = self.root(bond);
         let fault = match element.kind {
             ElementKind::I | ElementKind::C => F::Derivative { symbol, name, by },
+            _ if self.is_source(node) => {
+                let other = self.graph.bond(bond).other(node);
+                let forcing = if let Some(Reason::Bond(other)) = self.reasons[bond.0] { other } else { bond };
+                F::Conflict {
+                    junction: self.graph.node(other).name.text.clone(),
+                    variable: if self.wish(node) == Wish::GiveEffort { "effort" } else { "flow" },
+                    first: (self.bond_text(forcing), by),
+                    second: (self.bond_text(bond), self.label(node)),
+                }
+            }
             _ => {
                 let needs = if self.wish(node) == Wish::GiveEffort { "flow" } else { "effort" };
                 F::OneWay { symbol, name, needs, by }

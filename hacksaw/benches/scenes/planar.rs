@@ -1,9 +1,13 @@
 //! The hacksaw as an engineer writes it by hand for the plane: body poses (x, y, angle of each link) and their velocities,
 //! 24 states, the laws of the specification spelled out. What the generated scene is measured against.
 //!
-//! In: the parameters, a state, the stroke. Out: the state's rate. About 310 operations and four sine and cosine pairs.
+//! In: the parameters, a state, the stroke. Out: the state's rate, twice: [`Planar::rate`] plainly, point by point and
+//! force by force, and [`Planar::tuned_rate`] with every known zero and common factor taken out by hand.
 
+use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
+use bg_model::system::{Model, System};
+use hacksaw::mechanism::Paper;
 
 /// Poses and velocities of crank, rod, frame and guide: `[x, y, angle]` of each, m and rad, then their rates.
 pub type State = [f64; 24];
@@ -13,6 +17,76 @@ pub type State = [f64; 24];
 struct Pin {
     k: f64,
     r: f64,
+}
+
+impl Pin {
+    /// The force on the link of `b`.
+    #[inline(always)]
+    fn force(self, a: &Point, b: &Point) -> [f64; 2] {
+        [self.k * (a.x - b.x) + self.r * (a.vx - b.vx), self.k * (a.y - b.y) + self.r * (a.vy - b.vy)]
+    }
+}
+
+/// A place and its velocity, m and m/s.
+struct Point {
+    x: f64,
+    y: f64,
+    vx: f64,
+    vy: f64,
+}
+
+/// A link with the forces and the moment about its centre of mass that were applied so far.
+struct Link {
+    x: f64,
+    y: f64,
+    angle: f64,
+    vx: f64,
+    vy: f64,
+    w: f64,
+    sine: f64,
+    cosine: f64,
+    fx: f64,
+    fy: f64,
+    moment: f64,
+}
+
+impl Link {
+    #[inline(always)]
+    fn of(s: &State, link: usize) -> Self {
+        let [x, y, angle] = [s[3 * link], s[3 * link + 1], s[3 * link + 2]];
+        let [vx, vy, w] = [s[12 + 3 * link], s[13 + 3 * link], s[14 + 3 * link]];
+        let (sine, cosine) = angle.sin_cos();
+        Self { x, y, angle, vx, vy, w, sine, cosine, fx: 0.0, fy: 0.0, moment: 0.0 }
+    }
+
+    /// A vector of the link in inertial axes.
+    #[inline(always)]
+    fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.cosine * x - self.sine * y, self.sine * x + self.cosine * y]
+    }
+
+    /// A point given from the centre of mass in the link's axes.
+    #[inline(always)]
+    fn point(&self, place: [f64; 2]) -> Point {
+        let [x, y] = self.turned(place);
+        Point { x: self.x + x, y: self.y + y, vx: self.vx - self.w * y, vy: self.vy + self.w * x }
+    }
+
+    /// Place and velocity of a point as seen from the link, in its axes.
+    #[inline(always)]
+    fn seen(&self, point: &Point) -> [f64; 4] {
+        let (dx, dy) = (point.x - self.x, point.y - self.y);
+        let (vx, vy) = (point.vx - self.vx + self.w * dy, point.vy - self.vy - self.w * dx);
+        let (sine, cosine) = (self.sine, self.cosine);
+        [cosine * dx + sine * dy, cosine * dy - sine * dx, cosine * vx + sine * vy, cosine * vy - sine * vx]
+    }
+
+    #[inline(always)]
+    fn apply(&mut self, [fx, fy]: [f64; 2], at: &Point) {
+        self.fx += fx;
+        self.fy += fy;
+        self.moment += (at.x - self.x) * fy - (at.y - self.y) * fx;
+    }
 }
 
 /// What depends on the parameters only.
@@ -96,7 +170,58 @@ impl Planar {
     /// The rate of `s`; `cutting` says that the blade moves toward the crank.
     #[inline(always)]
     pub fn rate(&self, s: &State, cutting: bool) -> State {
-        let [x2, y2, a2, x3, y3, a3, x4, y4, a4, x5, y5, a5, vx2, vy2, w2, vx3, vy3, w3, vx4, vy4, w4, vx5, vy5, w5] = *s;
+        let [mut crank, mut rod, mut frame, mut guide] = std::array::from_fn(|link| Link::of(s, link));
+        let ground = |[x, y]: [f64; 2]| Point { x, y, vx: 0.0, vy: 0.0 };
+
+        let (o, a2) = (crank.point([-CRANK, 0.0]), crank.point([CRANK, 0.0]));
+        let (a3, b3) = (rod.point([-ROD, 0.0]), rod.point([ROD, 0.0]));
+        let b4 = frame.point(self.b4);
+        let (block, pivot) = (guide.point([0.0, self.block]), guide.point([0.0, self.pivot]));
+
+        let force = self.pin_o.force(&ground([0.0, 0.0]), &o);
+        crank.apply(force, &o);
+        let [fx, fy] = self.pin_a.force(&a2, &a3);
+        rod.apply([fx, fy], &a3);
+        crank.apply([-fx, -fy], &a2);
+        let [fx, fy] = self.pin_b.force(&b3, &b4);
+        frame.apply([fx, fy], &b4);
+        rod.apply([-fx, -fy], &b3);
+        let force = self.pin_c.force(&ground(O5), &pivot);
+        guide.apply(force, &pivot);
+
+        let [_, offset, _, rate] = frame.seen(&block);
+        let slot = self.slot.k * (offset - self.bar) + self.slot.r * rate;
+        let [fx, fy] = frame.turned([0.0, slot]);
+        frame.apply([fx, fy], &block);
+        guide.apply([-fx, -fy], &block);
+        let twist = self.twist.k * (guide.angle - frame.angle) + self.twist.r * (guide.w - frame.w);
+        frame.moment += twist;
+        guide.moment -= twist;
+
+        let work = ground(WORK);
+        let [_, height, slip_x, slip_y] = frame.seen(&work);
+        let resistance = if cutting { self.r_cut } else { self.r_return };
+        let force = frame.turned([resistance * slip_x, self.work.k * (height - self.blade) + self.work.r * slip_y]);
+        frame.apply(force, &work);
+        crank.moment += self.torque;
+
+        let mut rate = [0.0; 24];
+        for (index, link) in [crank, rod, frame, guide].into_iter().enumerate() {
+            rate[3 * index] = link.vx;
+            rate[3 * index + 1] = link.vy;
+            rate[3 * index + 2] = link.w;
+            rate[12 + 3 * index] = self.masses[index] * link.fx;
+            rate[13 + 3 * index] = self.masses[index] * link.fy - self.gravity;
+            rate[14 + 3 * index] = self.inertias[index] * link.moment;
+        }
+        rate
+    }
+
+    /// The same with what a patient engineer saves.
+    #[inline(always)]
+    pub fn tuned_rate(&self, s: &State, cutting: bool) -> State {
+        let [x2, y2, a2, x3, y3, a3, x4, y4, a4, x5, y5, a5, vx2, vy2, w2, vx3, vy3, w3, vx4, vy4, w4, vx5, vy5, w5] =
+            *s;
         let ((s2, c2), (s3, c3)) = (a2.sin_cos(), a3.sin_cos());
         let ((s4, c4), (s5, c5)) = (a4.sin_cos(), a5.sin_cos());
 
@@ -167,7 +292,7 @@ impl Planar {
         ]
     }
 
-    /// The pose state of a scene's state vector and what its rates are here: both by the names of the scene's states.
+    /// The pose state of a scene's state, which `get` gives by name.
     ///
     /// The scene's slot spring, whose displacement is a state of its own there, has to be at the difference of the angles.
     pub fn state(&self, get: impl Fn(&str) -> f64) -> State {
@@ -175,7 +300,8 @@ impl Planar {
         for (link, name) in LINKS.iter().enumerate() {
             state[3 * link] = get(&format!("{name}.position_x"));
             state[3 * link + 1] = get(&format!("{name}.position_y"));
-            state[3 * link + 2] = (-get(&format!("{name}.orientation_12"))).atan2(get(&format!("{name}.orientation_11")));
+            state[3 * link + 2] =
+                (-get(&format!("{name}.orientation_12"))).atan2(get(&format!("{name}.orientation_11")));
             state[12 + 3 * link] = self.masses[link] * get(&format!("{name}.linear.p_x"));
             state[13 + 3 * link] = self.masses[link] * get(&format!("{name}.linear.p_y"));
             state[14 + 3 * link] = self.inertias[link] * get(&format!("{name}.angular.p_z"));
@@ -183,10 +309,8 @@ impl Planar {
         state
     }
 
-    /// The largest difference between the accelerations of `rate` and those that the scene's rates of momenta give, over the
-    /// largest acceleration of the same kind (translation, rotation).
-    pub fn disagreement(&self, rate: &State, scene_rate: impl Fn(&str) -> f64) -> f64 {
-        let (mut difference, mut largest) = ([0.0_f64; 2], [0.0_f64; 2]);
+    /// Adds the accelerations of `rate` and those that the scene's rates of momenta give to `comparison`.
+    pub fn compare(&self, rate: &State, scene_rate: impl Fn(&str) -> f64, comparison: &mut Comparison) {
         for (link, name) in LINKS.iter().enumerate() {
             let theirs = [
                 self.masses[link] * scene_rate(&format!("{name}.linear.p_x")),
@@ -195,13 +319,49 @@ impl Planar {
             ];
             for (axis, theirs) in theirs.into_iter().enumerate() {
                 let (ours, kind) = (rate[12 + 3 * link + axis], axis / 2);
-                difference[kind] = difference[kind].max((ours - theirs).abs());
-                largest[kind] = largest[kind].max(ours.abs());
+                comparison.difference[kind] = comparison.difference[kind].max((ours - theirs).abs());
+                comparison.largest[kind] = comparison.largest[kind].max(ours.abs());
             }
         }
-        (difference[0] / largest[0]).max(difference[1] / largest[1])
+    }
+}
+
+/// Accelerations of two models, of translation (m/s^2) and of rotation (rad/s^2).
+#[derive(Default)]
+pub struct Comparison {
+    difference: [f64; 2],
+    largest: [f64; 2],
+}
+
+impl Comparison {
+    /// The largest difference over the largest acceleration of its kind.
+    pub fn relative(&self) -> f64 {
+        (self.difference[0] / self.largest[0]).max(self.difference[1] / self.largest[1])
     }
 }
 
 /// The links' names in the mechanism.
 pub const LINKS: [&str; 4] = ["crank", "rod", "frame", "guide"];
+
+/// A state of the paper's scene as poses with the stroke; both hand-written rates there are compared with the scene's.
+///
+/// The slot's twist is a state of its own in the scene, which the integrator keeps near the difference of the two angles
+/// to its tolerance; here it is put there.
+pub fn beside(
+    model: &Paper,
+    mut x: SVector<f64, { Paper::STATES }>,
+    negative: [bool; 1],
+    comparison: &mut Comparison,
+) -> (State, bool) {
+    let names = model.description().states;
+    let index = |name: &str| names.iter().position(|state| state.name == name).expect("a state of the paper's scene");
+    let planar = Planar::new(model.parameters());
+    let state = planar.state(|name| x[index(name)]);
+    x[index("slot.tilt_spring.q_z")] = state[11] - state[8];
+    let mut rate = SVector::zeros();
+    model.rate(0.0, &x, &negative, &mut rate);
+    for ours in [planar.rate(&state, negative[0]), planar.tuned_rate(&state, negative[0])] {
+        planar.compare(&ours, |name| rate[index(name)], comparison);
+    }
+    (state, negative[0])
+}

@@ -58,5 +58,26 @@ bond_graph! {
             stored: J = stored_energy;
             supplied: J = integral(supplied_power);
         }
+
+        /// The angles of the rods, in the plane.
+        scene RodAngles {
+            observe { upper_angle: rad = shoulder.angle; elbow_angle: rad = elbow.angle; }
+            tune { upper_angle, lower_angle, stiffness, gravity }
+            expect planar;
+        }
+        /// Rods on pins that do not give.
+        scene RigidPendulum {
+            rigid joints;
+            observe {
+                upper_angle: rad = shoulder.angle;
+                elbow_angle: rad = elbow.angle;
+                shoulder_gap: m = shoulder.gap;
+                elbow_gap: m = elbow.gap;
+                upper_position: m = upper.position;
+                lower_position: m = lower.position;
+                stored: J = stored_energy;
+            }
+            expect planar;
+        }
     }
 }

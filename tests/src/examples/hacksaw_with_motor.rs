@@ -184,5 +184,12 @@ bond_graph! {
             supplied: J = integral(supplied_power);
             dissipated: J = integral(dissipated_power);
         }
+
+        /// The motor's current, all that an ammeter in its supply shows of the saw.
+        scene Current {
+            observe { current: A = armature.flow; }
+            tune { winding, constant, shaft_stiffness, r_cut, r_return }
+            expect planar;
+        }
     }
 }

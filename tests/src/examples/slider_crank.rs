@@ -68,5 +68,28 @@ bond_graph! {
             supplied: J = integral(supplied_power);
             dissipated: J = integral(dissipated_power);
         }
+
+        /// The motion in the plane, with all that the three-dimensional description observes.
+        scene PlanarSliderCrank {
+            expect planar;
+        }
+        /// Links on pins and a slide that do not give.
+        scene RigidSliderCrank {
+            rigid joints;
+            observe {
+                angle: rad = crank.angle;
+                speed: rad/s = pin_o.speed;
+                rod_angle: rad = rod.angle;
+                slider_x: m = slider.position.x;
+                slider_y: m = slider.position.y;
+                gap_o: m = norm(pin_o.gap);
+                gap_a: m = norm(pin_a.gap);
+                gap_b: m = norm(pin_b.gap);
+                stored: J = stored_energy;
+                supplied: J = integral(supplied_power);
+            }
+            tune { torque, crank_angle, crank_length, rod_length }
+            expect planar;
+        }
     }
 }

@@ -51,5 +51,22 @@ bond_graph! {
             stored: J = stored_energy;
             supplied: J = integral(supplied_power);
         }
+
+        /// The nutation: only how upright the axis is.
+        scene Nutation {
+            observe { upright = top.z_axis.z; }
+            tune { mass, tilt, precession, spin, gravity }
+        }
+        /// The top about a fixed point.
+        scene FixedTip {
+            rigid joints;
+            observe {
+                axis = top.z_axis;
+                center: m = top.position;
+                w: rad/s = top.angular_velocity;
+                gap: m = tip.gap;
+                stored: J = stored_energy;
+            }
+        }
     }
 }

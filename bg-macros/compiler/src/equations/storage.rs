@@ -114,56 +114,67 @@ impl Signals<'_> {
 
     /// The energy stored in one C or I.
     pub(super) fn energy_of(&mut self, node: NodeId) -> Id {
-        let state = self.element_state(node);
-        let (energy, atoms) = self.energy_of_atoms(node, state.0.len());
-        let find = |symbol| atoms.iter().position(|&atom| atom == symbol).map(|k| state.0[k]);
-        substitute(&mut self.pool, &[energy], &find)[0]
-    }
-
-    /// The stored energy as an expression of atoms that stand for the storage's own state.
-    fn energy_of_atoms(&mut self, node: NodeId, components: usize) -> (Id, Vec<Symbol>) {
         let graph = self.graph;
-        let atoms: Vec<Symbol> = (STATE_ATOMS..).take(components).map(Symbol::Atom).collect();
-        let state = Value(atoms.iter().map(|&atom| self.pool.symbol(atom)).collect());
-        let Some(element) = graph.element(node) else { return (self.pool.zero(), atoms) };
-        let law = self.storage_law(node, element, &state);
-        let energy = match (&element.law, &element.energy) {
-            (Law::Of { .. }, Some(term)) => self.given_energy(node, term, &state, &law, &atoms),
-            (Law::Of { .. }, None) => self.found_energy(node, element, &law, &atoms),
+        let Some(element) = graph.element(node) else { return self.pool.zero() };
+        let state = self.element_state(node);
+        match (&element.law, &element.energy) {
+            (Law::Of { .. }, Some(term)) => {
+                self.check_energy(node, element, term);
+                self.evaluate(term, Some(&state)).0[0]
+            }
+            (Law::Of { .. }, None) => self.found_energy(node, element, &state),
             _ => {
-                let product = law.dot(&mut self.pool, &state);
+                let effort = self.storage_law(node, element, &state);
+                let product = effort.dot(&mut self.pool, &state);
                 self.pool.scale(0.5, product)
             }
-        };
-        (energy, atoms)
+        }
     }
 
-    fn found_energy(&mut self, node: NodeId, element: &Element, law: &Value, atoms: &[Symbol]) -> Id {
+    /// Atoms in the place of a storage's own state.
+    fn state_atoms(&mut self, components: usize) -> (Vec<Symbol>, Value) {
+        let atoms: Vec<Symbol> = (STATE_ATOMS..).take(components).map(Symbol::Atom).collect();
+        let value = Value(atoms.iter().map(|&atom| self.pool.symbol(atom)).collect());
+        (atoms, value)
+    }
+
+    /// The integral of a scalar law over its variable.
+    fn found_energy(&mut self, node: NodeId, element: &Element, state: &Value) -> Id {
+        let switches = self.switches.len();
+        let (atoms, variable) = self.state_atoms(state.0.len());
+        let law = self.storage_law(node, element, &variable);
+        // Switches over atoms are of this calculation only; a law with any has no integral here.
+        self.switches.truncate(switches);
         let found = if law.0.len() == 1 { antiderivative(&mut self.pool, law.0[0], atoms[0]) } else { None };
-        found.unwrap_or_else(|| {
+        let Some(found) = found else {
             let definition = self.graph.node(node);
             let (symbol, name) = (element.kind.symbol(), definition.name.text.clone());
-            let fault = Fault::new(element.law.term().span, &EquationFault::NoEnergy { symbol, name });
-            self.fault_once(fault);
-            self.pool.zero()
-        })
+            self.fault_once(Fault::new(element.law.term().span, &EquationFault::NoEnergy { symbol, name }));
+            return self.pool.zero();
+        };
+        substitute(&mut self.pool, &[found], &|symbol| (symbol == atoms[0]).then_some(state.0[0]))[0]
     }
 
-    /// The user's energy, tested against the law at a few states: d(energy)/d(state) = law.
-    fn given_energy(&mut self, node: NodeId, term: &Term, state: &Value, law: &Value, atoms: &[Symbol]) -> Id {
-        let energy = self.evaluate(term, Some(state)).0[0];
+    /// Tests the user's energy against the law at a few states: d(energy)/d(state) = law.
+    fn check_energy(&mut self, node: NodeId, element: &Element, term: &Term) {
+        let switches = self.switches.len();
+        let components = self.graph.bond(self.graph.node(node).bonds[0]).cardinality;
+        let (atoms, variable) = self.state_atoms(components);
+        let law = self.storage_law(node, element, &variable);
+        let energy = self.evaluate(term, Some(&variable)).0[0];
         let one = self.pool.one();
         let mut pairs = Vec::new();
         for (&atom, &expected) in atoms.iter().zip(&law.0) {
             let slope = derivative(&mut self.pool, &[energy], &BTreeMap::from([(atom, one)]))[0];
             pairs.extend([slope, expected]);
         }
-        if !self.agree_at_samples(&pairs) {
+        let agree = self.agree_at_samples(&pairs);
+        self.switches.truncate(switches);
+        if !agree {
             let definition = self.graph.node(node);
             let (symbol, name) = (definition.kind.symbol(), definition.name.text.clone());
             self.fault_once(Fault::new(term.span, &EquationFault::EnergyOfOtherLaw { symbol, name }));
         }
-        energy
     }
 
     fn fault_once(&mut self, fault: Fault) {
@@ -209,23 +220,64 @@ impl Signals<'_> {
     /// storage's own state. A tensor that turns with its own flow has none: h . (w x w) = 0.
     pub(super) fn modulation_power(&mut self) -> Id {
         let graph = self.graph;
-        let mut seeds: BTreeMap<Symbol, Id> = BTreeMap::new();
-        for (index, state) in self.states.iter().enumerate() {
-            seeds.insert(Symbol::State(u32::try_from(index).expect("fewer than 2^32 states")), state.rate);
-        }
-        let one = self.pool.one();
-        seeds.insert(Symbol::Time, one);
         let mut powers = Vec::new();
         for node in self.elements(|kind| matches!(kind, ElementKind::I | ElementKind::C)) {
-            if graph.element(node).is_some_and(|element| element.frame.is_some()) {
-                continue;
+            if graph.element(node).is_some_and(|element| element.frame.is_none()) {
+                powers.push(self.modulation_of(node));
             }
-            let state = self.element_state(node);
-            let (energy, atoms) = self.energy_of_atoms(node, state.0.len());
-            let change = derivative(&mut self.pool, &[energy], &seeds);
-            let find = |symbol| atoms.iter().position(|&atom| atom == symbol).map(|k| state.0[k]);
-            powers.extend(substitute(&mut self.pool, &change, &find));
         }
         self.pool.sum(&powers)
+    }
+
+    fn modulation_of(&mut self, node: NodeId) -> Id {
+        let graph = self.graph;
+        let Some(element) = graph.element(node) else { return self.pool.zero() };
+        if element.displacement.is_some() {
+            return self.modulation_of_displaced(node, element);
+        }
+        // At rest of its own states: their seeds are missing.
+        let own = self.element_state(node).0;
+        let seeds = self.rate_seeds(&own);
+        let energy = self.energy_of(node);
+        derivative(&mut self.pool, &[energy], &seeds)[0]
+    }
+
+    /// Of a C whose displacement the poses determine: the displacement is held as atoms while the rest changes.
+    fn modulation_of_displaced(&mut self, node: NodeId, element: &Element) -> Id {
+        let state = self.element_state(node);
+        let switches = self.switches.len();
+        let (atoms, variable) = self.state_atoms(state.0.len());
+        let law = self.storage_law(node, element, &variable);
+        let is_own = |symbol: &Symbol| atoms.contains(symbol) || matches!(symbol, Symbol::Parameter(_));
+        let is_modulated = !self.pool.symbols(&law.0).iter().all(is_own);
+        let is_linear = !matches!(element.law, Law::Of { .. }) && self.switches.len() == switches;
+        self.switches.truncate(switches);
+        if !is_modulated {
+            return self.pool.zero();
+        }
+        if !is_linear {
+            let (symbol, name) = (element.kind.symbol(), self.graph.node(node).name.text.clone());
+            self.fault_once(Fault::new(element.law.term().span, &EquationFault::NoEnergy { symbol, name }));
+            return self.pool.zero();
+        }
+        let product = law.dot(&mut self.pool, &variable);
+        let energy = self.pool.scale(0.5, product);
+        let seeds = self.rate_seeds(&[]);
+        let change = derivative(&mut self.pool, &[energy], &seeds);
+        let find = |symbol| atoms.iter().position(|&atom| atom == symbol).map(|k| state.0[k]);
+        substitute(&mut self.pool, &change, &find)[0]
+    }
+
+    /// The rates of time and of all states but `held`.
+    fn rate_seeds(&mut self, held: &[Id]) -> BTreeMap<Symbol, Id> {
+        let mut seeds = BTreeMap::from([(Symbol::Time, self.pool.one())]);
+        for index in 0..self.states.len() {
+            let symbol = self.state_symbol(index);
+            if !held.contains(&symbol) {
+                let index = u32::try_from(index).expect("fewer than 2^32 states");
+                seeds.insert(Symbol::State(index), self.states[index as usize].rate);
+            }
+        }
+        seeds
     }
 }

@@ -21,7 +21,7 @@ pub use antiderivative::antiderivative;
 pub use calculus::{derivative, gradient};
 pub use evaluate::{Environment, apply, evaluate};
 pub use node::{Function, Id, Node, Number, Symbol};
-pub use polynomial::{monomials, same_polynomial};
+pub use polynomial::{Monomials, monomials, same_polynomial};
 pub use pool::{Pool, children};
 pub use substitute::{Branch, substitute, substitute_switched};
 pub use text::text;

@@ -23,6 +23,9 @@ const ROUNDING: f64 = 1e-12;
 /// Atoms in ascending order with their exponents, none zero.
 type Monomial = Box<[(Id, i32)]>;
 
+/// A sum of monomials: atoms in ascending order with their exponents, and the coefficient.
+pub type Monomials = BTreeMap<Box<[(Id, i32)]>, f64>;
+
 #[derive(Clone, Copy, Debug)]
 struct Coefficient {
     value: f64,
@@ -44,7 +47,7 @@ pub fn same_polynomial(pool: &mut Pool, a: Id, b: Id) -> bool {
 }
 
 /// The monomials of `of` over its atoms with their coefficients; none where the expansion grows too large.
-pub fn monomials(pool: &mut Pool, of: Id) -> Option<BTreeMap<Box<[(Id, i32)]>, f64>> {
+pub fn monomials(pool: &mut Pool, of: Id) -> Option<Monomials> {
     let mut expansion = Expansion::new(pool, &[of]);
     for id in expansion.pool.reachable(&[of]) {
         let polynomial = expansion.expanded(id)?;

@@ -23,6 +23,9 @@ pub fn bonds(
         let ends: Vec<Option<NodeId>> = chain.iter().map(|name| node(name, names, faults)).collect();
         for (pair, name) in ends.windows(2).zip(&chain[1..]) {
             if let (Some(from), Some(to)) = (pair[0], pair[1]) {
+                if from == to {
+                    faults.push(Fault::new(name.span, &GraphFault::SelfBond { name: name.text.clone() }));
+                }
                 let id = BondId(graph.bonds.len());
                 graph.bonds.push(Bond { from, to, cardinality: 1, effort: Dimension::NONE, span: name.span });
                 graph.nodes[from.0].bonds.push(id);

@@ -9,6 +9,7 @@ use crate::units::Dimension;
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum GraphFault {
     Duplicate { name: String },
+    Reserved { name: String },
     UnknownName { name: String, near: Option<String> },
     UnknownFunction { name: String, near: Option<String> },
     UnknownDomain { name: String, near: Option<String> },
@@ -18,7 +19,7 @@ pub enum GraphFault {
     TwoPortBonds { symbol: &'static str, name: String, inward: usize, outward: usize },
     NoBond { name: String },
     Cardinality { from: String, from_cardinality: usize, to: String, to_cardinality: usize },
-    TransformerShape { name: String, found: Shape, inward: usize, outward: usize },
+    SelfBond { name: String },
     Shapes { what: &'static str, left: Shape, right: Shape },
     ShapeOf { what: String, expected: Shape, found: Shape },
     NoComponent { found: Shape },
@@ -57,7 +58,7 @@ impl Explain for GraphFault {
             F::TwoPortBonds { .. } => "BG0309",
             F::NoBond { .. } => "BG0310",
             F::Cardinality { .. } => "BG0311",
-            F::TransformerShape { .. } => "BG0312",
+            F::SelfBond { .. } => "BG0312",
             F::Shapes { .. } => "BG0313",
             F::ShapeOf { .. } => "BG0314",
             F::NoComponent { .. } => "BG0315",
@@ -79,12 +80,14 @@ impl Explain for GraphFault {
             F::IntegralOutsideObserve => "BG0331",
             F::VariableRole { .. } => "BG0332",
             F::EmptyGraph { .. } => "BG0333",
+            F::Reserved { .. } => "BG0334",
         }
     }
 
     fn message(&self) -> String {
         match self {
             F::Duplicate { name } => format!("`{name}` is declared twice"),
+            F::Reserved { name } => format!("`{name}` is the time"),
             F::UnknownName { name, .. } => format!("nothing is called `{name}`"),
             F::UnknownFunction { name, .. } => format!("there is no function `{name}`"),
             F::UnknownDomain { name, .. } => format!("there is no energy domain `{name}`"),
@@ -100,10 +103,7 @@ impl Explain for GraphFault {
             F::Cardinality { from, from_cardinality, to, to_cardinality } => format!(
                 "the bond joins `{from}` of cardinality {from_cardinality} to `{to}` of cardinality {to_cardinality}"
             ),
-            F::TransformerShape { name, found, inward, outward } => format!(
-                "the modulus of `{name}` is a {found}, which cannot map the {inward} flow(s) of the bond in to the \
-                 {outward} of the bond out"
-            ),
+            F::SelfBond { name } => format!("the bond joins `{name}` to itself"),
             F::Shapes { what, left, right } => format!("cannot {what} a {left} and a {right}"),
             F::ShapeOf { what, expected, found } => format!("{what} must be a {expected}; this is a {found}"),
             F::NoComponent { found } => format!("a {found} has no component x, y or z"),
@@ -140,6 +140,7 @@ impl Explain for GraphFault {
     fn help(&self) -> String {
         match self {
             F::Duplicate { .. } => "give one of them another name".to_owned(),
+            F::Reserved { .. } => "give it another name".to_owned(),
             F::UnknownName { near: Some(near), .. } | F::UnknownFunction { near: Some(near), .. } => {
                 format!("did you mean `{near}`?")
             }
@@ -162,9 +163,7 @@ impl Explain for GraphFault {
             F::Cardinality { .. } => {
                 "make the junctions alike, or put a TF in between that maps the flows, `TF t(v) = dot(n, v);`".to_owned()
             }
-            F::TransformerShape { inward, outward, .. } => format!(
-                "write the law as a map of the flow, `(flow v) = ...`, from {inward} component(s) to {outward}"
-            ),
+            F::SelfBond { .. } => "end it at another node".to_owned(),
             F::Shapes { what: "multiply", .. } => "use `dot`, `cross` or `outer` for two vectors".to_owned(),
             F::Shapes { .. } => "make them alike".to_owned(),
             F::ShapeOf { expected, .. } => match expected {

@@ -56,6 +56,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
         let name = source.name.text.clone();
         resolver.faults.push(Fault::new(source.name.span, &GraphFault::EmptyGraph { name }));
     }
+    resolver.let_circles();
     resolver.checked()?;
     domains::assign(&mut resolver.graph, &resolver.domains, &mut resolver.faults);
     resolver.dependencies();
@@ -119,7 +120,9 @@ impl Resolver {
     }
 
     fn name(&mut self, name: &Name, entity: Entity) {
-        if self.names.insert(name.text.clone(), entity).is_some() || name.text == "t" {
+        if name.text == "t" {
+            self.fault(name.span, &GraphFault::Reserved { name: name.text.clone() });
+        } else if self.names.insert(name.text.clone(), entity).is_some() {
             self.fault(name.span, &GraphFault::Duplicate { name: name.text.clone() });
         }
     }
@@ -171,14 +174,16 @@ impl Resolver {
         let default = self.number(&parameter.default);
         let lower = parameter.lower.as_ref().map(|bound| (self.number(&bound.value), bound.included));
         let upper = parameter.upper.as_ref().map(|bound| (self.number(&bound.value), bound.included));
-        if let (Some((low, _)), Some((high, _))) = (lower, upper)
-            && low > high
-        {
+        let is_empty = match (lower, upper) {
+            (Some((low, with_low)), Some((high, with_high))) => low > high || low == high && !(with_low && with_high),
+            _ => false,
+        };
+        if is_empty {
             self.fault(name.span, &GraphFault::RangeEmpty { name: name.text.clone() });
         }
         let above = lower.is_none_or(|(low, included)| default > low || included && default == low);
         let below = upper.is_none_or(|(high, included)| default < high || included && default == high);
-        if !(above && below) {
+        if !(is_empty || above && below) {
             self.fault(parameter.default.span, &GraphFault::DefaultOutOfRange { name: name.text.clone() });
         }
         let (docs, unit) = (parameter.docs.clone(), parameter.unit.to_string());
@@ -454,6 +459,16 @@ impl Resolver {
             "q" => Some(Reference::Displacement(node)),
             "p" => Some(Reference::Momentum(node)),
             _ => None,
+        }
+    }
+
+    /// Lets that are defined by themselves.
+    fn let_circles(&mut self) {
+        for (index, definition) in self.graph.lets.iter().enumerate() {
+            if self.deep_references(&definition.value).contains(&Reference::Let(index)) {
+                let name = definition.name.text.clone();
+                self.faults.push(Fault::new(definition.name.span, &GraphFault::LetCycle { name }));
+            }
         }
     }
 

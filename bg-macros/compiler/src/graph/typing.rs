@@ -68,21 +68,14 @@ pub type Typed = (Shape, Quantity);
 pub struct Types<'a> {
     graph: &'a BondGraph,
     efforts: &'a [Option<Dimension>],
-    lets: RefCell<Vec<LetType>>,
-}
-
-/// A let's type, calculated when first asked for.
-#[derive(Clone, Copy)]
-enum LetType {
-    Open,
-    Entered,
-    Done(Typed),
+    /// The lets' types, calculated when first asked for; no let is defined by itself.
+    lets: RefCell<Vec<Option<Typed>>>,
 }
 
 impl<'a> Types<'a> {
     /// Types where bond k has effort unit `efforts[k]`, if known.
     pub fn new(graph: &'a BondGraph, efforts: &'a [Option<Dimension>]) -> Self {
-        Self { graph, efforts, lets: RefCell::new(vec![LetType::Open; graph.lets.len()]) }
+        Self { graph, efforts, lets: RefCell::new(vec![None; graph.lets.len()]) }
     }
 
     /// The effort and flow unit of a bond.
@@ -109,24 +102,15 @@ impl<'a> Types<'a> {
         self.of(term, variable, &mut Vec::new())
     }
 
-    fn of_let(&self, index: usize, span: proc_macro2::Span, faults: &mut Vec<Fault>) -> Typed {
-        let state = self.lets.borrow()[index];
-        match state {
-            LetType::Done(typed) => typed,
-            LetType::Entered => {
-                let name = self.graph.lets[index].name.text.clone();
-                faults.push(Fault::new(span, &GraphFault::LetCycle { name }));
-                (Shape::Scalar, Quantity::Unknown)
-            }
-            LetType::Open => {
-                self.lets.borrow_mut()[index] = LetType::Entered;
-                let definition = &self.graph.lets[index];
-                let (shape, quantity) = self.silently(&definition.value, None);
-                let quantity = definition.dimension.map_or(quantity, Quantity::Known);
-                self.lets.borrow_mut()[index] = LetType::Done((shape, quantity));
-                (shape, quantity)
-            }
-        }
+    fn of_let(&self, index: usize) -> Typed {
+        let known = self.lets.borrow()[index];
+        known.unwrap_or_else(|| {
+            let definition = &self.graph.lets[index];
+            let (shape, quantity) = self.silently(&definition.value, None);
+            let typed = (shape, definition.dimension.map_or(quantity, Quantity::Known));
+            self.lets.borrow_mut()[index] = Some(typed);
+            typed
+        })
     }
 
     fn of_reference(&self, reference: Reference, variable: Option<Typed>) -> Typed {
@@ -179,7 +163,7 @@ impl Checker<'_, '_> {
     fn check(&mut self, term: &Term) -> Typed {
         match &term.kind {
             TermKind::Number(_) => (Shape::Scalar, self.number),
-            TermKind::Reference(Reference::Let(index)) => self.types.of_let(*index, term.span, self.faults),
+            TermKind::Reference(Reference::Let(index)) => self.types.of_let(*index),
             TermKind::Reference(reference) => self.types.of_reference(*reference, self.variable),
             TermKind::Negate(inner) => self.check(inner),
             TermKind::Component(inner, _) => {

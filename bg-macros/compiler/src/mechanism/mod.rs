@@ -9,12 +9,13 @@ mod body;
 mod fault;
 mod joint;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Group, Span, TokenStream, TokenTree};
 
 use crate::ast::{Axis, Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name};
 use crate::fault::{Explain, Fault, Staged, near_miss};
+use crate::graph::GraphFault;
 use crate::syntax;
 
 pub use fault::MechanismFault;
@@ -73,7 +74,13 @@ impl<'a> Expansion<'a> {
             has_gravity: false,
             faults: Vec::new(),
         };
+        let mut names: BTreeSet<&str> = BTreeSet::new();
         for item in &source.items {
+            if let Some(name) = part_name(item)
+                && !names.insert(&name.text)
+            {
+                expansion.fault(name.span, &GraphFault::Duplicate { name: name.text.clone() });
+            }
             match item {
                 Item::Body(body) => {
                     expansion.bodies.insert(&body.name.text, body);
@@ -228,6 +235,18 @@ impl<'a> Expansion<'a> {
                 ),
             );
         }
+    }
+}
+
+/// The name of a mechanism's part.
+fn part_name(item: &Item) -> Option<&Name> {
+    match item {
+        Item::Body(body) => Some(&body.name),
+        Item::Joint(joint) => Some(&joint.name),
+        Item::Spring(spring) => Some(&spring.name),
+        Item::Drive(drive) => Some(&drive.name),
+        Item::Contact(contact) => Some(&contact.name),
+        _ => None,
     }
 }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use super::report::{Fate, Report, show};
 use super::{index, is_constant, state_of};
 use crate::equations::StateEquations;
-use crate::expr::{Id, Symbol, monomials, same_polynomial};
+use crate::expr::{Id, Monomials, Symbol, monomials, same_polynomial};
 
 /// Coefficients below this part of the largest are rounding of the elimination.
 const ROUNDING: f64 = 1e-11;
@@ -89,7 +89,7 @@ fn proved(equations: &mut StateEquations, rate: Id, combination: &Combination) -
 
 /// A combination of states and the monomials of its rate.
 struct Row {
-    entries: BTreeMap<Box<[(Id, i32)]>, f64>,
+    entries: Monomials,
     combination: Combination,
 }
 

@@ -153,3 +153,6 @@ impl StateEquations {
         program.routines[0].counts
     }
 }
+
+#[cfg(test)]
+mod tests;

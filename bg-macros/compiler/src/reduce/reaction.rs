@@ -74,33 +74,34 @@ impl Linear {
     /// l by L D L^T, without pivots (Golub and Van Loan, Matrix Computations, algorithm 4.1.2).
     fn solved(self, pool: &mut Pool) -> Vec<Id> {
         let n = self.constant.len();
-        let mut lower = self.matrix;
+        let mut lower: Vec<Vec<Id>> = Vec::with_capacity(n);
         let mut diagonal: Vec<Id> = Vec::with_capacity(n);
-        for i in 0..n {
-            for j in 0..i {
-                // lower[i][j] holds L_ij D_j until its row is done.
-                let known: Vec<Id> = (0..j).map(|k| pool.mul(lower[i][k], lower[j][k])).collect();
+        for (i, mut row) in self.matrix.into_iter().enumerate() {
+            // The row's entries are L_ij D_j until all of them are known.
+            for (j, above) in lower.iter().enumerate() {
+                let known: Vec<Id> = (0..j).map(|k| pool.mul(row[k], above[k])).collect();
                 let known = pool.sum(&known);
-                lower[i][j] = pool.sub(lower[i][j], known);
+                row[j] = pool.sub(row[j], known);
             }
-            let scaled: Vec<Id> = lower[i][..i].to_vec();
             let mut squares = Vec::with_capacity(i);
-            for j in 0..i {
-                lower[i][j] = pool.div(scaled[j], diagonal[j]);
-                squares.push(pool.mul(scaled[j], lower[i][j]));
+            for (entry, &divisor) in row.iter_mut().zip(&diagonal) {
+                let scaled = *entry;
+                *entry = pool.div(scaled, divisor);
+                squares.push(pool.mul(scaled, *entry));
             }
             let squares = pool.sum(&squares);
-            diagonal.push(pool.sub(lower[i][i], squares));
+            diagonal.push(pool.sub(row[i], squares));
+            lower.push(row);
         }
         let mut solution: Vec<Id> = Vec::with_capacity(n);
-        for i in 0..n {
-            let known: Vec<Id> = (0..i).map(|k| pool.mul(lower[i][k], solution[k])).collect();
+        for (row, &constant) in lower.iter().zip(&self.constant) {
+            let known: Vec<Id> = row.iter().zip(&solution).map(|(&entry, &value)| pool.mul(entry, value)).collect();
             let known = pool.sum(&known);
-            let right = pool.neg(self.constant[i]);
+            let right = pool.neg(constant);
             solution.push(pool.sub(right, known));
         }
-        for i in 0..n {
-            solution[i] = pool.div(solution[i], diagonal[i]);
+        for (value, &divisor) in solution.iter_mut().zip(&diagonal) {
+            *value = pool.div(*value, divisor);
         }
         for i in (0..n).rev() {
             let known: Vec<Id> = (i + 1..n).map(|k| pool.mul(lower[k][i], solution[k])).collect();
