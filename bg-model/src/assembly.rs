@@ -16,10 +16,17 @@ pub const CLOSED: f64 = 1e-10;
 pub struct Gap {
     /// The joint's name.
     pub joint: &'static str,
-    /// Which component, such as `x` or `angle`.
+    /// Which component, such as `x`; empty where the gap has only one.
     pub component: &'static str,
     /// Its unit, `m` or `rad`.
     pub unit: &'static str,
+}
+
+impl Gap {
+    /// ` in x`, or nothing where the gap has only one component.
+    fn direction(&self) -> String {
+        if self.component.is_empty() { String::new() } else { format!(" in {}", self.component) }
+    }
 }
 
 /// A gap that stays open.
@@ -33,7 +40,7 @@ pub struct OpenGap {
 
 impl std::fmt::Display for OpenGap {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "`{}` by {:e} {} in {}", self.gap.joint, self.size, self.gap.unit, self.gap.component)
+        write!(f, "`{}` by {:e} {}{}", self.gap.joint, self.size, self.gap.unit, self.gap.direction())
     }
 }
 
@@ -49,7 +56,7 @@ pub enum AssemblyError {
         others: Vec<OpenGap>,
     },
     /// A gap is not a finite number at the guess or near it.
-    #[error("the gap of joint `{}` in {} is not a finite number: {value}", .gap.joint, .gap.component)]
+    #[error("the gap of joint `{}`{} is not a finite number: {value}", .gap.joint, .gap.direction())]
     NonFinite {
         /// Which gap.
         gap: Gap,

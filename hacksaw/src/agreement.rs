@@ -19,7 +19,7 @@ use bg_model::system::{Model, Powers, System};
 use crate::mechanism::{Hacksaw, HacksawParameters};
 use crate::run::{Simulation, record};
 use crate::scenes::{Scene, Visitor};
-use crate::trajectory::{Column, LINKS, Trajectory};
+use crate::trajectory::{AXES, Column, LINKS, Trajectory};
 
 /// The steps that both models take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -272,6 +272,7 @@ fn deviations(scene: &Trajectory, literal: &Trajectory) -> Result<Vec<Deviation>
 /// A name without the link's number and the component.
 fn kind(name: &str) -> &str {
     let word = name.find(|c: char| c.is_ascii_digit()).map_or(name, |digit| &name[..digit]);
+    let word = AXES.iter().find_map(|axis| word.strip_suffix(axis)?.strip_suffix('_')).unwrap_or(word);
     word.trim_end_matches('_')
 }
 
@@ -281,8 +282,8 @@ mod tests {
 
     #[test]
     fn kinds_are_names_without_numbers() {
-        let kinds = ["C2_x", "R3_11", "gap_12", "F45_x", "stored_energy", "crank_angle"].map(kind);
-        assert_eq!(kinds, ["C", "R", "gap", "F", "stored_energy", "crank_angle"]);
+        let kinds = ["C2_x", "R3_11", "gap_12", "F45_x", "Fcut_x", "stored_energy", "crank_angle"].map(kind);
+        assert_eq!(kinds, ["C", "R", "gap", "F", "Fcut", "stored_energy", "crank_angle"]);
     }
 
     #[test]

@@ -89,11 +89,11 @@ fn overview(scene: Scene, description: &Description) -> String {
             None => kinds.push((element.kind, 1)),
         }
     }
-    let kinds: Vec<_> = kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    let kinds: Vec<_> = kinds.iter().map(|(kind, count)| format!("{kind}: {count}")).collect();
     let multibonds = description.bonds.iter().filter(|bond| bond.cardinality > 1).count();
     format!(
         "graph {} (scene {}): {}\n\n\
-         {} junctions and elements: {}\n{} bonds, {multibonds} of them multibonds; {} equations\n\n\
+         {} junctions and elements ({})\n{} bonds, {multibonds} of them multibonds; {} equations\n\n\
          States:\n{}\nOperations:\n{}\nMore: --part source, elements, bonds or equations\n",
         description.name,
         scene.name(),
@@ -150,17 +150,20 @@ pub fn rate_operations(description: &Description) -> OperationCount {
     description.operations.iter().find(|(function, _)| *function == "rate").map_or_else(Default::default, |(_, c)| *c)
 }
 
-/// Rows with their columns aligned: numbers to the right, everything else to the left.
+/// Rows with their columns aligned: numbers under their heading to the right, everything else to the left.
 #[must_use]
 pub fn table<const K: usize>(rows: &[[String; K]]) -> String {
     let widths: [usize; K] =
         std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+    let below = rows.get(1..).unwrap_or_default();
+    let is_number: [bool; K] = std::array::from_fn(|column| {
+        below.iter().map(|row| &row[column]).all(|cell| cell.is_empty() || cell.parse::<f64>().is_ok())
+    });
     let mut text = String::new();
     for row in rows {
         let mut line = String::new();
-        for (cell, width) in row.iter().zip(widths) {
-            let is_number = cell.parse::<f64>().is_ok();
-            line += &if is_number { format!("  {cell:>width$}") } else { format!("  {cell:width$}") };
+        for (column, (cell, width)) in row.iter().zip(widths).enumerate() {
+            line += &if is_number[column] { format!("  {cell:>width$}") } else { format!("  {cell:width$}") };
         }
         text += line.trim_end();
         text += "\n";
@@ -198,8 +201,8 @@ mod tests {
 
     #[test]
     fn columns_are_aligned_and_end_without_blanks() {
-        let rows = [["a", "1"], ["long", "12"], ["b", ""]].map(|row| row.map(str::to_owned));
-        assert_eq!(table(&rows), "  a      1\n  long  12\n  b\n");
+        let rows = [["a", "1"], ["long", "12"], ["1", ""]].map(|row| row.map(str::to_owned));
+        assert_eq!(table(&rows), "  a      1\n  long  12\n  1\n");
     }
 
     #[test]

@@ -136,7 +136,10 @@ const EQUATIONS: [(&str, &str); 5] = [
 
 /// A mass on a spring, with a place for scenes.
 const SCENES: [(&str, &str); 6] = [
-    ("BG0601", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene A { observe { m.p } } scene ▸A { observe { j.flow } }"),
+    (
+        "BG0601",
+        "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene A { observe { m.p } } scene ▸A { observe { j.flow } }",
+    ),
     ("BG0602", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene A { without { ▸g } }"),
     ("BG0603", "param a: N = 1; Se f = a; 1 j: translation; I m = 2; f -> j -> m; scene A { tune { ▸b } }"),
     (

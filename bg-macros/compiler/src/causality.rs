@@ -81,7 +81,9 @@ impl Explain for CausalFault {
                 format!("{symbol} `{name}` would be in derivative causality: its state is already determined by {by}")
             }
             F::OneWay { symbol, name, needs, by } => {
-                format!("the law of {symbol} `{name}` needs its {needs}, but that is what it would have to give: {by} determines the other variable")
+                format!(
+                    "the law of {symbol} `{name}` needs its {needs}, but that is what it would have to give: {by} determines the other variable"
+                )
             }
         }
     }
@@ -91,16 +93,16 @@ impl Explain for CausalFault {
             F::Conflict { variable: "effort", .. } => {
                 "put a 1-junction with an R between one of the two and the junction".to_owned()
             }
-            F::Conflict { .. } => "put a 0-junction with an R or a C between one of the two and the junction".to_owned(),
+            F::Conflict { .. } => {
+                "put a 0-junction with an R or a C between one of the two and the junction".to_owned()
+            }
             F::Underdetermined { junction, variable: "effort" } => format!("bond a C or an R to `{junction}`"),
             F::Underdetermined { junction, .. } => format!("bond an I or an R to `{junction}`"),
             F::Derivative { symbol: "I", name, .. } => format!(
                 "let a C and an R (a compliant coupling) sit between them, `1 -> 0 -> C` in front of `{name}`, or merge \
                  the two inertias into one I"
             ),
-            F::Derivative { name, .. } => format!(
-                "let an R sit in series with `{name}`, or merge the two C into one"
-            ),
+            F::Derivative { name, .. } => format!("let an R sit in series with `{name}`, or merge the two C into one"),
             F::OneWay { name, .. } => format!("write the law of `{name}` as an expression of the other variable"),
         }
     }

@@ -146,7 +146,8 @@ fn left(items: &[Item], without: &[Name], faults: &mut Vec<Fault>) -> Vec<Item> 
 /// Makes the joints rigid that the scene wants so.
 fn stiffen(items: &mut [Item], rigid: &Rigid, faults: &mut Vec<Fault>) {
     if let Rigid::Some(names) = rigid {
-        let joints = || items.iter().filter_map(|item| if let Item::Joint(joint) = item { Some(&joint.name) } else { None });
+        let joints =
+            || items.iter().filter_map(|item| if let Item::Joint(joint) = item { Some(&joint.name) } else { None });
         for name in names.iter().filter(|name| joints().all(|joint| joint.text != name.text)) {
             let near = near_miss(&name.text, joints().map(|joint| joint.text.as_str())).map(str::to_owned);
             faults.push(Fault::new(name.span, &F::UnknownJoint { name: name.text.clone(), near }));

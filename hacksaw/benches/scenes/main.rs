@@ -70,7 +70,7 @@ fn main() {
     }
     let by_hand = &least[Scene::all().len()..];
     for ((name, operations), nanoseconds) in BY_HAND.iter().zip(by_hand) {
-        let cells = [name, "24", &operations.to_string(), &format!("{nanoseconds:.1}"), "", "", "", ""];
+        let cells = [*name, "24", &operations.to_string(), &format!("{nanoseconds:.1}"), "", "", "", ""];
         rows.push(cells.map(str::to_owned));
     }
     print!("{}", table(&rows));

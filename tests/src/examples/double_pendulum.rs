@@ -64,6 +64,7 @@ bond_graph! {
             observe { upper_angle: rad = shoulder.angle; elbow_angle: rad = elbow.angle; }
             tune { upper_angle, lower_angle, stiffness, gravity }
             expect planar;
+            expect states = 14;
         }
         /// Rods on pins that do not give.
         scene RigidPendulum {
@@ -78,6 +79,7 @@ bond_graph! {
                 stored: J = stored_energy;
             }
             expect planar;
+            expect states = 14;
         }
     }
 }

@@ -190,6 +190,7 @@ bond_graph! {
             observe { current: A = armature.flow; }
             tune { winding, constant, shaft_stiffness, r_cut, r_return }
             expect planar;
+            expect states = 32;
         }
     }
 }

@@ -72,6 +72,7 @@ bond_graph! {
         /// The motion in the plane, with all that the three-dimensional description observes.
         scene PlanarSliderCrank {
             expect planar;
+            expect states = 18;
         }
         /// Links on pins and a slide that do not give.
         scene RigidSliderCrank {
@@ -90,6 +91,7 @@ bond_graph! {
             }
             tune { torque, crank_angle, crank_length, rod_length }
             expect planar;
+            expect states = 18;
         }
     }
 }

@@ -14,8 +14,8 @@ use super::routine::{Names, operand, statements};
 use crate::causality::CausalGraph;
 use crate::equations::StateEquations;
 use crate::expr::{Id, Symbol};
-use crate::reduce::Report;
 use crate::program::{Operand, Program, Request, Routine, schedule};
+use crate::reduce::Report;
 
 /// The items of one model: parameters, inputs, the type, its functions, its description. `expanded` is the graph in
 /// bond-graph words as text, `report` what a scene left out of it.

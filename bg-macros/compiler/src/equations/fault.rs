@@ -35,7 +35,9 @@ impl Explain for EquationFault {
                 format!("the law of {symbol} `{name}` is not linear in its variable, so it would not conserve power")
             }
             F::NoEnergy { symbol, name } => {
-                format!("the energy stored in {symbol} `{name}` is not known: its law has no integral that the compiler can find")
+                format!(
+                    "the energy stored in {symbol} `{name}` is not known: its law has no integral that the compiler can find"
+                )
             }
             F::EnergyOfOtherLaw { symbol, name } => {
                 format!("the energy given for {symbol} `{name}` does not have the law as its derivative")
@@ -55,7 +57,9 @@ impl Explain for EquationFault {
             F::NotLinear { .. } => "write it as a factor times the variable, or as `dot`, `cross` of it".to_owned(),
             F::NoEnergy { .. } => "give it behind the law, `energy E`".to_owned(),
             F::EnergyOfOtherLaw { .. } => "correct the energy, or leave it out".to_owned(),
-            F::DisplacementOfOtherFlow { .. } => "leave `at` out, then the displacement is a state of its own".to_owned(),
+            F::DisplacementOfOtherFlow { .. } => {
+                "leave `at` out, then the displacement is a state of its own".to_owned()
+            }
         }
     }
 }

@@ -273,9 +273,8 @@ impl<'a> Signals<'a> {
     fn balance(&mut self, node: NodeId, bond: BondId, variable: Variable) -> Value {
         let own = self.graph.sign(bond, node);
         let others = self.graph.node(node).bonds.iter().copied().filter(|&other| other != bond);
-        let terms: Vec<(Value, f64)> = others
-            .map(|other| (self.variable(variable, other), -own * self.graph.sign(other, node)))
-            .collect();
+        let terms: Vec<(Value, f64)> =
+            others.map(|other| (self.variable(variable, other), -own * self.graph.sign(other, node))).collect();
         let components = self.graph.bond(bond).cardinality;
         Value(
             (0..components)

@@ -40,9 +40,7 @@ impl Signals<'_> {
                 let arguments: Vec<Value> = arguments.iter().map(|part| self.evaluate(part, variable)).collect();
                 self.call(*builtin, &arguments)
             }
-            TermKind::Vector(parts) => {
-                Value(parts.iter().flat_map(|part| self.evaluate(part, variable).0).collect())
-            }
+            TermKind::Vector(parts) => Value(parts.iter().flat_map(|part| self.evaluate(part, variable).0).collect()),
             TermKind::If(comparison, parts) => {
                 let [left, right, then, otherwise] = &**parts;
                 let [left, right] = [left, right].map(|part| self.evaluate(part, variable).0[0]);

@@ -103,12 +103,8 @@ fn cardinalities(graph: &mut BondGraph, junctions: &BTreeMap<NodeId, usize>, fau
             && from_cardinality != to_cardinality
         {
             let name = |id: NodeId| graph.node(id).name.text.clone();
-            let fault = GraphFault::Cardinality {
-                from: name(bond.from),
-                from_cardinality,
-                to: name(bond.to),
-                to_cardinality,
-            };
+            let fault =
+                GraphFault::Cardinality { from: name(bond.from), from_cardinality, to: name(bond.to), to_cardinality };
             faults.push(Fault::new(bond.span, &fault));
         }
         known[index] = from.or(to).copied();

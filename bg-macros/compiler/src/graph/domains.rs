@@ -152,7 +152,8 @@ fn check(graph: &mut BondGraph, efforts: &[Option<Dimension>], faults: &mut Vec<
                 && declared != found
             {
                 let what = format!("`{}` is declared in the first and has the second", definition.name.text);
-                faults.push(Fault::new(definition.value.span, &GraphFault::Units { what, left: declared, right: found }));
+                faults
+                    .push(Fault::new(definition.value.span, &GraphFault::Units { what, left: declared, right: found }));
             }
         }
         for (index, node) in graph.nodes.iter().enumerate() {
@@ -233,9 +234,17 @@ impl LawCheck<'_, '_> {
             ElementKind::Se | ElementKind::MSe | ElementKind::Sf | ElementKind::MSf | ElementKind::RSe
         );
         // A linear law acts on a multibond by a number, by one number an axis, or by a tensor.
-        let allowed = if source { shape } else if shape == Shape::Vector { found_shape } else { Shape::Scalar };
+        let allowed = if source {
+            shape
+        } else if shape == Shape::Vector {
+            found_shape
+        } else {
+            Shape::Scalar
+        };
         match self.element.kind {
-            ElementKind::Se | ElementKind::MSe => self.expect("the effort", term, (found_shape, found), allowed, &[effort]),
+            ElementKind::Se | ElementKind::MSe => {
+                self.expect("the effort", term, (found_shape, found), allowed, &[effort])
+            }
             ElementKind::Sf | ElementKind::MSf | ElementKind::RSe => {
                 self.expect("the flow", term, (found_shape, found), allowed, &[flow]);
             }

@@ -96,9 +96,9 @@ impl Explain for GraphFault {
             }
             F::NotANode { name } => format!("`{name}` is neither a junction nor an element, so no bond can end at it"),
             F::OnePortBonds { symbol, name, count } => format!("{symbol} `{name}` has one port but {count} bonds"),
-            F::TwoPortBonds { symbol, name, inward, outward } => format!(
-                "{symbol} `{name}` needs one half arrow in and one out; it has {inward} in and {outward} out"
-            ),
+            F::TwoPortBonds { symbol, name, inward, outward } => {
+                format!("{symbol} `{name}` needs one half arrow in and one out; it has {inward} in and {outward} out")
+            }
             F::NoBond { name } => format!("no bond ends at `{name}`"),
             F::Cardinality { from, from_cardinality, to, to_cardinality } => format!(
                 "the bond joins `{from}` of cardinality {from_cardinality} to `{to}` of cardinality {to_cardinality}"
@@ -161,7 +161,8 @@ impl Explain for GraphFault {
             F::OnePortBonds { .. } => "put a junction in between and bond the others to that".to_owned(),
             F::TwoPortBonds { name, .. } => format!("write it inside one chain, `a -> {name} -> b;`"),
             F::Cardinality { .. } => {
-                "make the junctions alike, or put a TF in between that maps the flows, `TF t(v) = dot(n, v);`".to_owned()
+                "make the junctions alike, or put a TF in between that maps the flows, `TF t(v) = dot(n, v);`"
+                    .to_owned()
             }
             F::SelfBond { .. } => "end it at another node".to_owned(),
             F::Shapes { what: "multiply", .. } => "use `dot`, `cross` or `outer` for two vectors".to_owned(),
@@ -176,7 +177,9 @@ impl Explain for GraphFault {
             F::NotDimensionless { .. } => "divide by a reference quantity of the same unit".to_owned(),
             F::NoRoot { .. } => "take the root of a square".to_owned(),
             F::UnknownUnits { from, .. } => format!("give a junction on it its domain, such as `1 {from}: rotation;`"),
-            F::LawUnit { expected, .. } => format!("give a value in {}", expected.first().map_or_else(String::new, ToString::to_string)),
+            F::LawUnit { expected, .. } => {
+                format!("give a value in {}", expected.first().map_or_else(String::new, ToString::to_string))
+            }
             F::NumberForC { .. } => "use a parameter with its unit".to_owned(),
             F::Modulated { symbol, name, .. } => format!("write `M{symbol} {name}`"),
             F::NotConstant { .. } => "use parameters and numbers only".to_owned(),
@@ -188,7 +191,9 @@ impl Explain for GraphFault {
             F::NotANumber { .. } => "write a number".to_owned(),
             F::GuessOutsideStart => "write the value itself".to_owned(),
             F::IntegralOutsideObserve => "observe the integral, or use a C or I for a state".to_owned(),
-            F::VariableRole { .. } => "leave `effort` or `flow` away: a C's law is of its displacement, an I's of its momentum".to_owned(),
+            F::VariableRole { .. } => {
+                "leave `effort` or `flow` away: a C's law is of its displacement, an I's of its momentum".to_owned()
+            }
             F::EmptyGraph { .. } => "bond its elements in a chain, `a -> b;`".to_owned(),
         }
     }

@@ -108,6 +108,8 @@ pub struct Let {
     pub value: Term,
     /// Its unit, when declared.
     pub dimension: Option<Dimension>,
+    /// The unit as written.
+    pub unit: Option<String>,
 }
 
 /// A junction or an element.

@@ -45,13 +45,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
         .collect();
     resolver.define(source);
     resolver.tracks(source);
-    connect::bonds(
-        &mut resolver.graph,
-        &chains,
-        &resolver.names,
-        &resolver.junctions,
-        &mut resolver.faults,
-    );
+    connect::bonds(&mut resolver.graph, &chains, &resolver.names, &resolver.junctions, &mut resolver.faults);
     if resolver.graph.bonds.is_empty() && resolver.faults.is_empty() {
         let name = source.name.text.clone();
         resolver.faults.push(Fault::new(source.name.span, &GraphFault::EmptyGraph { name }));
@@ -224,7 +218,8 @@ impl Resolver {
                 Item::Let(definition) => {
                     let value = self.term(&definition.value, Place::Plain);
                     let dimension = definition.unit.as_ref().map(|unit| self.unit(unit));
-                    self.graph.lets.push(Let { name: definition.name.clone(), value, dimension });
+                    let unit = definition.unit.as_ref().map(ToString::to_string);
+                    self.graph.lets.push(Let { name: definition.name.clone(), value, dimension, unit });
                 }
                 Item::Junction(junction) => {
                     let kind = match junction.kind {
@@ -462,6 +457,15 @@ impl Resolver {
         }
     }
 
+    /// The unit of a value as its definition writes it: J and N*m are one dimension but read differently.
+    fn written_unit(&self, value: &Term) -> Option<String> {
+        match value.kind {
+            TermKind::Reference(Reference::Let(index)) => self.graph.lets[index].unit.clone(),
+            TermKind::Reference(Reference::Energy(_) | Reference::StoredEnergy) => Some("J".to_owned()),
+            _ => None,
+        }
+    }
+
     /// Lets that are defined by themselves.
     fn let_circles(&mut self) {
         for (index, definition) in self.graph.lets.iter().enumerate() {
@@ -568,8 +572,7 @@ impl Resolver {
                     String::new()
                 }
                 (Some(_), _) => observation.unit.clone(),
-                (None, Quantity::Known(Dimension::JOULE)) if is_energy(&observation.value) => "J".to_owned(),
-                (None, Quantity::Known(found)) => found.to_string(),
+                (None, Quantity::Known(found)) => self.written_unit(&observation.value).unwrap_or(found.to_string()),
                 (None, _) => "1".to_owned(),
             };
             observed.push((shape, unit));
@@ -602,11 +605,6 @@ fn law_text(element: &ast::Element) -> String {
         Some(variable) => format!("({}) = {}", variable.name.text, element.law),
         None => element.law.to_string(),
     }
-}
-
-/// An energy, which has the dimension of a torque but reads as J.
-fn is_energy(term: &Term) -> bool {
-    matches!(term.kind, TermKind::Reference(Reference::Energy(_) | Reference::StoredEnergy))
 }
 
 /// Numbers: what a parameter's default may be made of.

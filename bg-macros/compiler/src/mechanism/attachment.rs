@@ -49,7 +49,10 @@ impl Expansion<'_> {
         }
         self.force_junction(span, name, (&a, &b), (a.arm.clone(), b.arm_to(&a.position)));
         self.text(span, &format!("let {name}.gap: m = {} - {};", b.position, a.position));
-        self.text(span, &format!("let {name}.speed = dot({}.{}_axis, {name}.slip.flow);", b.body, contact.along.letter()));
+        self.text(
+            span,
+            &format!("let {name}.speed = dot({}.{}_axis, {name}.slip.flow);", b.body, contact.along.letter()),
+        );
         let mut axes = Vec::new();
         for law in &contact.laws {
             let letter = law.axis.letter();

@@ -31,12 +31,12 @@ impl Expansion<'_> {
                  let {name}.velocity = {name}.translation.flow; let {name}.angular_velocity = {name}.rotation.flow;
                  let {name}.momentum = {name}.linear.p; let {name}.angular_momentum = {name}.angular.p;
                  let {name}.p = {name}.linear.p; let {name}.h = {name}.angular.p;
-                 let {name}.kinetic_energy = {name}.linear.energy + {name}.angular.energy;
+                 let {name}.kinetic_energy: J = {name}.linear.energy + {name}.angular.energy;
                  let {name}.angle = atan2({name}.x_axis.y, {name}.x_axis.x);"
             ),
         );
         for (axis, unit) in AXES.into_iter().zip(["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"]) {
-            self.text(span, &format!("let {name}.{}_axis = {name}.orientation * {unit};", axis.letter()));
+            self.text(span, &format!("let {name}.{}_axis: 1 = {name}.orientation * {unit};", axis.letter()));
         }
         if self.has_gravity {
             self.text(
@@ -143,9 +143,7 @@ impl Expansion<'_> {
             Shape::Cylinder { radius, length, axis } => {
                 self.bind(&format!("{label}.radius"), "m", radius);
                 self.bind(&format!("{label}.length"), "m", length);
-                let across = format!(
-                    "(3 * {label}.radius * {label}.radius + {label}.length * {label}.length) / 12"
-                );
+                let across = format!("(3 * {label}.radius * {label}.radius + {label}.length * {label}.length) / 12");
                 let along = format!("{label}.radius * {label}.radius / 2");
                 let moments = AXES.map(|k| if k == *axis { along.clone() } else { across.clone() }).join(", ");
                 self.text(
@@ -201,7 +199,13 @@ impl Expansion<'_> {
     /// Pose and motion at t = 0.
     fn start(&mut self, body: &Body) {
         let (name, span) = (&body.name.text, body.name.span);
-        self.bind_or(&format!("{name}.start.orientation"), "1", body.start_orientation.as_ref(), "identity()", &body.name);
+        self.bind_or(
+            &format!("{name}.start.orientation"),
+            "1",
+            body.start_orientation.as_ref(),
+            "identity()",
+            &body.name,
+        );
         let reference = match &body.start_position {
             Some((point, place)) => {
                 self.bind(&format!("{name}.start.place"), "m", place);

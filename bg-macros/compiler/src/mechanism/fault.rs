@@ -68,7 +68,9 @@ impl Explain for MechanismFault {
             F::UnknownPoint { point, .. } => format!("add `point {point} = [x, y, z];` to it"),
             F::MissingClause { clause, .. } => format!("add `{clause} ...;`"),
             F::SuperfluousClause { clause, .. } => format!("remove `{clause}`"),
-            F::NoMass { .. } => "add a solid such as `cuboid [x, y, z];` with its `density`, or `mass` and `inertia`".to_owned(),
+            F::NoMass { .. } => {
+                "add a solid such as `cuboid [x, y, z];` with its `density`, or `mass` and `inertia`".to_owned()
+            }
             F::MassTwice { .. } => "remove the solids, or `mass`, `center` and `inertia`".to_owned(),
             F::Twice { word } => format!("remove one `{word}`"),
             F::UnknownTarget { .. } => "name a joint, a body, or a body's point".to_owned(),

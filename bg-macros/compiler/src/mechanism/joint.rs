@@ -116,9 +116,7 @@ impl Expansion<'_> {
             if joint.rigid {
                 self.text(
                     span,
-                    &format!(
-                        "rSe {name}.reaction = [0, 0, 0] at {name}.gap; {name}.slip -> {name}.reaction;"
-                    ),
+                    &format!("rSe {name}.reaction = [0, 0, 0] at {name}.gap; {name}.slip -> {name}.reaction;"),
                 );
                 return;
             }
@@ -152,10 +150,7 @@ impl Expansion<'_> {
                 continue;
             }
             let stiffness = of_axis(joint.stiffness.as_ref(), &format!("{name}.stiffness"), axis);
-            self.text(
-                span,
-                &format!("C {label}_spring = {stiffness} at {label}_offset; {label} -> {label}_spring;"),
-            );
+            self.text(span, &format!("C {label}_spring = {stiffness} at {label}_offset; {label} -> {label}_spring;"));
             if joint.damping.is_some() {
                 let damping = of_axis(joint.damping.as_ref(), &format!("{name}.damping"), axis);
                 self.text(span, &format!("R {label}_damper = {damping}; {label} -> {label}_damper;"));

@@ -140,7 +140,7 @@ impl<'a> Expansion<'a> {
              ground.place -> ground.translation; ground.attitude -> ground.rotation;
              let ground.position: m = [0, 0, 0];
              let ground.angular_velocity: rad/s = [0, 0, 0];
-             let ground.x_axis = [1, 0, 0]; let ground.y_axis = [0, 1, 0]; let ground.z_axis = [0, 0, 1];",
+             let ground.x_axis: 1 = [1, 0, 0]; let ground.y_axis: 1 = [0, 1, 0]; let ground.z_axis: 1 = [0, 0, 1];",
         );
         for point in self.ground.map_or(&[][..], |ground| &ground.points[..]) {
             self.bind(&format!("ground.{}.position", point.name.text), "m", &point.place);
@@ -197,7 +197,9 @@ impl<'a> Expansion<'a> {
         }
         let place = match (point, body == GROUND) {
             (Some(point), _) => format!("{body}.{point}"),
-            (None, true) => return Some(End { body: body.to_owned(), position: "ground.position".to_owned(), arm: None }),
+            (None, true) => {
+                return Some(End { body: body.to_owned(), position: "ground.position".to_owned(), arm: None });
+            }
             (None, false) => format!("{body}.origin"),
         };
         let arm = (body != GROUND).then(|| format!("{place}.arm"));

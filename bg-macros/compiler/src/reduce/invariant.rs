@@ -42,8 +42,7 @@ fn constants(equations: &mut StateEquations) -> (Vec<bool>, BTreeSet<Symbol>) {
     let projected: Vec<Id> = projections.iter().map(|&(_, id)| id).collect();
     let reactions = equations.reactions.clone();
     let zero = equations.pool.zero();
-    let kept: Vec<Id> =
-        reactions.iter().flat_map(|reaction| [reaction.flow, reaction.gap.unwrap_or(zero)]).collect();
+    let kept: Vec<Id> = reactions.iter().flat_map(|reaction| [reaction.flow, reaction.gap.unwrap_or(zero)]).collect();
     let mut idle: BTreeSet<Symbol> = reactions.iter().map(|reaction| reaction.multiplier).collect();
     let pool = &mut equations.pool;
     let mut assumed: Vec<bool> = starts.iter().map(|&start| is_constant(pool, start)).collect();
@@ -60,7 +59,8 @@ fn constants(equations: &mut StateEquations) -> (Vec<bool>, BTreeSet<Symbol>) {
             holds[state] &= image == starts[state];
         }
         let next: Vec<bool> = assumed.iter().zip(&holds).map(|(&assumed, &holds)| assumed && holds).collect();
-        let moved = reactions.iter().zip(kept.chunks_exact(2)).filter(|(_, pair)| !pair.iter().all(|&id| pool.is_zero(id)));
+        let moved =
+            reactions.iter().zip(kept.chunks_exact(2)).filter(|(_, pair)| !pair.iter().all(|&id| pool.is_zero(id)));
         let moved: Vec<Symbol> = moved.map(|(reaction, _)| reaction.multiplier).collect();
         let before = idle.len();
         idle.retain(|symbol| !moved.contains(symbol));

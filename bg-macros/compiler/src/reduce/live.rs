@@ -103,8 +103,7 @@ pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, k
         *state = numbers[*state];
     }
     equations.bonds.clear();
-    let symbols: Vec<Id> =
-        numbers.iter().map(|&number| equations.pool.symbol(Symbol::State(index(number)))).collect();
+    let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::State(index(number)))).collect();
     equations.replace(&|symbol| state_of(symbol).map(|state| symbols[state]));
     report.keep(kept);
 }

@@ -27,7 +27,9 @@ impl std::fmt::Display for Fate {
         match self {
             Self::Integrated => f.write_str("integrated"),
             Self::Quadrature => f.write_str("integrated, for an output only"),
-            Self::Constant(value) => write!(f, "constant: its rate is zero while the constants hold, so it stays {value}"),
+            Self::Constant(value) => {
+                write!(f, "constant: its rate is zero while the constants hold, so it stays {value}")
+            }
             Self::Equal(other) => write!(f, "equal: it starts as {other} and has its rate"),
             Self::Recovered(value) => write!(f, "recovered: its rate is that of {value}"),
             Self::Unwatched => f.write_str("unwatched: no output and no other state depends on it"),

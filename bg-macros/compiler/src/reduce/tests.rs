@@ -73,7 +73,11 @@ impl Scene {
             .parameters
             .iter()
             .zip(&self.tuned)
-            .map(|(p, &tuned)| if tuned { p.default * (1.0 + 0.4 * draw.number()) + 0.01 * draw.number() } else { p.default })
+            .map(
+                |(p, &tuned)| {
+                    if tuned { p.default * (1.0 + 0.4 * draw.number()) + 0.01 * draw.number() } else { p.default }
+                },
+            )
             .collect();
         let own: Vec<f64> = values.iter().zip(&self.tuned).filter(|(_, tuned)| **tuned).map(|(v, _)| *v).collect();
         let unknowns: Vec<f64> = (0..self.literal.guesses.len()).map(|_| draw.number()).collect();
@@ -127,7 +131,11 @@ fn outputs(of: &StateEquations, parameters: &[f64], unknowns: &[f64]) -> Vec<Vec
     let projected: Vec<Id> = of.projections.iter().map(|&(_, id)| id).collect();
     let at = |roots: &[Id], time: f64, states: &[f64], negative: &[bool]| {
         let inputs: Vec<f64> = (0..of.inputs.len()).map(|k| (2.0 * time + k as f64).sin()).collect();
-        evaluate(&of.pool, roots, &Environment { time, states, parameters, inputs: &inputs, unknowns, atoms: &[], negative })
+        evaluate(
+            &of.pool,
+            roots,
+            &Environment { time, states, parameters, inputs: &inputs, unknowns, atoms: &[], negative },
+        )
     };
     let mut x = at(&starts, 0.0, &[], &[]);
     let mut negative = vec![false; guards.len()];
@@ -198,13 +206,18 @@ pub(super) fn oscillator(name: &str, [mass, stiffness, damping]: [&str; 3], [mom
 
 /// Two masses with a spring in between, `i` and `j` names of 1-junctions.
 pub(super) fn coupling(name: &str, i: &str, j: &str, stiffness: &str) -> String {
-    format!("0 {name}z: translation; 1 {name}s: translation; C {name} = {stiffness}; {i} -> {name}z -> {j}; {name}z -> {name}s -> {name};\n")
+    format!(
+        "0 {name}z: translation; 1 {name}s: translation; C {name} = {stiffness}; {i} -> {name}z -> {j}; {name}z -> {name}s -> {name};\n"
+    )
 }
 
 #[test]
 fn the_interpreter_integrates() {
     // x'' = -x from 1: the last output is cos(2), within the error of the method, 2 h^4 / 120.
-    let scene = scene("param k: N/m = 1; 1 a: translation; I m = 1; C s = k start 1; a -> m; a -> s; observe { x: m = s.q; }", "tune {}");
+    let scene = scene(
+        "param k: N/m = 1; 1 a: translation; I m = 1; C s = k start 1; a -> m; a -> s; observe { x: m = s.q; }",
+        "tune {}",
+    );
     let rows = outputs(&scene.reduced, &[], &[]);
     assert_eq!(rows.len(), 41);
     assert!((rows[40][0] - 2.0_f64.cos()).abs() < 1e-10, "{:?}", rows[40]);

@@ -83,7 +83,10 @@ fn network(draw: &mut Draw) -> (String, String) {
         if i == j {
             continue;
         }
-        let _ = writeln!(text, "0 z{c}: {domain}; 1 d{c}: {domain}; C s{c}c = {kind}; j{i} -> z{c} -> j{j}; z{c} -> d{c} -> s{c}c;");
+        let _ = writeln!(
+            text,
+            "0 z{c}: {domain}; 1 d{c}: {domain}; C s{c}c = {kind}; j{i} -> z{c} -> j{j}; z{c} -> d{c} -> s{c}c;"
+        );
         if !resistor.is_empty() {
             let _ = writeln!(text, "R s{c}r = {resistor}; d{c} -> s{c}r;");
         }
@@ -98,7 +101,8 @@ fn network(draw: &mut Draw) -> (String, String) {
         }
     }
     if draw.chance(1, 4) {
-        watched.push_str("energy = stored_energy; lost = integral(dissipated_power); given = integral(supplied_power);");
+        watched
+            .push_str("energy = stored_energy; lost = integral(dissipated_power); given = integral(supplied_power);");
     }
     let mut clauses = format!("observe {{ {watched} }}");
     let all = ["m1", "m2", "m3", "k1", "k2", "k3", "r1", "r2", "r3"];
@@ -152,5 +156,8 @@ fn reduced_networks_move_as_the_literal_ones() {
     }
     println!("{graphs} networks, largest difference {worst:e}, {tally:?}");
     // The draw is worth nothing unless every reduction has occurred, many times.
-    assert!(tally.constant > 20 && tally.opposite > 20 && tally.equal > 60 && tally.recovered > 20 && tally.unwatched > 40, "{tally:?}");
+    assert!(
+        tally.constant > 20 && tally.opposite > 20 && tally.equal > 60 && tally.recovered > 20 && tally.unwatched > 40,
+        "{tally:?}"
+    );
 }
