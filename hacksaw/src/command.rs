@@ -103,8 +103,8 @@ struct RunArguments {
     no_figures: bool,
 }
 
-/// The atol that goes with a given rtol, as a part of it: momenta are of the order of 1 and springs give way by 1e-4 m.
-const ATOL_OF_RTOL: f64 = 1e-4;
+/// The rtol over the atol that goes with it: momenta are of the order of 1 and springs give way by 1e-4 m.
+const RTOL_OVER_ATOL: f64 = 1e4;
 /// The most rows of a CSV file: some hundred MB.
 const MOST_ROWS: f64 = 500_000.0;
 
@@ -255,7 +255,7 @@ fn settings(arguments: &RunArguments) -> Result<RunSettings, InputError> {
         let range = format!("at least {smallest:.1e}, which rounding allows, and below 1");
         return Err(InputError::Range { name: "--rtol", value: rtol, range });
     }
-    let atol = above_zero("--atol", arguments.atol.unwrap_or(ATOL_OF_RTOL * rtol))?;
+    let atol = above_zero("--atol", arguments.atol.unwrap_or(rtol / RTOL_OVER_ATOL))?;
     if t_end / step > MOST_ROWS {
         return Err(InputError::Rows { step, t_end });
     }

@@ -68,11 +68,32 @@ bond_graph! {
         /// Blade on work, return stroke: resistance.
         param r_return: N*s/m = 10, at least 0;
 
+        /// Frame: x of a post's centre from the bar's centre, to both sides.
+        param post_x: m = 0.185;
+        /// Frame: y of the posts' centres from the bar's centre.
+        param post_y: m = -0.08;
+        /// Frame: x of the pin B on the bar's centre line.
+        param b4_x: m = -0.2;
+        /// Frame: y of the blade line from the bar's centre.
+        param blade_y: m = -0.145;
+        /// Guide: y of the arm's centre from the block's centre.
+        param arm_y: m = 0.395;
+        /// Guide: y of the pivot from the block's centre.
+        param pivot_y: m = 0.745;
+        /// Pivot O5 of the guide, x.
+        param o5_x: m = 0.9;
+        /// Pivot O5 of the guide, y.
+        param o5_y: m = 0.745;
+        /// Point D0 of the work, x.
+        param work_x: m = 0.9;
+        /// Point D0 of the work, y.
+        param work_y: m = -0.145;
+
         gravity [0, -gravity, 0];
         ground {
             point O2 = [0, 0, 0];
-            point O5 = [0.9, 0.745, 0];
-            point work = [0.9, -0.145, 0];
+            point O5 = [o5_x, o5_y, 0];
+            point work = [work_x, work_y, 0];
         }
 
         body crank {
@@ -93,21 +114,21 @@ bond_graph! {
         }
         body frame {
             cuboid [0.4, 0.03, 0.03];
-            cuboid [0.03, 0.13, 0.03] at [-0.185, -0.08, 0];
-            cuboid [0.03, 0.13, 0.03] at [0.185, -0.08, 0];
+            cuboid [0.03, 0.13, 0.03] at [-post_x, post_y, 0];
+            cuboid [0.03, 0.13, 0.03] at [post_x, post_y, 0];
             density density;
             point bar = [0, 0, 0];
-            point B = [-0.2, 0, rod_offset];
-            point blade = [0, -0.145, 0];
-            start bar at [guess(0.9), 0, 0];
+            point B = [b4_x, 0, rod_offset];
+            point blade = [0, blade_y, 0];
+            start bar at [guess(0.9), o5_y - pivot_y, 0];
         }
         body guide {
             cuboid [0.1, 0.09, 0.03];
-            cuboid [0.09, 0.7, 0.03] at [0, 0.395, 0];
+            cuboid [0.09, 0.7, 0.03] at [0, arm_y, 0];
             density density;
             point block = [0, 0, 0];
-            point pivot = [0, 0.745, 0];
-            start pivot at [0.9, 0.745, 0];
+            point pivot = [0, pivot_y, 0];
+            start pivot at [o5_x, o5_y, 0];
         }
 
         joint pin_o: revolute z (ground.O2 -> crank.O) {
@@ -154,7 +175,8 @@ bond_graph! {
             tune {
                 torque, crank_angle, gravity, density,
                 k_2, r_2, k_2r, r_2r, k_23, r_23, k_23r, r_23r, k_34, r_34, k_34r, r_34r,
-                k_15, r_15, k_15r, r_15r, k_45, r_45, k_45r, r_45r, k_work, r_work, r_cut, r_return
+                k_15, r_15, k_15r, r_15r, k_45, r_45, k_45r, r_45r, k_work, r_work, r_cut, r_return,
+                post_x, post_y, b4_x, blade_y, arm_y, pivot_y, o5_x, o5_y, work_x, work_y
             }
             expect planar;
             expect states = 29;
@@ -172,6 +194,18 @@ bond_graph! {
             tune { torque, r_cut, r_return }
             expect planar;
             expect states = 29;
+        }
+        /// The ideal mechanism: rigid joints, whose reactions are solved for.
+        scene Rigid {
+            rigid joints;
+            observe {
+                C4: m = frame.position; frame_angle: rad = frame.angle; guide_angle: rad = guide.angle;
+                crank_speed: rad/s = pin_o.speed; F34: N = pin_b.force;
+                gap_23: m = norm(pin_a.gap); gap_34: m = norm(pin_b.gap); gap_15: m = norm(pin_c.gap);
+            }
+            tune { torque, crank_angle, r_cut, r_return }
+            expect planar;
+            expect states = 28;
         }
         /// The machine running free, the blade off the work.
         scene FreeRun {

@@ -9,7 +9,7 @@ use bg_model::system::Model;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use crate::mechanism::{Angles, FreeRun, Full, Hacksaw, HacksawParameters, Paper};
+use crate::mechanism::{Angles, FreeRun, Full, Hacksaw, HacksawParameters, Paper, Rigid};
 use crate::parameters::number;
 use crate::trajectory::reference_columns;
 
@@ -25,6 +25,8 @@ pub enum Scene {
     Literal,
     /// Only the angles of the four links
     Angles,
+    /// The ideal mechanism with rigid joints
+    Rigid,
     /// The blade off the work
     FreeRun,
 }
@@ -68,6 +70,7 @@ impl Scene {
             Self::Full => visitor.visit(Full::new),
             Self::Literal => visitor.visit(Hacksaw::new),
             Self::Angles => visitor.visit(Angles::new),
+            Self::Rigid => visitor.visit(Rigid::new),
             Self::FreeRun => visitor.visit(FreeRun::new),
         }
     }
@@ -76,6 +79,12 @@ impl Scene {
     #[must_use]
     pub fn all() -> &'static [Self] {
         Self::value_variants()
+    }
+
+    /// Whether the scene has the literal model's joints, so that it moves the same way.
+    #[must_use]
+    pub fn is_compliant(self) -> bool {
+        self != Self::Rigid
     }
 
     /// The name on the command line.
@@ -156,6 +165,7 @@ mod tests {
             ("full", "Full", 83),
             ("literal", "Hacksaw", 85),
             ("angles", "Angles", 29),
+            ("rigid", "Rigid", 28),
             ("free-run", "FreeRun", 29),
         ];
         for (&scene, (name, model, states)) in Scene::all().iter().zip(expected) {

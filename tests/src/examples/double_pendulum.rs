@@ -77,6 +77,7 @@ bond_graph! {
                 upper_position: m = upper.position;
                 lower_position: m = lower.position;
                 stored: J = stored_energy;
+                supplied: J = integral(supplied_power);
             }
             expect planar;
             expect states = 14;

@@ -66,6 +66,7 @@ bond_graph! {
                 w: rad/s = top.angular_velocity;
                 gap: m = tip.gap;
                 stored: J = stored_energy;
+                supplied: J = integral(supplied_power);
             }
         }
     }

@@ -1,7 +1,5 @@
 use bg_model::input::Input;
-use bond_graph_tests::examples::double_pendulum::{
-    DoublePendulum, RodAngles, RodAnglesParameters,
-};
+use bond_graph_tests::examples::double_pendulum::{DoublePendulum, RodAngles, RodAnglesParameters};
 use bond_graph_tests::examples::hacksaw_with_motor::{
     Current, CurrentInputs, CurrentParameters, HacksawWithMotor, HacksawWithMotorInputs,
 };

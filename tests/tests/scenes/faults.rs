@@ -33,7 +33,7 @@ fn unmarked(text: &str) -> (String, String) {
 }
 
 const GRAPH: &str = "graph G {
-param mass: kg = 2; param winding: N/m = 3; param offset: m = 0.1;
+param mass: kg = 2; param winding: N/m = 3; param aside: N = 0.1;
 ground { point O = [0, 0, 0]; }
 body bob { mass mass; inertia [0.1, 0.2, 0.3]; point top = [0, 1, 0]; start at [0, -1, 0]; start spin [0, 0, 1]; }
 joint pivot: revolute z (ground.O -> bob.top) { stiffness 1e4; tilt stiffness 1e3; }
@@ -53,10 +53,16 @@ const CASES: [(&str, &str); 10] = [
         "scene A { without ▸engine; }",
         "[BG0602] the mechanism has no part `engine` to leave out\nhelp: name a joint, contact, spring, drive or element",
     ),
-    ("scene A { tune { mass, ▸windng } }", "[BG0603] there is no parameter `windng` to tune\nhelp: did you mean `winding`?"),
-    ("scene A { tune ▸voltage; }", "[BG0603] there is no parameter `voltage` to tune\nhelp: name a parameter of the graph"),
     (
-        "drive push on bob force = [0, 0, offset];\nscene A { expect ▸planar; }",
+        "scene A { tune { mass, ▸windng } }",
+        "[BG0603] there is no parameter `windng` to tune\nhelp: did you mean `winding`?",
+    ),
+    (
+        "scene A { tune ▸voltage; }",
+        "[BG0603] there is no parameter `voltage` to tune\nhelp: name a parameter of the graph",
+    ),
+    (
+        "drive push on bob force = [0, 0, aside];\nscene A { expect ▸planar; }",
         "[BG0604] scene `A` is not planar: these are not proved constant: bob.position_z, bob.orientation_13, \
          bob.orientation_23, bob.orientation_31, bob.orientation_32, bob.orientation_33\nhelp: find what moves them: a tuned \
          parameter out of the plane, a start value, a force",

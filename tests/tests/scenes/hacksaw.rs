@@ -102,3 +102,16 @@ fn the_reports_say_what_went() {
         ]
     );
 }
+
+#[test]
+fn probe() {
+    let own = FreeRunParameters::default();
+    let samples = bond_graph_tests::record::instants(5.0, 500);
+    let scene = run(&FreeRun::new(own.clone()).unwrap(), STEP, &samples);
+    let free = HacksawParameters { k_work: 0.0, r_work: 0.0, r_cut: 0.0, r_return: 0.0, ..widened(&own) };
+    let full = run_unswitched(Hacksaw::new(free).unwrap(), STEP, &samples);
+    for k in (0..500).step_by(20) {
+        for n in ["crank_speed", "C4_x", "F34_x"] { let (a,b)=(full.series(n)[k], scene.series(n)[k]); print!("{n} {a:.6e} {:.2e}; ", a-b); }
+        println!();
+    }
+}

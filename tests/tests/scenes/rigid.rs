@@ -76,7 +76,7 @@ fn gaps_of_rigid_joints_do_not_drift() {
     for gap in ["shoulder_gap_x", "shoulder_gap_y", "elbow_gap_x", "elbow_gap_y"] {
         within(gap, pendulum.largest(gap), 1e-9);
     }
-    within("energy of the pendulum", pendulum.drift("stored"), 1e-7);
+    within("energy of the pendulum", pendulum.imbalance(), 1e-7);
 }
 
 /// Angles and speeds of the rigid double pendulum at `end`, from Lagrange's equations by RK4 in 20 000 steps.
@@ -119,7 +119,7 @@ fn the_rigid_double_pendulum_obeys_lagrange_s_equations() {
         let apart = |a: f64, b: f64| (a - b).sin().abs().max(1.0 - (a - b).cos());
         within("upper angle", apart(run.last("upper_angle"), expected[0]), 1e-9);
         within("elbow", apart(run.last("elbow_angle"), expected[1] - expected[0]), 1e-9);
-        within("energy", run.drift("stored"), 1e-9);
+        within("energy", run.imbalance(), 1e-9);
     }
 }
 
@@ -144,6 +144,6 @@ fn a_top_about_a_rigid_point_precesses_regularly() {
         within("axis", apart(&run, "axis", circle(tilt.sin(), tilt.cos())), 1e-8);
         within("centre", apart(&run, "center", circle(p.arm * tilt.sin(), p.arm * tilt.cos())), 1e-9);
         within("gap", largest(["x", "y", "z"].map(|axis| run.largest(&format!("gap_{axis}")))), 1e-10);
-        within("energy", run.drift("stored") / run.largest("stored"), 1e-9);
+        within("energy", run.imbalance() / run.largest("stored"), 1e-9);
     }
 }

@@ -25,15 +25,6 @@ impl Table {
         self.column(name).unwrap_or_else(|| panic!("no output {name} in {:?}", self.names))
     }
 
-    pub fn largest(&self, name: &str) -> f64 {
-        self.series(name).iter().fold(0.0, |largest, value| value.abs().max(largest))
-    }
-
-    /// The largest departure of an output from its first value.
-    pub fn drift(&self, name: &str) -> f64 {
-        let series = self.series(name);
-        series.iter().fold(0.0, |largest, value| (value - series[0]).abs().max(largest))
-    }
 }
 
 /// A model whose switches stay in the branch of a positive guard: for laws that are the same in both branches.
@@ -72,7 +63,11 @@ where
 }
 
 /// The same without events.
-pub fn run_unswitched<Mo, const N: usize, const G: usize, const M: usize>(model: Mo, step: f64, samples: &[f64]) -> Table
+pub fn run_unswitched<Mo, const N: usize, const G: usize, const M: usize>(
+    model: Mo,
+    step: f64,
+    samples: &[f64],
+) -> Table
 where
     Mo: Model<f64, N, G, M>,
 {
@@ -143,7 +138,13 @@ pub fn compared(what: &str, full: &Table, scene: &Table, of: impl Fn(&str) -> Op
             }
         }
     }
-    println!("{what}: {} columns, {} events, largest deviation {:.2e} in `{}`", scene.names.len(), scene.events, worst.0, worst.1);
+    println!(
+        "{what}: {} columns, {} events, largest deviation {:.2e} in `{}`",
+        scene.names.len(),
+        scene.events,
+        worst.0,
+        worst.1
+    );
     worst.0
 }
 

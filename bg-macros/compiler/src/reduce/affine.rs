@@ -122,3 +122,105 @@ impl Row {
         others.map(|(&other, &coefficient)| (other, -coefficient / own)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::reduce::tests::{coupling, oscillator, scene};
+
+    #[test]
+    fn a_displacement_that_the_poses_determine_is_not_integrated() {
+        let graph = "param k: N/m = 40; param c: N*s/m = 0.2;
+            1 a[3]: translation; position x of a start [1, 2, 3]; I m = 2 start [1, 0, 0.3]; C s = k start [0.1, 0, 0];
+            R r = c; a -> m; a -> s; a -> r; observe { x: m = x; q: m = s.q; }";
+        let scene = scene(graph, "");
+        assert_eq!(scene.words(&["s.q_x", "s.q_z"]), ["recovered x_x - 0.9", "recovered x_z - 3"]);
+        assert_eq!(scene.reduced.states.len(), 4, "{}", scene.report);
+        scene.agrees();
+    }
+
+    #[test]
+    fn a_pin_s_spring_between_two_bodies_is_recovered_from_their_poses() {
+        // Arms are along the bodies' own axes: the spring between (0.3, 0) of one and (-0.2, 0) of the other.
+        let graph = "param k: N/m = 90;
+            1 v[3]: translation; 1 w[3]: rotation; position x of v; orientation R of w;
+            I m = 2 start [0.2, 0.1, 0]; I J = 0.3 start [0, 0, 0.4]; v -> m; w -> J;
+            MTF arm(f) = cross(f, R * [0.3, 0, 0]); 0 tip[3]: translation; 1 slip[3]: translation;
+            C pin = k; v -> tip; w -> arm -> tip; tip -> slip -> pin;
+            observe { x: m = x; q: m = pin.q; R = R; }";
+        let scene = scene(graph, "");
+        scene.agrees();
+        let recovered = scene.report.fates.iter().filter(|(_, fate)| matches!(fate, super::Fate::Recovered(_))).count();
+        assert!(recovered >= 2, "{}", scene.report);
+        assert!(scene.left().iter().all(|name| !name.starts_with("pin")), "{}", scene.report);
+    }
+
+    #[test]
+    fn one_of_the_angles_around_a_loop_is_recovered() {
+        let graph = oscillator("a", ["1", "", ""], ["1", ""])
+            + &oscillator("b", ["2", "", ""], ["0", ""])
+            + &oscillator("c", ["3", "", ""], ["0.5", ""])
+            + &coupling("ab", "a", "b", "k")
+            + &coupling("bc", "b", "c", "k")
+            + &coupling("ac", "a", "c", "l")
+            + "param k: N/m = 20; param l: N/m = 7; observe { a: m/s = a.flow; q: m = ac.q; }";
+        let loops = scene(&graph, "");
+        assert_eq!(loops.words(&["ab.q", "bc.q", "ac.q"]), ["integrated", "integrated", "recovered ab.q + bc.q"]);
+        loops.agrees();
+        let started = scene(&graph.replace("C ac = l", "C ac = l start 0.25"), "");
+        assert_eq!(started.words(&["ac.q"]), ["recovered ab.q + bc.q + 0.25"]);
+        started.agrees();
+    }
+
+    #[test]
+    fn coefficients_that_are_not_numbers_recover_nothing() {
+        let graph = "param ratio: 1 = 2; param k: N/m = 20; 1 a: translation; I m = 2 start 1; C s = k; a -> m; a -> s;
+            TF lever = ratio; 1 b: translation; C t = k; a -> lever -> b -> t; observe { p: m = s.q; q: m = t.q; }";
+        let tuned = scene(graph, "");
+        assert_eq!(tuned.words(&["s.q", "t.q"]), ["integrated", "integrated"], "{}", tuned.report);
+        tuned.agrees();
+        let folded = scene(graph, "tune { k }");
+        assert!(folded.reduced.states.len() == 2, "{}", folded.report);
+        folded.agrees();
+    }
+
+    #[test]
+    fn coefficients_that_move_recover_nothing() {
+        let graph = "param k: N/m = 20; 1 a: translation; I m = 2 start 1; C s = k; a -> m; a -> s;
+            MTF arm = cos(s.q / 1); 1 b: translation; C t = k; a -> arm -> b -> t; observe { p: m = s.q; q: m = t.q; }";
+        let scene = scene(graph, "tune {}");
+        assert_eq!(scene.words(&["s.q", "t.q"]), ["integrated", "integrated"], "{}", scene.report);
+        scene.agrees();
+    }
+
+    #[test]
+    fn a_guess_is_known_at_the_start_only() {
+        let graph = |x: &str| {
+            format!(
+                "param k: N/m = 40; 1 a[3]: translation; position x of a start [{x}, 2, 3];
+                 I m = 2 start [1, 0, 0.3]; C s = k start [0.1, 0, 0]; a -> m; a -> s; observe {{ x: m = x; q: m = s.q; }}"
+            )
+        };
+        let scene = scene(&graph("guess(1)"), "");
+        assert_eq!(scene.words(&["s.q_x", "s.q_z"]), ["integrated", "recovered x_z - 3"]);
+        scene.agrees();
+    }
+
+    #[test]
+    fn rates_that_are_equal_in_one_branch_only_recover_nothing() {
+        let graph = "param k: N/m = 20; 1 a: translation; I m = 2 start 1; C s = k; a -> m; a -> s;
+            MTF arm = if s.q < 0 { 1 } else { 1.5 }; 1 b: translation; C t = k; a -> arm -> b -> t;
+            observe { p: m = s.q; q: m = t.q; }";
+        let scene = scene(graph, "tune {}");
+        assert_eq!(scene.reduced.states.len(), 3, "{}", scene.report);
+        scene.agrees();
+    }
+
+    #[test]
+    fn start_values_are_taken_with_the_tuned_parameters() {
+        let graph = "param k: N/m = 20; param x0: m = 0.1; param y0: m = 0.3; 1 a: translation; I m = 2; C s = k start x0;
+            C t = k start y0; a -> m; a -> s; a -> t; observe { p: m = s.q; q: m = t.q; }";
+        let scene = scene(graph, "tune { x0, y0 }");
+        assert_eq!(scene.words(&["t.q"]), ["recovered s.q - x0 + y0"]);
+        scene.agrees();
+    }
+}

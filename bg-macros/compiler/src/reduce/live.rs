@@ -107,3 +107,88 @@ pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, k
     equations.replace(&|symbol| state_of(symbol).map(|state| symbols[state]));
     report.keep(kept);
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::reduce::tests::{Scene, oscillator, scene};
+
+    /// A motor whose current turns the wheel's torque source one way: the wheel does not act back.
+    const DOWNSTREAM: &str = "param k: N/m = 20; param c: N*s/m = 0.3;
+        1 a: translation; I am = 2 start 1; C ak = k; R ar = c; a -> am; a -> ak; a -> ar;
+        1 b: translation; I bm = 3; R br(v) = if v < 0 { 1 * v } else { 2 * v }; MSe pull = 4 * ak.q; pull -> b -> bm; b -> br;";
+
+    fn watching(observed: &str) -> Scene {
+        scene(&format!("{DOWNSTREAM} observe {{ all: m/s = b.flow; }}"), &format!("observe {{ {observed} }}"))
+    }
+
+    #[test]
+    fn what_acts_back_on_nothing_watched_goes_with_its_switches() {
+        let scene = watching("v: m/s = a.flow");
+        assert_eq!(scene.left(), ["am.p", "ak.q"]);
+        assert_eq!(scene.words(&["bm.p"]), ["unwatched"]);
+        assert!(scene.reduced.switches.is_empty());
+        scene.agrees();
+    }
+
+    #[test]
+    fn what_is_watched_stays_with_all_that_drives_it() {
+        for observed in ["v: m/s = b.flow", "f: N = br.effort", "w: J = integral(br.power)"] {
+            let scene = watching(observed);
+            assert!(["am.p", "ak.q", "bm.p"].iter().all(|name| scene.left().contains(name)), "{}", scene.report);
+            assert_eq!(scene.reduced.switches.len(), 1);
+            scene.agrees();
+        }
+    }
+
+    #[test]
+    fn a_switch_that_is_watched_keeps_what_its_guard_depends_on() {
+        let graph = format!("{DOWNSTREAM} let side = if bm.p < 0 {{ 1 }} else {{ 2 }}; observe {{ all: m/s = b.flow; }}");
+        let scene = scene(&graph, "observe { side = side; }");
+        assert_eq!(scene.left().len(), 3, "{}", scene.report);
+        scene.agrees();
+    }
+
+    #[test]
+    fn energies_that_are_not_known_are_not_a_number() {
+        let number = |scene: &Scene| {
+            let of = &scene.reduced;
+            [of.stored, of.supplied, of.dissipated].map(|id| of.pool.as_number(id).is_some_and(f64::is_nan))
+        };
+        assert_eq!(number(&watching("v: m/s = a.flow")), [true, true, true]);
+        assert_eq!(number(&watching("v: m/s = b.flow")), [false, false, false]);
+    }
+
+    /// The resistor on the imposed speed belongs to no state; its switch goes because no output needs it.
+    #[test]
+    #[ignore = "known fault: the power of a switch that goes is silently that of its positive branch"]
+    fn the_power_of_a_switch_that_goes_is_not_known() {
+        let graph = "input speed: m/s; Sf drive = speed; 1 j: translation; R r(v) = if v < 0 { 2 * v } else { 3 * v };
+            drive -> j -> r; Se push = 1; 1 k: translation; I m = 2; push -> k -> m; observe { v: m/s = k.flow; }";
+        let scene = scene(graph, "");
+        assert!(scene.reduced.switches.is_empty());
+        let dissipated = scene.reduced.pool.as_number(scene.reduced.dissipated);
+        assert!(dissipated.is_some_and(f64::is_nan), "the power of `r` is that of one branch");
+    }
+
+    #[test]
+    fn an_integral_that_only_an_output_needs_is_told_apart() {
+        let graph = oscillator("a", ["2", "k", ""], ["1", "0"])
+            + "param k: N/m = 20; observe { v: m/s = a.flow; w: J = integral(am.power); }";
+        let watched = scene(&graph, "");
+        assert_eq!(watched.words(&["w"]), ["quadrature"]);
+        assert_eq!(watched.report.integrated(), 2);
+        watched.agrees();
+        let unwatched = scene(&graph, "observe { v: m/s = a.flow; }");
+        assert_eq!(unwatched.left(), ["am.p", "ak.q"]);
+    }
+
+    #[test]
+    fn a_momentum_alone_needs_no_position() {
+        let graph = "param f: N = 2; param c: N*s/m = 0.5; 1 j[3]: translation; position x of j; I m = 2 start [1, 0, 3];
+            R r = c; Se w = [0, f, 0]; w -> j -> m; j -> r; observe { x: m = x; v: m/s = j.flow; }";
+        let scene = scene(graph, "observe { v: m/s = j.flow; }");
+        assert_eq!(scene.left(), ["m.p_x", "m.p_y", "m.p_z"], "{}", scene.report);
+        assert_eq!(scene.words(&["x_y"]), ["unwatched"]);
+        scene.agrees();
+    }
+}

@@ -111,3 +111,80 @@ impl Linear {
         solution
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::reduce::tests::scene;
+
+    const BOB: &str = "param mass: kg = 2; param g: m/s^2 = 9.81; gravity [0, -g, 0]; ground { point O = [0, 0, 0]; }
+        body bob { mass mass; inertia [0.1, 0.2, 0.3]; point top = [0, 0.5, 0]; start top at [0, 0, 0];
+            start turned rotation_z(0.7); }";
+
+    #[test]
+    fn a_rigid_pendulum_has_the_reactions_of_the_textbook() {
+        let graph = format!(
+            "{BOB} joint pivot: revolute z (ground.O -> bob.top) {{ rigid; }}
+             observe {{ angle: rad = pivot.angle; w: rad/s = pivot.speed; f: N = pivot.force; gap: m = pivot.gap; }}"
+        );
+        let scene = scene(&graph, "");
+        assert_eq!(scene.reduced.states.len(), 7, "{}", scene.report);
+        assert!(scene.reduced.reactions.is_empty());
+        // At rest at the angle a: w' = -m g l sin(a) / (J + m l^2), and the centre of mass falls with l w'.
+        let (mass, length, moment, gravity, angle) = (2.0, 0.5, 0.3, 9.81, 0.7_f64);
+        let turn = -mass * gravity * length * angle.sin() / (moment + mass * length * length);
+        let force = [mass * length * turn * angle.cos(), mass * (gravity + length * turn * angle.sin())];
+        let (full, reduced) = scene.starts();
+        for outputs in [full, reduced] {
+            for (found, expected) in outputs[2..4].iter().zip(force) {
+                assert!((found - expected).abs() < 1e-12, "{outputs:?} {force:?}");
+            }
+            assert!((outputs[0] - angle).abs() < 1e-15 && outputs[4].abs() < 1e-12);
+        }
+        scene.agrees();
+    }
+
+    #[test]
+    fn a_joint_made_rigid_by_the_scene_is_the_same_as_a_rigid_one() {
+        let joint = |clauses: &str| {
+            format!(
+                "{BOB} joint pivot: spherical (ground.O -> bob.top) {{ {clauses} }}
+                 observe {{ p: m = bob.position; f: N = pivot.force; h: kg*m^2/s = bob.h; }}"
+            )
+        };
+        let compliant = scene(&joint("stiffness 1e3;"), "rigid joints;");
+        let rigid = scene(&joint("rigid;"), "");
+        assert_eq!(compliant.starts(), rigid.starts());
+        assert_eq!(compliant.left(), rigid.left());
+        compliant.agrees();
+    }
+
+    #[test]
+    fn reactions_out_of_the_plane_need_no_solution() {
+        let graph = format!(
+            "{BOB} body rod {{ mass 1; inertia [0.1, 0.01, 0.1]; point top = [0, 0.2, 0]; start top at [0.5 * sin(0.7) * 0, -0.5, 0]; }}
+             joint pivot: revolute z (ground.O -> bob.top) {{ rigid; }}
+             observe {{ p: m = bob.position; q: m = rod.position; f: N = pivot.force; }}"
+        );
+        let scene = scene(&graph, "observe { f: N = pivot.force; m: N*m = pivot.moment; }");
+        let zero = |name: &str| {
+            let output = scene.reduced.outputs.iter().find(|output| output.name == name).expect(name);
+            scene.reduced.pool.is_zero(output.value)
+        };
+        assert!(zero("f_z") && !zero("f_x"), "{}", scene.report);
+        scene.agrees();
+    }
+
+    /// A speed that is given as an input is kept exactly, with the effort that its change needs.
+    #[test]
+    #[ignore = "known fault: the rate of an input is taken for zero, so a kept flow lags behind it"]
+    fn a_kept_flow_follows_its_input() {
+        let graph = "input speed: m/s; 1 k: translation; I m = 2; rSe hold = speed; k -> hold; k -> m;
+            observe { v: m/s = k.flow; }";
+        let scene = scene(graph, "");
+        let (_, motion) = scene.columns();
+        let late = motion.iter().enumerate().skip(20);
+        // The test's inputs are sin(2 t), sampled every 50 ms; the start is far from it, and that decays in 0.1 s.
+        let lag = late.fold(0.0_f64, |lag, (k, row)| lag.max((row[0] - (0.1 * k as f64).sin()).abs()));
+        assert!(lag < 1e-6, "{lag:e}");
+    }
+}

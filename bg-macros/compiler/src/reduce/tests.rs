@@ -92,6 +92,22 @@ impl Scene {
         })
     }
 
+    /// The outputs of both models at the start.
+    pub fn starts(&self) -> (Vec<f64>, Vec<f64>) {
+        let (mut full, mut reduced) = self.columns();
+        (full.swap_remove(0), reduced.swap_remove(0))
+    }
+
+    /// The outputs of both models over time, with the defaults.
+    pub fn columns(&self) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let defaults = |of: &StateEquations| of.parameters.iter().map(|p| p.default).collect::<Vec<_>>();
+        let guesses = vec![0.0; self.literal.guesses.len()];
+        (
+            outputs(&self.literal, &defaults(&self.literal), &guesses),
+            outputs(&self.reduced, &defaults(&self.reduced), &guesses),
+        )
+    }
+
     /// Panics unless the reduced model's outputs are those of the literal one, for three draws of the tuned parameters.
     pub fn agrees(&self) {
         let mut draw = Draw(self.report.fates.len() as u64);
