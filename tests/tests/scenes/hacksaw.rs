@@ -111,7 +111,10 @@ fn probe() {
     let free = HacksawParameters { k_work: 0.0, r_work: 0.0, r_cut: 0.0, r_return: 0.0, ..widened(&own) };
     let full = run_unswitched(Hacksaw::new(free).unwrap(), STEP, &samples);
     for k in (0..500).step_by(20) {
-        for n in ["crank_speed", "C4_x", "F34_x"] { let (a,b)=(full.series(n)[k], scene.series(n)[k]); print!("{n} {a:.6e} {:.2e}; ", a-b); }
+        for n in ["crank_speed", "C4_x", "F34_x"] {
+            let (a, b) = (full.series(n)[k], scene.series(n)[k]);
+            print!("{n} {a:.6e} {:.2e}; ", a - b);
+        }
         println!();
     }
 }

@@ -24,7 +24,6 @@ impl Table {
     pub fn series(&self, name: &str) -> Vec<f64> {
         self.column(name).unwrap_or_else(|| panic!("no output {name} in {:?}", self.names))
     }
-
 }
 
 /// A model whose switches stay in the branch of a positive guard: for laws that are the same in both branches.

@@ -217,7 +217,8 @@ mod tests {
 
     #[test]
     fn start_values_are_taken_with_the_tuned_parameters() {
-        let graph = "param k: N/m = 20; param x0: m = 0.1; param y0: m = 0.3; 1 a: translation; I m = 2; C s = k start x0;
+        let graph =
+            "param k: N/m = 20; param x0: m = 0.1; param y0: m = 0.3; 1 a: translation; I m = 2; C s = k start x0;
             C t = k start y0; a -> m; a -> s; a -> t; observe { p: m = s.q; q: m = t.q; }";
         let scene = scene(graph, "tune { x0, y0 }");
         assert_eq!(scene.words(&["t.q"]), ["recovered s.q - x0 + y0"]);

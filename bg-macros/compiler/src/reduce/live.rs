@@ -142,7 +142,8 @@ mod tests {
 
     #[test]
     fn a_switch_that_is_watched_keeps_what_its_guard_depends_on() {
-        let graph = format!("{DOWNSTREAM} let side = if bm.p < 0 {{ 1 }} else {{ 2 }}; observe {{ all: m/s = b.flow; }}");
+        let graph =
+            format!("{DOWNSTREAM} let side = if bm.p < 0 {{ 1 }} else {{ 2 }}; observe {{ all: m/s = b.flow; }}");
         let scene = scene(&graph, "observe { side = side; }");
         assert_eq!(scene.left().len(), 3, "{}", scene.report);
         scene.agrees();
@@ -184,7 +185,8 @@ mod tests {
 
     #[test]
     fn a_momentum_alone_needs_no_position() {
-        let graph = "param f: N = 2; param c: N*s/m = 0.5; 1 j[3]: translation; position x of j; I m = 2 start [1, 0, 3];
+        let graph =
+            "param f: N = 2; param c: N*s/m = 0.5; 1 j[3]: translation; position x of j; I m = 2 start [1, 0, 3];
             R r = c; Se w = [0, f, 0]; w -> j -> m; j -> r; observe { x: m = x; v: m/s = j.flow; }";
         let scene = scene(graph, "observe { v: m/s = j.flow; }");
         assert_eq!(scene.left(), ["m.p_x", "m.p_y", "m.p_z"], "{}", scene.report);
