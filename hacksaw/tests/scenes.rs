@@ -110,11 +110,10 @@ fn frame(scene: Scene, factor: f64, t_end: f64) -> f64 {
         let value = values.get(name).unwrap() * factor;
         values.set(name, value).unwrap();
     }
-    scene.visit(FrameAt { scene, values, t_end })
+    scene.visit(FrameAt { values, t_end })
 }
 
 struct FrameAt {
-    scene: Scene,
     values: HacksawParameters,
     t_end: f64,
 }
