@@ -33,7 +33,14 @@ fn generated(model: &str) {
     settings.set_snapshot_path("golden");
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    settings.bind(|| insta::assert_snapshot!(model, prettyplease::unparse(&items)));
+    settings.bind(|| insta::assert_snapshot!(model, without_graph_text(&prettyplease::unparse(&items))));
+}
+
+/// The code without the expanded graph's text, one long line that the stages' snapshots show better.
+fn without_graph_text(code: &str) -> String {
+    let shown =
+        |line: &str| if line.trim_start().starts_with("graph: \"") { "graph: \"...\"," } else { line }.to_owned();
+    code.lines().map(|line| shown(line) + "\n").collect()
 }
 
 #[test]
@@ -147,22 +154,22 @@ fn check(t_end: f64, [relative, absolute]: [f64; 2], bound: f64, expected: [u64;
 
 #[test]
 fn one_second_at_loose_tolerances() {
-    check(1.0, [1e-8, 1e-10], 1e-5, [4985, 1086, 73_396, 12]);
+    check(1.0, [1e-8, 1e-10], 1e-5, [4987, 1087, 73_288, 12]);
 }
 
 #[test]
 fn one_second_at_close_tolerances() {
-    check(1.0, [1e-10, 1e-12], 1e-8, [8358, 1019, 113_124, 12]);
+    check(1.0, [1e-10, 1e-12], 1e-8, [8358, 1020, 112_934, 12]);
 }
 
 #[test]
 fn the_paper_s_five_seconds_at_the_default_tolerance() {
-    check(5.0, DEFAULT, 1e-5, [27_481, 5287, 394_211, 60]);
+    check(5.0, DEFAULT, 1e-5, [27_481, 5284, 394_021, 60]);
 }
 
 #[test]
 fn the_paper_s_five_seconds_at_a_close_tolerance() {
-    let run = check(5.0, CLOSE, 1e-8, [47_023, 4720, 621_834, 60]);
+    let run = check(5.0, CLOSE, 1e-8, [47_024, 4735, 622_468, 60]);
     assert_eq!(run.statistics.events, 60);
     assert!(imbalance(&run) < 1e-9, "{:e}", imbalance(&run));
 }

@@ -148,7 +148,8 @@ mod tests {
             C pin = k; v -> tip; w -> arm -> tip; tip -> slip -> pin;
             observe { x: m = x; q: m = pin.q; R = R; }";
         let scene = scene(graph, "");
-        scene.agrees();
+        // The orientation is projected after a step, the integrated displacement is not: truncation tells them apart.
+        scene.agrees_to(1e-8);
         let recovered = scene.report.fates.iter().filter(|(_, fate)| matches!(fate, super::Fate::Recovered(_))).count();
         assert!(recovered >= 2, "{}", scene.report);
         assert!(scene.left().iter().all(|name| !name.starts_with("pin")), "{}", scene.report);
@@ -174,9 +175,9 @@ mod tests {
     #[test]
     fn coefficients_that_are_not_numbers_recover_nothing() {
         let graph = "param ratio: 1 = 2; param k: N/m = 20; 1 a: translation; I m = 2 start 1; C s = k; a -> m; a -> s;
-            TF lever = ratio; 1 b: translation; C t = k; a -> lever -> b -> t; observe { p: m = s.q; q: m = t.q; }";
+            TF lever = ratio; 1 b: translation; C u = k; a -> lever -> b -> u; observe { p: m = s.q; q: m = u.q; }";
         let tuned = scene(graph, "");
-        assert_eq!(tuned.words(&["s.q", "t.q"]), ["integrated", "integrated"], "{}", tuned.report);
+        assert_eq!(tuned.words(&["s.q", "u.q"]), ["integrated", "integrated"], "{}", tuned.report);
         tuned.agrees();
         let folded = scene(graph, "tune { k }");
         assert!(folded.reduced.states.len() == 2, "{}", folded.report);
@@ -186,9 +187,9 @@ mod tests {
     #[test]
     fn coefficients_that_move_recover_nothing() {
         let graph = "param k: N/m = 20; 1 a: translation; I m = 2 start 1; C s = k; a -> m; a -> s;
-            MTF arm = cos(s.q / 1); 1 b: translation; C t = k; a -> arm -> b -> t; observe { p: m = s.q; q: m = t.q; }";
+            MTF arm = cos(s.q / 1); 1 b: translation; C u = k; a -> arm -> b -> u; observe { p: m = s.q; q: m = u.q; }";
         let scene = scene(graph, "tune {}");
-        assert_eq!(scene.words(&["s.q", "t.q"]), ["integrated", "integrated"], "{}", scene.report);
+        assert_eq!(scene.words(&["s.q", "u.q"]), ["integrated", "integrated"], "{}", scene.report);
         scene.agrees();
     }
 
@@ -208,8 +209,8 @@ mod tests {
     #[test]
     fn rates_that_are_equal_in_one_branch_only_recover_nothing() {
         let graph = "param k: N/m = 20; 1 a: translation; I m = 2 start 1; C s = k; a -> m; a -> s;
-            MTF arm = if s.q < 0 { 1 } else { 1.5 }; 1 b: translation; C t = k; a -> arm -> b -> t;
-            observe { p: m = s.q; q: m = t.q; }";
+            MTF arm = if s.q < 0 { 1 } else { 1.5 }; 1 b: translation; C u = k; a -> arm -> b -> u;
+            observe { p: m = s.q; q: m = u.q; }";
         let scene = scene(graph, "tune {}");
         assert_eq!(scene.reduced.states.len(), 3, "{}", scene.report);
         scene.agrees();
@@ -219,9 +220,9 @@ mod tests {
     fn start_values_are_taken_with_the_tuned_parameters() {
         let graph =
             "param k: N/m = 20; param x0: m = 0.1; param y0: m = 0.3; 1 a: translation; I m = 2; C s = k start x0;
-            C t = k start y0; a -> m; a -> s; a -> t; observe { p: m = s.q; q: m = t.q; }";
+            C u = k start y0; a -> m; a -> s; a -> u; observe { p: m = s.q; q: m = u.q; }";
         let scene = scene(graph, "tune { x0, y0 }");
-        assert_eq!(scene.words(&["t.q"]), ["recovered s.q - x0 + y0"]);
+        assert_eq!(scene.words(&["u.q"]), ["recovered s.q - x0 + y0"]);
         scene.agrees();
     }
 }
