@@ -6,7 +6,8 @@ use proc_macro::TokenStream;
 /// Compiles multibond graphs of mechanisms, machines and circuits to Rust types that run.
 ///
 /// A call holds one or more graphs. Each becomes a model type, a parameter struct and, where it has inputs, an input
-/// struct ([generated items](#generated-items)). Everything the compiler cannot accept is a compile error at the token
+/// struct ([generated items](#generated-items)); so does each of its [scenes](#scenes), the uses of one mechanism, of
+/// which only what a use needs is calculated. Everything the compiler cannot accept is a compile error at the token
 /// to change, with a code and one action as help ([faults](#faults)).
 ///
 /// ```
@@ -43,16 +44,16 @@ use proc_macro::TokenStream;
 /// call      = { graph }
 /// graph     = [visibility] "graph" NAME "{" { statement } "}"
 /// statement = param | input | let | junction | element | chain | position | orientation | close | observe
-///           | ground | gravity | body | joint | spring | drive | contact
+///           | ground | gravity | body | joint | spring | drive | contact | scene
 /// ```
 ///
 /// Order is free: a name may be used before it is declared. States and outputs keep the order of declaration. A
 /// statement ends with `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in
-/// front of `graph`, `param` and `input` and become the documentation of the generated items.
+/// front of `graph`, `scene`, `param` and `input` and become the documentation of the generated items.
 ///
 /// Names are Rust identifiers, Rust's keywords excluded. Names of `let`s, junctions, elements, tracks and outputs may
-/// have dots (`pin.slip`); those of graphs, parameters, inputs, bodies, points, joints, springs, drives and contacts
-/// have none. All of a graph's names are different.
+/// have dots (`pin.slip`); those of graphs, scenes, parameters, inputs, bodies, points, joints, springs, drives and
+/// contacts have none. All of a graph's names are different, its outputs' among themselves; `t` is the time.
 ///
 /// ## `param`, `input`, `let`
 ///
@@ -92,9 +93,9 @@ use proc_macro::TokenStream;
 /// ```
 ///
 /// Each `->` is a bond. **Power is positive along the half arrow, always.** A one-port (source, I, C, R) has exactly
-/// one bond; a two-port (TF, GY) has one in and one out, so it stands inside a chain. Conventions: half arrows point
-/// from sources into the graph and from junctions into I, C and R. Then an R dissipates positive power, and the
-/// momentum and displacement of I and C have the sign of the junction's effort and flow.
+/// one bond; a two-port (TF, GY) has one in and one out, so it stands inside a chain. No bond joins a node to itself.
+/// Conventions: half arrows point from sources into the graph and from junctions into I, C and R. Then an R dissipates
+/// positive power, and the momentum and displacement of I and C have the sign of the junction's effort and flow.
 ///
 /// ## Elements
 ///
@@ -110,8 +111,9 @@ use proc_macro::TokenStream;
 /// |---|---|---|
 /// | `Se`, `MSe` | effort E | - |
 /// | `Sf`, `MSf` | flow E | - |
+/// | `rSe` | residual sink: the effort that keeps the flow at E, a Lagrange multiplier | - |
 /// | `I` | flow = momentum / E | `I a(p) = ...` flow from momentum |
-/// | `C` | effort = E \* displacement, or displacement / E: the unit of E says whether it is a stiffness or a compliance | `C a(q) = ...` effort from displacement |
+/// | `C` | effort = E \* displacement, or displacement / E: the unit of E says whether it is a stiffness or a compliance; `2 * k` has the unit of k | `C a(q) = ...` effort from displacement |
 /// | `R`, `MR` | effort = E \* flow, in either causality | `R a(f) = ...` effort from flow; `R a(effort e) = ...` flow from effort |
 /// | `TF`, `MTF` | flow out = E \* flow in, effort in = E \* effort out | `TF a(f) = ...` flow out from flow in; `TF a(effort e) = ...` effort out from effort in |
 /// | `GY`, `MGY` | effort in = E \* flow out, effort out = E \* flow in | - |
@@ -126,6 +128,11 @@ use proc_macro::TokenStream;
 /// - `at E` (only C): the displacement is E, which the poses determine, and no state of its own. The compiler proves
 ///   that E changes with the flow of the C's bond: the difference of dE/dt, by the chain rule along the tracked
 ///   junctions, and that flow must vanish as a polynomial identity. Otherwise BG0505.
+/// - `rSe NAME = FLOW at GAP` keeps the flow of its bond at FLOW: a rigid link, a wheel that does not slip. The effort
+///   is solved for, so `NAME.effort` can be observed like any other. `at GAP` names the displacement that the poses
+///   determine and that is to stay zero ([rigid joints](#rigid-joints)). FLOW should be 0 or a parameter: its own
+///   change in time is taken into account where states or `t` cause it, but not where an input does, which the flow
+///   then follows late. The power of a sink whose flow is not zero counts neither as supplied nor as dissipated.
 /// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
 /// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
 ///   may be left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the
@@ -270,11 +277,12 @@ use proc_macro::TokenStream;
 /// KIND  = "revolute" AXIS | "prismatic" AXIS | "spherical" | "cylindrical" AXIS | "universal" AXIS AXIS | "fixed"
 /// END   = BODY "." POINT | BODY | "ground" "." POINT | "ground"
 /// clause = "stiffness" E ";" | "damping" E ";" | "tilt" "stiffness" E ";" | "tilt" "damping" E ";" | "frame" "inertial" ";"
+///        | "rigid" ";"
 /// ```
 ///
-/// A compliant joint: a C and an R on each direction that it holds. Stiffness (N/m) holds translations, tilt stiffness
-/// (N\*m/rad) rotations; both are needed where the joint holds such a direction. Damping may be left out. One number is
-/// for all directions, a vector has one for each axis.
+/// A compliant joint, unless it is [rigid](#rigid-joints): a C and an R on each direction that it holds. Stiffness
+/// (N/m) holds translations, tilt stiffness (N\*m/rad) rotations; both are needed where the joint holds such a
+/// direction. Damping may be left out. One number is for all directions, a vector has one for each axis.
 ///
 /// **The relative motion is that of the second end to the first, and forces and moments are those on the second body**,
 /// their opposites act on the first. Axes are the first body's (`universal x y`: x of the first, y of the second body).
@@ -292,6 +300,24 @@ use proc_macro::TokenStream;
 /// | `NAME.travel` | of the free translation of prismatic and cylindrical joints, m |
 /// | `NAME.spin`, `NAME.slide` | the 1-junctions of the free axes, to bond to: `gearbox -> pin.spin;` |
 /// | `NAME.slip.flow`, `NAME.twist.flow` | relative velocity, relative angular velocity, inertial axes |
+///
+/// ### Rigid joints
+///
+/// With `rigid;` a joint gives way in no direction that it holds. It has a residual sink, `rSe`, on each held direction
+/// in place of the C and the R; stiffnesses and dampings may be left out, and what is written is not used. The names of
+/// the table stay, `NAME.force` and `NAME.moment` are the reactions; `NAME.x_offset` and its like are there for joints
+/// with a slide only. A scene makes joints rigid with `rigid joints;`.
+///
+/// The reactions l are solved for at compile time. That the second derivative of each held gap vanishes is linear in
+/// them, A l + b = 0, with A symmetric; A is factored as L D L^T in symbols, without pivots, and the solution is part
+/// of the flat rate function. What truncation leaves of a gap q and its rate v decays by Baumgarte's terms, v' = -2 a v
+/// - a^2 q with a = 50 1/s. The start pose closes the gaps as for compliant joints; start velocities should fit the
+/// joints, since what does not fit is not made to at the start but decays in the same way.
+///
+/// Redundancy: a constraint whose flow and gap vanish identically while the constants of the reduction hold, such as
+/// one out of the plane in planar motion, needs no reaction and gets zero, in scenes only. Any other constraint that
+/// follows from the rest leaves a pivot of D zero, and the rate is not finite: with two rigid hinges of one door it is
+/// not a number from the start. Keep one of the two compliant, or hold less with it.
 ///
 /// ## `spring`, `contact`
 ///
@@ -360,6 +386,120 @@ use proc_macro::TokenStream;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
+/// # Scenes
+///
+/// ```text
+/// scene  = "scene" NAME "{" { clause } "}"
+/// clause = observe | "tune" NAMES | "without" NAMES | "rigid" ( "joints" ";" | "{" NAME { "," NAME } "}" )
+///        | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
+/// NAMES  = "{" [NAME { "," NAME }] "}" | NAME { "," NAME } ";"
+/// ```
+///
+/// A scene is one use of the graph: what is watched and what stays adjustable. It is a model type of its own, with its
+/// own parameter struct, beside the literal model of the graph, from which the compiler leaves out what this use does
+/// not need. The outputs are those of the literal model to rounding, for all values of the parameters that it keeps;
+/// `without` and `rigid` make it another mechanism, whose own literal model is not generated.
+///
+/// | clause | |
+/// |---|---|
+/// | `observe { ... }` | the outputs, in place of the graph's; without it those of the graph |
+/// | `tune { a, b }` | the parameters that stay adjustable, and the only fields of the scene's parameter struct; the others are their defaults, as numbers. Without it all stay; `tune {}` keeps none |
+/// | `without { a, b }` | joints, contacts, springs, drives or elements that are not there, with their bonds |
+/// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
+/// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
+/// | `expect states = 29;` | an error (BG0605) unless so many states are integrated, integrals for outputs not counted |
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A bob on a pin, pushed out of the plane where `aside` says so.
+///     pub graph Bob {
+///         param mass: kg = 2, above 0;
+///         param angle: rad = 0.7;
+///         param aside: N = 0;
+///         gravity [0, -9.81, 0];
+///         ground { point O = [0, 0, 0]; }
+///         body bob {
+///             mass mass; inertia [0.1, 0.2, 0.3];
+///             point top = [0, 0.5, 0];
+///             start top at [0, 0, 0]; start turned rotation_z(angle);
+///         }
+///         joint pin: revolute z (ground.O -> bob.top) { stiffness 1e5; damping 50; tilt stiffness 1e3; tilt damping 1; }
+///         drive push on bob force = [0, 0, aside];
+///         observe { bob.position; pin.force; lost: J = integral(dissipated_power) }
+///
+///         /// The motion in the plane.
+///         scene Swing {
+///             observe { angle: rad = pin.angle; force: N = norm(pin.force) }
+///             tune { mass, angle }
+///             expect planar;
+///             expect states = 7;
+///         }
+///         /// On an ideal pin, with nobody who pushes.
+///         scene Ideal {
+///             without { push }
+///             rigid joints;
+///             observe { angle: rad = pin.angle; pin.force; pin.gap }
+///             tune { mass, angle }
+///             expect states = 7;
+///         }
+///     }
+/// }
+/// use bg_model::system::Model;
+///
+/// assert_eq!((Bob::STATES, Swing::STATES, Ideal::STATES), (19, 7, 7));
+/// // The scene's parameters are what it tunes: there is no field `aside`.
+/// let swing = Swing::new(SwingParameters { mass: 3.0, angle: 1.2 })?;
+/// assert!(swing.description().reduction.starts_with("18 states: 9 constant; 2 equal up to sign;"));
+/// assert!(Ideal::new(IdealParameters::default())?.description().graph.contains("rSe pin.reaction = [0, 0, 0] at pin.gap"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// `Description::reduction` of a scene is the report on what went and why; it is empty for a literal model. For
+/// `Swing`:
+///
+/// ```text
+/// 18 states: 9 constant; 2 equal up to sign; 0 recovered; 0 unwatched; 7 integrated; 0 for outputs only
+///   literal: 18 states, 121 operations a rate
+///   parameters folded: 18 states, 120 operations a rate
+///   constant states folded: 9 states, 30 operations a rate
+///   equal states merged: 7 states, 25 operations a rate
+///   affine states recovered: 7 states, 25 operations a rate
+///   unwatched states dropped: 7 states, 25 operations a rate
+///   bob.position_x: integrated
+///   bob.position_y: integrated
+///   bob.position_z: constant: its rate is zero while the constants hold, so it stays 0
+///   bob.orientation_11: integrated
+///   bob.orientation_12: integrated
+///   bob.orientation_13: constant: its rate is zero while the constants hold, so it stays 0
+///   bob.orientation_21: equal: it starts as -bob.orientation_12 and has its rate
+///   (and 10 lines more, one a state)
+/// ```
+///
+/// Each reduction is proved on the equations, never read off numbers. In this order:
+///
+/// | reduction | what is proved |
+/// |---|---|
+/// | parameters folded | nothing: a parameter that is not tuned is its default. A switch whose guard has become a number is decided |
+/// | constant states | that the rates of all of them, and what `project` gives them, vanish or stay while all of them have their start values: the greatest such set, found by dropping what does not hold until nothing does. By induction in time they keep their values. A start value that hangs on a `guess` is not taken for constant |
+/// | equal states | that states with the same start value up to sign have the same rate up to sign, while all the equalities hold: classes are split until none splits |
+/// | reactions solved | nothing: this is where the multipliers of rigid joints are solved for, on what is left |
+/// | affine states | that the rate of a displacement or integral is a combination, with fixed numbers, of the rates of other displacements, integrals, positions and orientations: the difference vanishes as a polynomial. It then is its start value plus what the others have changed |
+/// | unwatched states | that no output depends on it, nor the rate, projection or switch of anything that an output depends on |
+///
+/// Operations are those of the rate function that would be generated at that point; before the reactions are solved,
+/// these are unknowns there and cost nothing.
+///
+/// What a scene does not do:
+///
+/// - An unwatched state is gone: what depends on it can be observed only by a scene that says so in `observe`.
+/// - `stored_energy` and `powers` of the model are not-a-number in a scene that has lost a state on which they depend,
+///   as a scene has whose report counts some as unwatched. Observe one of the two to keep them. Where only a switch is
+///   lost and no state, they are not right, without a sign: the lost law counts by its second branch.
+/// - Equal states that start at zero are only found where their rates are the same from the beginning, not where these
+///   are the same once other states are merged. Equalities with factors other than 1 and -1, conserved quantities, and
+///   what is true only for some values of the tuned parameters are not found.
+///
 /// # Start poses
 ///
 /// Start values are expressions of parameters. `guess(E)` in a body's start is an unknown: before a run the assembly
@@ -369,9 +509,9 @@ use proc_macro::TokenStream;
 ///
 /// # Causality
 ///
-/// Strokes are assigned by the sequential procedure (SCAP): sources, then laws that work one way only (laws of a
-/// variable), then I and C in integral causality, in the order of declaration, then what is left; each assignment is
-/// propagated before the next. Only integral causality is accepted:
+/// Strokes are assigned by the sequential procedure (SCAP): sources, residual sinks among them, then laws that work one
+/// way only (laws of a variable), then I and C in integral causality, in the order of declaration, then what is left;
+/// each assignment is propagated before the next. Only integral causality is accepted:
 ///
 /// - two causes for one effort or flow: BG0401, none: BG0402;
 /// - an I or C whose state others already determine: BG0403. Put a C with an R in between, or merge the two;
@@ -433,17 +573,17 @@ use proc_macro::TokenStream;
 ///
 /// # Generated items
 ///
-/// For `pub graph Motor` with the visibility of the graph:
+/// For `pub graph Motor` with the visibility of the graph; for each of its scenes the same under the scene's name:
 ///
 /// | item | |
 /// |---|---|
-/// | `MotorParameters` | a struct of `f64` fields with units and defaults in their documentation; `Default`, serde's `Serialize` and `Deserialize` (unknown names refused, missing ones default), `bg_model::parameters::Parameters` for access by name |
+/// | `MotorParameters` | a struct of `f64` fields with units and defaults in their documentation; `Default`, serde's `Serialize` and `Deserialize` (unknown names refused, missing ones default), `bg_model::parameters::Parameters` for access by name; of a scene only what it tunes |
 /// | `MotorInputs` | a struct of `bg_model::input::Input`; only where there are inputs |
 /// | `Motor<S = f64>` | the model, generic over the scalar; its documentation has the tables of states and of operation counts |
 /// | `Motor::STATES`, `SWITCHES`, `OUTPUTS` | the sizes |
 /// | `Motor::new(parameters)`, `Motor::new(parameters, inputs)` | checks the ranges and calculates what depends on parameters only; `in_scalar` is the same for any `S: Scalar` |
 /// | `impl System` | `rate`, `guards`, `project`, `state_name`; nothing is allocated |
-/// | `impl Model` | `start`, `outputs`, `stored_energy`, `powers`, `description` |
+/// | `impl Model` | `start`, `outputs`, `stored_energy`, `powers`, `description` with the tables, the expanded graph and, of a scene, the report |
 ///
 /// Generated code names `::bg_model` only: a crate that uses the macro needs that one dependency.
 ///
@@ -465,7 +605,7 @@ use proc_macro::TokenStream;
 /// | BG0108 | a second comparison in an `if` |
 /// | BG0109 | `==` or `!=` |
 /// | BG0110 | a clause that stands twice |
-/// | BG0111 | an unknown kind of joint, drive or law |
+/// | BG0111 | an unknown kind, such as of joint, drive, law or expectation |
 /// | BG0112 | a missing axis |
 /// | BG0113 | a parameter or input without a unit |
 /// | BG0114 | a parameter without a default |
@@ -492,7 +632,7 @@ use proc_macro::TokenStream;
 /// | BG0212 | a contact without a law |
 /// | **names, ports, shapes, units** | |
 /// | BG0301 | not a coherent SI unit |
-/// | BG0302 | a name declared twice |
+/// | BG0302 | a name declared twice, or two outputs of one name |
 /// | BG0303 | an unknown name |
 /// | BG0304 | an unknown function |
 /// | BG0305 | an unknown energy domain |
@@ -502,7 +642,7 @@ use proc_macro::TokenStream;
 /// | BG0309 | a two-port without one half arrow in and one out |
 /// | BG0310 | a junction without a bond |
 /// | BG0311 | a bond between different cardinalities |
-/// | BG0312 | a modulus that does not map the flows of a two-port |
+/// | BG0312 | a bond that joins a node to itself |
 /// | BG0313 | two shapes that do not go together |
 /// | BG0314 | a shape that does not fit its place |
 /// | BG0315 | a component of something that is not a vector |
@@ -511,7 +651,7 @@ use proc_macro::TokenStream;
 /// | BG0318 | a square root that has no unit |
 /// | BG0319 | a bond whose units nothing fixes |
 /// | BG0320 | a law whose unit does not fit its bond |
-/// | BG0321 | a bare number as the law of a C |
+/// | BG0321 | a bare number as the law of a C: it may be a stiffness or a compliance |
 /// | BG0322 | a law that needs the modulated word |
 /// | BG0323 | a start value or storage law that depends on what it may not |
 /// | BG0324 | a `let` that is defined by itself |
@@ -524,6 +664,7 @@ use proc_macro::TokenStream;
 /// | BG0331 | `integral` outside `observe` |
 /// | BG0332 | a law of a variable that the element cannot have |
 /// | BG0333 | a graph without a bond |
+/// | BG0334 | a name that the language reserves: `t`, the time |
 /// | **causality** | |
 /// | BG0401 | causal conflict: two bonds determine one effort or flow |
 /// | BG0402 | causal conflict: none determines it |

@@ -244,3 +244,115 @@ fn out_of_plane(report: &Report) -> Vec<String> {
         .map(|(state, _)| state.name.clone())
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{causality, equations, mechanism, reduce, syntax};
+
+    const GRAPH: &str = "/// The whole.
+        pub graph G {
+            param m: kg = 2; param k: N/m = 3; param c: N*s/m = 1;
+            1 j: translation; I mass = m start 1; C spring = k; R damper = c;
+            0 between: translation; j -> mass; j -> spring; j -> between -> damper;
+            observe { v: m/s = j.flow; }
+            SCENES
+        }";
+
+    fn of(scenes: &str) -> Staged<Vec<Variant>> {
+        variants(&syntax::parse(GRAPH.replace("SCENES", scenes).parse().expect("tokens"))?.graphs[0])
+    }
+
+    fn report(variant: &Variant) -> Staged<Report> {
+        let expanded = mechanism::expand(&variant.graph)?;
+        let equations = equations::derive(&causality::assign(crate::graph::resolve(&expanded)?)?)?;
+        let tuned = tuned(variant.scene.as_ref().expect("a scene"), &equations.parameters)?;
+        Ok(reduce::for_scene(equations, &tuned).1)
+    }
+
+    fn outputs(graph: &Graph) -> usize {
+        graph.items.iter().map(|item| if let Item::Observe(observed) = item { observed.len() } else { 0 }).sum()
+    }
+
+    #[test]
+    fn the_literal_graph_comes_first_and_has_no_scenes() {
+        let variants = of("scene A {} /// Another.\n scene B { observe { j.flow, j.effort } }").unwrap();
+        let names: Vec<_> = variants.iter().map(|variant| variant.graph.name.text.as_str()).collect();
+        assert_eq!(names, ["G", "A", "B"]);
+        assert!(variants[0].scene.is_none());
+        assert!(variants.iter().all(|v| v.graph.items.iter().all(|item| !matches!(item, Item::Scene(_)))));
+        let docs: Vec<_> = variants.iter().map(|variant| variant.graph.docs.trim()).collect();
+        assert_eq!(docs, ["The whole.", "The whole.", "Another."]);
+        assert_eq!(variants.iter().map(|variant| outputs(&variant.graph)).collect::<Vec<_>>(), [1, 1, 2]);
+        assert!(variants.iter().all(|variant| matches!(variant.graph.visibility, syn::Visibility::Public(_))));
+    }
+
+    #[test]
+    fn what_is_left_out_goes_with_its_bonds_and_nothing_else() {
+        let chains = |graph: &Graph| {
+            let chains =
+                graph.items.iter().filter_map(|item| if let Item::Chain(chain) = item { Some(chain) } else { None });
+            chains
+                .map(|chain| chain.iter().map(|name| name.text.clone()).collect::<Vec<_>>().join(" "))
+                .collect::<Vec<_>>()
+        };
+        let variants = of("scene A { without { damper } } scene B { without spring; }").unwrap();
+        assert_eq!(chains(&variants[0].graph), ["j mass", "j spring", "j between damper"]);
+        assert_eq!(chains(&variants[1].graph), ["j mass", "j spring", "j between"]);
+        assert_eq!(chains(&variants[2].graph), ["j mass", "j between damper"]);
+        assert_eq!(variants[2].graph.items.len(), variants[0].graph.items.len() - 2);
+    }
+
+    #[test]
+    fn without_tune_all_parameters_are_tuned_and_with_an_empty_one_none() {
+        let variants = of("scene A {} scene B { tune {} } scene C { tune { c, m } }").unwrap();
+        let resolved = crate::graph::resolve(&mechanism::expand(&variants[0].graph).unwrap()).unwrap();
+        let tuned: Vec<_> = variants[1..]
+            .iter()
+            .map(|variant| tuned(variant.scene.as_ref().unwrap(), &resolved.parameters).unwrap())
+            .collect();
+        assert_eq!(tuned, [vec![true; 3], vec![false; 3], vec![true, false, true]]);
+    }
+
+    #[test]
+    fn only_the_joints_that_a_scene_names_become_rigid() {
+        let text = "graph G { ground { point O = [0, 0, 0]; } body a { mass 1; inertia [1, 1, 1]; }
+            joint p: spherical (ground.O -> a) { stiffness 1; } joint q: spherical (ground.O -> a) { rigid; }
+            scene A { rigid { p } } scene B { rigid joints; } scene C {} }";
+        let source = syntax::parse(text.parse().unwrap()).unwrap();
+        let rigid: Vec<Vec<bool>> = variants(&source.graphs[0])
+            .unwrap()
+            .iter()
+            .map(|variant| {
+                let joints = variant.graph.items.iter();
+                joints.filter_map(|item| if let Item::Joint(joint) = item { Some(joint.rigid) } else { None }).collect()
+            })
+            .collect();
+        assert_eq!(rigid, [[false, true], [true, true], [true, true], [false, true]]);
+    }
+
+    #[test]
+    fn expectations_that_hold_are_silent_and_the_others_speak_at_their_own_words() {
+        let scenes = "scene A { expect states = 2; expect planar; } scene B { expect states = 3; expect states = 1; }";
+        let variants = of(scenes).unwrap();
+        let checked = |variant: &Variant| check(variant.scene.as_ref().unwrap(), &report(variant).unwrap());
+        assert!(checked(&variants[1]).is_ok());
+        let faults = checked(&variants[2]).unwrap_err();
+        let messages: Vec<_> = faults.iter().map(|fault| fault.message.as_str()).collect();
+        assert_eq!(
+            messages,
+            [
+                "scene `B` integrates 2 states, not 3: mass.p, spring.q",
+                "scene `B` integrates 2 states, not 1: mass.p, spring.q"
+            ]
+        );
+        assert!(faults[0].span.start().column < faults[1].span.start().column);
+    }
+
+    #[test]
+    fn a_long_list_is_cut() {
+        let names: Vec<String> = (0..LISTED + 3).map(|k| format!("s{k}")).collect();
+        assert!(list(&names).ends_with("s38, s39 and 3 more"));
+        assert_eq!(list(&names[..2]), "s0, s1");
+    }
+}

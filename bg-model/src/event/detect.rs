@@ -89,12 +89,14 @@ impl<const G: usize> Watch<G> {
             let bend = (rest - part) * chord - rest * leaving + part * arriving;
             rest * from + part * to - part * rest * bend + bulge * (part * rest) * (part * rest)
         };
-        let (mut lowest, mut highest) = (f64::INFINITY, from.max(to));
-        for sample in 1..SAMPLES {
-            let value = quartic(sample as f64 / SAMPLES as f64);
-            (lowest, highest) = (lowest.min(value), highest.max(value));
-        }
-        highest > noise && lowest < NEAR * (highest - lowest.min(from).min(to))
+        // Comparisons, not `f64::min`: its optimised form was seen to drop an end.
+        let smaller = |a: f64, b: f64| if b < a { b } else { a };
+        let larger = |a: f64, b: f64| if b > a { b } else { a };
+        let inside = (1..SAMPLES).map(|sample| quartic(sample as f64 / SAMPLES as f64));
+        let ends = (f64::INFINITY, larger(from, to));
+        let (lowest, highest) = inside.fold(ends, |(low, high), value| (smaller(low, value), larger(high, value)));
+        let bottom = smaller(lowest, smaller(from, to));
+        highest > noise && lowest < NEAR * (highest - bottom)
     }
 
     /// The course of the suspects by the dense output; the other guards are clear.

@@ -9,6 +9,7 @@ use bg_model::system::{Model, System};
 /// The outputs of a run at its sample times, by name.
 pub struct Table {
     names: Vec<&'static str>,
+    units: Vec<&'static str>,
     rows: Vec<Vec<f64>>,
     pub events: u64,
 }
@@ -97,7 +98,8 @@ where
     let statistics = finish.unwrap_or_else(|failure| panic!("{failure}")).statistics;
     assert_eq!(statistics.rejected, 0, "a rejected step is not the same in both");
     let names = model.description().outputs.iter().map(|output| output.name).collect();
-    Table { names, rows, events: statistics.events }
+    let units = model.description().outputs.iter().map(|output| output.unit).collect();
+    Table { names, units, rows, events: statistics.events }
 }
 
 /// `full` with the values of `own`, by name.
@@ -120,31 +122,51 @@ pub fn varied<P: Parameters>(seed: u64, part: f64) -> P {
     parameters
 }
 
-/// Deviation of each scene's column from the full one's, by `of` where the full model has it under another name.
-///
-/// Prints the largest and gives it with its column's name.
-pub fn compared(what: &str, full: &Table, scene: &Table, of: impl Fn(&str) -> Option<Vec<f64>>) -> f64 {
-    let mut worst = (0.0, "");
-    for name in &scene.names {
+/// The largest deviations of a scene, each with its column.
+#[derive(Debug)]
+pub struct Deviations {
+    /// Of positions, orientations, angles, energies: a part of the column's largest magnitude, or of 1.
+    pub motion: (f64, &'static str),
+    /// Of momenta, speeds and currents, likewise: what a pose's rounding makes of a stiff joint is in them at once.
+    pub rates: (f64, &'static str),
+    /// Of forces, N: a joint's stiffness times the rounding of poses.
+    pub forces: (f64, &'static str),
+}
+
+/// Compares each of the scene's columns with the full one's, by `of` where the full model has it under another name, and
+/// prints the largest deviations.
+pub fn compared(what: &str, full: &Table, scene: &Table, of: impl Fn(&str) -> Option<Vec<f64>>) -> Deviations {
+    let mut worst = Deviations { motion: (0.0, ""), rates: (0.0, ""), forces: (0.0, "") };
+    for (name, unit) in scene.names.iter().zip(&scene.units) {
         let expected = full.column(name).or_else(|| of(name));
         let expected = expected.unwrap_or_else(|| panic!("no column to compare {name} with"));
         let size = expected.iter().fold(1.0_f64, |size, value| size.max(value.abs()));
+        let (kind, size) = match *unit {
+            "m" | "1" | "" | "rad" | "J" => (&mut worst.motion, size),
+            "N" | "N*m" => (&mut worst.forces, 1.0),
+            _ => (&mut worst.rates, size),
+        };
         for (value, expected) in scene.series(name).iter().zip(&expected) {
             let error = (value - expected).abs() / size;
             assert!(error.is_finite(), "{what}: {name}");
-            if error > worst.0 {
-                worst = (error, name);
+            if error > kind.0 {
+                *kind = (error, name);
             }
         }
     }
+    let Deviations { motion, rates, forces } = &worst;
     println!(
-        "{what}: {} columns, {} events, largest deviation {:.2e} in `{}`",
+        "{what}: {} columns, {} events; motion {:.1e} ({}), rates {:.1e} ({}), forces {:.1e} N ({})",
         scene.names.len(),
         scene.events,
-        worst.0,
-        worst.1
+        motion.0,
+        motion.1,
+        rates.0,
+        rates.1,
+        forces.0,
+        forces.1
     );
-    worst.0
+    worst
 }
 
 /// `count` + 1 instants up to `end`, a tenth of it in a debug build.
