@@ -310,9 +310,9 @@ use proc_macro::TokenStream;
 ///
 /// The reactions l are solved for at compile time. That the second derivative of each held gap vanishes is linear in
 /// them, A l + b = 0, with A symmetric; A is factored as L D L^T in symbols, without pivots, and the solution is part
-/// of the flat rate function. What truncation leaves of a gap q and its rate v decays by Baumgarte's terms, v' = -2 a v
-/// - a^2 q with a = 50 1/s. The start pose closes the gaps as for compliant joints; start velocities should fit the
-/// joints, since what does not fit is not made to at the start but decays in the same way.
+/// of the flat rate function. What truncation leaves of a gap q and its rate v decays by Baumgarte's terms,
+/// `v' = -2 a v - a^2 q` with a = 50 1/s. The start pose closes the gaps as for compliant joints; start velocities
+/// should fit the joints, since what does not fit is not made to at the start but decays in the same way.
 ///
 /// Redundancy: a constraint whose flow and gap vanish identically while the constants of the reduction hold, such as
 /// one out of the plane in planar motion, needs no reaction and gets zero, in scenes only. Any other constraint that
