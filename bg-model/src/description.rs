@@ -79,7 +79,7 @@ pub struct StateInfo {
     pub unit: &'static str,
     /// What stores it: `I`, `C`, `position`, `orientation` or `integral`.
     pub storage: &'static str,
-    /// Its causality: `integral`, or `recovered` where it is calculated from other states.
+    /// Its causality: `integral`; a graph with a storage in derivative causality does not compile.
     pub causality: &'static str,
 }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let Some(file) = arguments.next() else {
-        eprintln!("usage: stages FILE [source|expanded|resolved|causal|equations|program]");
+        eprintln!("usage: stages FILE [source|expanded|resolved|causal|equations|reduction|reduced|program]");
         return ExitCode::from(2);
     };
     let wanted = arguments.next();

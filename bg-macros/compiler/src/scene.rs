@@ -20,9 +20,13 @@ pub enum SceneFault {
     NotPlanar { scene: String, states: Vec<String> },
     StateCount { scene: String, expected: usize, states: Vec<String> },
     UnknownJoint { name: String, near: Option<String> },
+    Reserved { name: String },
 }
 
 use SceneFault as F;
+
+/// Types that the generated code uses without a path.
+const OWN: [&str; 3] = ["S", "Scalar", "SVector"];
 
 /// How many states a message lists.
 const LISTED: usize = 40;
@@ -36,6 +40,7 @@ impl Explain for SceneFault {
             F::NotPlanar { .. } => "BG0604",
             F::StateCount { .. } => "BG0605",
             F::UnknownJoint { .. } => "BG0606",
+            F::Reserved { .. } => "BG0607",
         }
     }
 
@@ -50,6 +55,7 @@ impl Explain for SceneFault {
             F::StateCount { scene, expected, states } => {
                 format!("scene `{scene}` integrates {} states, not {expected}: {}", states.len(), list(states))
             }
+            F::Reserved { name } => format!("`{name}` is a name of the generated code's own"),
             F::UnknownJoint { name, .. } => format!("there is no joint `{name}` to make rigid"),
         }
     }
@@ -57,6 +63,7 @@ impl Explain for SceneFault {
     fn help(&self) -> String {
         match self {
             F::SameName { .. } => "give one of them another name".to_owned(),
+            F::Reserved { .. } => "give the model another name".to_owned(),
             F::UnknownPart { near: Some(near), .. }
             | F::UnknownParameter { near: Some(near), .. }
             | F::UnknownJoint { near: Some(near), .. } => format!("did you mean `{near}`?"),
@@ -96,6 +103,11 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     let literal = Graph { items, ..source.clone() };
     let mut names = BTreeSet::from([source.name.text.clone()]);
     let mut variants = vec![Variant { graph: literal.clone(), scene: None }];
+    let scenes =
+        source.items.iter().filter_map(|item| if let Item::Scene(scene) = item { Some(&scene.name) } else { None });
+    for name in scenes.chain([&source.name]).filter(|name| OWN.contains(&name.text.as_str())) {
+        faults.push(Fault::new(name.span, &F::Reserved { name: name.text.clone() }));
+    }
     for item in &source.items {
         let Item::Scene(scene) = item else { continue };
         if !names.insert(scene.name.text.clone()) {

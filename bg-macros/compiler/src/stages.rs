@@ -58,6 +58,7 @@ fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
         let tuned = scene::tuned(scene, &equations.parameters)?;
         let (reduced, report) = reduce::for_scene(equations, &tuned);
         equations = reduced;
+        scene::check(scene, &report)?;
         push("reduction", report.to_string());
         push("reduced", equations_text(&equations));
     } else {
@@ -81,7 +82,13 @@ fn resolved_text(graph: &BondGraph) -> String {
     }
     for bond in &graph.bonds {
         let (from, to) = (&graph.node(bond.from).name.text, &graph.node(bond.to).name.text);
-        let _ = writeln!(out, "{from} -> {to} [{}] effort {} flow {}", bond.cardinality, bond.effort, bond.flow());
+        let _ = writeln!(
+            out,
+            "{from} -> {to} [{}] effort {} flow {}",
+            bond.cardinality,
+            bond.effort_unit(),
+            bond.flow_unit()
+        );
     }
     for storage in &graph.storages {
         if let Storage::Track(index) = storage {

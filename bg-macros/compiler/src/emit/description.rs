@@ -102,7 +102,7 @@ fn bonds(causal: &CausalGraph) -> impl Iterator<Item = TokenStream> {
             End::From => quote!(From),
             End::To => quote!(To),
         };
-        let (effort, flow) = (bond.effort.to_string(), bond.flow().to_string());
+        let (effort, flow) = (bond.effort_unit(), bond.flow_unit());
         quote! {
             ::bg_model::description::BondInfo {
                 from: #from, to: #to, cardinality: #cardinality, stroke: ::bg_model::description::BondEnd::#stroke,

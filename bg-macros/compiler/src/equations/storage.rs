@@ -11,7 +11,6 @@ use crate::ast::{ElementKind, TrackKind};
 use crate::expr::{Environment, Id, Symbol, antiderivative, derivative, evaluate, substitute};
 use crate::fault::Fault;
 use crate::graph::{BondGraph, Element, Law, NodeId, Storage, Term};
-use crate::units::{Dimension, Domain};
 
 /// Atoms that stand for a storage's own state start here, apart from those of linear laws.
 const STATE_ATOMS: u32 = 32;
@@ -29,14 +28,9 @@ pub(super) fn describe(graph: &BondGraph, storage: Storage) -> (String, String, 
         Storage::Element(node) => {
             let definition = graph.node(node);
             let bond = graph.bond(definition.bonds[0]);
-            let domain = Domain::of_effort(bond.effort);
-            let second = Dimension::SECOND;
             let compliance = graph.element(node).is_some_and(|element| element.kind == ElementKind::C);
-            let (letter, kind, unit) = if compliance {
-                ("q", "C", domain.map_or_else(|| bond.flow().times(second).to_string(), |d| d.displacement.to_owned()))
-            } else {
-                ("p", "I", domain.map_or_else(|| bond.effort.times(second).to_string(), |d| d.momentum.to_owned()))
-            };
+            let (letter, kind, unit) =
+                if compliance { ("q", "C", bond.displacement_unit()) } else { ("p", "I", bond.momentum_unit()) };
             (format!("{}.{letter}", definition.name.text), unit, kind)
         }
     }

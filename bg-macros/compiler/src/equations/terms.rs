@@ -125,9 +125,25 @@ impl Signals<'_> {
                 self.pool.neg(power)
             })
             .collect();
+        let prescribed = self.prescribed_power();
         let modulation = self.modulation_power();
         let sources = self.pool.sum(&powers);
-        self.pool.add(sources, modulation)
+        self.pool.sum(&[sources, prescribed, modulation])
+    }
+
+    /// The power of residual sinks that prescribe a flow; those that keep it at zero have none.
+    fn prescribed_power(&mut self) -> Id {
+        let graph = self.graph;
+        let mut powers = Vec::new();
+        for node in self.elements(|kind| kind == ElementKind::RSe) {
+            let Some(element) = graph.element(node) else { continue };
+            let flow = self.evaluate(element.law.term(), None);
+            if !flow.0.iter().all(|&id| self.pool.is_zero(id)) {
+                let power = self.power_into(node);
+                powers.push(self.pool.neg(power));
+            }
+        }
+        self.pool.sum(&powers)
     }
 
     /// The power of all resistors out of the model.

@@ -10,7 +10,7 @@ mod term;
 mod typing;
 
 use crate::ast::{ElementKind, Name, Role, TrackKind};
-use crate::units::Dimension;
+use crate::units::{Dimension, Domain};
 
 pub use fault::GraphFault;
 pub use resolve::resolve;
@@ -209,6 +209,34 @@ impl Bond {
     #[must_use]
     pub fn flow(&self) -> Dimension {
         Dimension::WATT.per(self.effort)
+    }
+
+    /// Unit of the effort, as its domain writes it.
+    #[must_use]
+    pub fn effort_unit(&self) -> String {
+        self.unit(|domain| domain.effort, self.effort)
+    }
+
+    /// Unit of the flow, as its domain writes it.
+    #[must_use]
+    pub fn flow_unit(&self) -> String {
+        self.unit(|domain| domain.flow, self.flow())
+    }
+
+    /// Unit of the displacement, as its domain writes it.
+    #[must_use]
+    pub fn displacement_unit(&self) -> String {
+        self.unit(|domain| domain.displacement, self.flow().times(Dimension::SECOND))
+    }
+
+    /// Unit of the momentum, as its domain writes it.
+    #[must_use]
+    pub fn momentum_unit(&self) -> String {
+        self.unit(|domain| domain.momentum, self.effort.times(Dimension::SECOND))
+    }
+
+    fn unit(&self, written: fn(&Domain) -> &'static str, dimension: Dimension) -> String {
+        Domain::of_effort(self.effort).map_or_else(|| dimension.to_string(), |domain| written(&domain).to_owned())
     }
 }
 

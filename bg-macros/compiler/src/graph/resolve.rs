@@ -9,8 +9,8 @@ use proc_macro2::Span;
 use super::term::{Builtin, Reference, Term, TermKind};
 use super::typing::{Quantity, Shape, Types};
 use super::{
-    BondGraph, Close, Element, GraphFault, Input, Integral, Law, Let, Node, NodeId, NodeKind, Observation, Parameter,
-    Storage, Track, connect, domains,
+    Bond, BondGraph, Close, Element, GraphFault, Input, Integral, Law, Let, Node, NodeId, NodeKind, Observation,
+    Parameter, Storage, Track, connect, domains,
 };
 use crate::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role};
 use crate::fault::{Fault, Staged, near_miss};
@@ -462,8 +462,15 @@ impl Resolver {
         match value.kind {
             TermKind::Reference(Reference::Let(index)) => self.graph.lets[index].unit.clone(),
             TermKind::Reference(Reference::Energy(_) | Reference::StoredEnergy) => Some("J".to_owned()),
+            TermKind::Reference(Reference::Flow(node)) => self.bond_of(node).map(Bond::flow_unit),
+            TermKind::Reference(Reference::Displacement(node)) => self.bond_of(node).map(Bond::displacement_unit),
+            TermKind::Reference(Reference::Momentum(node)) => self.bond_of(node).map(Bond::momentum_unit),
             _ => None,
         }
+    }
+
+    fn bond_of(&self, node: NodeId) -> Option<&Bond> {
+        self.graph.node(node).bonds.first().map(|&bond| self.graph.bond(bond))
     }
 
     /// Lets that are defined by themselves.
@@ -488,12 +495,12 @@ impl Resolver {
                 K::Se | K::Sf => is_given(*reference),
                 K::Tf | K::Gy => is_constant(*reference),
                 K::R if linear => is_constant(*reference),
-                K::I | K::C => !matches!(reference, Reference::Input(_)),
+                K::I | K::C | K::RSe => !matches!(reference, Reference::Input(_)),
                 _ => true,
             };
             if let Some(reference) = depends.iter().find(|reference| !allowed(reference)) {
                 let (symbol, name, by) = (element.kind.symbol(), node.name.text.clone(), self.describe(*reference));
-                let fault = if matches!(element.kind, K::I | K::C) {
+                let fault = if matches!(element.kind, K::I | K::C | K::RSe) {
                     GraphFault::NotConstant { what: format!("the law of {symbol} `{name}`"), by }
                 } else {
                     GraphFault::Modulated { symbol, name, by }

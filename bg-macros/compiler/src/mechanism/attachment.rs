@@ -51,7 +51,7 @@ impl Expansion<'_> {
         self.text(span, &format!("let {name}.gap: m = {} - {};", b.position, a.position));
         self.text(
             span,
-            &format!("let {name}.speed = dot({}.{}_axis, {name}.slip.flow);", b.body, contact.along.letter()),
+            &format!("let {name}.speed: m/s = dot({}.{}_axis, {name}.slip.flow);", b.body, contact.along.letter()),
         );
         let mut axes = Vec::new();
         for law in &contact.laws {

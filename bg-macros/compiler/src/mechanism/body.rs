@@ -28,11 +28,11 @@ impl Expansion<'_> {
                  I {name}.angular = {name}.tensor in {name}.orientation start {name}.start.orientation *
                      ({name}.tensor * (transpose({name}.start.orientation) * {name}.start.spin));
                  {name}.translation -> {name}.linear; {name}.rotation -> {name}.angular;
-                 let {name}.velocity = {name}.translation.flow; let {name}.angular_velocity = {name}.rotation.flow;
+                 let {name}.velocity = {name}.translation.flow; let {name}.angular_velocity: rad/s = {name}.rotation.flow;
                  let {name}.momentum = {name}.linear.p; let {name}.angular_momentum = {name}.angular.p;
                  let {name}.p = {name}.linear.p; let {name}.h = {name}.angular.p;
                  let {name}.kinetic_energy: J = {name}.linear.energy + {name}.angular.energy;
-                 let {name}.angle = atan2({name}.x_axis.y, {name}.x_axis.x);"
+                 let {name}.angle: rad = atan2({name}.x_axis.y, {name}.x_axis.x);"
             ),
         );
         for (axis, unit) in AXES.into_iter().zip(["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"]) {

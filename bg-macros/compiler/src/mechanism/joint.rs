@@ -266,14 +266,14 @@ impl Expansion<'_> {
             self.text(
                 span,
                 &format!(
-                    "let {name}.angle = atan2(dot(cross({a}.{across}_axis, {b}.{across}_axis), {a}.{along}_axis), \
+                    "let {name}.angle: rad = atan2(dot(cross({a}.{across}_axis, {b}.{across}_axis), {a}.{along}_axis), \
                      dot({a}.{across}_axis, {b}.{across}_axis));
-                     let {name}.speed = dot({a}.{along}_axis, {b}.angular_velocity - {a}.angular_velocity);"
+                     let {name}.speed: rad/s = dot({a}.{along}_axis, {b}.angular_velocity - {a}.angular_velocity);"
                 ),
             );
         }
         if let Some(axis) = joint.kind.slide() {
-            self.text(span, &format!("let {name}.travel = dot({a}.{}_axis, {name}.gap);", axis.letter()));
+            self.text(span, &format!("let {name}.travel: m = dot({a}.{}_axis, {name}.gap);", axis.letter()));
         }
     }
 

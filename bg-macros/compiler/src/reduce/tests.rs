@@ -24,7 +24,7 @@ pub(super) struct Scene {
     pub report: Report,
 }
 
-/// The reduction of the only scene of the only graph: `statements` with `scene S { clauses }`.
+/// The reduction of the only scene of the only graph: `statements` with `scene Reduced { clauses }`.
 pub(super) fn scene(statements: &str, clauses: &str) -> Scene {
     attempt(statements, clauses)
         .unwrap_or_else(|faults| panic!("{}\n{statements}", faults.iter().map(ToString::to_string).collect::<String>()))
@@ -32,7 +32,7 @@ pub(super) fn scene(statements: &str, clauses: &str) -> Scene {
 
 /// The same, with its faults.
 pub(super) fn attempt(statements: &str, clauses: &str) -> Result<Scene, Faults> {
-    let text = format!("graph G {{\n{statements}\nscene S {{ {clauses} }}\n}}");
+    let text = format!("graph G {{\n{statements}\nscene Reduced {{ {clauses} }}\n}}");
     let source = syntax::parse(text.parse().unwrap_or_else(|error| panic!("{error}\n{text}")))?;
     let variant = variants(&source.graphs[0])?.remove(1);
     let equations = || -> Staged<StateEquations> {

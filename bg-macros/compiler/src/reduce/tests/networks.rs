@@ -139,7 +139,7 @@ fn reduced_networks_move_as_the_literal_ones() {
             Err(faults) => panic!("seed {seed}: {}\n{text}", faults[0]),
         };
         let (difference, largest) = scene.difference(&mut draw);
-        let shown = || format!("seed {seed}: {difference:e}\n{text}scene S {{ {clauses} }}\n{}", scene.report);
+        let shown = || format!("seed {seed}: {difference:e}\n{text}scene Reduced {{ {clauses} }}\n{}", scene.report);
         assert!(largest.is_finite() && largest < 1e6, "{}", shown());
         assert!(difference < 1e-11, "{}", shown());
         worst = worst.max(difference);
