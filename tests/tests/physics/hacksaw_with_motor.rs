@@ -42,15 +42,3 @@ fn electrical_energy_becomes_heat_motion_and_cut_and_the_current_falls_as_the_cr
     let drop = p.winding * trapezoid(&current) + p.constant * trapezoid(&motor_speed) + p.coil * current[400] / 0.4;
     within("Kirchhoff", (drop / voltage - 1.0).abs(), 1e-3);
 }
-
-#[test]
-fn its_mechanism_is_the_text_of_the_hacksaw() {
-    let of = |text: &str| {
-        let (from, to) = (text.find("/// Crank angle at the start"), text.find("drive motor on pin_o"));
-        let end = to.or_else(|| text.find("Se supply")).unwrap();
-        text[from.unwrap()..end].split_whitespace().collect::<Vec<_>>().join(" ")
-    };
-    let hacksaw = of(include_str!("../../../hacksaw/src/mechanism.rs"));
-    let with_motor = of(include_str!("../../src/examples/hacksaw_with_motor.rs"));
-    assert_eq!(hacksaw, with_motor);
-}
