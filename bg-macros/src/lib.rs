@@ -130,9 +130,9 @@ use proc_macro::TokenStream;
 ///   junctions, and that flow must vanish as a polynomial identity. Otherwise BG0505.
 /// - `rSe NAME = FLOW at GAP` keeps the flow of its bond at FLOW: a rigid link, a wheel that does not slip. The effort
 ///   is solved for, so `NAME.effort` can be observed like any other. `at GAP` names the displacement that the poses
-///   determine and that is to stay zero ([rigid joints](#rigid-joints)). FLOW should be 0 or a parameter: its own
-///   change in time is taken into account where states or `t` cause it, but not where an input does, which the flow
-///   then follows late. The power of a sink whose flow is not zero counts neither as supplied nor as dissipated.
+///   determine and that is to stay zero ([rigid joints](#rigid-joints)). FLOW may depend on parameters,
+///   states and `t`, not on an input, whose rate is not known. The power of a sink whose FLOW is not 0 counts as
+///   supplied.
 /// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
 /// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
 ///   may be left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the
@@ -493,11 +493,9 @@ use proc_macro::TokenStream;
 /// What a scene does not do:
 ///
 /// - An unwatched state is gone: what depends on it can be observed only by a scene that says so in `observe`.
-/// - `stored_energy` and `powers` of the model are not-a-number in a scene that has lost a state on which they depend,
-///   as a scene has whose report counts some as unwatched. Observe one of the two to keep them. Where only a switch is
-///   lost and no state, they are not right, without a sign: the lost law counts by its second branch.
-/// - Equal states that start at zero are only found where their rates are the same from the beginning, not where these
-///   are the same once other states are merged. Equalities with factors other than 1 and -1, conserved quantities, and
+/// - `stored_energy` and `powers` of the model are not-a-number in a scene that has lost a state or a switch on which
+///   they depend. Observe one of the two to keep them.
+/// - Equalities with factors other than 1 and -1, conserved quantities, and
 ///   what is true only for some values of the tuned parameters are not found.
 ///
 /// # Start poses
@@ -683,6 +681,7 @@ use proc_macro::TokenStream;
 /// | BG0604 | a scene that is not planar as expected |
 /// | BG0605 | a scene with another number of states than expected |
 /// | BG0606 | no such joint to make rigid |
+/// | BG0607 | a graph or scene with a name of the generated code's own (`S`, `Scalar`, `SVector`) |
 #[proc_macro]
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
     bg_compiler::compile(tokens.into()).into()

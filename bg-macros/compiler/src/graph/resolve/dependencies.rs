@@ -1,0 +1,171 @@
+//! What a resolved graph's expressions may depend on, and what its outputs come to.
+//!
+//! In: terms with references. Out: faults of circles, modulation and start values; shapes and units of outputs.
+
+use super::Resolver;
+use crate::ast::ElementKind;
+use crate::fault::Fault;
+use crate::graph::term::{Reference, Term, TermKind};
+use crate::graph::typing::{Quantity, Shape, Types};
+use crate::graph::{Bond, GraphFault, Law, NodeId, NodeKind};
+use crate::units::Dimension;
+
+impl Resolver {
+    /// The unit of a value as its definition writes it: J and N*m are one dimension but read differently.
+    fn written_unit(&self, value: &Term) -> Option<String> {
+        match value.kind {
+            TermKind::Reference(Reference::Let(index)) => self.graph.lets[index].unit.clone(),
+            TermKind::Reference(Reference::Energy(_) | Reference::StoredEnergy) => Some("J".to_owned()),
+            TermKind::Reference(Reference::Flow(node)) => self.bond_of(node).map(Bond::flow_unit),
+            TermKind::Reference(Reference::Displacement(node)) => self.bond_of(node).map(Bond::displacement_unit),
+            TermKind::Reference(Reference::Momentum(node)) => self.bond_of(node).map(Bond::momentum_unit),
+            _ => None,
+        }
+    }
+
+    fn bond_of(&self, node: NodeId) -> Option<&Bond> {
+        self.graph.node(node).bonds.first().map(|&bond| self.graph.bond(bond))
+    }
+
+    /// Lets that are defined by themselves.
+    pub(super) fn let_circles(&mut self) {
+        for (index, definition) in self.graph.lets.iter().enumerate() {
+            if self.deep_references(&definition.value).contains(&Reference::Let(index)) {
+                let name = definition.name.text.clone();
+                self.faults.push(Fault::new(definition.name.span, &GraphFault::LetCycle { name }));
+            }
+        }
+    }
+
+    /// What a law may depend on: only the modulated kinds on states, storages never on inputs, starts on parameters.
+    pub(super) fn dependencies(&mut self) {
+        use ElementKind as K;
+        let mut faults = Vec::new();
+        for node in &self.graph.nodes {
+            let NodeKind::Element(element) = &node.kind else { continue };
+            let depends = self.deep_references(element.law.term());
+            let linear = !matches!(element.law, Law::Of { .. });
+            let allowed = |reference: &Reference| match element.kind {
+                K::Se | K::Sf => is_given(*reference),
+                K::Tf | K::Gy => is_constant(*reference),
+                K::R if linear => is_constant(*reference),
+                K::I | K::C | K::RSe => !matches!(reference, Reference::Input(_)),
+                _ => true,
+            };
+            if let Some(reference) = depends.iter().find(|reference| !allowed(reference)) {
+                let (symbol, name, by) = (element.kind.symbol(), node.name.text.clone(), self.describe(*reference));
+                let fault = if matches!(element.kind, K::I | K::C | K::RSe) {
+                    GraphFault::NotConstant { what: format!("the law of {symbol} `{name}`"), by }
+                } else {
+                    GraphFault::Modulated { symbol, name, by }
+                };
+                faults.push(Fault::new(element.law.term().span, &fault));
+            }
+            if let Some(start) = &element.start {
+                faults.extend(self.start_depends(start, &node.name.text));
+            }
+        }
+        for track in &self.graph.tracks {
+            if let Some(start) = &track.start {
+                faults.extend(self.start_depends(start, &track.name.text));
+            }
+        }
+        self.faults.extend(faults);
+    }
+
+    fn start_depends(&self, start: &Term, name: &str) -> Option<Fault> {
+        let by = self.deep_references(start).into_iter().find(|reference| !is_constant(*reference))?;
+        let what = format!("the start value of `{name}`");
+        Some(Fault::new(start.span, &GraphFault::NotConstant { what, by: self.describe(by) }))
+    }
+
+    /// All references of a term, those behind its lets included.
+    fn deep_references(&self, term: &Term) -> Vec<Reference> {
+        let mut found = Vec::new();
+        term.references(&mut found);
+        let mut seen = vec![false; self.graph.lets.len()];
+        let mut next = 0;
+        while next < found.len() {
+            if let Reference::Let(index) = found[next]
+                && !std::mem::replace(&mut seen[index], true)
+            {
+                self.graph.lets[index].value.references(&mut found);
+            }
+            next += 1;
+        }
+        found
+    }
+
+    fn describe(&self, reference: Reference) -> String {
+        let node = |id: NodeId| &self.graph.node(id).name.text;
+        match reference {
+            Reference::Time => "the time".to_owned(),
+            Reference::Variable => "its own variable".to_owned(),
+            Reference::Parameter(index) => format!("parameter `{}`", self.graph.parameters[index].name.text),
+            Reference::Input(index) => format!("input `{}`", self.graph.inputs[index].name.text),
+            Reference::Let(index) => format!("`{}`", self.graph.lets[index].name.text),
+            Reference::Track(index) => format!("`{}`", self.graph.tracks[index].name.text),
+            Reference::Flow(id) => format!("the flow of `{}`", node(id)),
+            Reference::Effort(id) => format!("the effort of `{}`", node(id)),
+            Reference::Power(id) => format!("the power of `{}`", node(id)),
+            Reference::Energy(id) => format!("the energy of `{}`", node(id)),
+            Reference::Displacement(id) => format!("the displacement of `{}`", node(id)),
+            Reference::Momentum(id) => format!("the momentum of `{}`", node(id)),
+            Reference::StoredEnergy => "the stored energy".to_owned(),
+            Reference::SuppliedPower => "the supplied power".to_owned(),
+            Reference::DissipatedPower => "the dissipated power".to_owned(),
+        }
+    }
+
+    /// Shapes and units of outputs, gaps and integrals.
+    pub(super) fn finish_outputs(&mut self) {
+        let efforts: Vec<Option<Dimension>> = self.graph.bonds.iter().map(|bond| Some(bond.effort)).collect();
+        let types = Types::new(&self.graph, &efforts);
+        let mut faults = Vec::new();
+        let mut observed = Vec::new();
+        for (observation, declared) in self.graph.observations.iter().zip(&self.observed) {
+            let (shape, quantity) = types.of(&observation.value, None, &mut faults);
+            let unit = match (declared, quantity) {
+                (Some(declared), Quantity::Known(found)) if *declared != found => {
+                    let what = format!("`{}` is declared in the first and has the second", observation.name);
+                    let fault = GraphFault::Units { what, left: *declared, right: found };
+                    faults.push(Fault::new(observation.value.span, &fault));
+                    String::new()
+                }
+                (Some(_), _) => observation.unit.clone(),
+                (None, Quantity::Known(found)) => self.written_unit(&observation.value).unwrap_or(found.to_string()),
+                (None, _) => "1".to_owned(),
+            };
+            observed.push((shape, unit));
+        }
+        let known = |quantity| if let Quantity::Known(dimension) = quantity { dimension } else { Dimension::NONE };
+        let closed: Vec<_> = self.graph.closes.iter().map(|close| types.of(&close.gap, None, &mut faults)).collect();
+        let integrands: Vec<_> =
+            self.graph.integrals.iter().map(|integral| types.of(&integral.value, None, &mut faults)).collect();
+        for (observation, (shape, unit)) in self.graph.observations.iter_mut().zip(observed) {
+            (observation.shape, observation.unit) = (shape, unit);
+        }
+        for (close, (shape, quantity)) in self.graph.closes.iter_mut().zip(closed) {
+            (close.shape, close.dimension) = (shape, known(quantity));
+        }
+        for (integral, (shape, quantity)) in self.graph.integrals.iter_mut().zip(integrands) {
+            integral.dimension = known(quantity);
+            if shape != Shape::Scalar {
+                let what = "an integrand".to_owned();
+                let fault = GraphFault::ShapeOf { what, expected: Shape::Scalar, found: shape };
+                faults.push(Fault::new(integral.value.span, &fault));
+            }
+        }
+        self.faults.extend(faults);
+    }
+}
+
+/// Parameters and numbers.
+fn is_constant(reference: Reference) -> bool {
+    matches!(reference, Reference::Parameter(_) | Reference::Let(_) | Reference::Variable)
+}
+
+/// What a source may follow: parameters, inputs, time.
+fn is_given(reference: Reference) -> bool {
+    is_constant(reference) || matches!(reference, Reference::Input(_) | Reference::Time)
+}
