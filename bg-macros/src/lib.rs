@@ -407,6 +407,7 @@ use proc_macro::TokenStream;
 /// | `without { a, b }` | joints, contacts, springs, drives or elements that are not there, with their bonds |
 /// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
+/// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |
 /// | `expect states = 29;` | an error (BG0605) unless so many states are integrated, integrals for outputs not counted |
 ///
 /// ```

@@ -206,8 +206,9 @@ hacksaw_mechanism! {
                 frame_angle: rad = frame.angle; guide_angle: rad = guide.angle;
             }
             tune { torque, r_cut, r_return }
+            angles;
             expect planar;
-            expect states = 29;
+            expect states = 24;
         }
         /// The ideal mechanism: rigid joints, whose reactions are solved for.
         scene Rigid {

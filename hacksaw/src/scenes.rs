@@ -164,7 +164,7 @@ mod tests {
             ("paper", "Paper", 31),
             ("full", "Full", 83),
             ("literal", "Hacksaw", 85),
-            ("angles", "Angles", 29),
+            ("angles", "Angles", 24),
             ("rigid", "Rigid", 28),
             ("free-run", "FreeRun", 29),
         ];

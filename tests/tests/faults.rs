@@ -165,7 +165,7 @@ fn compiled(text: &str) -> Staged<()> {
             let equations = equations::derive(&causal)?;
             if let Some(scene) = &variant.scene {
                 let tuned = scene::tuned(scene, &equations.parameters)?;
-                scene::check(scene, &reduce::for_scene(equations, &tuned).1)?;
+                scene::check(scene, &reduce::for_scene(equations, &tuned, scene.angles).1)?;
             }
         }
     }

@@ -267,6 +267,8 @@ pub struct Scene {
     pub without: Vec<Name>,
     /// `rigid joints;` or `rigid { pin_b }`.
     pub rigid: Rigid,
+    /// `angles;`: orientations that turn about one axis only are integrated as angles.
+    pub angles: bool,
     /// `expect planar;`, `expect states = 29;`
     pub expect: Vec<Expectation>,
 }

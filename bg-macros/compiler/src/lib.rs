@@ -99,7 +99,7 @@ fn reduced(variant: &Variant, causal: &CausalGraph) -> Staged<(StateEquations, O
         return Ok((equations, None));
     };
     let tuned = scene::tuned(scene, &equations.parameters)?;
-    let (equations, report) = reduce::for_scene(equations, &tuned);
+    let (equations, report) = reduce::for_scene(equations, &tuned, scene.angles);
     scene::check(scene, &report)?;
     Ok((equations, Some(report)))
 }

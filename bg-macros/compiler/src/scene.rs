@@ -279,7 +279,7 @@ mod tests {
         let expanded = mechanism::expand(&variant.graph)?;
         let equations = equations::derive(&causality::assign(crate::graph::resolve(&expanded)?)?)?;
         let tuned = tuned(variant.scene.as_ref().expect("a scene"), &equations.parameters)?;
-        Ok(reduce::for_scene(equations, &tuned).1)
+        Ok(reduce::for_scene(equations, &tuned, false).1)
     }
 
     fn outputs(graph: &Graph) -> usize {

@@ -56,7 +56,7 @@ fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
     push("equations", equations_text(&equations));
     if let Some(scene) = &variant.scene {
         let tuned = scene::tuned(scene, &equations.parameters)?;
-        let (reduced, report) = reduce::for_scene(equations, &tuned);
+        let (reduced, report) = reduce::for_scene(equations, &tuned, scene.angles);
         equations = reduced;
         scene::check(scene, &report)?;
         push("reduction", report.to_string());

@@ -17,7 +17,7 @@ fn faults(text: &str) -> Vec<Fault> {
             let equations = equations::derive(&causal)?;
             let Some(scene) = &variant.scene else { return Ok(()) };
             let tuned = scene::tuned(scene, &equations.parameters)?;
-            scene::check(scene, &reduce::for_scene(equations, &tuned).1)
+            scene::check(scene, &reduce::for_scene(equations, &tuned, scene.angles).1)
         };
         found.extend(reduced().err().unwrap_or_default());
     }

@@ -53,7 +53,7 @@ fn is_fixed(equations: &StateEquations, id: Id) -> bool {
 /// Which states are proved combinations of others that are not recovered themselves.
 fn combinations(equations: &mut StateEquations) -> BTreeMap<usize, Combination> {
     let is_candidate = |storage: &str| matches!(storage, "C" | "integral");
-    let is_regressor = |storage: &str| matches!(storage, "C" | "integral" | "position" | "orientation");
+    let is_regressor = |storage: &str| matches!(storage, "C" | "integral" | "position" | "orientation" | "angle");
     let mut recovered = BTreeMap::new();
     if !equations.states.iter().any(|state| is_candidate(state.storage)) {
         return recovered;

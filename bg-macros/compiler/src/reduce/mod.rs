@@ -5,6 +5,7 @@
 //! proved on the equations by induction from the start values, never read off numbers.
 
 mod affine;
+mod angle;
 mod equal;
 mod invariant;
 mod live;
@@ -21,10 +22,10 @@ pub use report::{Count, Fate, Report};
 /// Reduces the equations to what a scene needs. `tuned[k]` says that parameter `k` stays adjustable at run time.
 ///
 /// The stages, in order: parameters that are not tuned become numbers; states whose rate vanishes become constants;
-/// states that stay equal up to sign become one; states that stay an affine combination of others are recovered from
+/// states that stay equal up to sign become one; with `angles`, orientations about one axis become angles; states that stay an affine combination of others are recovered from
 /// them; states that reach no output are dropped.
 #[must_use]
-pub fn for_scene(mut equations: StateEquations, tuned: &[bool]) -> (StateEquations, Report) {
+pub fn for_scene(mut equations: StateEquations, tuned: &[bool], angles: bool) -> (StateEquations, Report) {
     let mut report = Report::new(&equations);
     report.count("literal", &mut equations);
     fold_parameters(&mut equations, tuned);
@@ -36,6 +37,10 @@ pub fn for_scene(mut equations: StateEquations, tuned: &[bool]) -> (StateEquatio
     if !equations.reactions.is_empty() {
         reaction::solve(&mut equations);
         report.count("reactions solved", &mut equations);
+    }
+    if angles {
+        angle::integrate(&mut equations, &mut report);
+        report.count("orientations turned into angles", &mut equations);
     }
     affine::recover(&mut equations, &mut report);
     report.count("affine states recovered", &mut equations);

@@ -78,6 +78,11 @@ impl Report {
         self.fates[self.left[state]].1 = fate;
     }
 
+    /// A state that is still there has become another one.
+    pub(super) fn rename(&mut self, state: usize, as_state: State) {
+        self.fates[self.left[state]].0 = as_state;
+    }
+
     /// States went: only those with `kept` are still there.
     pub(super) fn keep(&mut self, kept: &[bool]) {
         let left = std::mem::take(&mut self.left);

@@ -42,7 +42,7 @@ pub(super) fn attempt(statements: &str, clauses: &str) -> Result<Scene, Faults> 
     let mut literal = equations()?;
     solve_reactions(&mut literal);
     let tuned = tuned(scene, &literal.parameters)?;
-    let (reduced, report) = for_scene(equations()?, &tuned);
+    let (reduced, report) = for_scene(equations()?, &tuned, scene.angles);
     Ok(Scene { literal, tuned, reduced, report })
 }
 

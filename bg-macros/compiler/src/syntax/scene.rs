@@ -12,7 +12,8 @@ use super::{
 use crate::ast::{Expectation, Item, Name, Observation, Rigid, Scene};
 
 /// The block of a scene.
-const SCENE: Place = Place { name: "a scene", words: &["observe", "tune", "without", "rigid", "expect"], list: false };
+const SCENE: Place =
+    Place { name: "a scene", words: &["observe", "tune", "without", "rigid", "angles", "expect"], list: false };
 
 /// `observe { ... }`
 const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
@@ -51,6 +52,7 @@ impl Cursor<'_> {
             tune: None,
             without: Vec::new(),
             rigid: Rigid::None,
+            angles: false,
             expect: Vec::new(),
         };
         let block = self.group(Delimiter::Brace, "`{ ... }`", &SCENE);
@@ -82,6 +84,12 @@ impl Cursor<'_> {
             Some("rigid") => {
                 self.fill(&mut filled.rigid, (), "rigid", span);
                 scene.rigid = self.rigid()?;
+            }
+            Some("angles") => {
+                self.fill(&mut filled.angles, (), "angles", span);
+                self.advance();
+                self.end_statement("");
+                scene.angles = true;
             }
             Some("expect") => {
                 let expectation = self.expectation()?;
@@ -147,6 +155,7 @@ impl Cursor<'_> {
 struct Filled {
     observe: Option<()>,
     rigid: Option<()>,
+    angles: Option<()>,
 }
 
 /// `NAME: UNIT = E`, `NAME = E` or `E`
