@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use bg_compiler::fault::{Fault, Staged};
-use bg_compiler::{causality, equations, graph, mechanism, reduce, scene, syntax};
+use bg_compiler::{causality, equations, graph, mechanism, scene, syntax};
 
 const MARK: char = '▸';
 
@@ -162,11 +162,7 @@ fn compiled(text: &str) -> Staged<()> {
     for graph in &source.graphs {
         for variant in scene::variants(graph)? {
             let causal = causality::assign(graph::resolve(&mechanism::expand(&variant.graph)?)?)?;
-            let equations = equations::derive(&causal)?;
-            if let Some(scene) = &variant.scene {
-                let tuned = scene::tuned(scene, &equations.parameters)?;
-                scene::check(scene, &reduce::for_scene(equations, &tuned, scene.angles).1)?;
-            }
+            variant.reduce(equations::derive(&causal)?)?;
         }
     }
     Ok(())

@@ -36,10 +36,7 @@ pub mod units;
 use proc_macro2::TokenStream;
 
 use crate::ast::Source;
-use crate::causality::CausalGraph;
-use crate::equations::StateEquations;
 use crate::fault::{Faults, Staged, compile_errors};
-use crate::reduce::Report;
 use crate::scene::Variant;
 
 /// Compiles one macro call. Faults come out as compile errors at their tokens, together with stubs of the promised items.
@@ -87,19 +84,6 @@ fn model(variant: &Variant) -> Staged<TokenStream> {
     let expanded = mechanism::expand(&variant.graph)?;
     let resolved = graph::resolve(&expanded)?;
     let causal = causality::assign(resolved)?;
-    let (mut equations, report) = reduced(variant, &causal)?;
+    let (mut equations, report) = variant.reduce(equations::derive(&causal)?)?;
     Ok(emit::model(&expanded.to_string(), &causal, &mut equations, report.as_ref()))
-}
-
-/// The equations of a variant: those of a scene are reduced to what it needs.
-fn reduced(variant: &Variant, causal: &CausalGraph) -> Staged<(StateEquations, Option<Report>)> {
-    let mut equations = equations::derive(causal)?;
-    let Some(scene) = &variant.scene else {
-        reduce::solve_reactions(&mut equations);
-        return Ok((equations, None));
-    };
-    let tuned = scene::tuned(scene, &equations.parameters)?;
-    let (equations, report) = reduce::for_scene(equations, &tuned, scene.angles);
-    scene::check(scene, &report)?;
-    Ok((equations, Some(report)))
 }

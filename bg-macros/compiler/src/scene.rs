@@ -6,9 +6,10 @@
 use std::collections::BTreeSet;
 
 use crate::ast::{Expectation, Graph, Item, Name, Rigid, Scene};
+use crate::equations::StateEquations;
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::graph::Parameter;
-use crate::reduce::{Fate, Report};
+use crate::reduce::{self, Fate, Report};
 
 /// A fault of a scene.
 #[derive(Clone, Debug)]
@@ -91,6 +92,23 @@ pub struct Variant {
     pub graph: Graph,
     /// The scene; none for the literal graph.
     pub scene: Option<Scene>,
+}
+
+impl Variant {
+    /// The equations of the variant's graph as its model needs them: those of a scene reduced, with the report of it.
+    ///
+    /// # Errors
+    /// Tuned parameters that there are not, expectations that do not hold.
+    pub fn reduce(&self, mut equations: StateEquations) -> Staged<(StateEquations, Option<Report>)> {
+        let Some(scene) = &self.scene else {
+            reduce::solve_reactions(&mut equations);
+            return Ok((equations, None));
+        };
+        let tuned = tuned(scene, &equations.parameters)?;
+        let (equations, report) = reduce::for_scene(equations, &tuned, scene.angles);
+        check(scene, &report)?;
+        Ok((equations, Some(report)))
+    }
 }
 
 /// The literal graph and one variant for each scene.

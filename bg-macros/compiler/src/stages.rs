@@ -14,7 +14,7 @@ use crate::fault::Staged;
 use crate::graph::{BondGraph, NodeKind, Storage};
 use crate::program::{Operand, Operation, Program, Request, Routine, schedule};
 use crate::scene::Variant;
-use crate::{causality, equations, graph, mechanism, reduce, scene, syntax};
+use crate::{causality, equations, graph, mechanism, scene, syntax};
 
 /// One stage of one graph.
 #[derive(Clone, Debug)]
@@ -52,17 +52,12 @@ fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
     push("resolved", resolved_text(&resolved));
     let causal = causality::assign(resolved)?;
     push("causal", causal_text(&causal));
-    let mut equations = equations::derive(&causal)?;
+    let equations = equations::derive(&causal)?;
     push("equations", equations_text(&equations));
-    if let Some(scene) = &variant.scene {
-        let tuned = scene::tuned(scene, &equations.parameters)?;
-        let (reduced, report) = reduce::for_scene(equations, &tuned, scene.angles);
-        equations = reduced;
-        scene::check(scene, &report)?;
+    let (mut equations, report) = variant.reduce(equations)?;
+    if let Some(report) = report {
         push("reduction", report.to_string());
         push("reduced", equations_text(&equations));
-    } else {
-        reduce::solve_reactions(&mut equations);
     }
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let program = schedule(&mut equations.pool, &[Request { name: "rate", roots: &rates }]);

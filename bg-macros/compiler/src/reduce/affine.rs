@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::report::{Fate, Report, show};
-use super::{index, is_constant, state_of};
+use super::{index, state_of};
 use crate::equations::StateEquations;
 use crate::expr::{Id, Monomials, Symbol, monomials, same_polynomial};
 
@@ -46,8 +46,7 @@ fn affine(equations: &mut StateEquations, state: usize, combination: &Combinatio
 
 /// Whether an expression needs nothing that is known at the start only.
 fn is_fixed(equations: &StateEquations, id: Id) -> bool {
-    let pool = &equations.pool;
-    is_constant(pool, id) || pool.symbols(&[id]).into_iter().all(|symbol| !matches!(symbol, Symbol::Unknown(_)))
+    equations.pool.symbols(&[id]).into_iter().all(|symbol| !matches!(symbol, Symbol::Unknown(_)))
 }
 
 /// Which states are proved combinations of others that are not recovered themselves.
