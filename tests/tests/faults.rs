@@ -301,11 +301,11 @@ fn all_faults_of_a_stage_come_at_once() {
 fn the_faults_of_all_graphs_come_at_once() {
     let text = "graph A { Se a = 1; 1 j: translation; I m = mass; a -> j -> m; }\n\
                 graph B { Se a = 1; Se b = 1; 0 j: translation; a -> j; b -> j; }\n\
-                graph C { Se a = 1; 1 j: translation; I m = 1; a -> j -> m; }";
+                graph C { Se a = 1; 1 j: translation; I m = 1; a -> j -> m; scene D { observe { m.p } } }";
     let items = bg_compiler::compile(text.parse().expect("tokens")).to_string();
     assert!(items.contains("BG0303") && items.contains("BG0401"), "the faults of both graphs");
     assert_eq!(items.matches("compile_error").count(), 2);
-    for name in ["A", "B", "C"] {
+    for name in ["A", "B", "C", "D"] {
         assert!(items.contains(&format!("pub struct {name} ")) || items.contains(&format!("struct {name} ")), "{name}");
     }
 }

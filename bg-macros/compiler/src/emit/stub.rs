@@ -2,6 +2,8 @@
 //!
 //! In: what could be read of the source. Out: types of the same names; they can be built, not run.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -16,12 +18,28 @@ pub fn stub(source: &Source) -> TokenStream {
     source.graphs.iter().map(of_graph).collect()
 }
 
+/// The stubs of a graph and of its scenes, each name once.
 fn of_graph(graph: &Graph) -> TokenStream {
+    let mut names = BTreeSet::from([graph.name.text.as_str()]);
+    let scenes = graph.items.iter().filter_map(|item| if let Item::Scene(scene) = item { Some(scene) } else { None });
+    let mut tokens = of_model(graph, &graph.name.text, &|_| true);
+    for scene in scenes.filter(|scene| names.insert(&scene.name.text)) {
+        let keeps =
+            |parameter: &str| scene.tune.as_ref().is_none_or(|tuned| tuned.iter().any(|name| name.text == parameter));
+        tokens.extend(of_model(graph, &scene.name.text, &keeps));
+    }
+    tokens
+}
+
+/// The stub of one model of a graph, with the parameters that it keeps.
+fn of_model(graph: &Graph, model: &str, keeps: &dyn Fn(&str) -> bool) -> TokenStream {
     let mut parameters: Vec<Parameter> = Vec::new();
     let mut inputs: Vec<Input> = Vec::new();
     for item in &graph.items {
         match item {
-            Item::Parameter(found) if parameters.iter().all(|known| known.name.text != found.name.text) => {
+            Item::Parameter(found)
+                if keeps(&found.name.text) && parameters.iter().all(|known| known.name.text != found.name.text) =>
+            {
                 parameters.push(Parameter {
                     name: found.name.clone(),
                     docs: String::new(),
@@ -39,10 +57,9 @@ fn of_graph(graph: &Graph) -> TokenStream {
             _ => {}
         }
     }
-    let given =
-        Given { name: &graph.name.text, visibility: &graph.visibility, parameters: &parameters, inputs: &inputs };
+    let given = Given { name: model, visibility: &graph.visibility, parameters: &parameters, inputs: &inputs };
     let structs = given.structs();
-    let (name, visibility) = (identifier(&graph.name.text), &graph.visibility);
+    let (name, visibility) = (identifier(model), &graph.visibility);
     let (parameters, inputs_name) = (given.parameters_name(), given.inputs_name());
     let argument = (!inputs.is_empty()).then(|| quote!(, _: #inputs_name));
     quote! {
