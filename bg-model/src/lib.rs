@@ -84,6 +84,7 @@ mod event;
 pub mod failure;
 pub mod input;
 pub mod integrator;
+pub mod linear;
 pub mod parameters;
 pub mod scalar;
 pub mod simulation;

@@ -13,6 +13,12 @@ pub struct Statistics {
     pub rate_evaluations: u64,
     /// Those of `rate_evaluations` that served the dense output only.
     pub dense_evaluations: u64,
+    /// Evaluations of the Jacobian; those by differences count their rates as well.
+    pub jacobian_evaluations: u64,
+    /// Factorisations of I - c J, real and complex ones alike.
+    pub factorisations: u64,
+    /// Those of `factorisations` that were made with row exchanges because a pivot in the planned order was too small.
+    pub pivoted_factorisations: u64,
     /// Evaluations of the guards, each of all guards at once.
     pub guard_evaluations: u64,
     /// Changes of a switch's branch after the start.
@@ -45,6 +51,15 @@ impl fmt::Display for Statistics {
             self.dense_evaluations,
             self.guard_evaluations,
             self.events
-        )
+        )?;
+        if self.factorisations > 0 {
+            let (jacobians, factorisations) = (self.jacobian_evaluations, self.factorisations);
+            write!(
+                f,
+                ", {jacobians} Jacobians, {factorisations} factorisations ({} pivoted)",
+                self.pivoted_factorisations
+            )?;
+        }
+        Ok(())
     }
 }

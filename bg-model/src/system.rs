@@ -6,6 +6,7 @@ use nalgebra::SVector;
 
 use crate::assembly::AssemblyError;
 use crate::description::Description;
+use crate::linear::{Field, Sparsity, differences};
 use crate::scalar::Scalar;
 
 /// A system of ordinary differential equations dx/dt = f(t, x) with `N` states and `G` switches.
@@ -28,6 +29,29 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// The name of state `index`, for messages.
     fn state_name(&self, _index: usize) -> &'static str {
         "state"
+    }
+
+    /// Where the Jacobian df/dx can differ from zero; everywhere by default.
+    fn sparsity(&self) -> Sparsity {
+        Sparsity::Full
+    }
+
+    /// Writes df/dx in the order of [`System::sparsity`] into `entries` and df/dt, per s, into `slope`; by differences by
+    /// default, with `N` + 2 rates.
+    fn jacobian(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S], slope: &mut SVector<S, N>) {
+        differences(|t, x: &SVector<S, N>, dx: &mut SVector<S, N>| self.rate(t, x, negative, dx), t, x, entries, slope);
+    }
+
+    /// Writes the factors of I - `c` J into `factors`, of the length that the sparsity names; `entries` is J. Gives
+    /// whether it did: not where a pivot is below [`SMALLEST_PIVOT`](crate::linear::SMALLEST_PIVOT), and by default not
+    /// at all.
+    fn eliminate<F: Field<S>>(&self, _c: F, _entries: &[S], _factors: &mut [F]) -> bool {
+        false
+    }
+
+    /// Replaces `b` by the solution y of (I - c J) y = b. Only called with factors of [`System::eliminate`].
+    fn substitute<F: Field<S>>(&self, _factors: &[F], _b: &mut [F; N]) {
+        unreachable!("only what was eliminated is substituted")
     }
 }
 

@@ -16,6 +16,7 @@ use thiserror::Error;
 
 use crate::checks;
 use crate::mechanism::HacksawParameters;
+use crate::methods::Integrator;
 use crate::output::{OutputError, Places};
 use crate::parameters::{self, Chosen, SettingError};
 use crate::report::{self, Part};
@@ -77,6 +78,14 @@ struct RunArguments {
     /// End of the run, s
     #[arg(long, value_name = "SECONDS", default_value = "5", allow_negative_numbers = true)]
     t_end: f64,
+
+    /// The integrator; auto says in the summary what it chose
+    #[arg(long, value_name = "NAME", default_value_t, value_enum)]
+    method: Integrator,
+
+    /// Step of an integrator with a fixed step, s
+    #[arg(long, value_name = "SECONDS", default_value = "1e-4", allow_negative_numbers = true)]
+    fixed_step: f64,
 
     /// Relative tolerance of each step
     #[arg(long, value_name = "NUMBER", default_value = "1e-8", allow_negative_numbers = true)]
@@ -259,7 +268,8 @@ fn settings(arguments: &RunArguments) -> Result<RunSettings, InputError> {
     if t_end / step > MOST_ROWS {
         return Err(InputError::Rows { step, t_end });
     }
-    Ok(RunSettings { t_end, rtol, atol, step })
+    let fixed_step = above_zero("--fixed-step", arguments.fixed_step)?;
+    Ok(RunSettings { method: arguments.method, fixed_step, t_end, rtol, atol, step })
 }
 
 /// The parameters that differ from their defaults, as `name = value unit`.

@@ -7,6 +7,7 @@
 //! | [`agreement`] | how far a scene is from the literal model |
 //! | [`report`] | what a scene consists of and what it left out |
 //! | [`parameters`] | which values its parameters have in this run |
+//! | [`methods`] | which integrator a run takes |
 //! | [`run`](mod@run) | how it moves: integration and samples |
 //! | [`trajectory`] | what was sampled, and the CSV file of it |
 //! | [`checks`] | does the motion show what the paper says of it |
@@ -21,6 +22,7 @@ pub mod checks;
 pub mod command;
 pub mod figures;
 pub mod mechanism;
+pub mod methods;
 pub mod output;
 pub mod overview;
 pub mod parameters;

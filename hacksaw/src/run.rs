@@ -1,22 +1,27 @@
 //! The run: a hacksaw integrated over its time, its outputs sampled.
 //!
 //! In: a model and what is asked of the run. Out: the trajectory and the statistics; of a run that fails, those up to the
-//! failure and its cause. Method: Dormand and Prince's explicit method of order 8 with switchings located as events.
+//! failure and its cause. Method: the one asked for, with switchings located as events.
 
 use std::time::{Duration, Instant};
 
 use bg_model::assembly::AssemblyError;
-use bg_model::integrator::{Dop853, Method, Tolerances};
+use bg_model::integrator::{Change, Method, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 
+use crate::methods::{Integrator, MethodVisitor};
 use crate::trajectory::{Column, Trajectory, sample_times};
 
 /// What is asked of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunSettings {
+    /// The integrator.
+    pub method: Integrator,
+    /// The step of a fixed-step method, s; without effect on others.
+    pub fixed_step: f64,
     /// The end of the run, s; it starts at 0.
     pub t_end: f64,
     /// Relative tolerance of each step.
@@ -25,6 +30,13 @@ pub struct RunSettings {
     pub atol: f64,
     /// The output interval of the CSV file, s.
     pub step: f64,
+}
+
+impl Default for RunSettings {
+    /// The paper's 5 s at a relative tolerance of 1e-8, a row each 0.01 s.
+    fn default() -> Self {
+        Self { method: Integrator::default(), fixed_step: 1e-4, t_end: 5.0, rtol: 1e-8, atol: 1e-12, step: 0.01 }
+    }
 }
 
 /// The interval of the samples that figures, checks and summary are made from, s: more than forty in each turn of the
@@ -76,6 +88,14 @@ pub struct Effort {
     pub rejected: u64,
     /// Evaluations of the rate function.
     pub rate_evaluations: u64,
+    /// Evaluations of the Jacobian.
+    pub jacobian_evaluations: u64,
+    /// Factorisations of I - c J.
+    pub factorisations: u64,
+    /// Those of them that needed row exchanges because a pivot in the planned order was too small.
+    pub pivoted_factorisations: u64,
+    /// The methods that made the steps, from when (s) on; the first from the start.
+    pub methods: Vec<Change>,
     /// Switchings: sign changes of a guard.
     pub events: u64,
     /// The times of the switchings, s.
@@ -102,7 +122,28 @@ where
         step_limit: (STEPS_PER_SECOND * settings.t_end.max(1.0)) as u64,
         ..Settings::default()
     };
-    record(model, &mut Dop853::new(), settings.t_end, &integration, progress)
+    let recording = Recording { model, t_end: settings.t_end, integration: &integration, progress };
+    settings.method.visit(settings.fixed_step, recording)
+}
+
+/// A run that waits for its method.
+struct Recording<'a, Mo, F, const N: usize, const G: usize, const M: usize> {
+    model: &'a Mo,
+    t_end: f64,
+    integration: &'a Settings<N>,
+    progress: F,
+}
+
+impl<Mo, F, const N: usize, const G: usize, const M: usize> MethodVisitor<N> for Recording<'_, Mo, F, N, G, M>
+where
+    Mo: Model<f64, N, G, M>,
+    F: FnMut(f64),
+{
+    type Output = Result<Simulation, AssemblyError>;
+
+    fn visit(self, mut method: impl Method<N>) -> Self::Output {
+        record(self.model, &mut method, self.t_end, self.integration, self.progress)
+    }
 }
 
 /// Integrates `model` from its start until `t_end` (s) as `integration` asks, with any method. `progress` is told the time
@@ -121,6 +162,7 @@ where
     Mo: Model<f64, N, G, M>,
 {
     let clock = Instant::now();
+    let first = Change { t: 0.0, method: method.name() };
     let start = model.start()?;
     let columns = model.description().outputs.iter();
     let columns = columns.map(|output| Column { name: output.name.to_owned(), unit: output.unit.to_owned() }).collect();
@@ -143,6 +185,10 @@ where
         steps: statistics.steps,
         rejected: statistics.rejected,
         rate_evaluations: statistics.rate_evaluations,
+        jacobian_evaluations: statistics.jacobian_evaluations,
+        factorisations: statistics.factorisations,
+        pivoted_factorisations: statistics.pivoted_factorisations,
+        methods: std::iter::once(first).chain(method.changes().iter().copied()).collect(),
         events: statistics.events,
         event_times,
         wall: clock.elapsed(),

@@ -5,6 +5,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use bg_model::integrator::Change;
 use serde::Serialize;
 
 use crate::checks::Check;
@@ -22,6 +23,10 @@ pub struct Summary {
     pub t_end_s: f64,
     /// The last sample, s.
     pub reached_s: f64,
+    /// The integrators that made the steps, with the time from which on.
+    pub integrators: Vec<String>,
+    /// The step of a fixed-step method, s; such a method has no tolerances.
+    pub fixed_step_s: Option<f64>,
     /// Relative tolerance.
     pub rtol: f64,
     /// Absolute tolerance, SI units.
@@ -36,6 +41,12 @@ pub struct Summary {
     pub rejected: u64,
     /// Evaluations of the rate function.
     pub rate_evaluations: u64,
+    /// Evaluations of the Jacobian.
+    pub jacobian_evaluations: u64,
+    /// Factorisations of I - c J.
+    pub factorisations: u64,
+    /// Those of them that needed row exchanges.
+    pub pivoted_factorisations: u64,
     /// Switchings of the stroke.
     pub events: u64,
     /// Time on the wall clock, s.
@@ -89,6 +100,8 @@ impl Summary {
             changed_parameters: Vec::new(),
             t_end_s: settings.t_end,
             reached_s: reached,
+            integrators: integrators(&effort.methods),
+            fixed_step_s: settings.method.has_fixed_step().then_some(settings.fixed_step),
             rtol: settings.rtol,
             atol: settings.atol,
             failure: simulation.failure.clone(),
@@ -96,6 +109,9 @@ impl Summary {
             steps: effort.steps,
             rejected: effort.rejected,
             rate_evaluations: effort.rate_evaluations,
+            jacobian_evaluations: effort.jacobian_evaluations,
+            factorisations: effort.factorisations,
+            pivoted_factorisations: effort.pivoted_factorisations,
             events: effort.events,
             wall_time_s: wall,
             times_real_time: reached / wall,
@@ -126,10 +142,22 @@ impl Summary {
             self.changed_parameters.join(", ")
         };
         lines.push(("parameters", changed));
-        lines.push(("tolerances", format!("relative {:e}, absolute {:e} (SI)", self.rtol, self.atol)));
+        lines.push(("integrator", self.integrators.join(", ")));
+        lines.push(match self.fixed_step_s {
+            Some(step) => ("fixed step", format!("{step:e} s")),
+            None => ("tolerances", format!("relative {:e}, absolute {:e} (SI)", self.rtol, self.atol)),
+        });
         lines.push(("states", self.states.to_string()));
         lines.push(("steps", format!("{} accepted, {} rejected", self.steps, self.rejected)));
         lines.push(("rate evaluations", self.rate_evaluations.to_string()));
+        if self.factorisations > 0 {
+            let pivoted = match self.pivoted_factorisations {
+                0 => String::new(),
+                count => format!(", {count} of them with row exchanges"),
+            };
+            let (jacobians, factorisations) = (self.jacobian_evaluations, self.factorisations);
+            lines.push(("Jacobians", format!("{jacobians}, {factorisations} factorisations{pivoted}")));
+        }
         lines.push(("switching events", self.events.to_string()));
         let wall = format!("{:.3} s, {:.1} times faster than real time", self.wall_time_s, self.times_real_time);
         lines.push(("wall time", wall));
@@ -224,6 +252,20 @@ fn crank_speed(trajectory: &Trajectory) -> Result<Option<[f64; 3]>, TrajectoryEr
     Ok(Some([mean, low, high]))
 }
 
+/// The methods in the order of their turns, the first three of them.
+fn integrators(methods: &[Change]) -> Vec<String> {
+    const SHOWN: usize = 3;
+    let name = |(index, change): (usize, &Change)| match index {
+        0 => change.method.to_owned(),
+        _ => format!("{} from {:.4} s", change.method, change.t),
+    };
+    let mut names: Vec<String> = methods.iter().enumerate().take(SHOWN).map(name).collect();
+    if methods.len() > SHOWN {
+        names.push(format!("{} more changes", methods.len() - SHOWN));
+    }
+    names
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -240,7 +282,7 @@ mod tests {
         trajectory.push(2.0, vec![8.0, 4.0, 1.5, 40.0, 1e-4, 0.0, 3e-4, 0.0, 0.0]);
         trajectory.push(3.0, vec![9.0, 10.0, 6.0, 60.0, 0.0, 0.0, 0.0, 2e-4, 0.0]);
         let simulation = Simulation { trajectory, effort: Effort::default(), failure: None };
-        let settings = RunSettings { t_end: 3.0, rtol: 1e-8, atol: 1e-12, step: 1.0 };
+        let settings = RunSettings { t_end: 3.0, ..RunSettings::default() };
         let summary = Summary::new("paper", &simulation, &settings, Vec::new()).unwrap();
         assert_eq!(summary.energy_residual_j, Some(0.5));
         assert_eq!(summary.energy_residual, Some(0.05));
@@ -254,7 +296,7 @@ mod tests {
         let mut trajectory = Trajectory::new(vec![column]);
         trajectory.push(0.0, vec![0.0]);
         let simulation = Simulation { trajectory, effort: Effort::default(), failure: None };
-        let settings = RunSettings { t_end: 1.0, rtol: 1e-8, atol: 1e-12, step: 1.0 };
+        let settings = RunSettings { t_end: 1.0, ..RunSettings::default() };
         let summary = Summary::new("angles", &simulation, &settings, Vec::new()).unwrap();
         let names: Vec<_> = summary.lines().into_iter().map(|(name, _)| name).collect();
         assert_eq!(names[0], "scene");

@@ -7,22 +7,50 @@
 //! All methods calculate in `f64`. A method's coefficients are rounded to `f64`, so a wider number type would gain
 //! nothing. Every sum has a fixed order and nothing is fused: debug and release builds give the same bytes.
 
+mod auto;
 mod dop853;
 mod hermite;
 mod rk4;
+mod rosenbrock;
 mod tolerances;
 
 use nalgebra::SVector;
 
+use crate::linear::{Field, Sparsity, differences};
+pub use auto::{Auto, Change};
 pub use dop853::Dop853;
 pub(crate) use hermite::hermite;
 pub use rk4::Rk4;
+pub use rosenbrock::{Rodas5p, Ros2};
 pub use tolerances::{Absolute, Scale, Tolerances};
 
 /// A smooth flow: a system with its switches frozen.
 pub trait Flow<const N: usize> {
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`.
     fn rate(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>);
+
+    /// Where the Jacobian df/dx can differ from zero.
+    fn sparsity(&self) -> Sparsity {
+        Sparsity::Full
+    }
+
+    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`.
+    fn jacobian(&mut self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
+        differences(|t, x: &SVector<f64, N>, dx: &mut SVector<f64, N>| self.rate(t, x, dx), t, x, entries, slope);
+    }
+
+    /// See [`System::eliminate`](crate::system::System::eliminate).
+    fn eliminate<F: Field<f64>>(&self, _c: F, _entries: &[f64], _factors: &mut [F]) -> bool {
+        false
+    }
+
+    /// See [`System::substitute`](crate::system::System::substitute).
+    fn substitute<F: Field<f64>>(&self, _factors: &[F], _b: &mut [F; N]) {
+        unreachable!("only what was eliminated is substituted")
+    }
+
+    /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small pivot.
+    fn count_factorisation(&mut self, _is_fallback: bool) {}
 }
 
 /// A point of a trajectory.
@@ -57,6 +85,23 @@ pub enum StepControl {
         /// The power of the step with which the error norm of a small step falls.
         order: f64,
     },
+    /// Steps by the error estimates of this step and the one before, kept where they would grow by less than a fifth, so
+    /// that one factorisation serves several of them.
+    Predictive {
+        /// As above.
+        order: f64,
+    },
+}
+
+impl StepControl {
+    /// The power of the step with which the error norm of a small step falls; none where steps are fixed.
+    #[must_use]
+    pub fn order(&self) -> Option<f64> {
+        match self {
+            Self::Fixed { .. } => None,
+            Self::Adaptive { order } | Self::Predictive { order } => Some(*order),
+        }
+    }
 }
 
 /// A one-step method with its work space. It holds the stages of the last attempt; a step allocates nothing.
@@ -70,7 +115,7 @@ pub trait Method<const N: usize> {
     /// Tries a step of size `h` (s) from `start`, whose rate is known, and writes the state reached into `end`.
     ///
     /// Gives the norm of the error estimate: up to 1 the step satisfies the tolerances. A fixed-step method gives 0. Not
-    /// a number where a stage is not.
+    /// a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
     fn attempt(
         &mut self,
         flow: &mut impl Flow<N>,
@@ -79,6 +124,17 @@ pub trait Method<const N: usize> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64;
+
+    /// The last attempt was accepted: its end, perhaps projected, is the start of the next.
+    fn advance(&mut self) {}
+
+    /// What was known of the flow no longer holds: a run begins, or a switch has changed its branch.
+    fn restart(&mut self) {}
+
+    /// When another method took over, of a method that chooses between several.
+    fn changes(&self) -> &[Change] {
+        &[]
+    }
 
     /// The state with the largest error in the last attempt.
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize;

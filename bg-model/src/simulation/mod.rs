@@ -100,7 +100,7 @@ where
         self.stepper.evaluate_start();
         self.check_start()?;
         let longest = (self.span.t_end - self.span.t0).min(settings.largest_step);
-        if let (StepControl::Adaptive { order }, None, true) = (control, settings.first_step, longest > 0.0) {
+        if let (Some(order), None, true) = (control.order(), settings.first_step, longest > 0.0) {
             let (_, mut flow, start, _, scale) = self.stepper.split();
             let first = pace::first_step(&mut flow, start, scale, order, longest);
             self.pace.begin(first);
@@ -161,6 +161,7 @@ where
             let t_new = self.pace.next_end(t);
             let h = t_new - t;
             error = self.stepper.attempt(h);
+            self.pace.follow(self.stepper.method.control());
             self.stepper.end.t = t_new;
             if error <= 1.0 && is_finite(&self.stepper.end.x) {
                 self.stepper.project();

@@ -1,7 +1,8 @@
 //! The pace: which step is tried next.
 //!
 //! In: the error norms of the steps tried. Out: the end of the next step. Source: the step-size control of Hairer's
-//! `dop853.f` without its stabilisation (beta = 0), and its estimate of the first step (function HINIT).
+//! `dop853.f` without its stabilisation (beta = 0), and its estimate of the first step (function HINIT). Predictive
+//! control: Gustafsson's, as in Hairer's `radau5.f` (Hairer, Wanner II, section IV.8, equation (8.25)).
 
 use nalgebra::SVector;
 
@@ -14,6 +15,12 @@ const SAFETY: f64 = 0.9;
 const RATIO: [f64; 2] = [0.333, 6.0];
 /// The ratio after an attempt that gave no number.
 const RETREAT: f64 = 0.1;
+/// The ratio after an iteration that did not converge.
+const HALF: f64 = 0.5;
+/// A predictive control keeps a step that would grow by less than this ratio.
+const HOLD: f64 = 1.2;
+/// The least error norm that a predictive control takes for that of the step before.
+const LEAST: f64 = 1e-2;
 /// A step that would leave less than this part of itself to the end is stretched to it.
 const STRETCH: f64 = 0.01;
 
@@ -27,6 +34,8 @@ pub(super) struct Pace {
     step: f64,
     /// Whether the last attempt was rejected.
     rejected: bool,
+    /// The last accepted step, s, and its error norm.
+    accepted: Option<(f64, f64)>,
     /// Fixed steps end at t0 + grid * step.
     grid: u64,
 }
@@ -35,10 +44,12 @@ impl Pace {
     pub fn new<const N: usize>(control: StepControl, span: Span, settings: &Settings<N>) -> Self {
         let asked = match control {
             StepControl::Fixed { step } => step,
-            StepControl::Adaptive { .. } => settings.first_step.unwrap_or(span.t_end - span.t0),
+            StepControl::Adaptive { .. } | StepControl::Predictive { .. } => {
+                settings.first_step.unwrap_or(span.t_end - span.t0)
+            }
         };
         let largest = settings.largest_step;
-        Self { control, span, largest, step: asked.min(largest), rejected: false, grid: 1 }
+        Self { control, span, largest, step: asked.min(largest), rejected: false, accepted: None, grid: 1 }
     }
 
     /// The size of the next step if nothing is in its way, s.
@@ -48,7 +59,12 @@ impl Pace {
 
     /// Whether steps are chosen by the error.
     pub fn is_adaptive(&self) -> bool {
-        matches!(self.control, StepControl::Adaptive { .. })
+        self.control.order().is_some()
+    }
+
+    /// Steps are chosen as the method wants it from now on.
+    pub fn follow(&mut self, control: StepControl) {
+        self.control = control;
     }
 
     /// Takes an estimate of the first step, s.
@@ -74,17 +90,22 @@ impl Pace {
     /// The step `h` (s) satisfied the tolerances with the error norm `error`.
     pub fn accept(&mut self, h: f64, error: f64) {
         if self.is_adaptive() {
-            let next = h * self.ratio(error);
+            let next = h * self.predicted_ratio(h, error);
             let next = if self.rejected { next.min(h) } else { next };
             self.step = next.min(self.largest);
         }
         self.rejected = false;
     }
 
-    /// The step `h` (s) did not satisfy the tolerances; `error` is not a number where the step gave none.
+    /// The step `h` (s) did not satisfy the tolerances; `error` is not a number where the step gave none, infinite where
+    /// an iteration did not converge.
     pub fn reject(&mut self, h: f64, error: f64) {
         self.rejected = true;
-        self.step = h * if error.is_finite() { self.ratio(error).min(SAFETY) } else { RETREAT };
+        self.step = h * match error {
+            _ if error.is_nan() => RETREAT,
+            f64::INFINITY => HALF,
+            _ => self.ratio(error).min(SAFETY),
+        };
     }
 
     /// Whether the step to try from `t` (s) is too small to be told apart from rounding.
@@ -94,8 +115,20 @@ impl Pace {
     }
 
     fn ratio(&self, error: f64) -> f64 {
-        let StepControl::Adaptive { order } = self.control else { return 1.0 };
+        let Some(order) = self.control.order() else { return 1.0 };
         (SAFETY * libm::pow(error, -1.0 / order)).clamp(RATIO[0], RATIO[1])
+    }
+
+    /// The ratio after the accepted step `h` (s).
+    fn predicted_ratio(&mut self, h: f64, error: f64) -> f64 {
+        let ratio = self.ratio(error);
+        let StepControl::Predictive { .. } = self.control else { return ratio };
+        let before = self.accepted.replace((h, error.max(LEAST)));
+        let ratio = match before {
+            Some((h_before, before)) => ratio.min(h / h_before * self.ratio(error * error / before)),
+            None => ratio,
+        };
+        if (1.0..=HOLD).contains(&ratio) { 1.0 } else { ratio.max(RATIO[0]) }
     }
 }
 

@@ -88,7 +88,9 @@ where
     match control {
         StepControl::Fixed { step: fixed } if fixed.is_finite() => step("fixed", fixed)?,
         StepControl::Fixed { step: value } => return Err(BadInput::Step { which: "fixed", value, smallest }),
-        StepControl::Adaptive { .. } => settings.first_step.map_or(Ok(()), |first| step("first", first))?,
+        StepControl::Adaptive { .. } | StepControl::Predictive { .. } => {
+            settings.first_step.map_or(Ok(()), |first| step("first", first))?;
+        }
     }
     check_samples(span, &settings.samples)
 }

@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use crate::integrator::{Flow, Method, Point, Scale};
+use crate::linear::{Field, Sparsity};
 use crate::statistics::Statistics;
 use crate::system::System;
 
@@ -11,7 +12,7 @@ use crate::system::System;
 pub(crate) struct Frozen<'a, Sys, const G: usize> {
     system: &'a Sys,
     negative: &'a [bool; G],
-    evaluations: &'a mut u64,
+    statistics: &'a mut Statistics,
 }
 
 impl<Sys, const N: usize, const G: usize> Flow<N> for Frozen<'_, Sys, G>
@@ -20,8 +21,33 @@ where
 {
     #[inline]
     fn rate(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        *self.evaluations += 1;
+        self.statistics.rate_evaluations += 1;
         self.system.rate(t, x, self.negative, dx);
+    }
+
+    fn sparsity(&self) -> Sparsity {
+        self.system.sparsity()
+    }
+
+    fn jacobian(&mut self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
+        self.statistics.jacobian_evaluations += 1;
+        if self.sparsity() == Sparsity::Full {
+            self.statistics.rate_evaluations += N as u64 + 2;
+        }
+        self.system.jacobian(t, x, self.negative, entries, slope);
+    }
+
+    fn eliminate<F: Field<f64>>(&self, c: F, entries: &[f64], factors: &mut [F]) -> bool {
+        self.system.eliminate(c, entries, factors)
+    }
+
+    fn substitute<F: Field<f64>>(&self, factors: &[F], b: &mut [F; N]) {
+        self.system.substitute(factors, b);
+    }
+
+    fn count_factorisation(&mut self, is_fallback: bool) {
+        self.statistics.factorisations += 1;
+        self.statistics.pivoted_factorisations += u64::from(is_fallback);
     }
 }
 
@@ -56,8 +82,7 @@ where
 
     /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
     pub fn split(&mut self) -> (&mut M, Frozen<'_, Sys, G>, &Point<N>, &mut Point<N>, &Scale<N>) {
-        let evaluations = &mut self.statistics.rate_evaluations;
-        let flow = Frozen { system: self.system, negative: &self.negative, evaluations };
+        let flow = Frozen { system: self.system, negative: &self.negative, statistics: &mut self.statistics };
         (self.method, flow, &self.start, &mut self.end, &self.scale)
     }
 
@@ -82,8 +107,9 @@ where
         flow.rate(*t, x, rate);
     }
 
-    /// Evaluates the rate at the start of the step.
+    /// Evaluates the rate at the start of the step, whose branches may be new.
     pub fn evaluate_start(&mut self) {
+        self.method.restart();
         self.statistics.rate_evaluations += 1;
         let Point { t, x, rate } = &mut self.start;
         self.system.rate(*t, x, &self.negative, rate);
@@ -91,6 +117,7 @@ where
 
     /// The end of the step becomes the start of the next one.
     pub fn advance(&mut self) {
+        self.method.advance();
         self.start = self.end;
     }
 

@@ -1,0 +1,43 @@
+//! Linear algebra of implicit methods: the Jacobian of a flow and the systems (I - c J) y = b.
+//!
+//! In: a flow with its Jacobian's sparsity. Out: factors of I - c J for a real or complex c, and solutions. A generated
+//! model eliminates along the known pattern, in an order chosen at compile time and without a search for pivots. Where
+//! a pivot gets too small, and for systems without a known pattern, a dense elimination with row exchanges is made.
+
+mod dense;
+mod differences;
+mod factors;
+mod field;
+
+pub(crate) use differences::differences;
+pub(crate) use factors::{Factors, Jacobian};
+pub use field::Field;
+
+/// Where a Jacobian can differ from zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sparsity {
+    /// Everywhere; the entries are stored column by column.
+    Full,
+    /// At these places only.
+    Places {
+        /// Row and column of every entry, in the order of storage.
+        entries: &'static [(u16, u16)],
+        /// The length of the factors of I - c J.
+        factors: usize,
+    },
+}
+
+impl Sparsity {
+    /// The number of entries of an `n` by `n` Jacobian.
+    #[must_use]
+    pub const fn len(&self, n: usize) -> usize {
+        match self {
+            Self::Full => n * n,
+            Self::Places { entries, .. } => entries.len(),
+        }
+    }
+}
+
+/// A pivot below this part of the largest entry of its row's history counts as too small: what rounding leaves of it
+/// has fewer than half of its digits.
+pub const SMALLEST_PIVOT: f64 = 1e-8;
