@@ -72,6 +72,31 @@ impl Input {
     }
 }
 
+impl Input {
+    /// The derivative with respect to time at time `t` (s), in the input's unit per s: [`Input::rate`] where that is
+    /// known, else the slope at `t` of the parabola through three values of the closure, at `t` and up to
+    /// 3e-8 max(1, |t|) s behind it. It never asks for the time before `t`. A closure that changes within so short a
+    /// time, or jumps, should be given with its rate.
+    pub fn slope<S: Scalar>(&self, t: S) -> S {
+        match &self.law {
+            Law::Function(value) => S::from_f64(parabola_slope(value.as_ref(), t.to_f64())),
+            _ => self.rate(t).unwrap_or(S::from_f64(0.0)),
+        }
+    }
+}
+
+/// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences at
+/// the times as rounded. The distance balances truncation with rounding where the time scale is 1 s or `t`.
+fn parabola_slope(value: &dyn Fn(f64) -> f64, t: f64) -> f64 {
+    let size = t.abs();
+    let distance = f64::EPSILON.sqrt() * if size > 1.0 { size } else { 1.0 };
+    let times = [t, t + distance, t + 2.0 * distance];
+    let values = times.map(value);
+    let first = (values[1] - values[0]) / (times[1] - times[0]);
+    let second = (values[2] - values[1]) / (times[2] - times[1]);
+    first - (second - first) * ((times[1] - times[0]) / (times[2] - times[0]))
+}
+
 impl Default for Input {
     fn default() -> Self {
         Self::constant(0.0)
@@ -119,6 +144,23 @@ mod tests {
         let input = Input::with_rate(|t| t * t, |t| 2.0 * t);
         assert_eq!(input.value(0.1), 0.1 * 0.1);
         assert_eq!(input.rate(0.1), Some(0.2));
+    }
+
+    #[test]
+    fn slopes_are_derivatives() {
+        assert_eq!(Input::from(2.5).slope(-1.0), 0.0);
+        assert_eq!(Input::with_rate(|t| t * t, |t| 2.0 * t).slope(0.1), 0.2);
+        for t in [0.0, 0.7, 5.0, 60.0] {
+            let slope = Input::function(|t| (3.0 * t).sin()).slope(t);
+            let expected = 3.0 * (3.0 * t).cos();
+            assert!((slope - expected).abs() < 5e-7, "{t}: {slope} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_slope_asks_for_no_earlier_time() {
+        let input = Input::function(|t| if t < 2.0 { f64::NAN } else { 4.0 * t });
+        assert!((input.slope(2.0) - 4.0).abs() < 1e-6);
     }
 
     #[test]

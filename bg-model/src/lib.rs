@@ -17,6 +17,7 @@
 //! | know why a run stopped | [`failure::Failure`], with the last good state |
 //! | know what it cost | [`statistics::Statistics`] |
 //! | calculate in another number type | [`scalar::Scalar`] and the model's `in_scalar` |
+//! | get a reference solution beyond double precision | [`extended::integrate`] with [`scalar::DoubleDouble`] |
 //!
 //! A system that no macro has made can be run as well: implement [`system::System`].
 //!
@@ -81,6 +82,7 @@
 pub mod assembly;
 pub mod description;
 mod event;
+pub mod extended;
 pub mod failure;
 pub mod input;
 pub mod integrator;

@@ -9,11 +9,11 @@ pub struct Statistics {
     pub steps: u64,
     /// Attempts that were rejected: by the error estimate, or because a number was not finite.
     pub rejected: u64,
-    /// Evaluations of the rate, all of them.
+    /// Evaluations of the rate, but for those of Jacobians by differences.
     pub rate_evaluations: u64,
     /// Those of `rate_evaluations` that served the dense output only.
     pub dense_evaluations: u64,
-    /// Evaluations of the Jacobian; those by differences count their rates as well.
+    /// Evaluations of the Jacobian. The `N` + 2 rates of one by differences are not among the `rate_evaluations`.
     pub jacobian_evaluations: u64,
     /// Factorisations of I - c J, real and complex ones alike.
     pub factorisations: u64,

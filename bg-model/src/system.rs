@@ -43,8 +43,8 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     }
 
     /// Writes the factors of I - `c` J into `factors`, of the length that the sparsity names; `entries` is J. Gives
-    /// whether it did: not where a pivot is below [`SMALLEST_PIVOT`](crate::linear::SMALLEST_PIVOT), and by default not
-    /// at all.
+    /// whether it did: not where a pivot cancels to below [`SMALLEST_PIVOT`](crate::linear::SMALLEST_PIVOT) of the largest
+    /// value its place has had, and by default not at all.
     fn eliminate<F: Field<S>>(&self, _c: F, _entries: &[S], _factors: &mut [F]) -> bool {
         false
     }

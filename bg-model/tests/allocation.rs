@@ -2,7 +2,7 @@
 
 mod problems;
 
-use bg_model::integrator::{Dop853, Method, Rk4};
+use bg_model::integrator::{Dop853, Gauss6, Method, Radau5, Radau9, Rk4};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use problems::*;
@@ -29,4 +29,8 @@ fn the_counter_counts() {
 fn steps_samples_and_events_allocate_nothing() {
     assert_eq!(allocations(Dop853::new()), (0, 3001, 13));
     assert_eq!(allocations(Rk4::new(0.01)), (0, 3001, 13));
+    // Room for the Jacobian, the real and the complex factors, once.
+    assert_eq!(allocations(Radau5::new()), (3, 3001, 13));
+    assert_eq!(allocations(Radau9::new()), (4, 3001, 13));
+    assert_eq!(allocations(Gauss6::new(0.01)), (3, 3001, 13));
 }

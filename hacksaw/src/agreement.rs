@@ -10,16 +10,17 @@ use std::f64::consts::TAU;
 
 use bg_model::assembly::AssemblyError;
 use bg_model::description::Description;
-use bg_model::integrator::{Absolute, Dop853, Rk4, Tolerances};
+use bg_model::integrator::{Absolute, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{Samples, Settings};
 use bg_model::system::{Model, Powers, System};
 
 use crate::mechanism::{Hacksaw, HacksawParameters};
+use crate::methods::Integrator;
 use crate::run::{Simulation, record};
 use crate::scenes::{Scene, Visitor};
-use crate::trajectory::{AXES, Column, LINKS, Trajectory};
+use crate::trajectory::{AXES, Column, Trajectory};
 
 /// The steps that both models take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +101,8 @@ pub fn compare(
     let job = Job { steps, t_end, instants };
     let reduced = scene.visit(Reduced { scene, values, job })?;
     let literal = literal(scene, values, job)?;
-    let whole = with_angles(&literal.trajectory)?;
+    let mut whole = literal.trajectory.clone();
+    whole.add_angles()?;
     let deviations = deviations(&reduced.trajectory, &whole)?;
     Ok(Agreement { scene: reduced, literal, deviations })
 }
@@ -143,8 +145,8 @@ impl Job<'_> {
             ..Settings::default()
         };
         let simulation = match self.steps {
-            Steps::Rk4(step) => record(model, &mut Rk4::new(step), self.t_end, &settings, |_| {})?,
-            _ => record(model, &mut Dop853::new(), self.t_end, &settings, |_| {})?,
+            Steps::Rk4(step) => record(model, Integrator::Rk4, step, self.t_end, &settings, &mut |_| {})?,
+            _ => record(model, Integrator::Dop853, f64::NAN, self.t_end, &settings, &mut |_| {})?,
         };
         match simulation.failure {
             Some(failure) => Err(failure.into()),
@@ -225,19 +227,6 @@ impl<Mo: Model<f64, N, 1, M>, const N: usize, const M: usize> Model<f64, N, 0, M
     }
 }
 
-/// The literal model's outputs and the links' angles about z, which its orientations determine.
-fn with_angles(literal: &Trajectory) -> Result<Trajectory, Box<dyn Error>> {
-    let mut whole = literal.clone();
-    for (link, name) in LINKS.iter().zip(["crank_angle", "rod_angle", "frame_angle", "guide_angle"]) {
-        whole.columns.push(Column { name: name.to_owned(), unit: "rad".to_owned() });
-        let (sine, cosine) = (literal.series(&format!("R{link}_21"))?, literal.series(&format!("R{link}_11"))?);
-        for (row, (sine, cosine)) in whole.rows.iter_mut().zip(sine.iter().zip(cosine)) {
-            row.push(sine.atan2(cosine));
-        }
-    }
-    Ok(whole)
-}
-
 fn deviations(scene: &Trajectory, literal: &Trajectory) -> Result<Vec<Deviation>, Box<dyn Error>> {
     if scene.times != literal.times {
         return Err("the two runs have different instants".into());
@@ -261,7 +250,7 @@ fn deviations(scene: &Trajectory, literal: &Trajectory) -> Result<Vec<Deviation>
         });
         let (largest, time) = differences.zip(&scene.times).fold((0.0, 0.0), |most, (difference, time)| {
             // A NaN is the largest of all.
-            if difference <= most.0 { most } else { (difference, *time) }
+            if difference > most.0 || difference.is_nan() { (difference, *time) } else { most }
         });
         let magnitude = magnitudes.iter().find(|(of, _)| *of == kind(&column.name)).map_or(0.0, |(_, most)| *most);
         Ok(Deviation { column: column.clone(), largest, time, magnitude })

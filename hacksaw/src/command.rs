@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::system::Model;
-use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use thiserror::Error;
 
@@ -19,8 +19,11 @@ use crate::mechanism::HacksawParameters;
 use crate::methods::Integrator;
 use crate::output::{OutputError, Places};
 use crate::parameters::{self, Chosen, SettingError};
+use crate::precision::case::Case;
+use crate::precision::measure::{Entry, MeasureError, Setting, measure};
+use crate::precision::report as precision;
 use crate::report::{self, Part};
-use crate::run::{self, RunSettings, Simulation};
+use crate::run::{self, RTOL_OVER_ATOL, RunSettings, Simulation};
 use crate::scenes::{Fixed, Scene, Visitor};
 use crate::summary::Summary;
 
@@ -53,6 +56,8 @@ enum Command {
         #[arg(long, value_name = "PART", value_enum)]
         part: Option<Part>,
     },
+    /// Measure what each error costs: integrators over tolerances against reference solutions in extended precision
+    Precision(PrecisionArguments),
     /// List the parameters: name, default, unit, meaning
     Parameters {
         /// Print them as a file for --params
@@ -112,8 +117,42 @@ struct RunArguments {
     no_figures: bool,
 }
 
-/// The rtol over the atol that goes with it: momenta are of the order of 1 and springs give way by 1e-4 m.
-const RTOL_OVER_ATOL: f64 = 1e4;
+#[derive(Debug, Args)]
+struct PrecisionArguments {
+    /// What is run
+    #[arg(value_name = "CASE", default_values_t = [Case::Paper, Case::FullOffset, Case::Rigid], value_enum)]
+    cases: Vec<Case>,
+
+    /// The integrators [default: all]
+    #[arg(long, value_name = "NAME", value_enum, value_delimiter = ',')]
+    methods: Vec<Integrator>,
+
+    /// Relative tolerances
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        value_delimiter = ',',
+        default_values_t = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12]
+    )]
+    rtol: Vec<f64>,
+
+    /// Absolute tolerances, in SI units, over the relative ones
+    #[arg(long, value_name = "NUMBER", default_value_t = 0.1)]
+    atol_ratio: f64,
+
+    /// Steps of integrators with a fixed step, s
+    #[arg(long, value_name = "SECONDS", value_delimiter = ',', default_values_t = [2e-4, 1e-4, 5e-5, 2e-5])]
+    fixed_step: Vec<f64>,
+
+    /// Runs of each point; the least and the median of their times count
+    #[arg(long, value_name = "COUNT", default_value_t = 5)]
+    repeats: usize,
+
+    /// Directory for precision.txt, precision.json and the diagrams; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "out/precision")]
+    out: PathBuf,
+}
+
 /// The most rows of a CSV file: some hundred MB.
 const MOST_ROWS: f64 = 500_000.0;
 
@@ -134,6 +173,8 @@ enum InputError {
     Start(#[from] bg_model::assembly::AssemblyError),
     #[error(transparent)]
     Output(#[from] OutputError),
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
 }
 
 /// Does what the arguments ask for and gives the exit code.
@@ -159,6 +200,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             print(&if toml { parameters::to_toml(&defaults) } else { parameters::table::<HacksawParameters>() });
             return ExitCode::SUCCESS;
         }
+        Ok(Cli { command: Some(Command::Precision(arguments)), .. }) => measure_precision(&arguments),
         Ok(Cli { command: Some(Command::Run(arguments)), .. } | Cli { command: None, run: arguments }) => {
             simulate(&arguments)
         }
@@ -192,6 +234,48 @@ fn simulate(arguments: &RunArguments) -> Result<ExitCode, InputError> {
         Some(failure) => fail(&format!("the run failed: {failure}")),
         None => ExitCode::SUCCESS,
     })
+}
+
+/// Measures every case with every integrator.
+fn measure_precision(arguments: &PrecisionArguments) -> Result<ExitCode, InputError> {
+    let ratios = vec![arguments.atol_ratio];
+    let numbers = [("--rtol", &arguments.rtol), ("--atol-ratio", &ratios), ("--fixed-step", &arguments.fixed_step)];
+    for (name, values) in numbers {
+        if let Some(&value) = values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
+            return Err(InputError::Range { name, value, range: "a finite number above 0".to_owned() });
+        }
+    }
+    let all = Integrator::value_variants();
+    let methods = if arguments.methods.is_empty() { all } else { &arguments.methods };
+    let settings = |method: Integrator| -> Vec<Setting> {
+        if method.has_fixed_step() {
+            arguments.fixed_step.iter().copied().map(Setting::Step).collect()
+        } else {
+            arguments
+                .rtol
+                .iter()
+                .copied()
+                .map(|rtol| Setting::Tolerance { rtol, atol: rtol * arguments.atol_ratio })
+                .collect()
+        }
+    };
+    let points: usize = methods.iter().map(|method| settings(*method).len()).sum();
+    let bar = bar((points * arguments.cases.len()) as u64, "measuring {bar:40} {pos} of {len} {msg}");
+    let mut entries: Vec<Entry> = Vec::new();
+    for case in &arguments.cases {
+        let reference = case.reference().load();
+        for method in methods {
+            bar.set_message(format!("{} by {}", case.name(), method.name()));
+            for setting in settings(*method) {
+                entries.push(measure(*case, *method, setting, arguments.repeats, &reference)?);
+                bar.inc(1);
+            }
+        }
+    }
+    bar.finish_and_clear();
+    let files = precision::write(&arguments.out, &entries)?;
+    print(&format!("{}\nwritten: {} files in {}\n", precision::table(&entries), files.len(), arguments.out.display()));
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Makes a scene's model and runs it, with the places tried before.
@@ -289,15 +373,21 @@ fn ticks(t: f64) -> u64 {
     (t * 1e3) as u64
 }
 
-/// A bar over simulated time on a terminal, nothing in a pipe.
+/// A bar over simulated time.
 fn progress_bar(t_end: f64) -> ProgressBar {
+    let bar = bar(ticks(t_end).max(1), "simulating {bar:40} {percent:>3} % of {msg}, {eta} to go");
+    bar.set_message(format!("{t_end} s"));
+    bar
+}
+
+/// A bar on a terminal, nothing in a pipe.
+fn bar(length: u64, template: &str) -> ProgressBar {
     // Ten times a second is steady to the eye and costs nothing.
     let target =
         if stderr().is_terminal() { ProgressDrawTarget::stderr_with_hz(10) } else { ProgressDrawTarget::hidden() };
-    let bar = ProgressBar::with_draw_target(Some(ticks(t_end).max(1)), target);
-    let style = ProgressStyle::with_template("simulating {bar:40} {percent:>3} % of {msg}, {eta} to go");
+    let bar = ProgressBar::with_draw_target(Some(length), target);
+    let style = ProgressStyle::with_template(template);
     bar.set_style(style.expect("the template is well formed").progress_chars("\u{2501}\u{2578}\u{2500}"));
-    bar.set_message(format!("{t_end} s"));
     bar
 }
 

@@ -11,6 +11,7 @@
 //! | [`run`](mod@run) | how it moves: integration and samples |
 //! | [`trajectory`] | what was sampled, and the CSV file of it |
 //! | [`checks`] | does the motion show what the paper says of it |
+//! | [`precision`] | how exact a run is and what that costs |
 //! | [`figures`] | what the paper's figures 4 to 19 look like |
 //! | [`summary`] | what the run comes to in numbers |
 //! | [`overview`] | all of it on one page |
@@ -26,6 +27,7 @@ pub mod methods;
 pub mod output;
 pub mod overview;
 pub mod parameters;
+pub mod precision;
 pub mod report;
 pub mod run;
 pub mod scenes;

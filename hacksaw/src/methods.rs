@@ -1,52 +1,58 @@
 //! The integrators by name.
 //!
-//! In: a name and, for methods with a fixed step, the step. Out: the method, handed to a [`MethodVisitor`].
-//! [`Integrator::visit`] is the only place that knows the types behind the names.
+//! In: a name and, for methods with a fixed step, the step. Out: the method.
 
-use bg_model::integrator::{Auto, Dop853, Method, Rk4, Rodas5p, Ros2};
+use bg_model::integrator::{AnyMethod, Auto, Bs5, Cfmr7, Dop853, Gauss6, Radau5, Radau9, Rk4, Rodas5p, Ros2};
 use clap::ValueEnum;
 
 /// An integrator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Integrator {
-    /// DOP853 or RODAS5P, whichever the measured stiffness calls for
+    /// DOP853 or Radau IIA 9, whichever the measured stiffness calls for
     #[default]
     Auto,
+    /// Explicit, order 5(4)
+    Bs5,
+    /// Explicit, order 7(5), for oscillations
+    Cfmr7,
     /// Explicit, order 8(5,3)
     Dop853,
     /// Rosenbrock, order 5(4), for stiff systems
     Rodas5p,
+    /// Implicit, order 5, for stiff systems
+    Radau5,
+    /// Implicit, order 9, for stiff systems at small tolerances
+    Radau9,
     /// Explicit, order 4, fixed step
     Rk4,
     /// Semi-implicit, order 2, fixed step
     Ros2,
-}
-
-/// Something to do with a method, whatever its type.
-pub trait MethodVisitor<const N: usize> {
-    /// What comes of it.
-    type Output;
-
-    /// Is given the method, ready to run.
-    fn visit(self, method: impl Method<N>) -> Self::Output;
+    /// Implicit, order 6, fixed step, keeps energy
+    Gauss6,
 }
 
 impl Integrator {
-    /// Hands the method to `visitor`; `step` (s) is that of a fixed-step method.
-    pub fn visit<V: MethodVisitor<N>, const N: usize>(self, step: f64, visitor: V) -> V::Output {
+    /// The method; `step` (s) is that of a fixed-step method.
+    #[must_use]
+    pub fn method<const N: usize>(self, step: f64) -> AnyMethod<N> {
         match self {
-            Self::Auto => visitor.visit(Auto::<N>::new()),
-            Self::Dop853 => visitor.visit(Dop853::new()),
-            Self::Rodas5p => visitor.visit(Rodas5p::new()),
-            Self::Rk4 => visitor.visit(Rk4::new(step)),
-            Self::Ros2 => visitor.visit(Ros2::new(step)),
+            Self::Auto => Auto::new().into(),
+            Self::Bs5 => Bs5::new().into(),
+            Self::Cfmr7 => Cfmr7::new().into(),
+            Self::Dop853 => Dop853::new().into(),
+            Self::Rodas5p => Rodas5p::new().into(),
+            Self::Radau5 => Radau5::new().into(),
+            Self::Radau9 => Radau9::new().into(),
+            Self::Rk4 => Rk4::new(step).into(),
+            Self::Ros2 => Ros2::new(step).into(),
+            Self::Gauss6 => Gauss6::new(step).into(),
         }
     }
 
     /// Whether its steps have a fixed size, which then takes the place of tolerances.
     #[must_use]
     pub fn has_fixed_step(self) -> bool {
-        matches!(self, Self::Rk4 | Self::Ros2)
+        matches!(self, Self::Rk4 | Self::Ros2 | Self::Gauss6)
     }
 
     /// The name on the command line.

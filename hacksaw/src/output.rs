@@ -44,6 +44,14 @@ pub enum OutputError {
         /// Why.
         source: TrajectoryError,
     },
+    /// A work-precision diagram cannot be drawn.
+    #[error("diagram of {name}: {source}")]
+    Diagram {
+        /// Its case.
+        name: String,
+        /// Why.
+        source: FigureError,
+    },
     /// A figure cannot be drawn.
     #[error("figure {number}: {source}")]
     Figure {

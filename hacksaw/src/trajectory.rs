@@ -5,6 +5,7 @@
 
 use std::io::{Read, Write};
 
+use bg_model::scalar::Scalar;
 use thiserror::Error;
 
 /// A column of a trajectory.
@@ -115,6 +116,21 @@ impl Trajectory {
             }
         }
         part
+    }
+
+    /// Appends the links' angles about z, rad, which the orientations of a plane motion determine.
+    ///
+    /// # Errors
+    /// A missing orientation.
+    pub fn add_angles(&mut self) -> Result<(), TrajectoryError> {
+        for (link, name) in LINKS.iter().zip(["crank_angle", "rod_angle", "frame_angle", "guide_angle"]) {
+            let (sine, cosine) = (self.series(&format!("R{link}_21"))?, self.series(&format!("R{link}_11"))?);
+            self.columns.push(Column { name: name.to_owned(), unit: "rad".to_owned() });
+            for (row, (sine, cosine)) in self.rows.iter_mut().zip(sine.into_iter().zip(cosine)) {
+                row.push(Scalar::atan2(sine, cosine));
+            }
+        }
+        Ok(())
     }
 
     /// Whether column `name` is there.

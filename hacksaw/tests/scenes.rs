@@ -8,12 +8,13 @@
 #[allow(missing_docs)]
 mod planar;
 
-use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::integrator::Tolerances;
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{Samples, Settings};
 use bg_model::system::Model;
 use hacksaw::agreement::{Agreement, Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
+use hacksaw::methods::Integrator;
 use hacksaw::run::record;
 use hacksaw::scenes::{Scene, Visitor};
 use hacksaw::trajectory::sample_times;
@@ -140,7 +141,8 @@ impl Visitor for FrameAt {
             samples: Samples::At(vec![self.t_end]),
             ..Settings::default()
         };
-        let run = record(&new(own).unwrap(), &mut Dop853::new(), self.t_end, &settings, |_| {}).unwrap();
+        let method = Integrator::Dop853;
+        let run = record(&new(own).unwrap(), method, f64::NAN, self.t_end, &settings, &mut |_| {}).unwrap();
         run.trajectory.series("C4_x").unwrap()[0]
     }
 }

@@ -1,6 +1,6 @@
 //! Suites across the crates: models in the macro, how they are run, and what the suites under `tests/` measure with.
 
-pub mod dual;
 pub mod examples;
+pub mod hardcases;
 pub mod power;
 pub mod record;

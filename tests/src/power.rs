@@ -1,9 +1,8 @@
 //! The power balance of a model at states drawn at random.
 
 use bg_model::nalgebra::SVector;
+use bg_model::scalar::Dual;
 use bg_model::system::{Model, Powers};
-
-use crate::dual::Dual;
 
 /// Numbers that look random and are the same every time (SplitMix64, Steele, Lea and Flood 2014).
 #[derive(Clone, Debug)]

@@ -1,8 +1,9 @@
 //! Laws that hold for every model: the power balance at any state, and that the order of declaration changes nothing.
 
 use bg_model::input::Input;
+use bg_model::scalar::Dual;
 use bg_model::system::Model;
-use bond_graph_tests::dual::Dual;
+use bond_graph_tests::each_example;
 use bond_graph_tests::examples as models;
 use bond_graph_tests::power::{Draw, imbalance, state};
 use bond_graph_tests::record::{Record, instants, record};
@@ -45,45 +46,7 @@ macro_rules! power_is_balanced {
 mod power_is_balanced {
     use super::*;
 
-    power_is_balanced! {
-        mass_spring_damper: mass_spring_damper MassSpringDamper (MassSpringDamperParameters, MassSpringDamperInputs { force });
-        rlc_circuit: rlc_circuit RlcCircuit (RlcCircuitParameters, RlcCircuitInputs { voltage });
-        dc_motor: dc_motor DcMotor (DcMotorParameters, DcMotorInputs { voltage });
-        hydraulic_cylinder: hydraulic_cylinder HydraulicCylinder (HydraulicCylinderParameters, HydraulicCylinderInputs { pump_flow });
-        slider_crank: slider_crank SliderCrank (SliderCrankParameters);
-        double_pendulum: double_pendulum DoublePendulum (DoublePendulumParameters);
-        spinning_top: spinning_top SpinningTop (SpinningTopParameters);
-        hacksaw_with_motor: hacksaw_with_motor HacksawWithMotor (HacksawWithMotorParameters, HacksawWithMotorInputs { voltage });
-        charged_capacitor: sources ChargedCapacitor (ChargedCapacitorParameters);
-        stiffness_and_compliance: sources StiffnessAndCompliance (StiffnessAndComplianceParameters);
-        modulated_gyrator: modulated ModulatedGyrator (ModulatedGyratorParameters);
-        modulated_lever: modulated ModulatedLever (ModulatedLeverParameters);
-        modulated_resistance: modulated ModulatedResistance (ModulatedResistanceParameters);
-        modulated_sources: modulated ModulatedSources (ModulatedSourcesParameters);
-        duffing: nonlinear Duffing (DuffingParameters);
-        pendulum: nonlinear Pendulum (PendulumParameters);
-        relativistic_mass: nonlinear RelativisticMass (RelativisticMassParameters);
-        unequal_damper: nonlinear UnequalDamper (UnequalDamperParameters);
-        rectifier: nonlinear Rectifier (RectifierParameters);
-        free_body: free_body FreeBody (FreeBodyParameters);
-        orbit: orbit Orbit (OrbitParameters);
-        drives: drives Drives (DrivesParameters);
-        pushed_plate: drives PushedPlate (PushedPlateParameters);
-        sliding_block: contact SlidingBlock (SlidingBlockParameters);
-        plate_on_revolute: joints PlateOnRevolute (PlateOnRevoluteParameters);
-        plate_on_revolute_inertial: joints PlateOnRevoluteInertial (PlateOnRevoluteInertialParameters);
-        plate_on_revolute_per_axis: joints PlateOnRevolutePerAxis (PlateOnRevolutePerAxisParameters);
-        plate_on_prismatic: joints PlateOnPrismatic (PlateOnPrismaticParameters);
-        plate_on_prismatic_inertial: joints PlateOnPrismaticInertial (PlateOnPrismaticInertialParameters);
-        plate_on_spherical: joints PlateOnSpherical (PlateOnSphericalParameters);
-        plate_on_cylindrical: joints PlateOnCylindrical (PlateOnCylindricalParameters);
-        plate_on_universal: joints PlateOnUniversal (PlateOnUniversalParameters);
-        plate_on_universal_zx: joints PlateOnUniversalZx (PlateOnUniversalZxParameters);
-        plate_on_fixed: joints PlateOnFixed (PlateOnFixedParameters);
-        plate_on_fixed_inertial: joints PlateOnFixedInertial (PlateOnFixedInertialParameters);
-        forward: permuted Forward (ForwardParameters);
-        chain: permuted Chain (ChainParameters);
-    }
+    each_example!(power_is_balanced);
 }
 
 /// Equal up to the rounding that another order of sums leaves in an adaptive run.

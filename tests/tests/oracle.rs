@@ -149,6 +149,7 @@ impl Sample {
             inputs: &self.inputs,
             unknowns: &unknowns,
             atoms: &[],
+            slopes: &[],
             negative: &self.negative,
         };
         evaluate(&equations.pool, roots, &environment)

@@ -25,6 +25,9 @@ const WHOLE: [&str; 10] = [
     "free_body",
 ];
 
+/// The names of the stages behind the source.
+const ALL: [&str; 7] = ["expanded", "resolved", "causal", "equations", "program", "jacobian", "elimination"];
+
 /// The expanded graph and its causality.
 const MECHANISMS: [&str; 6] = ["body", "pendulum", "prismatic", "spring", "drive", "contact"];
 
@@ -73,7 +76,7 @@ fn snapshot(model: &str, names: &[&str]) {
 
 #[test]
 fn small_models_stage_by_stage() {
-    WHOLE.iter().for_each(|model| snapshot(model, &["expanded", "resolved", "causal", "equations", "program"]));
+    WHOLE.iter().for_each(|model| snapshot(model, &ALL));
 }
 
 #[test]
@@ -131,7 +134,7 @@ fn the_expanded_graph_is_source_with_the_same_equations() {
     for model in all() {
         let first = compiled(&text(model));
         let second = compiled(stage(&first, "expanded"));
-        for name in ["expanded", "resolved", "causal", "equations", "program"] {
+        for name in ALL {
             assert_eq!(stage(&second, name), stage(&first, name), "{model}: {name}");
         }
     }

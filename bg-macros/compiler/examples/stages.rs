@@ -5,7 +5,9 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let Some(file) = arguments.next() else {
-        eprintln!("usage: stages FILE [source|expanded|resolved|causal|equations|reduction|reduced|program]");
+        eprintln!(
+            "usage: stages FILE [source|expanded|resolved|causal|equations|reduction|reduced|program|jacobian|elimination]"
+        );
         return ExitCode::from(2);
     };
     let wanted = arguments.next();

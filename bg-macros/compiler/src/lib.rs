@@ -11,6 +11,8 @@
 //! | [`causality::assign`] | -> [`causality::CausalGraph`] | a bond without a stroke |
 //! | [`equations::derive`] | -> [`equations::StateEquations`] | bonds, ports, junctions: scalars only from here |
 //! | [`reduce::for_scene`] | -> [`equations::StateEquations`] | states and parameters that the scene does not need |
+//! | [`jacobian::differentiate`] | -> [`jacobian::Jacobian`] | entries that are identically zero |
+//! | [`elimination::plan`] | places -> [`elimination::Elimination`] | the order of the pivots left open |
 //! | [`program::schedule`] | -> [`program::Program`] | order left open: flat single assignment |
 //! | [`emit::model`] | -> tokens | |
 //!
@@ -19,11 +21,13 @@
 
 pub mod ast;
 pub mod causality;
+pub mod elimination;
 pub mod emit;
 pub mod equations;
 pub mod expr;
 pub mod fault;
 pub mod graph;
+pub mod jacobian;
 pub mod mechanism;
 pub mod print;
 pub mod program;
@@ -85,5 +89,14 @@ fn model(variant: &Variant) -> Staged<TokenStream> {
     let resolved = graph::resolve(&expanded)?;
     let causal = causality::assign(resolved)?;
     let (mut equations, report) = variant.reduce(equations::derive(&causal)?)?;
-    Ok(emit::model(&expanded.to_string(), &causal, &mut equations, report.as_ref()))
+    let mut jacobian = jacobian::differentiate(&equations);
+    let elimination = elimination::plan(equations.states.len(), &jacobian.places());
+    Ok(emit::model(emit::Parts {
+        expanded: &expanded.to_string(),
+        causal: &causal,
+        equations: &mut equations,
+        report: report.as_ref(),
+        jacobian: &mut jacobian,
+        elimination: &elimination,
+    }))
 }

@@ -8,20 +8,23 @@ use proc_macro2::TokenStream;
 
 use crate::ast::TrackKind;
 use crate::causality::{CausalGraph, End};
+use crate::elimination::Elimination;
 use crate::equations::StateEquations;
-use crate::expr::{Id, Symbol, text};
+use crate::expr::{Id, Pool, Symbol, text};
 use crate::fault::Staged;
 use crate::graph::{BondGraph, NodeKind, Storage};
-use crate::program::{Operand, Operation, Program, Request, Routine, schedule};
+use crate::jacobian::Jacobian;
+use crate::program::{Counts, Operand, Operation, Program, Request, Routine, schedule};
 use crate::scene::Variant;
-use crate::{causality, equations, graph, mechanism, scene, syntax};
+use crate::{causality, elimination, equations, graph, jacobian, mechanism, scene, syntax};
 
 /// One stage of one graph.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The graph's name.
     pub graph: String,
-    /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, and `program`.
+    /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `program`, `jacobian`
+    /// and `elimination`.
     pub name: &'static str,
     /// The stage's result.
     pub text: String,
@@ -62,6 +65,10 @@ fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let program = schedule(&mut equations.pool, &[Request { name: "rate", roots: &rates }]);
     push("program", program_text(&equations, &program));
+    let jacobian = jacobian::differentiate(&equations);
+    push("jacobian", jacobian_text(&equations, &jacobian));
+    let elimination = elimination::plan(equations.states.len(), &jacobian.places());
+    push("elimination", elimination_text(&equations, &elimination));
     Ok(())
 }
 
@@ -116,9 +123,7 @@ fn equations_text(equations: &StateEquations) -> String {
     for line in &equations.texts {
         let _ = writeln!(out, "{line}");
     }
-    let show = |id: Id| {
-        text(&equations.pool, id, &|symbol| equations.symbol_name(symbol), &|switch| format!("guard_{switch}"))
-    };
+    let show = |id: Id| equations.shown(&equations.pool, id);
     out.push('\n');
     for state in &equations.states {
         let (name, unit, storage) = (&state.name, &state.unit, state.storage);
@@ -138,6 +143,38 @@ fn equations_text(equations: &StateEquations) -> String {
     let _ = writeln!(out, "supplied = {}", show(equations.supplied));
     let _ = writeln!(out, "dissipated = {}", show(equations.dissipated));
     out
+}
+
+/// Every entry of the Jacobian and every df/dt that is not identically zero.
+fn jacobian_text(equations: &StateEquations, jacobian: &Jacobian) -> String {
+    let name = |index: usize| &equations.states[index].name;
+    let mut out = format!("{} entries\n", jacobian.entries.len());
+    for entry in &jacobian.entries {
+        let value = equations.shown(&jacobian.pool, entry.value);
+        let _ = writeln!(out, "    d {}' / d {} = {value}", name(entry.row), name(entry.column));
+    }
+    let slopes = jacobian.slopes.iter().enumerate().filter(|(_, slope)| !jacobian.pool.is_zero(**slope));
+    for (index, &slope) in slopes {
+        let _ = writeln!(out, "    d {}' / d t = {}", name(index), equations.shown(&jacobian.pool, slope));
+    }
+    out
+}
+
+/// The order of the pivots, the fill and the operations.
+fn elimination_text(equations: &StateEquations, elimination: &Elimination) -> String {
+    let pivots: Vec<&str> = elimination.order.iter().map(|&row| equations.states[row].name.as_str()).collect();
+    let count = |counts: Counts| {
+        let Counts { additions, multiplications, divisions, .. } = counts;
+        format!("{additions} additions, {multiplications} multiplications, {divisions} divisions")
+    };
+    format!(
+        "pivots: {}\nfill: {}\nfactors: {}\neliminate: {}\nsubstitute: {}\n",
+        pivots.join(", "),
+        elimination.fill,
+        elimination.slots,
+        count(elimination.factorisation_counts()),
+        count(elimination.substitution_counts())
+    )
 }
 
 /// The flat single assignment of the rate function.
@@ -180,6 +217,11 @@ fn routine_text(equations: &StateEquations, routine: &Routine, out: &mut String)
 }
 
 impl StateEquations {
+    /// An expression of a pool as text.
+    fn shown(&self, pool: &Pool, id: Id) -> String {
+        text(pool, id, &|symbol| self.symbol_name(symbol), &|switch| format!("guard_{switch}"))
+    }
+
     /// A symbol's name in texts.
     #[must_use]
     pub fn symbol_name(&self, symbol: Symbol) -> String {
@@ -190,6 +232,7 @@ impl StateEquations {
             Symbol::Input(index) => self.inputs[index as usize].name.text.clone(),
             Symbol::Unknown(index) => format!("unknown_{}", index + 1),
             Symbol::Atom(index) => format!("atom_{index}"),
+            Symbol::Slope(index) => format!("{}'", self.inputs[index as usize].name.text),
         }
     }
 }

@@ -84,14 +84,23 @@ impl<const G: usize> Watch<G> {
         let (middle, to) = (side(middle), side(self.end.value[k]));
         let (leaving, arriving) = (h * side(self.start.slope[k]), h * side(self.end.slope[k]));
         let bulge = 16.0 * (middle - 0.5 * (from + to) - 0.125 * (leaving - arriving));
+        // Comparisons, not `f64::min`: its optimised form was seen to drop an end.
+        let smaller = |a: f64, b: f64| if b < a { b } else { a };
+        let larger = |a: f64, b: f64| if b > a { b } else { a };
+        // Bernstein's coefficients enclose the quartic: far from zero that settles it.
+        let (leave, arrive) = (from + 0.25 * leaving, to - 0.25 * arriving);
+        let bend = (16.0 * middle - from - to - 4.0 * (leave + arrive)) / 6.0;
+        let enclosing = [from, leave, bend, arrive, to];
+        let low = enclosing.into_iter().fold(f64::INFINITY, smaller);
+        let high = enclosing.into_iter().fold(f64::NEG_INFINITY, larger);
+        if low > 1.01 * NEAR * (high - low) {
+            return false;
+        }
         let quartic = |part: f64| {
             let (rest, chord) = (1.0 - part, to - from);
             let bend = (rest - part) * chord - rest * leaving + part * arriving;
             rest * from + part * to - part * rest * bend + bulge * (part * rest) * (part * rest)
         };
-        // Comparisons, not `f64::min`: its optimised form was seen to drop an end.
-        let smaller = |a: f64, b: f64| if b < a { b } else { a };
-        let larger = |a: f64, b: f64| if b > a { b } else { a };
         let inside = (1..SAMPLES).map(|sample| quartic(sample as f64 / SAMPLES as f64));
         let ends = (f64::INFINITY, larger(from, to));
         let (lowest, highest) = inside.fold(ends, |(low, high), value| (smaller(low, value), larger(high, value)));

@@ -7,7 +7,7 @@
 
 use nalgebra::SVector;
 
-use super::{Dop853, Flow, Method, Point, Rodas5p, Scale, StepControl};
+use super::{Dop853, Flow, Method, Point, Radau9, Scale, StepControl};
 
 /// Steps before the first trial, and the most between two trials.
 const WAIT: [u32; 2] = [16, 4096];
@@ -18,7 +18,7 @@ const STINT: u32 = 256;
 
 /// An explicit and an implicit method, one of which makes the steps.
 #[derive(Clone, Debug)]
-pub struct Auto<const N: usize, E = Dop853<N>, I = Rodas5p<N>> {
+pub struct Auto<const N: usize, E = Dop853<N>, I = Radau9<N>> {
     explicit: E,
     implicit: I,
     is_implicit: bool,
@@ -30,9 +30,9 @@ pub struct Auto<const N: usize, E = Dop853<N>, I = Rodas5p<N>> {
     /// Accepted steps since the last trial, and those after which the next one is due.
     since: u32,
     wait: u32,
-    /// Accepted steps since the last change, and the wait for the first trial of the implicit method.
+    /// Accepted steps since the last change, and the waits for the first trial of the explicit and the implicit method.
     stint: u32,
-    doubt: u32,
+    doubt: [u32; 2],
     /// The step at the last trial, s.
     tried: f64,
     changes: Vec<Change>,
@@ -51,10 +51,10 @@ pub struct Change {
 const REMEMBERED: usize = 256;
 
 impl<const N: usize> Auto<N> {
-    /// DOP853 and RODAS5P.
+    /// DOP853 and Radau IIA 9.
     #[must_use]
     pub fn new() -> Self {
-        Self::between(Dop853::new(), Rodas5p::new())
+        Self::between(Dop853::new(), Radau9::new())
     }
 }
 
@@ -65,8 +65,9 @@ impl<const N: usize> Default for Auto<N> {
 }
 
 impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
-    /// A step of the implicit method counts as this many of the explicit one.
-    const WORTH: f64 = 6.0;
+    /// A step of the implicit method costs as much as about this many of the explicit one: measured, 11 on the hacksaw in the
+    /// plane, 23 in three dimensions.
+    const WORTH: f64 = 16.0;
 
     /// A choice between these two; the explicit one begins.
     #[must_use]
@@ -80,7 +81,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
             since: 0,
             wait: WAIT[0],
             stint: 0,
-            doubt: WAIT[0],
+            doubt: [WAIT[0]; 2],
             tried: f64::NAN,
             changes: Vec::with_capacity(REMEMBERED),
         }
@@ -111,14 +112,14 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
 
     /// The other method takes over at time `t` (s).
     fn change(&mut self, t: f64) {
+        let doubt = &mut self.doubt[usize::from(self.is_implicit)];
+        *doubt = if self.stint < STINT { (4 * *doubt).min(WAIT[1]) } else { WAIT[0] };
+        self.wait = *doubt;
         self.is_implicit = !self.is_implicit;
         if self.is_implicit {
-            self.implicit.restart();
-            self.wait = WAIT[0];
+            self.implicit.restart()
         } else {
-            self.explicit.restart();
-            self.doubt = if self.stint < STINT { (4 * self.doubt).min(WAIT[1]) } else { WAIT[0] };
-            self.wait = self.doubt;
+            self.explicit.restart()
         }
         self.stint = 0;
         if self.changes.len() < REMEMBERED {

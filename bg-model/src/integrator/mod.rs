@@ -7,9 +7,13 @@
 //! All methods calculate in `f64`. A method's coefficients are rounded to `f64`, so a wider number type would gain
 //! nothing. Every sum has a fixed order and nothing is fused: debug and release builds give the same bytes.
 
+mod any;
 mod auto;
-mod dop853;
+mod collocation;
+mod explicit;
+mod gauss;
 mod hermite;
+mod radau;
 mod rk4;
 mod rosenbrock;
 mod tolerances;
@@ -17,9 +21,14 @@ mod tolerances;
 use nalgebra::SVector;
 
 use crate::linear::{Field, Sparsity, differences};
+pub use any::AnyMethod;
 pub use auto::{Auto, Change};
-pub use dop853::Dop853;
+pub use explicit::{
+    BogackiShampine, Bs5, CalvoFrancoMontijanoRandez, Cfmr7, Dop853, DormandPrince, Explicit, Row, Tableau,
+};
+pub use gauss::Gauss6;
 pub(crate) use hermite::hermite;
+pub use radau::{Radau, Radau5, Radau9, Radau13};
 pub use rk4::Rk4;
 pub use rosenbrock::{Rodas5p, Ros2};
 pub use tolerances::{Absolute, Scale, Tolerances};
@@ -85,6 +94,12 @@ pub enum StepControl {
         /// The power of the step with which the error norm of a small step falls.
         order: f64,
     },
+    /// Steps by the error estimates of this step and the one before, which keeps them from swinging where stability limits
+    /// them.
+    Stabilised {
+        /// As above.
+        order: f64,
+    },
     /// Steps by the error estimates of this step and the one before, kept where they would grow by less than a fifth, so
     /// that one factorisation serves several of them.
     Predictive {
@@ -99,7 +114,7 @@ impl StepControl {
     pub fn order(&self) -> Option<f64> {
         match self {
             Self::Fixed { .. } => None,
-            Self::Adaptive { order } | Self::Predictive { order } => Some(*order),
+            Self::Adaptive { order } | Self::Stabilised { order } | Self::Predictive { order } => Some(*order),
         }
     }
 }

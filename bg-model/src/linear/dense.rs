@@ -1,8 +1,7 @@
 //! Dense elimination with row exchanges.
 //!
 //! In: a matrix, row by row. Out: its factors L U with the exchanges, and solutions. Source: Golub, Van Loan, Matrix
-//! Computations, 4th edition, algorithm 3.4.1. Measured against nalgebra's `LU` of the same size by
-//! `cargo bench -p tests --bench linear`.
+//! Computations, 4th edition, algorithm 3.4.1.
 
 use super::Field;
 

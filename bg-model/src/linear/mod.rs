@@ -8,10 +8,13 @@ mod dense;
 mod differences;
 mod factors;
 mod field;
+mod pivot;
+pub mod table;
 
 pub(crate) use differences::differences;
 pub(crate) use factors::{Factors, Jacobian};
 pub use field::Field;
+pub use pivot::Pivot;
 
 /// Where a Jacobian can differ from zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +41,6 @@ impl Sparsity {
     }
 }
 
-/// A pivot below this part of the largest entry of its row's history counts as too small: what rounding leaves of it
-/// has fewer than half of its digits.
+/// A pivot below this part of the largest value that its place has had during the elimination, 1 included, counts as too
+/// small: rounding leaves fewer than half of its digits. The measure does not depend on the units of the states.
 pub const SMALLEST_PIVOT: f64 = 1e-8;

@@ -88,7 +88,7 @@ where
     match control {
         StepControl::Fixed { step: fixed } if fixed.is_finite() => step("fixed", fixed)?,
         StepControl::Fixed { step: value } => return Err(BadInput::Step { which: "fixed", value, smallest }),
-        StepControl::Adaptive { .. } | StepControl::Predictive { .. } => {
+        _ => {
             settings.first_step.map_or(Ok(()), |first| step("first", first))?;
         }
     }

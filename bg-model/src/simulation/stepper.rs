@@ -31,9 +31,6 @@ where
 
     fn jacobian(&mut self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
         self.statistics.jacobian_evaluations += 1;
-        if self.sparsity() == Sparsity::Full {
-            self.statistics.rate_evaluations += N as u64 + 2;
-        }
         self.system.jacobian(t, x, self.negative, entries, slope);
     }
 

@@ -2,7 +2,8 @@
 //! 24 states, the laws of the specification spelled out. What the generated scene is measured against.
 //!
 //! In: the parameters, a state, the stroke. Out: the state's rate, twice: [`Planar::rate`] plainly, point by point and
-//! force by force, and [`Planar::tuned_rate`] with every known zero and common factor taken out by hand.
+//! force by force, and [`Planar::tuned_rate`] with every known zero and common factor taken out by hand. The comparison
+//! with other solvers (`hacksaw/peers`) shares this file.
 
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
@@ -14,9 +15,9 @@ pub type State = [f64; 24];
 
 /// A pin's stiffness, N/m, and damping, N s/m.
 #[derive(Clone, Copy)]
-struct Pin {
-    k: f64,
-    r: f64,
+pub struct Pin {
+    pub k: f64,
+    pub r: f64,
 }
 
 impl Pin {
@@ -91,35 +92,35 @@ impl Link {
 
 /// What depends on the parameters only.
 pub struct Planar {
-    torque: f64,
-    gravity: f64,
+    pub torque: f64,
+    pub gravity: f64,
     /// Reciprocal masses, 1/kg, and moments of inertia about the centres of mass, 1/(kg m^2).
-    masses: [f64; 4],
-    inertias: [f64; 4],
-    pin_o: Pin,
-    pin_a: Pin,
-    pin_b: Pin,
-    pin_c: Pin,
-    slot: Pin,
-    twist: Pin,
-    work: Pin,
-    r_cut: f64,
-    r_return: f64,
+    pub masses: [f64; 4],
+    pub inertias: [f64; 4],
+    pub pin_o: Pin,
+    pub pin_a: Pin,
+    pub pin_b: Pin,
+    pub pin_c: Pin,
+    pub slot: Pin,
+    pub twist: Pin,
+    pub work: Pin,
+    pub r_cut: f64,
+    pub r_return: f64,
     /// Points in their links, from the centre of mass, m: pin B and bar and blade line in the frame, block and pivot in the
     /// guide.
-    b4: [f64; 2],
-    bar: f64,
-    blade: f64,
-    block: f64,
-    pivot: f64,
+    pub b4: [f64; 2],
+    pub bar: f64,
+    pub blade: f64,
+    pub block: f64,
+    pub pivot: f64,
 }
 
 /// Half the lengths of crank and rod, m: their pins are this far from their centres of mass.
-const CRANK: f64 = 0.0375;
-const ROD: f64 = 0.35;
+pub const CRANK: f64 = 0.0375;
+pub const ROD: f64 = 0.35;
 /// Pivot of the guide and the point on the work piece, m.
-const O5: [f64; 2] = [0.9, 0.745];
-const WORK: [f64; 2] = [0.9, -0.145];
+pub const O5: [f64; 2] = [0.9, 0.745];
+pub const WORK: [f64; 2] = [0.9, -0.145];
 
 /// Area in the plane, height of the centre of mass and moment of inertia about it over density and depth, of rectangles
 /// `[a, b, x, y]`: edges a and b, centre (x, y) with all x symmetric about 0.
@@ -170,6 +171,12 @@ impl Planar {
     /// The rate of `s`; `cutting` says that the blade moves toward the crank.
     #[inline(always)]
     pub fn rate(&self, s: &State, cutting: bool) -> State {
+        self.rate_where(s, |_| cutting)
+    }
+
+    /// The rate of `s` where the blade's slip velocity along the frame, m/s, decides whether it is cutting.
+    #[inline(always)]
+    pub fn rate_where(&self, s: &State, cutting: impl FnOnce(f64) -> bool) -> State {
         let [mut crank, mut rod, mut frame, mut guide] = std::array::from_fn(|link| Link::of(s, link));
         let ground = |[x, y]: [f64; 2]| Point { x, y, vx: 0.0, vy: 0.0 };
 
@@ -200,7 +207,7 @@ impl Planar {
 
         let work = ground(WORK);
         let [_, height, slip_x, slip_y] = frame.seen(&work);
-        let resistance = if cutting { self.r_cut } else { self.r_return };
+        let resistance = if cutting(-slip_x) { self.r_cut } else { self.r_return };
         let force = frame.turned([resistance * slip_x, self.work.k * (height - self.blade) + self.work.r * slip_y]);
         frame.apply(force, &work);
         crank.moment += self.torque;

@@ -13,10 +13,12 @@ mod palette;
 mod panel;
 mod path;
 mod thinning;
+mod work_precision;
 
 use thiserror::Error;
 
 pub use orientation::continued;
+pub use work_precision::{Curve, work_precision};
 
 use crate::trajectory::{Trajectory, TrajectoryError};
 

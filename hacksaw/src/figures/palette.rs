@@ -30,11 +30,23 @@ pub const AXES: [Shade; 3] = [
     Shade { light: RGBColor(0, 158, 115), dark: RGBColor(63, 207, 162) },
 ];
 
+/// Seven hues of Okabe and Ito for curves that are told apart by their colour.
+pub const CURVES: [Shade; 7] = [
+    Shade { light: RGBColor(0, 114, 177), dark: RGBColor(86, 180, 233) },
+    Shade { light: RGBColor(213, 94, 1), dark: RGBColor(247, 144, 61) },
+    Shade { light: RGBColor(0, 158, 116), dark: RGBColor(63, 207, 162) },
+    Shade { light: RGBColor(176, 80, 138), dark: RGBColor(221, 149, 193) },
+    Shade { light: RGBColor(176, 122, 0), dark: RGBColor(240, 190, 80) },
+    Shade { light: RGBColor(60, 150, 200), dark: RGBColor(130, 200, 240) },
+    Shade { light: RGBColor(90, 90, 90), dark: RGBColor(190, 190, 190) },
+];
+
 /// The style sheet for dark surroundings.
 pub fn dark_style() -> String {
     let rules: String = [&PAPER, &INK, &PENCIL, &AXIS, &GRID]
         .into_iter()
         .chain(&AXES)
+        .chain(&CURVES)
         .map(|shade| {
             let (light, dark) = (hexadecimal(shade.light), hexadecimal(shade.dark));
             format!("[fill=\"{light}\"]{{fill:{dark}}}[stroke=\"{light}\"]{{stroke:{dark}}}")

@@ -31,6 +31,8 @@ pub struct Axis {
     pub range: Range<f64>,
     ticks: Vec<f64>,
     step: f64,
+    /// For powers of ten by their exponents the sign of those: negative where the axis falls.
+    power: Option<f64>,
 }
 
 impl Axis {
@@ -40,11 +42,25 @@ impl Axis {
         // Three steps down the ladder 5, 2, 1 divide by ten at most: one of them has two ticks.
         let mut steps = (0..4).map(|down| round_step(rough, down)).map(|step| (step, ticks(&range, step)));
         let (step, ticks) = steps.find(|(_, ticks)| ticks.len() > 1).unwrap_or((rough, Vec::new()));
-        Self { range, ticks, step }
+        Self { range, ticks, step, power: None }
+    }
+
+    /// An axis of powers of ten: `range` are the exponents; about `count` ticks at whole ones.
+    pub fn of_powers(range: Range<f64>, count: usize) -> Self {
+        let step = ((range.end - range.start) / count.max(1) as f64).ceil().max(1.0);
+        Self { ticks: ticks(&range, step), range, step, power: Some(1.0) }
+    }
+
+    /// The same axis for negated exponents: large powers at its start.
+    pub fn falling(self) -> Self {
+        Self { power: self.power.map(|sign| -sign), ..self }
     }
 
     /// The number at a tick as text: the decimals that the distance of the ticks needs, and true minus signs.
     pub fn tick_label(&self, value: f64) -> String {
+        if let Some(sign) = self.power {
+            return format!("10{}", superscript(&format!("{:.0}", sign * value + 0.0)));
+        }
         let magnitude = self.range.start.abs().max(self.range.end.abs());
         let text = if value.abs() < self.step / 2.0 {
             "0".to_owned()

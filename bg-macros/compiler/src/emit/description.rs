@@ -6,13 +6,21 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use crate::causality::{CausalGraph, End};
+use crate::elimination::Elimination;
 use crate::equations::StateEquations;
 use crate::expr::text;
 use crate::graph::NodeKind;
-use crate::program::{Counts, Routine};
+use crate::jacobian::Jacobian;
+use crate::program::Counts;
 
-/// The generated type's documentation: the user's, then the states and the operations.
-pub(super) fn documentation(docs: &str, equations: &StateEquations, routines: &[&Routine]) -> String {
+/// The generated type's documentation: the user's, then the states, the operations and the Jacobian's pattern. `costs` are
+/// the functions with their operations.
+pub(super) fn documentation(
+    docs: &str,
+    equations: &StateEquations,
+    (jacobian, elimination): (&Jacobian, &Elimination),
+    costs: &[(&str, Counts)],
+) -> String {
     let mut doc = String::from(docs);
     doc.push_str("\n\n# States\n\n| index | name | unit | storage | causality |\n|---|---|---|---|---|\n");
     for (index, state) in equations.states.iter().enumerate() {
@@ -20,13 +28,17 @@ pub(super) fn documentation(docs: &str, equations: &StateEquations, routines: &[
     }
     doc.push_str("\n# Operations\n\n| function | additions | multiplications | divisions | functions | choices |\n");
     doc.push_str("|---|---|---|---|---|---|\n");
-    for routine in routines {
-        let Counts { additions, multiplications, divisions, functions, choices } = routine.counts;
+    for (name, counts) in costs {
+        let Counts { additions, multiplications, divisions, functions, choices } = counts;
         doc.push_str(&format!(
-            "| {} | {additions} | {multiplications} | {divisions} | {functions} | {choices} |\n",
-            routine.name
+            "| {name} | {additions} | {multiplications} | {divisions} | {functions} | {choices} |\n"
         ));
     }
+    doc.push_str(&format!(
+        "\nThe Jacobian has {} entries that are not identically zero; its elimination fills {} more places.\n",
+        jacobian.entries.len(),
+        elimination.fill
+    ));
     doc
 }
 
@@ -43,7 +55,7 @@ pub(super) fn description(
     texts: &Texts<'_>,
     causal: &CausalGraph,
     equations: &StateEquations,
-    routines: &[&Routine],
+    costs: &[(&str, Counts)],
 ) -> TokenStream {
     let graph = &causal.graph;
     let Texts { expanded, reduction } = texts;
@@ -73,9 +85,8 @@ pub(super) fn description(
     });
     let bonds = bonds(causal);
     let lines = &equations.texts;
-    let counts = routines.iter().map(|routine| {
-        let name = &routine.name;
-        let Counts { additions, multiplications, divisions, functions, choices } = routine.counts;
+    let counts = costs.iter().map(|(name, counts)| {
+        let Counts { additions, multiplications, divisions, functions, choices } = counts;
         quote! {
             (#name, ::bg_model::description::OperationCount {
                 additions: #additions, multiplications: #multiplications, divisions: #divisions,

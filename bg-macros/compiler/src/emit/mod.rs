@@ -3,10 +3,11 @@
 //! In: [`crate::StateEquations`] with their programs. Out: tokens. Only this module quotes.
 
 mod description;
+mod elimination;
 mod items;
 mod model;
 pub mod routine;
 mod stub;
 
-pub use model::model;
+pub use model::{Parts, model};
 pub use stub::stub;

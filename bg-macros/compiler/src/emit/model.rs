@@ -8,40 +8,55 @@ use std::collections::BTreeSet;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::description;
 use super::items::{Given, identifier};
-use super::routine::{Names, operand, statements};
+use super::routine::{Names, is_long, operand, statements};
+use super::{description, elimination};
 use crate::causality::CausalGraph;
+use crate::elimination::Elimination;
 use crate::equations::StateEquations;
 use crate::expr::{Id, Symbol};
-use crate::program::{Operand, Program, Request, Routine, schedule};
+use crate::jacobian::Jacobian;
+use crate::program::{Counts, Operand, Program, Request, Routine, schedule};
 use crate::reduce::Report;
 
-/// The items of one model: parameters, inputs, the type, its functions, its description. `expanded` is the graph in
-/// bond-graph words as text, `report` what a scene left out of it.
-pub fn model(
-    expanded: &str,
-    causal: &CausalGraph,
-    equations: &mut StateEquations,
-    report: Option<&Report>,
-) -> TokenStream {
-    let programs = Programs::new(equations);
+/// What a model is made from.
+pub struct Parts<'a> {
+    /// The graph in bond-graph words as text.
+    pub expanded: &'a str,
+    /// The graph with its strokes.
+    pub causal: &'a CausalGraph,
+    /// Its equations.
+    pub equations: &'a mut StateEquations,
+    /// What a scene left out of it.
+    pub report: Option<&'a Report>,
+    /// The derivatives of its rates.
+    pub jacobian: &'a mut Jacobian,
+    /// How I - c J is factored and solved.
+    pub elimination: &'a Elimination,
+}
+
+/// The items of one model: parameters, inputs, the type, its functions, its description.
+pub fn model(parts: Parts) -> TokenStream {
+    let Parts { expanded, causal, equations, report, jacobian, elimination } = parts;
+    let programs = Programs::new(equations, jacobian);
     let reduction = report.map(ToString::to_string).unwrap_or_default();
-    let equations: &StateEquations = equations;
+    let (equations, jacobian): (&StateEquations, &Jacobian) = (equations, jacobian);
     let states = state_identifiers(equations);
-    Emission { expanded, causal, equations, reduction, programs, states }.items()
+    Emission { expanded, causal, equations, reduction, jacobian, elimination, programs, states }.items()
 }
 
 /// The programs of all generated functions.
 struct Programs {
     /// Functions of the running model; they share one constant table.
     dynamic: Program,
+    /// The derivatives of the rates, with a constant table of its own.
+    jacobian: Program,
     /// First guesses, gaps and start state: functions of parameters and unknowns, each with its own constants.
     starting: [Program; 3],
 }
 
 impl Programs {
-    fn new(equations: &mut StateEquations) -> Self {
+    fn new(equations: &mut StateEquations, jacobian: &mut Jacobian) -> Self {
         let of = |ids: &mut dyn Iterator<Item = Id>| ids.collect::<Vec<Id>>();
         let rates = of(&mut equations.states.iter().map(|state| state.rate));
         let guards = of(&mut equations.switches.iter().map(|switch| switch.guard));
@@ -52,6 +67,7 @@ impl Programs {
         let guesses = equations.guesses.clone();
         let stored = [equations.stored];
         let powers = [equations.supplied, equations.dissipated];
+        let derivatives = jacobian.roots();
         let requests = [
             Request { name: "rate", roots: &rates },
             Request { name: "guards", roots: &guards },
@@ -61,9 +77,10 @@ impl Programs {
             Request { name: "powers", roots: &powers },
         ];
         let dynamic = schedule(&mut equations.pool, &requests);
+        let jacobian = schedule(&mut jacobian.pool, &[Request { name: "jacobian", roots: &derivatives }]);
         let mut alone = |name, roots: &[Id]| schedule(&mut equations.pool, &[Request { name, roots }]);
         let starting = [alone("guesses", &guesses), alone("gaps", &gaps), alone("start_state", &starts)];
-        Self { dynamic, starting }
+        Self { dynamic, jacobian, starting }
     }
 }
 
@@ -72,6 +89,8 @@ struct Emission<'a> {
     causal: &'a CausalGraph,
     equations: &'a StateEquations,
     reduction: String,
+    jacobian: &'a Jacobian,
+    elimination: &'a Elimination,
     programs: Programs,
     states: Vec<Ident>,
 }
@@ -100,13 +119,14 @@ impl Emission<'_> {
         let structs = given.structs();
         let (name, visibility) = (&identifier(&graph.name.text), &graph.visibility);
         let (parameters, inputs) = (&given.parameters_name(), &given.inputs_name());
-        let routines: Vec<&Routine> = self.programs.dynamic.routines.iter().collect();
-        let doc = description::documentation(&graph.docs, self.equations, &routines);
+        let costs = self.costs();
+        let pattern = (self.jacobian, self.elimination);
+        let doc = description::documentation(&graph.docs, self.equations, pattern, &costs);
         let description = description::description(
             &description::Texts { expanded: self.expanded, reduction: &self.reduction },
             self.causal,
             self.equations,
-            &routines,
+            &costs,
         );
         let (states, switches, outputs) =
             (self.equations.states.len(), self.equations.switches.len(), self.equations.outputs.len());
@@ -117,7 +137,9 @@ impl Emission<'_> {
         let input_value = has_inputs.then(|| quote!(inputs,));
         let input_pass = has_inputs.then(|| quote!(, inputs));
         let starting = self.starting();
-        let table = self.constant_table();
+        let table = self.constant_table(&self.programs.dynamic);
+        let slopes = self.programs.jacobian.constants.results.len();
+        let slope_table = self.constant_table(&self.programs.jacobian);
         let system = self.system();
         let model = self.model();
         quote! {
@@ -129,6 +151,7 @@ impl Emission<'_> {
                 parameters: #parameters,
                 #input_field
                 constants: [S; #constants],
+                slope_constants: [S; #slopes],
             }
 
             #[allow(missing_docs, clippy::all, clippy::pedantic)]
@@ -174,7 +197,8 @@ impl Emission<'_> {
                     {
                         ::bg_model::parameters::Parameters::validate(&parameters)?;
                         let constants = Self::constant_table(&parameters);
-                        Ok(Self { parameters, #input_value constants })
+                        let slope_constants = Self::slope_constant_table(&parameters);
+                        Ok(Self { parameters, #input_value constants, slope_constants })
                     }
 
                     /// The parameters.
@@ -187,6 +211,11 @@ impl Emission<'_> {
                         #table
                     }
 
+                    /// What depends on parameters only, of the Jacobian.
+                    fn slope_constant_table(parameters: &#parameters) -> [S; #slopes] {
+                        #slope_table
+                    }
+
                     #starting
                 }
 
@@ -196,8 +225,17 @@ impl Emission<'_> {
         }
     }
 
-    fn constant_table(&self) -> TokenStream {
-        let routine = &self.programs.dynamic.constants;
+    /// The functions of the running model with their operations.
+    fn costs(&self) -> Vec<(&str, Counts)> {
+        let routines = self.programs.dynamic.routines.iter().chain(&self.programs.jacobian.routines);
+        let routines = routines.map(|routine| (routine.name.as_str(), routine.counts));
+        let factored = ("eliminate", self.elimination.factorisation_counts());
+        let solved = ("substitute", self.elimination.substitution_counts());
+        routines.chain([factored, solved]).collect()
+    }
+
+    fn constant_table(&self, program: &Program) -> TokenStream {
+        let routine = &program.constants;
         let parameters = self.parameter_bindings(&[routine]);
         let (statements, results) = self.body(routine);
         quote! { #parameters #statements [#(#results),*] }
@@ -238,7 +276,7 @@ impl Emission<'_> {
         })
     }
 
-    /// Inputs and states that the routine uses.
+    /// Inputs, their slopes and states that the routine uses.
     fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
         bindings(&[routine], &|symbol| {
             let name = self.symbol_name(symbol);
@@ -250,6 +288,10 @@ impl Emission<'_> {
                 Symbol::Input(index) => {
                     let field = identifier(&self.equations.inputs[index as usize].name.text);
                     Some(quote!(let #name = self.inputs.#field.value(t);))
+                }
+                Symbol::Slope(index) => {
+                    let field = identifier(&self.equations.inputs[index as usize].name.text);
+                    Some(quote!(let #name = self.inputs.#field.slope(t);))
                 }
                 _ => None,
             }
@@ -269,6 +311,7 @@ impl Emission<'_> {
                 return quote!(u[#index]);
             }
             Symbol::Atom(index) => format_ident!("atom_{index}"),
+            Symbol::Slope(index) => format_ident!("slope_{}", self.equations.inputs[index as usize].name.text),
         };
         quote!(#ident)
     }
@@ -284,6 +327,7 @@ impl Emission<'_> {
                 let index = Literal::usize_unsuffixed(index as usize);
                 quote!(negative[#index])
             },
+            is_long: is_long(routine),
         };
         let results = routine.results.iter().map(|result| operand(result, &names)).collect();
         (statements(routine, &names), results)
@@ -291,11 +335,15 @@ impl Emission<'_> {
 
     /// The statements of a function of the running model, and its results.
     fn function(&self, index: usize) -> (TokenStream, Vec<TokenStream>) {
-        let routine = &self.programs.dynamic.routines[index];
+        self.running(&self.programs.dynamic.routines[index], &format_ident!("constants"))
+    }
+
+    /// The statements of a routine that reads states and this table of constants, and its results.
+    fn running(&self, routine: &Routine, constants: &Ident) -> (TokenStream, Vec<TokenStream>) {
         let bindings = self.dynamic_bindings(routine);
         let (statements, results) = self.body(routine);
         let body = quote! {
-            let c = &self.constants;
+            let c = &self.#constants;
             let [x] = &x.data.0;
             #bindings
             #statements
@@ -309,6 +357,7 @@ impl Emission<'_> {
         let (guard, guards) = self.function(1);
         let (project, projected) = self.function(3);
         let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        let linear = self.linear();
         quote! {
             #[allow(unused_variables)]
             impl<S: Scalar> ::bg_model::system::System<S, N, G> for #name<S> {
@@ -329,6 +378,47 @@ impl Emission<'_> {
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
+                #linear
+            }
+        }
+    }
+
+    /// The Jacobian with its sparsity, and the elimination along it.
+    fn linear(&self) -> TokenStream {
+        let places = self.jacobian.entries.iter().map(|entry| {
+            let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
+            quote!((#row, #column))
+        });
+        let (count, slots) = (self.jacobian.entries.len(), self.elimination.slots);
+        let routine = &self.programs.jacobian.routines[0];
+        let (derivative, derivatives) = self.running(routine, &format_ident!("slope_constants"));
+        let (entries, slopes) = derivatives.split_at(count);
+        let (factorisation, substitution) =
+            (elimination::factorisation(self.elimination), elimination::substitution(self.elimination));
+        quote! {
+            fn sparsity(&self) -> ::bg_model::linear::Sparsity {
+                static ENTRIES: [(u16, u16); #count] = [#(#places),*];
+                ::bg_model::linear::Sparsity::Places { entries: &ENTRIES, factors: #slots }
+            }
+            #[inline(never)]
+            fn jacobian(
+                &self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S], slope: &mut SVector<S, N>,
+            ) {
+                let entries: &mut [S; #count] = entries.try_into().expect("one entry for each place");
+                #derivative
+                *entries = [#(#entries),*];
+                slope.data.0 = [[#(#slopes),*]];
+            }
+            #[inline(never)]
+            fn eliminate<F: ::bg_model::linear::Field<S>>(&self, c: F, entries: &[S], factors: &mut [F]) -> bool {
+                let entries: &[S; #count] = entries.try_into().expect("one entry for each place");
+                let factors: &mut [F; #slots] = factors.try_into().expect("as many factors as the sparsity says");
+                #factorisation
+            }
+            #[inline(never)]
+            fn substitute<F: ::bg_model::linear::Field<S>>(&self, factors: &[F], b: &mut [F; N]) {
+                let factors: &[F; #slots] = factors.try_into().expect("as many factors as the sparsity says");
+                #substitution
             }
         }
     }
@@ -377,8 +467,12 @@ impl Emission<'_> {
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
-    const OWN: [&str; 10] = ["t", "x", "c", "u", "y", "dx", "negative", "guards", "state", "projected"];
+    const OWN: [&str; 13] =
+        ["t", "x", "c", "u", "v", "y", "dx", "negative", "guards", "state", "projected", "entries", "slope"];
     let mut used: BTreeSet<String> = OWN.into_iter().map(str::to_owned).collect();
+    for input in &equations.inputs {
+        used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));
+    }
     let mut identifiers = Vec::new();
     for (index, state) in equations.states.iter().enumerate() {
         let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };

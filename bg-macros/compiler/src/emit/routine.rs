@@ -1,8 +1,10 @@
 //! Straight-line code as tokens.
 //!
-//! In: a [`Routine`] and the tokens of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`.
+//! In: a [`Routine`] and the tokens of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`;
+//! in a long routine one array of all temporaries. In debug information each `let` is a scope inside the one before, and
+//! LLVM's stack overflows over some thousands of them; the array's places become registers like the `let`s.
 
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use super::items::number;
@@ -18,15 +20,29 @@ pub struct Names<'a> {
     pub constant: &'a dyn Fn(u32) -> TokenStream,
     /// The `bool` that says whether a switch's guard is negative.
     pub switch: &'a dyn Fn(u32) -> TokenStream,
+    /// Whether the temporaries are places of one array.
+    pub is_long: bool,
 }
 
-/// One `let` for each assignment of the routine.
+/// Routines with more assignments are long.
+const LONG: usize = 2000;
+
+/// Whether the temporaries of a routine are places of one array.
+pub fn is_long(routine: &Routine) -> bool {
+    routine.assignments.len() > LONG
+}
+
+/// The assignments of the routine.
 pub fn statements(routine: &Routine, names: &Names) -> TokenStream {
     let mut tokens = TokenStream::new();
+    let count = routine.assignments.len();
+    if names.is_long {
+        tokens.extend(quote! { let mut v = [S::from_f64(0.0); #count]; });
+    }
     for assignment in &routine.assignments {
-        let target = temporary(assignment.target);
+        let target = temporary(assignment.target, names);
         let value = operation(&assignment.operation, names);
-        tokens.extend(quote! { let #target = #value; });
+        tokens.extend(if names.is_long { quote!(#target = #value;) } else { quote!(let #target = #value;) });
     }
     tokens
 }
@@ -40,10 +56,7 @@ pub fn operand(operand: &Operand, names: &Names) -> TokenStream {
         }
         Operand::Symbol(symbol) => (names.symbol)(symbol),
         Operand::Constant(index) => (names.constant)(index),
-        Operand::Temporary(index) => {
-            let temporary = temporary(index);
-            quote! { #temporary }
-        }
+        Operand::Temporary(index) => temporary(index, names),
     }
 }
 
@@ -75,8 +88,13 @@ fn binary(left: TokenStream, operator: TokenStream, right: TokenStream) -> Token
     quote! { #left #operator #right }
 }
 
-fn temporary(index: u32) -> Ident {
-    format_ident!("v{index}")
+fn temporary(index: u32, names: &Names) -> TokenStream {
+    if names.is_long {
+        let index = Literal::u32_unsuffixed(index);
+        return quote!(v[#index]);
+    }
+    let name = format_ident!("v{index}");
+    quote!(#name)
 }
 
 /// The scalar's method for a function.
@@ -108,6 +126,7 @@ mod tests {
                 quote! { c[#index] }
             },
             switch: &|_| quote! { below },
+            is_long: is_long(routine),
         };
         let results = routine.results.iter().map(|result| operand(result, &names).to_string()).collect();
         (statements(routine, &names).to_string(), results)
@@ -133,6 +152,19 @@ mod tests {
         );
         assert_eq!(results, ["v4", "v5", "x0"]);
         assert_eq!(rendered(&program.constants).0, "let v0 = S :: from_f64 (1f64) / p ;");
+    }
+
+    #[test]
+    fn a_long_routine_has_one_array() {
+        let mut pool = Pool::new();
+        let x = pool.symbol(Symbol::State(0));
+        let last = (0..2001).fold(x, |value, _| pool.call(crate::expr::Function::Sin, &[value]));
+        let program = schedule(&mut pool, &[Request { name: "rate", roots: &[last] }]);
+        let (text, results) = rendered(&program.routines[0]);
+        assert!(text.starts_with(
+            "let mut v = [S :: from_f64 (0.0) ; 2001usize] ; v [0] = x0 . sin () ; v [1] = v [0] . sin () ;"
+        ));
+        assert_eq!(results, ["v [2000]"]);
     }
 
     #[test]

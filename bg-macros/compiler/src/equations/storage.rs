@@ -197,6 +197,7 @@ impl Signals<'_> {
                     inputs: &inputs,
                     unknowns: &unknowns,
                     atoms: &atoms,
+                    slopes: &[],
                     negative,
                 };
                 evaluate(&self.pool, roots, &environment)

@@ -19,6 +19,8 @@ pub struct Environment<'a> {
     pub unknowns: &'a [f64],
     /// Opaque quantities.
     pub atoms: &'a [f64],
+    /// Derivatives of the inputs with respect to time.
+    pub slopes: &'a [f64],
     /// Whether each switch's guard is below zero.
     pub negative: &'a [bool],
 }
@@ -32,6 +34,7 @@ impl Environment<'_> {
             Symbol::Input(index) => self.inputs[index as usize],
             Symbol::Unknown(index) => self.unknowns[index as usize],
             Symbol::Atom(index) => self.atoms[index as usize],
+            Symbol::Slope(index) => self.slopes[index as usize],
         }
     }
 }
@@ -104,8 +107,9 @@ mod tests {
             Symbol::Input(0),
             Symbol::Unknown(0),
             Symbol::Atom(0),
+            Symbol::Slope(0),
         ];
-        let [t, x, p, u, k, a] = symbols.map(|symbol| pool.symbol(symbol));
+        let [t, x, p, u, k, a, s] = symbols.map(|symbol| pool.symbol(symbol));
         let sum = pool.linear(1.0, &[(t, 2.0), (x, -3.0)]);
         let powers = pool.powi(u, -2);
         let product = pool.mul(p, powers);
@@ -118,11 +122,12 @@ mod tests {
             inputs: &[4.0],
             unknowns: &[1.0],
             atoms: &[1.0],
+            slopes: &[-7.0],
             negative: &[false, true],
         };
         assert_eq!(
-            evaluate(&pool, &[sum, product, angle, select], &environment),
-            [5.0, 0.5, std::f64::consts::FRAC_PI_4, 5.0]
+            evaluate(&pool, &[sum, product, angle, select, s], &environment),
+            [5.0, 0.5, std::f64::consts::FRAC_PI_4, 5.0, -7.0]
         );
         let positive = Environment { negative: &[true, false], ..environment };
         assert_eq!(evaluate(&pool, &[select], &positive), [0.5]);

@@ -21,6 +21,8 @@ pub enum Symbol {
     Unknown(u32),
     /// An opaque quantity, used in proofs.
     Atom(u32),
+    /// The derivative of an input with respect to time.
+    Slope(u32),
 }
 
 /// An elementary function.

@@ -72,8 +72,9 @@ impl Sweep<'_, '_> {
         }
     }
 
+    /// Whether the node itself is static; not where states only cancel in the graph's normal form.
     fn is_static(&self, id: Id) -> bool {
-        self.values[&id].core == ONE
+        self.values[&id] == Value { coefficient: id, core: ONE }
     }
 
     fn sum(&mut self, constant: f64, terms: impl Iterator<Item = (Id, f64)>) -> Value {

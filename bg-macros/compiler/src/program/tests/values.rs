@@ -148,6 +148,7 @@ fn random_graphs() {
                 inputs: &inputs,
                 unknowns: &unknowns,
                 atoms: &[],
+                slopes: &[],
                 negative: &negative,
             };
             assert_equal(&pool, &program, &requests, &environment);
@@ -301,4 +302,24 @@ fn large_mechanism_in_time() {
     let numbers: Vec<f64> = (0..200).map(|_| source.number()).collect();
     let environment = Environment { states: &numbers, parameters: &numbers, ..Environment::default() };
     assert_equal(&pool, &program, &requests, &environment);
+}
+
+#[test]
+fn states_that_cancel_in_normal_form_are_no_constants() {
+    let mut pool = Pool::new();
+    let [x, y, z] = states(&mut pool);
+    let (single_sum, double_sum) = (pool.sub(x, y), pool.linear(0.0, &[(x, 2.0), (y, -2.0)]));
+    let products = [pool.mul(single_sum, z), pool.mul(double_sum, z)];
+    let zero = pool.linear(0.0, &[(products[0], 2.0), (products[1], -1.0)]);
+    assert!(!pool.is_zero(zero));
+    let (opposite, product) = (pool.neg(zero), pool.mul(zero, z));
+    let sine = pool.call(Function::Sin, &[zero]);
+    let program = single(&mut pool, &[zero, opposite, product, sine]);
+    let operands = program.constants.assignments.iter().flat_map(|assignment| assignment.operation.operands());
+    let found: Vec<Operand> = operands.chain(program.constants.results.iter().copied()).collect();
+    let is_known = |operand: &Operand| {
+        matches!(operand, Operand::Number(_) | Operand::Temporary(_) | Operand::Symbol(Symbol::Parameter(_)))
+    };
+    assert!(found.iter().all(is_known), "{found:?}");
+    assert_eq!(program.routines[0].results[..2], [Operand::Number(0.0); 2]);
 }

@@ -1,7 +1,19 @@
 //! The number type of generated code: one source of rate functions for f64 and for anything that calculates like it.
+//!
+//! | type | for |
+//! |---|---|
+//! | `f64` | runs |
+//! | [`DoubleDouble`] | reference solutions, about 31 digits |
+//! | [`Dual`] | exact first derivatives along one direction |
+
+mod double_double;
+mod dual;
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+pub use double_double::DoubleDouble;
+pub use dual::Dual;
 
 /// A real number that generated code can calculate with.
 ///

@@ -1,0 +1,156 @@
+//! Eliminations of random patterns, interpreted step by step, beside dense elimination.
+
+use std::collections::BTreeSet;
+
+use super::*;
+
+/// Knuth's linear congruential generator MMIX (The Art of Computer Programming, volume 2, section 3.3.4).
+struct Source(u64);
+
+impl Source {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(self.0 >> 33).expect("31 bits fit") % end
+    }
+
+    fn number(&mut self) -> f64 {
+        self.below(2001) as f64 / 1000.0 - 1.0
+    }
+
+    /// Different places of a matrix of `n` rows, in any order.
+    fn places(&mut self, n: usize) -> Vec<(usize, usize)> {
+        let count = self.below(n * n.min(5) + 1);
+        let mut seen = BTreeSet::new();
+        let drawn = (0..count).map(|_| (self.below(n), self.below(n)));
+        drawn.filter(|&place| seen.insert(place)).collect()
+    }
+}
+
+/// The factors of I - c J by the steps, and how often each slot was entered.
+fn factors(elimination: &Elimination, c: f64, entries: &[f64]) -> Vec<f64> {
+    let mut slots = vec![f64::NAN; elimination.slots];
+    let one = |is_pivot: bool| if is_pivot { 1.0 } else { 0.0 };
+    for step in &elimination.factorisation {
+        match *step {
+            Step::Enter { slot, entry, is_pivot } => slots[slot] = one(is_pivot) - c * entries[entry],
+            Step::Fill { slot, product, is_pivot } => slots[slot] = one(is_pivot) - slots[product.0] * slots[product.1],
+            Step::Update { slot, product, .. } => slots[slot] -= slots[product.0] * slots[product.1],
+            Step::Invert { slot } => slots[slot] = 1.0 / slots[slot],
+            Step::Scale { slot, by } => slots[slot] *= slots[by],
+        }
+    }
+    slots
+}
+
+fn solve(elimination: &Elimination, slots: &[f64], b: &mut [f64]) {
+    for step in &elimination.substitution {
+        match *step {
+            Substep::Subtract { row, slot, column } => b[row] -= slots[slot] * b[column],
+            Substep::Scale { row, slot } => b[row] *= slots[slot],
+        }
+    }
+}
+
+/// A random Jacobian with small entries, so that no pivot of I - J is.
+fn draw(seed: u64) -> (usize, Vec<(usize, usize)>, Vec<f64>) {
+    let mut source = Source(seed);
+    let n = 1 + source.below(14);
+    let places = source.places(n);
+    let entries = places.iter().map(|_| source.number() / (2 * n) as f64).collect();
+    (n, places, entries)
+}
+
+/// The largest |(I - c J) y - b|.
+fn residual(places: &[(usize, usize)], entries: &[f64], c: f64, y: &[f64], b: &[f64]) -> f64 {
+    let mut left: Vec<f64> = y.iter().zip(b).map(|(y, b)| y - b).collect();
+    places.iter().zip(entries).for_each(|(&(row, column), entry)| left[row] -= c * entry * y[column]);
+    left.into_iter().fold(0.0, |largest, value| if value.abs() <= largest { largest } else { value.abs() })
+}
+
+#[test]
+fn steps_solve_the_system() {
+    for seed in 0..400 {
+        let (n, places, entries) = draw(seed);
+        let elimination = plan(n, &places);
+        let mut source = Source(seed + 1000);
+        let b: Vec<f64> = (0..n).map(|_| source.number()).collect();
+        for c in [0.0, 0.7, 1.0] {
+            let slots = factors(&elimination, c, &entries);
+            assert!(slots.iter().all(|value| value.is_finite()), "seed {seed}: a slot without a value");
+            let mut y = b.clone();
+            solve(&elimination, &slots, &mut y);
+            let residual = residual(&places, &entries, c, &y, &b);
+            assert!(residual < 1e-14, "seed {seed}: {residual:e}");
+        }
+    }
+}
+
+/// What dense elimination in the same order fills, all entries positive and the diagonal large, so that nothing cancels.
+fn dense_fill(n: usize, places: &[(usize, usize)], order: &[usize]) -> BTreeSet<(usize, usize)> {
+    let mut rows = vec![vec![false; n]; n];
+    places.iter().for_each(|&(row, column)| rows[row][column] = true);
+    let mut filled = BTreeSet::new();
+    for (at, &pivot) in order.iter().enumerate() {
+        for &row in &order[at + 1..] {
+            for &column in &order[at + 1..] {
+                if row != column && rows[row][pivot] && rows[pivot][column] && !rows[row][column] {
+                    rows[row][column] = true;
+                    filled.insert((row, column));
+                }
+            }
+        }
+    }
+    filled
+}
+
+#[test]
+fn fill_is_that_of_dense_elimination_and_never_above_the_natural_orders() {
+    let mut less = 0;
+    for seed in 0..400 {
+        let (n, places, _) = draw(seed);
+        let elimination = plan(n, &places);
+        let mut rows = elimination.order.clone();
+        rows.sort_unstable();
+        assert_eq!(rows, (0..n).collect::<Vec<_>>(), "seed {seed}: every row is a pivot's once");
+        assert_eq!(elimination.fill, dense_fill(n, &places, &elimination.order).len(), "seed {seed}");
+        let natural = steps::in_order((0..n).collect(), &places);
+        assert_eq!(natural.fill, dense_fill(n, &places, &natural.order).len(), "seed {seed}");
+        assert!(elimination.fill <= natural.fill, "seed {seed}");
+        less += usize::from(elimination.fill < natural.fill);
+    }
+    assert!(less > 100, "{less} orders fill less");
+}
+
+#[test]
+fn an_arrow_that_points_down_does_not_fill() {
+    let arrow: Vec<(usize, usize)> = (1..6).flat_map(|k| [(0, k), (k, 0)]).collect();
+    let elimination = plan(6, &arrow);
+    assert_eq!((elimination.fill, &elimination.order[4..]), (0, &[0, 5][..]));
+    assert_eq!(steps::in_order((0..6).collect(), &arrow).fill, 20);
+    // Five entries in L, five in U, and the last two pivots; the others are 1.
+    assert_eq!(elimination.slots, 12);
+    let counts = elimination.factorisation_counts();
+    assert_eq!((counts.multiplications, counts.additions, counts.divisions), (16, 6, 2));
+    let counts = elimination.substitution_counts();
+    assert_eq!((counts.multiplications, counts.additions, counts.divisions), (12, 10, 0));
+}
+
+#[test]
+fn a_pivot_that_is_one_costs_nothing() {
+    let elimination = plan(3, &[(0, 1), (1, 2), (2, 2)]);
+    let inverted = elimination.factorisation.iter().filter(|step| matches!(step, Step::Invert { .. })).count();
+    assert_eq!((inverted, elimination.slots), (1, 3));
+    assert!(plan(4, &[]).factorisation.is_empty() && plan(4, &[]).substitution.is_empty());
+}
+
+#[test]
+fn the_reciprocal_goes_to_the_shorter_side() {
+    let mut places = vec![(0, 0)];
+    places.extend((1..5).map(|k| (k, 0)));
+    places.push((0, 1));
+    places.extend((1..5).map(|k| (k, k)));
+    let elimination = steps::in_order((0..5).collect(), &places);
+    let scaled = elimination.factorisation.iter().filter(|step| matches!(step, Step::Scale { .. })).count();
+    // U has one entry in the first row, L has four in its column; column 1 has three below, row 1 none to the right.
+    assert_eq!(scaled, 1);
+}

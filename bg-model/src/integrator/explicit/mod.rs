@@ -1,0 +1,196 @@
+//! Explicit Runge-Kutta methods with an error estimate and a dense output: one core for all tableaus.
+//!
+//! In: a tableau and a step. Out: the state after it with an error estimate from embedded methods, and on request the
+//! states in between. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, sections
+//! II.1, II.4 and II.6; the tableaus name theirs.
+
+mod bs5;
+mod cfmr7;
+mod dense;
+mod dop853;
+#[cfg(test)]
+mod order;
+
+use std::marker::PhantomData;
+
+use nalgebra::SVector;
+
+pub use bs5::BogackiShampine;
+pub use cfmr7::CalvoFrancoMontijanoRandez;
+pub use dop853::DormandPrince;
+
+use super::tolerances::largest;
+use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
+
+/// The method of order 5(4) of Bogacki and Shampine: seven rates a step, one more if its dense output of order 5 is asked
+/// for.
+pub type Bs5<const N: usize> = Explicit<BogackiShampine, N>;
+
+/// The method of order 7(5) for oscillating solutions of Calvo, Franco, Montijano and Randez: nine rates a step, none more
+/// for its dense output of order 5.
+pub type Cfmr7<const N: usize> = Explicit<CalvoFrancoMontijanoRandez, N>;
+
+/// The method of order 8(5,3) of Dormand and Prince: twelve rates a step, three more if its dense output of order 7 is
+/// asked for.
+pub type Dop853<const N: usize> = Explicit<DormandPrince, N>;
+
+/// The non-zero weights of a linear combination of stages: each with its stage, in ascending order.
+pub type Row = &'static [(usize, f64)];
+
+/// The coefficients of a method.
+///
+/// Stages are counted from 0, the rate at the start of the step. Stage [`Tableau::END`] is the rate at its end; what comes
+/// behind serves the dense output only.
+pub trait Tableau {
+    /// The method's name.
+    const NAME: &'static str;
+    /// The power of the step with which the norm of the error estimate falls.
+    const ERROR_ORDER: f64;
+    /// The stage at the end of the step.
+    const END: usize;
+    /// The stages' instants, as parts of the step.
+    const C: &'static [f64];
+    /// The states at which the stages are evaluated.
+    const A: &'static [Row];
+    /// The state at the end of the step.
+    const B: Row = Self::A[Self::END];
+    /// The difference to the embedded method; without the stage at the end of the step, which is known only after it.
+    const ERROR: Row;
+    /// A second embedded method of lower order; empty if there is none.
+    const SECOND: Row = &[];
+    /// The coefficients of the dense output from the fourth on: see `dense`.
+    const DENSE: &'static [Row];
+}
+
+/// The most stages of a method, and the most coefficients of its dense output.
+const STAGES: usize = 16;
+const COEFFICIENTS: usize = 7;
+
+/// The rates of all stages.
+type Stages<const N: usize> = [SVector<f64, N>; STAGES];
+
+/// The explicit method of tableau `T`.
+#[derive(Clone, Debug)]
+pub struct Explicit<T, const N: usize> {
+    /// The stages' rates.
+    k: Stages<N>,
+    /// The dense output's coefficients.
+    polynomial: [SVector<f64, N>; COEFFICIENTS],
+    tableau: PhantomData<T>,
+}
+
+impl<T, const N: usize> Explicit<T, N> {
+    /// The method, its work space empty.
+    #[must_use]
+    pub fn new() -> Self {
+        let (k, polynomial) = ([SVector::zeros(); STAGES], [SVector::zeros(); COEFFICIENTS]);
+        Self { k, polynomial, tableau: PhantomData }
+    }
+}
+
+impl<T, const N: usize> Default for Explicit<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Entry `i` of the linear combination of the stages `k`, summed in the order of the stages.
+#[inline(always)]
+fn combine<const N: usize>(row: Row, k: &Stages<N>, i: usize) -> f64 {
+    // Adding to -0 changes nothing, not even the sign of a zero.
+    row.iter().fold(-0.0, |sum, (stage, weight)| sum + weight * k[*stage].data.0[0][i])
+}
+
+impl<T: Tableau, const N: usize> Explicit<T, N> {
+    /// Evaluates the stages from `first` up to `behind`. Written out, so that each finds its weights as constants.
+    #[inline(always)]
+    fn evaluate(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, first: usize, behind: usize) {
+        macro_rules! written_out {
+            ($($stage:literal)*) => { $(
+                if (first..behind).contains(&$stage) {
+                    self.evaluate_stage::<$stage>(flow, start, h);
+                }
+            )* };
+        }
+        written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
+    }
+
+    #[inline(always)]
+    fn evaluate_stage<const STAGE: usize>(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64) {
+        let mut x = [0.0; N];
+        for (i, x) in x.iter_mut().enumerate() {
+            *x = start.x.data.0[0][i] + h * combine(T::A[STAGE], &self.k, i);
+        }
+        flow.rate(start.t + T::C[STAGE] * h, &SVector::from(x), &mut self.k[STAGE]);
+    }
+
+    /// Writes the state at the end of the step and gives the norm of its error.
+    ///
+    /// The norm: h e1, with the largest e1 of the scaled differences to the embedded method. With a second one, whose
+    /// largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer, Norsett, Wanner, section II.10).
+    #[inline(always)]
+    fn finish_step(&self, start: &Point<N>, h: f64, scale: &Scale<N>, end: &mut SVector<f64, N>) -> f64 {
+        let (mut first, mut second) = ([0.0; N], [0.0; N]);
+        for i in 0..N {
+            let from = start.x.data.0[0][i];
+            let slope = combine(T::B, &self.k, i);
+            let to = from + h * slope;
+            let allowed = scale.allowed(i, from, to);
+            end.data.0[0][i] = to;
+            first[i] = (combine(T::ERROR, &self.k, i) / allowed).abs();
+            if !T::SECOND.is_empty() {
+                second[i] = ((slope - combine(T::SECOND, &self.k, i)) / allowed).abs();
+            }
+        }
+        let first = largest(&first);
+        if T::SECOND.is_empty() {
+            return h.abs() * first;
+        }
+        let second = largest(&second);
+        let both = first * first + 0.01 * second * second;
+        // Both differences vanish exactly at a state of rest.
+        if both == 0.0 { 0.0 } else { h.abs() * first * first / both.sqrt() }
+    }
+}
+
+impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
+    fn name(&self) -> &'static str {
+        T::NAME
+    }
+
+    fn control(&self) -> StepControl {
+        StepControl::Stabilised { order: T::ERROR_ORDER }
+    }
+
+    fn attempt(
+        &mut self,
+        flow: &mut impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        self.k[0] = start.rate;
+        self.evaluate(flow, start, h, 1, T::END);
+        self.finish_step(start, h, scale, end)
+    }
+
+    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+        let error = |i| (combine(T::ERROR, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs();
+        (0..N).fold(0, |largest, i| if error(i) > error(largest) { i } else { largest })
+    }
+
+    fn faulty_rate(&self) -> Option<(usize, f64)> {
+        self.k[1..T::END].iter().find_map(first_not_finite)
+    }
+
+    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+        self.k[T::END] = end.rate;
+        self.evaluate(flow, start, h, T::END + 1, T::A.len());
+        self.collect_polynomial(start, h, end);
+    }
+
+    fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        self.evaluate_polynomial(start, theta, x);
+    }
+}

@@ -1,0 +1,86 @@
+//! Gauss: the implicit method of order 6 that keeps energies, for long runs of conservative systems.
+//!
+//! In: the step, or none. Out: the state after it, in between the collocation polynomial, whose error falls with the
+//! fourth power of the step. Symmetric and symplectic: it keeps every quadratic invariant, such as momentum, angular
+//! momentum and the energy of a linear system, to rounding, and other energies without drift as long as the step is
+//! fixed. Every step is solved to rounding for that. Source: see `collocation`; Hairer, Lubich, Wanner, Geometric
+//! Numerical Integration, 2nd edition, sections IV.2 and VIII.6.
+
+use nalgebra::SVector;
+
+use super::collocation::{Collocation, GAUSS6};
+use super::{Flow, Method, Point, Scale, StepControl};
+
+/// Gauss with three stages, of order 6.
+#[derive(Clone, Debug)]
+pub struct Gauss6<const N: usize> {
+    core: Collocation<N, 3, 1>,
+    control: StepControl,
+}
+
+impl<const N: usize> Gauss6<N> {
+    /// The method with steps of `step` (s); the driver refuses a step that is not positive and finite.
+    #[must_use]
+    pub fn new(step: f64) -> Self {
+        Self { core: Collocation::new(&GAUSS6, true), control: StepControl::Fixed { step } }
+    }
+
+    /// The method with steps by the error estimate. Quadratic invariants are kept, other energies drift.
+    #[must_use]
+    pub fn adaptive() -> Self {
+        Self { core: Collocation::new(&GAUSS6, true), control: StepControl::Predictive { order: 4.0 } }
+    }
+}
+
+impl<const N: usize> Method<N> for Gauss6<N> {
+    fn name(&self) -> &'static str {
+        "Gauss 6"
+    }
+
+    fn control(&self) -> StepControl {
+        self.control
+    }
+
+    fn attempt(
+        &mut self,
+        flow: &mut impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        let error = match self.core.solve(flow, start, h, scale) {
+            Ok(()) => {
+                *end = SVector::from_fn(|i, _| start.x[i] + self.core.quadrature(i, h));
+                match self.control {
+                    StepControl::Fixed { .. } => 0.0,
+                    _ => self.core.estimate(flow, start, h, scale, end),
+                }
+            }
+            Err(error) => error,
+        };
+        self.core.conclude(error)
+    }
+
+    fn advance(&mut self) {
+        self.core.advance();
+    }
+
+    fn restart(&mut self) {
+        self.core.restart();
+    }
+
+    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+        self.core.largest_error(start, scale, end)
+    }
+
+    fn faulty_rate(&self) -> Option<(usize, f64)> {
+        self.core.faulty_rate()
+    }
+
+    fn prepare_dense(&mut self, _flow: &mut impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
+
+    fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        self.core.dense(start, theta, x);
+    }
+}

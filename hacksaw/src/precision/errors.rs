@@ -1,0 +1,171 @@
+//! How far a trajectory is from a reference, by kind of quantity.
+//!
+//! In: a trajectory and a reference with units. Out: the largest and the root mean square error of poses, momenta and
+//! forces, over the reference's instants and the columns that both have. An orientation, nine columns, counts as one: the
+//! angle of the rotation between the two.
+
+use std::f64::consts::{SQRT_2, TAU};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::trajectory::{LINKS, Trajectory, TrajectoryError};
+
+/// A trajectory that cannot be compared with a reference.
+#[derive(Debug, Error)]
+pub enum Incomparable {
+    /// It lacks one of the reference's instants.
+    #[error("the trajectory has no sample at t = {0} s")]
+    MissingInstant(f64),
+    /// A column cannot be read.
+    #[error(transparent)]
+    Trajectory(#[from] TrajectoryError),
+}
+
+/// Errors of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measure {
+    /// The largest.
+    pub largest: f64,
+    /// The root of the mean square over instants and columns.
+    pub l2: f64,
+}
+
+/// The errors of a trajectory; nothing of a kind that the two do not have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Positions (m), angles and orientations (rad).
+    pub poses: Option<Measure>,
+    /// Momenta (kg m/s) and angular momenta (kg m^2/s).
+    pub momenta: Option<Measure>,
+    /// Forces (N).
+    pub forces: Option<Measure>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Pose,
+    Momentum,
+    Force,
+}
+
+/// The kind of an output, if its errors count.
+fn kind(name: &str, unit: &str) -> Option<Kind> {
+    match unit {
+        "m" if name.starts_with("gap_") => None,
+        "m" | "rad" => Some(Kind::Pose),
+        "kg*m/s" | "N*s" | "kg*m^2/s" | "N*m*s" => Some(Kind::Momentum),
+        "N" => Some(Kind::Force),
+        _ => None,
+    }
+}
+
+impl Errors {
+    /// The errors of `trajectory` at all instants of `reference`, whose columns have units.
+    ///
+    /// # Errors
+    /// [`Incomparable::MissingInstant`].
+    pub fn between(trajectory: &Trajectory, reference: &Trajectory) -> Result<Self, Incomparable> {
+        let ours = trajectory.at(&reference.times);
+        if let Some(missing) = reference.times.iter().find(|t| !ours.times.contains(t)) {
+            return Err(Incomparable::MissingInstant(*missing));
+        }
+        let mut differences: [Vec<f64>; 3] = Default::default();
+        for column in reference.columns.iter().filter(|column| ours.has(&column.name)) {
+            let Some(kind) = kind(&column.name, &column.unit) else { continue };
+            let turn = if column.unit == "rad" { TAU } else { f64::INFINITY };
+            let (ours, theirs) = (ours.series(&column.name)?, reference.series(&column.name)?);
+            differences[kind as usize].extend(ours.iter().zip(theirs).map(|(a, b)| modulo(a - b, turn).abs()));
+        }
+        for link in LINKS.iter().filter(|link| [&ours, reference].iter().all(|side| has_orientation(side, **link))) {
+            differences[Kind::Pose as usize].extend(rotations(&ours, reference, *link)?);
+        }
+        let [poses, momenta, forces] = differences.map(|errors| measure(&errors));
+        Ok(Self { poses, momenta, forces })
+    }
+}
+
+/// `difference` less whole turns.
+fn modulo(difference: f64, turn: f64) -> f64 {
+    if turn.is_finite() { difference - turn * (difference / turn).round() } else { difference }
+}
+
+fn components(link: u8) -> impl Iterator<Item = String> {
+    (1..=3).flat_map(move |row| (1..=3).map(move |column| format!("R{link}_{row}{column}")))
+}
+
+fn has_orientation(trajectory: &Trajectory, link: u8) -> bool {
+    components(link).all(|name| trajectory.has(&name))
+}
+
+/// The angle between the orientations of `link`, rad, at each instant.
+fn rotations(a: &Trajectory, b: &Trajectory, link: u8) -> Result<Vec<f64>, TrajectoryError> {
+    let mut squares = vec![0.0; a.times.len()];
+    for name in components(link) {
+        for (square, (a, b)) in squares.iter_mut().zip(a.series(&name)?.iter().zip(b.series(&name)?)) {
+            *square += (a - b) * (a - b);
+        }
+    }
+    // Frobenius norm of A - B: 2 sqrt 2 sin(angle / 2).
+    Ok(squares.iter().map(|square| 2.0 * (square.sqrt() / (2.0 * SQRT_2)).min(1.0).asin()).collect())
+}
+
+fn measure(errors: &[f64]) -> Option<Measure> {
+    // A NaN is the largest of all.
+    let largest = errors.iter().fold(0.0, |most, &error| if error > most || error.is_nan() { error } else { most });
+    let square = errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
+    (!errors.is_empty()).then(|| Measure { largest, l2: square.sqrt() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::Column;
+
+    fn trajectory(columns: &[(&str, &str)], rows: &[(f64, Vec<f64>)]) -> Trajectory {
+        let column = |(name, unit): &(&str, &str)| Column { name: (*name).to_owned(), unit: (*unit).to_owned() };
+        let mut trajectory = Trajectory::new(columns.iter().map(column).collect());
+        rows.iter().for_each(|(t, row)| trajectory.push(*t, row.clone()));
+        trajectory
+    }
+
+    #[test]
+    fn errors_are_sorted_by_kind() {
+        let columns = [("C2_x", "m"), ("a", "rad"), ("gap_12", "m"), ("p2_x", "kg*m/s"), ("E", "J"), ("F", "N")];
+        let reference = trajectory(&columns, &[(0.0, vec![0.0; 6]), (1.0, vec![1.0, 3.125, 9.0, 2.0, 5.0, -4.0])]);
+        let ours = [(0.0, vec![0.0; 6]), (0.5, vec![7.0; 6]), (1.0, vec![1.5, 3.125 - TAU, 0.0, 2.0, 0.0, -1.0])];
+        let errors = Errors::between(&trajectory(&columns, &ours), &reference).unwrap();
+        // Poses: 0, 0, 1/2, 0 (a whole turn); momenta: none; forces: 0, 3.
+        let poses = errors.poses.unwrap();
+        assert!((poses.largest - 0.5).abs() < 1e-15 && (poses.l2 - 0.25).abs() < 1e-15, "{poses:?}");
+        assert_eq!(errors.momenta, Some(Measure { largest: 0.0, l2: 0.0 }));
+        assert_eq!(errors.forces, Some(Measure { largest: 3.0, l2: 4.5_f64.sqrt() }));
+    }
+
+    #[test]
+    fn orientations_differ_by_an_angle() {
+        let names: Vec<String> = components(3).collect();
+        let columns: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
+        let turned = |angle: f64| {
+            let (s, c) = angle.sin_cos();
+            trajectory(&columns, &[(0.0, vec![c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0])])
+        };
+        for angle in [1e-9, 0.1, 3.0] {
+            let errors = Errors::between(&turned(0.3 + angle), &turned(0.3)).unwrap();
+            let poses = errors.poses.unwrap();
+            assert!((poses.largest - angle).abs() < 1e-15 + 1e-8 * angle, "{poses:?}");
+            assert_eq!((errors.momenta, errors.forces), (None, None));
+        }
+    }
+
+    #[test]
+    fn a_missing_instant_and_a_nan_do_not_pass() {
+        let columns = [("C2_x", "m")];
+        let reference = trajectory(&columns, &[(0.0, vec![0.0]), (1.0, vec![1.0])]);
+        let short = trajectory(&columns, &[(0.0, vec![0.0])]);
+        assert!(matches!(Errors::between(&short, &reference), Err(Incomparable::MissingInstant(1.0))));
+        let broken = trajectory(&columns, &[(0.0, vec![f64::NAN]), (1.0, vec![1.0])]);
+        let poses = Errors::between(&broken, &reference).unwrap().poses.unwrap();
+        assert!(poses.largest.is_nan() && poses.l2.is_nan());
+    }
+}

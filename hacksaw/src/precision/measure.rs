@@ -1,0 +1,183 @@
+//! One point of a work-precision diagram: a case run by an integrator at a tolerance, again and again.
+//!
+//! In: case, integrator, tolerance or step. Out: its true errors against the reference and what it cost. Times are of the
+//! run with the outputs at the reference's instants, without the building of the model.
+
+use bg_model::assembly::AssemblyError;
+use bg_model::integrator::Tolerances;
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::simulation::{Samples, Settings};
+use bg_model::system::Model;
+use serde::Serialize;
+use thiserror::Error;
+
+use super::case::Case;
+use super::errors::{Errors, Incomparable};
+use crate::methods::Integrator;
+use crate::run::{Simulation, record};
+use crate::scenes::{Fixed, Visitor};
+use crate::trajectory::Trajectory;
+
+/// How exact a run is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Setting {
+    /// Tolerances.
+    Tolerance {
+        /// Relative.
+        rtol: f64,
+        /// Absolute, in each state's SI unit.
+        atol: f64,
+    },
+    /// The step, s, of a fixed-step method.
+    Step(f64),
+}
+
+/// A point of the diagram.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Entry {
+    /// The case.
+    pub case: String,
+    /// The integrator.
+    pub integrator: String,
+    /// Relative tolerance.
+    pub rtol: Option<f64>,
+    /// Absolute tolerance, SI.
+    pub atol: Option<f64>,
+    /// The step of a fixed-step method, s.
+    pub fixed_step_s: Option<f64>,
+    /// The errors; nothing where the run failed.
+    pub errors: Option<Errors>,
+    /// Why it failed.
+    pub failure: Option<String>,
+    /// The least wall time of the repeats, s.
+    pub wall_minimum_s: f64,
+    /// The median of the wall times, s.
+    pub wall_median_s: f64,
+    /// The number of repeats.
+    pub repeats: usize,
+    /// What a run cost in counts, which do not depend on the machine.
+    pub counts: Counts,
+}
+
+/// Work in counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected steps.
+    pub rejected: u64,
+    /// Evaluations of the rate.
+    pub rates: u64,
+    /// Evaluations of the Jacobian.
+    pub jacobians: u64,
+    /// Factorisations.
+    pub factorisations: u64,
+    /// Those of them with row exchanges.
+    pub pivoted: u64,
+    /// Switching events.
+    pub events: u64,
+}
+
+/// A case that cannot be measured.
+#[derive(Debug, Error)]
+pub enum MeasureError {
+    /// A parameter.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// A parameter that the scene keeps.
+    #[error(transparent)]
+    Fixed(#[from] Fixed),
+    /// The start.
+    #[error(transparent)]
+    Start(#[from] AssemblyError),
+    /// The trajectory does not fit the reference.
+    #[error(transparent)]
+    Incomparable(#[from] Incomparable),
+}
+
+/// Runs `case` `repeats` times and holds it against `reference`.
+///
+/// # Errors
+/// The case cannot be built; a run that fails is no error here.
+pub fn measure(
+    case: Case,
+    integrator: Integrator,
+    setting: Setting,
+    repeats: usize,
+    reference: &Trajectory,
+) -> Result<Entry, MeasureError> {
+    let repeats = repeats.max(1);
+    let mut runs = Vec::with_capacity(repeats);
+    let mut first = None;
+    for _ in 0..repeats {
+        let simulation = case.scene().visit(Once { case, integrator, setting, reference })?;
+        runs.push(simulation.effort.wall.as_secs_f64());
+        first.get_or_insert(simulation);
+    }
+    runs.sort_unstable_by(f64::total_cmp);
+    let Simulation { trajectory, effort, failure } = first.expect("there is a run");
+    let errors = if failure.is_none() { Some(Errors::between(&trajectory, reference)?) } else { None };
+    let (rtol, atol, step) = match setting {
+        Setting::Tolerance { rtol, atol } => (Some(rtol), Some(atol), None),
+        Setting::Step(step) => (None, None, Some(step)),
+    };
+    Ok(Entry {
+        case: case.name(),
+        integrator: integrator.name(),
+        rtol,
+        atol,
+        fixed_step_s: step,
+        errors,
+        failure,
+        wall_minimum_s: runs[0],
+        wall_median_s: runs[runs.len() / 2],
+        repeats,
+        counts: Counts {
+            steps: effort.steps,
+            rejected: effort.rejected,
+            rates: effort.rate_evaluations,
+            jacobians: effort.jacobian_evaluations,
+            factorisations: effort.factorisations,
+            pivoted: effort.pivoted_factorisations,
+            events: effort.events,
+        },
+    })
+}
+
+/// One run at the reference's instants.
+struct Once<'a> {
+    case: Case,
+    integrator: Integrator,
+    setting: Setting,
+    reference: &'a Trajectory,
+}
+
+impl Visitor for Once<'_> {
+    type Output = Result<Simulation, MeasureError>;
+
+    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
+        self,
+        new: fn(P) -> Result<Mo, ParameterError>,
+    ) -> Self::Output
+    where
+        P: Parameters + 'static,
+        Mo: Model<f64, N, G, M> + 'static,
+    {
+        /// More than any method needs that is worth its time.
+        const LIMIT: u64 = 20_000_000;
+        let model = new(self.case.scene().parameters(&self.case.reference().parameters())?)?;
+        // Each kind of method takes one of them.
+        let (tolerances, step) = match self.setting {
+            Setting::Tolerance { rtol, atol } => (Tolerances::new(rtol, atol), f64::NAN),
+            Setting::Step(step) => (Tolerances::default(), step),
+        };
+        let settings = Settings {
+            tolerances,
+            samples: Samples::At(self.reference.times.clone()),
+            step_limit: LIMIT,
+            ..Settings::default()
+        };
+        let t_end = self.reference.times.last().copied().unwrap_or(0.0);
+        record(&model, self.integrator, step, t_end, &settings, &mut |_| {}).map_err(Into::into)
+    }
+}

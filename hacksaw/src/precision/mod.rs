@@ -1,0 +1,8 @@
+//! How exact a run is, and what that costs: reference solutions, the distance of a trajectory from them, and the
+//! measurements of `hacksaw precision`.
+
+pub mod case;
+pub mod errors;
+pub mod measure;
+pub mod reference;
+pub mod report;

@@ -1,0 +1,66 @@
+//! What an error costs: true errors against the stored references and exact counts of some runs.
+//!
+//! Pinned; to be renewed only where an integrator, the step control or the generated code was meant to change.
+
+use hacksaw::methods::Integrator;
+use hacksaw::precision::case::Case;
+use hacksaw::precision::measure::{Counts, Entry, Setting, measure};
+use hacksaw::trajectory::Trajectory;
+
+fn tolerance(rtol: f64) -> Setting {
+    Setting::Tolerance { rtol, atol: 0.1 * rtol }
+}
+
+/// The largest pose error, m or rad, to two digits.
+fn error(entry: &Entry) -> String {
+    let poses = entry.errors.and_then(|errors| errors.poses).expect("the run reached its end");
+    format!("{:.1e}", poses.largest)
+}
+
+/// Steps, rejected, rates, Jacobians, factorisations, events.
+fn counts(entry: &Entry) -> [u64; 6] {
+    let Counts { steps, rejected, rates, jacobians, factorisations, pivoted, events } = entry.counts;
+    assert_eq!(pivoted, 0);
+    [steps, rejected, rates, jacobians, factorisations, events]
+}
+
+/// The first `rows` rows.
+fn beginning(reference: &Trajectory, rows: usize) -> Trajectory {
+    reference.at(&reference.times[..rows])
+}
+
+#[test]
+fn errors_and_counts_are_pinned() {
+    let expected: [(Case, Integrator, f64, &str, [u64; 6]); 4] = [
+        (Case::Paper, Integrator::Cfmr7, 1e-5, "2.2e-7", [17385, 8, 160_469, 0, 0, 60]),
+        (Case::Paper, Integrator::Auto, 1e-6, "3.7e-7", [15094, 128, 190_435, 10, 30, 60]),
+        (Case::Rigid, Integrator::Auto, 1e-6, "4.9e-6", [1805, 382, 35715, 6, 18, 96]),
+        (Case::FullOffset, Integrator::Auto, 1e-3, "3.7e-3", [2907, 413, 88927, 2680, 10173, 58]),
+    ];
+    for (case, method, rtol, expected_error, expected) in expected {
+        let entry = measure(case, method, tolerance(rtol), 1, &case.reference().load()).unwrap();
+        assert_eq!((error(&entry).as_str(), counts(&entry)), (expected_error, expected), "{case:?} {method:?}");
+    }
+}
+
+#[test]
+fn the_error_is_proportional_to_the_tolerance_over_eight_decades() {
+    let reference = beginning(&Case::Paper.reference().load(), 101);
+    for exponent in [-4, -6, -8, -10, -12] {
+        let rtol = 10.0_f64.powi(exponent);
+        let entry = measure(Case::Paper, Integrator::Dop853, tolerance(rtol), 1, &reference).unwrap();
+        let ratio = entry.errors.unwrap().poses.unwrap().largest / rtol;
+        assert!((0.02..2.0).contains(&ratio), "1e{exponent}: {ratio}");
+    }
+}
+
+#[test]
+fn every_integrator_approaches_the_reference() {
+    let reference = beginning(&Case::Paper.reference().load(), 21);
+    for method in <Integrator as clap::ValueEnum>::value_variants() {
+        let setting = if method.has_fixed_step() { Setting::Step(1e-5) } else { tolerance(1e-7) };
+        let entry = measure(Case::Paper, *method, setting, 1, &reference).unwrap();
+        let poses = entry.errors.expect("the run reached its end").poses.unwrap();
+        assert!(poses.largest < 1e-6, "{}: {:e}", method.name(), poses.largest);
+    }
+}

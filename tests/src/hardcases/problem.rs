@@ -1,0 +1,115 @@
+//! A problem with its number of states forgotten, so that problems of different size stand in one list.
+//!
+//! In: a system, its start and what is watched of it. Out: a run by any integrator, as rows of what was watched.
+
+use bg_model::failure::Cause;
+use bg_model::integrator::{AnyMethod, Tolerances};
+use bg_model::nalgebra::SVector;
+use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use bg_model::statistics::Statistics;
+use bg_model::system::{Model, System};
+use hacksaw::methods::Integrator;
+
+/// What a run is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// The relative tolerance.
+    pub relative: f64,
+    /// The absolute tolerance of all states.
+    pub absolute: f64,
+    /// The step of a fixed-step method.
+    pub fixed_step: f64,
+    /// First and largest step of a method with error control, which loose tolerances make a fixed-step method.
+    pub forced_step: Option<f64>,
+    /// The instants at which rows are wanted; the last is the end.
+    pub instants: &'a [f64],
+    /// The most attempted steps.
+    pub limit: u64,
+}
+
+/// What a run gave.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// What was watched, at each instant that was reached.
+    pub rows: Vec<Vec<f64>>,
+    /// What it cost.
+    pub statistics: Statistics,
+    /// Why it stopped before its end.
+    pub failure: Option<Cause>,
+}
+
+/// Something to run.
+pub trait Problem {
+    /// The number of states.
+    fn states(&self) -> usize;
+
+    /// Runs it from t = 0 with `integrator`.
+    fn run(&self, integrator: Integrator, request: &Request) -> Run;
+}
+
+/// A system, its start, and what is watched of it at an instant.
+pub struct Watched<Sys, F, const N: usize, const G: usize> {
+    system: Sys,
+    start: SVector<f64, N>,
+    watch: F,
+}
+
+/// A problem whose states are watched as they are.
+#[must_use]
+pub fn states<Sys, const N: usize, const G: usize>(system: Sys, start: [f64; N]) -> Box<dyn Problem>
+where
+    Sys: System<f64, N, G> + 'static,
+{
+    let watch = |_: &Sys, _: f64, x: &SVector<f64, N>, _: &[bool; G]| x.as_slice().to_vec();
+    Box::new(Watched { system, start: SVector::from(start), watch })
+}
+
+/// A problem of a generated model of which `watch` makes something of the outputs.
+///
+/// # Panics
+/// The start does not close.
+#[must_use]
+pub fn outputs<Mo, F, const N: usize, const G: usize, const M: usize>(model: Mo, watch: F) -> Box<dyn Problem>
+where
+    Mo: Model<f64, N, G, M> + 'static,
+    F: Fn(&[f64; M]) -> Vec<f64> + 'static,
+{
+    let start = model.start().expect("the mechanism closes");
+    let watch = move |model: &Mo, t: f64, x: &SVector<f64, N>, negative: &[bool; G]| {
+        let mut y = SVector::<f64, M>::zeros();
+        model.outputs(t, x, negative, &mut y);
+        watch(&y.data.0[0])
+    };
+    Box::new(Watched { system: model, start, watch })
+}
+
+impl<Sys, F, const N: usize, const G: usize> Problem for Watched<Sys, F, N, G>
+where
+    Sys: System<f64, N, G>,
+    F: Fn(&Sys, f64, &SVector<f64, N>, &[bool; G]) -> Vec<f64>,
+{
+    fn states(&self) -> usize {
+        N
+    }
+
+    fn run(&self, integrator: Integrator, request: &Request) -> Run {
+        let Self { system, start, watch } = self;
+        let mut method: AnyMethod<N> = integrator.method(request.fixed_step);
+        let settings = Settings {
+            tolerances: Tolerances::new(request.relative, request.absolute),
+            first_step: request.forced_step,
+            largest_step: request.forced_step.unwrap_or(f64::INFINITY),
+            step_limit: request.limit,
+            samples: Samples::At(request.instants.to_vec()),
+        };
+        let span = Span { t0: 0.0, t_end: request.instants.last().copied().unwrap_or(0.0) };
+        let mut rows = Vec::with_capacity(request.instants.len());
+        let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &[bool; G]| {
+            rows.push(watch(system, t, x, negative));
+        });
+        match integrate(system, &mut method, start, span, &settings, &mut observer) {
+            Ok(finish) => Run { rows, statistics: finish.statistics, failure: None },
+            Err(failure) => Run { rows, statistics: failure.last.statistics, failure: Some(failure.cause) },
+        }
+    }
+}
