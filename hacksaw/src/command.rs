@@ -132,7 +132,7 @@ struct PrecisionArguments {
         long,
         value_name = "NUMBER",
         value_delimiter = ',',
-        default_values_t = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12]
+        default_values = ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10", "1e-11", "1e-12"]
     )]
     rtol: Vec<f64>,
 
@@ -141,10 +141,10 @@ struct PrecisionArguments {
     atol_ratio: f64,
 
     /// Steps of integrators with a fixed step, s
-    #[arg(long, value_name = "SECONDS", value_delimiter = ',', default_values_t = [2e-4, 1e-4, 5e-5, 2e-5])]
+    #[arg(long, value_name = "SECONDS", value_delimiter = ',', default_values = ["2e-4", "1e-4", "5e-5", "2e-5"])]
     fixed_step: Vec<f64>,
 
-    /// Runs of each point; the least and the median of their times count
+    /// Runs of each point, within two seconds; the least and the median of their times count
     #[arg(long, value_name = "COUNT", default_value_t = 5)]
     repeats: usize,
 
