@@ -9,7 +9,7 @@ use quote::{format_ident, quote};
 
 use super::items::number;
 use crate::expr::{Function, Symbol};
-use crate::program::{Operand, Operation, Routine};
+use crate::program::{Assignment, Operand, Operation, Routine};
 
 /// The tokens of what a routine refers to.
 #[derive(Clone, Copy)]
@@ -34,12 +34,16 @@ pub fn is_long(routine: &Routine) -> bool {
 
 /// The assignments of the routine.
 pub fn statements(routine: &Routine, names: &Names) -> TokenStream {
-    let mut tokens = TokenStream::new();
     let count = routine.assignments.len();
-    if names.is_long {
-        tokens.extend(quote! { let mut v = [S::from_f64(0.0); #count]; });
-    }
-    for assignment in &routine.assignments {
+    let array = names.is_long.then(|| quote! { let mut v = [S::from_f64(0.0); #count]; });
+    let assignments = assignments(&routine.assignments, names);
+    quote! { #array #assignments }
+}
+
+/// These assignments; in a long routine `v` is there already.
+pub fn assignments(of: &[Assignment], names: &Names) -> TokenStream {
+    let mut tokens = TokenStream::new();
+    for assignment in of {
         let target = temporary(assignment.target, names);
         let value = operation(&assignment.operation, names);
         tokens.extend(if names.is_long { quote!(#target = #value;) } else { quote!(let #target = #value;) });
