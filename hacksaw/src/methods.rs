@@ -21,7 +21,7 @@ pub enum Integrator {
     Rodas5p,
     /// Implicit, order 5, for stiff systems
     Radau5,
-    /// Implicit, order 9, for stiff systems at small tolerances
+    /// Implicit, order 9, for stiff systems
     Radau9,
     /// Explicit, order 4, fixed step
     Rk4,

@@ -17,9 +17,9 @@ pub struct Radau<const N: usize, const S: usize, const P: usize> {
 
 /// Radau IIA of order 5.
 pub type Radau5<const N: usize> = Radau<N, 3, 1>;
-/// Radau IIA of order 9, for tolerances below about 1e-8.
+/// Radau IIA of order 9: on the hacksaw with the rod off cheaper than order 5 from a pose error of 1e-5 down.
 pub type Radau9<const N: usize> = Radau<N, 5, 2>;
-/// Radau IIA of order 13, for the tightest tolerances.
+/// Radau IIA of order 13.
 pub type Radau13<const N: usize> = Radau<N, 7, 3>;
 
 impl<const N: usize> Radau<N, 3, 1> {
