@@ -11,11 +11,6 @@ use bg_model::simulation::{Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use problems::*;
 
-/// The observed orders: slopes of the errors over the steps in logarithms, from each step to half of it.
-fn orders(errors: &[f64]) -> Vec<f64> {
-    errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect()
-}
-
 fn assert_orders(errors: &[f64], expected: std::ops::Range<f64>) {
     let found = orders(errors);
     assert!(found.iter().all(|order| expected.contains(order)), "{found:?}: {errors:?}");

@@ -85,22 +85,10 @@ pub struct Simulation {
 pub struct Effort {
     /// The states that are integrated.
     pub states: usize,
-    /// Accepted steps.
-    pub steps: u64,
-    /// Rejected steps.
-    pub rejected: u64,
-    /// Evaluations of the rate function.
-    pub rate_evaluations: u64,
-    /// Evaluations of the Jacobian.
-    pub jacobian_evaluations: u64,
-    /// Factorisations of I - c J.
-    pub factorisations: u64,
-    /// Those of them that needed row exchanges because a pivot in the planned order was too small.
-    pub pivoted_factorisations: u64,
+    /// Steps, evaluations, factorisations, events.
+    pub statistics: Statistics,
     /// The methods that made the steps, from when (s) on; the first from the start.
     pub methods: Vec<Change>,
-    /// Switchings: sign changes of a guard.
-    pub events: u64,
     /// The times of the switchings, s.
     pub event_times: Vec<f64>,
     /// Time on the wall clock.
@@ -167,14 +155,8 @@ where
     let Recorder { trajectory, event_times, .. } = recorder;
     let effort = Effort {
         states: N,
-        steps: statistics.steps,
-        rejected: statistics.rejected,
-        rate_evaluations: statistics.rate_evaluations,
-        jacobian_evaluations: statistics.jacobian_evaluations,
-        factorisations: statistics.factorisations,
-        pivoted_factorisations: statistics.pivoted_factorisations,
+        statistics,
         methods: std::iter::once(first).chain(method.changes().iter().copied()).collect(),
-        events: statistics.events,
         event_times,
         wall: clock.elapsed(),
     };

@@ -91,6 +91,7 @@ impl Summary {
         checks: Vec<Check>,
     ) -> Result<Self, TrajectoryError> {
         let (trajectory, effort) = (&simulation.trajectory, &simulation.effort);
+        let statistics = &effort.statistics;
         let reached = trajectory.times.last().copied().unwrap_or(0.0);
         let wall = effort.wall.as_secs_f64();
         let energy = trajectory.has("supplied_energy").then(|| Energy::of(trajectory)).transpose()?;
@@ -106,13 +107,13 @@ impl Summary {
             atol: settings.atol,
             failure: simulation.failure.clone(),
             states: effort.states,
-            steps: effort.steps,
-            rejected: effort.rejected,
-            rate_evaluations: effort.rate_evaluations,
-            jacobian_evaluations: effort.jacobian_evaluations,
-            factorisations: effort.factorisations,
-            pivoted_factorisations: effort.pivoted_factorisations,
-            events: effort.events,
+            steps: statistics.steps,
+            rejected: statistics.rejected,
+            rate_evaluations: statistics.rate_evaluations,
+            jacobian_evaluations: statistics.jacobian_evaluations,
+            factorisations: statistics.factorisations,
+            pivoted_factorisations: statistics.pivoted_factorisations,
+            events: statistics.events,
             wall_time_s: wall,
             times_real_time: reached / wall,
             energy_residual: with_supply.map(|energy| energy.residual / energy.supplied.abs()),

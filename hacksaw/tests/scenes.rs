@@ -44,8 +44,8 @@ fn check(scene: Scene, values: &HacksawParameters, t_end: f64) -> Agreement {
     let agreement = compare(scene, values, Steps::Equal(STEP), t_end, &instants).unwrap();
     let outputs = scene.description().outputs.len();
     assert_eq!(agreement.deviations.len(), outputs, "every output of {scene:?} is compared");
-    assert_eq!(agreement.scene.effort.steps, agreement.literal.effort.steps);
-    assert_eq!(agreement.scene.effort.events, agreement.literal.effort.events);
+    assert_eq!(agreement.scene.effort.statistics.steps, agreement.literal.effort.statistics.steps);
+    assert_eq!(agreement.scene.effort.statistics.events, agreement.literal.effort.statistics.events);
     for deviation in &agreement.deviations {
         let relative = deviation.largest / deviation.magnitude.max(1.0);
         assert!(
@@ -98,7 +98,7 @@ fn with_steps_by_the_error_only_rounding_in_the_estimate_tells_the_scenes_apart(
         let instants = sample_times(t_end / 50.0, t_end);
         let steps = Steps::ByError { rtol: 1e-10, atol: 1e-14 };
         let agreement = compare(scene, &HacksawParameters::default(), steps, t_end, &instants).unwrap();
-        assert_eq!(agreement.scene.effort.events, agreement.literal.effort.events);
+        assert_eq!(agreement.scene.effort.statistics.events, agreement.literal.effort.statistics.events);
         // Measured over 5 s: 5e-10 (crank speed and pin forces).
         for deviation in &agreement.deviations {
             assert!(deviation.largest <= 5e-9 * deviation.magnitude.max(1.0), "{scene:?}: {deviation:?}");

@@ -151,15 +151,18 @@ pub trait Method<const N: usize> {
         &[]
     }
 
-    /// The state with the largest error in the last attempt.
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize;
+    /// The state with the largest error in the last attempt; the first one where there is no estimate.
+    fn largest_error(&self, _start: &Point<N>, _scale: &Scale<N>, _end: &SVector<f64, N>) -> usize {
+        0
+    }
 
     /// The first state whose rate was not finite in a stage of the last attempt, and that rate.
     fn faulty_rate(&self) -> Option<(usize, f64)>;
 
     /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
-    /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow.
-    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>);
+    /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be nothing to
+    /// prepare.
+    fn prepare_dense(&mut self, _flow: &mut impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
 
     /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
     fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>);

@@ -111,8 +111,6 @@ impl<const N: usize, const S: usize, const P: usize> Method<N> for Radau<N, S, P
         self.core.faulty_rate()
     }
 
-    fn prepare_dense(&mut self, _flow: &mut impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
-
     fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
         self.core.dense(start, theta, x);
     }

@@ -60,15 +60,9 @@ impl<const N: usize> Method<N> for Rk4<N> {
         0.0
     }
 
-    fn largest_error(&self, _start: &Point<N>, _scale: &Scale<N>, _end: &SVector<f64, N>) -> usize {
-        0
-    }
-
     fn faulty_rate(&self) -> Option<(usize, f64)> {
         self.k.iter().find_map(first_not_finite)
     }
-
-    fn prepare_dense(&mut self, _flow: &mut impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
 
     fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
         hermite(start, h, end, theta, x);

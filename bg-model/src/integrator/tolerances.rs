@@ -89,6 +89,11 @@ pub(super) fn largest<const N: usize>(of: &[f64; N]) -> f64 {
     lanes.into_iter().fold(0.0, larger)
 }
 
+/// The index below `N` with the largest error, of equal ones the first.
+pub(super) fn index_of_largest<const N: usize>(error: impl Fn(usize) -> f64) -> usize {
+    (0..N).fold(0, |largest, i| if error(i) > error(largest) { i } else { largest })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -65,6 +65,16 @@ pub fn kepler_start() -> SVector<f64, 4> {
 pub const KEPLER_AT_20: [f64; 4] =
     [-1.295_266_250_987_574_4, 0.400_393_896_379_232_2, -0.677_539_092_467_050_8, -0.127_083_815_427_868_72];
 
+/// Van der Pol's equation with epsilon = 1e-6 (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.1).
+pub fn van_der_pol() -> Flow<Rate<2, 0>, 0> {
+    let rate: Rate<2, 0> = |_, x, _| [x[1], ((1.0 - x[0] * x[0]) * x[1] - x[0]) * 1e6];
+    smooth(rate)
+}
+
+pub const VAN_DER_POL_START: [f64; 2] = [2.0, 0.0];
+/// The state of [`van_der_pol`] at t = 2, from implicit methods of orders 13 and 17 in quad precision.
+pub const VAN_DER_POL_AT_2: [f64; 2] = [1.706_167_732_170_465, -0.892_809_701_024_816_5];
+
 /// Arenstorf's orbit in the plane of earth and moon (Hairer, Norsett, Wanner I, section II.0; SciML's `threebody`).
 pub fn arenstorf() -> Flow<Rate<4, 0>, 0> {
     const MOON: f64 = 0.012_277_471;
@@ -87,6 +97,11 @@ pub const ARENSTORF_PERIOD: f64 = 17.065_216_560_157_964;
 pub fn bilinear() -> Flow<Rate<2, 1>, 1> {
     let rate: Rate<2, 1> = |_, x, negative| [x[1], if negative[0] { -4.0 * x[0] } else { -x[0] }];
     switched([|_, x| x[0]], rate)
+}
+
+/// The observed orders: slopes of the errors over the steps in logarithms, from each step to half of it.
+pub fn orders(errors: &[f64]) -> Vec<f64> {
+    errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect()
 }
 
 /// Everything a run gives.

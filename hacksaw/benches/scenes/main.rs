@@ -186,7 +186,7 @@ impl Visitor for Wall {
     {
         let model = new(P::default()).expect("defaults are in their ranges");
         let runs = (0..RUNS).map(|_| run(&model, &PAPER, |_| {}).expect("the paper's mechanism closes").effort);
-        runs.map(|effort| (effort.wall.as_secs_f64() * 1e3, effort.steps))
+        runs.map(|effort| (effort.wall.as_secs_f64() * 1e3, effort.statistics.steps))
             .fold((f64::INFINITY, 0), |least, run| if run.0 < least.0 { run } else { least })
     }
 }

@@ -7,6 +7,7 @@ use bg_model::assembly::AssemblyError;
 use bg_model::integrator::Tolerances;
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{Samples, Settings};
+use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 use serde::Serialize;
 use thiserror::Error;
@@ -78,6 +79,20 @@ pub struct Counts {
     pub events: u64,
 }
 
+impl From<&Statistics> for Counts {
+    fn from(statistics: &Statistics) -> Self {
+        Self {
+            steps: statistics.steps,
+            rejected: statistics.rejected,
+            rates: statistics.rate_evaluations,
+            jacobians: statistics.jacobian_evaluations,
+            factorisations: statistics.factorisations,
+            pivoted: statistics.pivoted_factorisations,
+            events: statistics.events,
+        }
+    }
+}
+
 /// A case that cannot be measured.
 #[derive(Debug, Error)]
 pub enum MeasureError {
@@ -139,15 +154,7 @@ pub fn measure(
         wall_minimum_s: runs[0],
         wall_median_s: runs[runs.len() / 2],
         repeats,
-        counts: Counts {
-            steps: effort.steps,
-            rejected: effort.rejected,
-            rates: effort.rate_evaluations,
-            jacobians: effort.jacobian_evaluations,
-            factorisations: effort.factorisations,
-            pivoted: effort.pivoted_factorisations,
-            events: effort.events,
-        },
+        counts: Counts::from(&effort.statistics),
     })
 }
 

@@ -21,7 +21,7 @@ use self::newton::{Convergence, Goal};
 pub(super) use self::radau9::RADAU9;
 pub(super) use self::radau13::RADAU13;
 pub(super) use self::tableau::{GAUSS6, RADAU5, Tableau};
-use super::tolerances::largest;
+use super::tolerances::{index_of_largest, largest};
 use super::{Flow, Point, Scale, first_not_finite};
 use crate::linear::{Factors, Jacobian};
 
@@ -220,8 +220,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
 
     /// The state with the largest error in the last attempt.
     pub fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        let error = |i| self.scaled_error(i, start, scale, end);
-        (0..N).fold(0, |largest, i| if error(i) > error(largest) { i } else { largest })
+        index_of_largest::<N>(|i| self.scaled_error(i, start, scale, end))
     }
 
     /// The first state whose rate was not finite in a stage of the last attempt, and that rate.

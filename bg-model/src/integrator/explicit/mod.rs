@@ -19,7 +19,7 @@ pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
 
-use super::tolerances::largest;
+use super::tolerances::{index_of_largest, largest};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 
 /// The method of order 5(4) of Bogacki and Shampine: seven rates a step, one more if its dense output of order 5 is asked
@@ -177,7 +177,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
         let error = |i| (combine(T::ERROR, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs();
-        (0..N).fold(0, |largest, i| if error(i) > error(largest) { i } else { largest })
+        index_of_largest::<N>(error)
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {

@@ -8,6 +8,7 @@ mod tableau;
 
 use nalgebra::SVector;
 
+use super::tolerances::index_of_largest;
 use super::{Flow, Method, Point, Scale, StepControl, hermite};
 use step::{Stages, add};
 use tableau::{RODAS5P, RODAS5P_DENSE, ROS2};
@@ -72,7 +73,7 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
         let errors = self.stages.errors(&RODAS5P, start, scale, end);
-        (0..N).fold(0, |largest, i| if errors[i] > errors[largest] { i } else { largest })
+        index_of_largest::<N>(|i| errors[i])
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
@@ -145,15 +146,9 @@ impl<const N: usize> Method<N> for Ros2<N> {
         self.stages.forget();
     }
 
-    fn largest_error(&self, _start: &Point<N>, _scale: &Scale<N>, _end: &SVector<f64, N>) -> usize {
-        0
-    }
-
     fn faulty_rate(&self) -> Option<(usize, f64)> {
         self.stages.fault
     }
-
-    fn prepare_dense(&mut self, _flow: &mut impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
 
     fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
         hermite(start, h, end, theta, x);

@@ -23,58 +23,38 @@ const NEVER: u32 = u32::MAX;
 
 /// The crate's lines.
 pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
-    // Arguments after the tolerances: safety factor, beta, smallest and largest factor, largest step, first step: the
-    // crate's defaults.
-    let dopri5 = |rtol| {
-        let (start, rhs) = (Vector::from(problem.start), Rhs(problem));
-        let atol = ABSOLUTE * rtol;
-        let mut stepper = Dopri5::from_param(
-            rhs,
-            0.0,
-            BEYOND,
-            INTERVAL,
-            start,
-            rtol,
-            atol,
-            0.9,
-            0.04,
-            0.2,
-            10.0,
-            BEYOND,
-            0.0,
-            NEVER,
-            NEVER,
-            OutputType::Dense,
-        );
-        let clock = Instant::now();
-        let outcome = stepper.integrate();
-        finish(clock, outcome, || stepper.y_out())
-    };
-    let dop853 = |rtol| {
-        let (start, rhs) = (Vector::from(problem.start), Rhs(problem));
-        let atol = ABSOLUTE * rtol;
-        let mut stepper = Dop853::from_param(
-            rhs,
-            0.0,
-            BEYOND,
-            INTERVAL,
-            start,
-            rtol,
-            atol,
-            0.9,
-            0.0,
-            0.333,
-            6.0,
-            BEYOND,
-            0.0,
-            NEVER,
-            NEVER,
-            OutputType::Dense,
-        );
-        let clock = Instant::now();
-        let outcome = stepper.integrate();
-        finish(clock, outcome, || stepper.y_out())
-    };
+    /// A run by this method of the crate, with the crate's defaults for beta and the limits of a step's growth.
+    macro_rules! run_by {
+        ($method:ident, $beta:literal, $limits:expr) => {
+            |rtol| {
+                const SAFETY: f64 = 0.9;
+                let (start, [least, most]) = (Vector::from(problem.start), $limits);
+                let mut stepper = $method::from_param(
+                    Rhs(problem),
+                    0.0,
+                    BEYOND,
+                    INTERVAL,
+                    start,
+                    rtol,
+                    ABSOLUTE * rtol,
+                    SAFETY,
+                    $beta,
+                    least,
+                    most,
+                    BEYOND,
+                    0.0,
+                    NEVER,
+                    NEVER,
+                    OutputType::Dense,
+                );
+                let clock = Instant::now();
+                let outcome = stepper.integrate();
+                finish(clock, outcome, || stepper.y_out())
+            }
+        };
+    }
+    let dopri5 = run_by!(Dopri5, 0.04, [0.2, 10.0]);
+    let dop853 = run_by!(Dop853, 0.0, [0.333, 6.0]);
     vec![
         by_tolerance(Source::OdeSolvers, "ode_solvers Dopri5", false, 3..=12, dopri5),
         by_tolerance(Source::OdeSolvers, "ode_solvers Dop853", false, 3..=13, dop853),
