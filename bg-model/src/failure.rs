@@ -20,7 +20,7 @@ pub struct Failure<const N: usize, const G: usize> {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Cause {
     /// A number was not finite, however small the step.
-    #[error("{quantity} of `{name}` is {value} in a step of {h:e} s from t = {t} s")]
+    #[error("{}", not_finite(*.quantity, .name, *.index, *.value, *.t, *.h))]
     NonFinite {
         /// What it is.
         quantity: Quantity,
@@ -36,9 +36,12 @@ pub enum Cause {
         h: f64,
     },
     /// The tolerances call for a step that rounding does not allow.
-    #[error("the step fell to {h:e} s at t = {t} s; `{state}` = {value} has the largest error")]
+    #[error(
+        "the step fell to {h:.2e} s at t = {t:?} s, where `{state}` = {value:?} allows no larger one: it grows without \
+         bound or jumps there, or the tolerances are too small"
+    )]
     StepTooSmall {
-        /// The name of the state with the largest error.
+        /// The name of the state with the largest error; without an error estimate, of that which changes fastest.
         state: &'static str,
         /// Its index.
         index: usize,
@@ -49,8 +52,22 @@ pub enum Cause {
         /// The step that was called for, s.
         h: f64,
     },
+    /// The equations of an implicit step of a fixed size were not solved.
+    #[error(
+        "the equations of the step of {h:.2e} s from t = {t:?} s were not solved: the iteration does not converge; try a \
+         smaller step, or an integrator that chooses its steps"
+    )]
+    NotSolved {
+        /// The start of the step, s.
+        t: f64,
+        /// The size of the step, s.
+        h: f64,
+    },
     /// The limit of steps was reached.
-    #[error("{limit} steps were tried up to t = {t} s; the last was {h:e} s")]
+    #[error(
+        "the limit of {limit} attempted steps is used up at t = {t:?} s; the last step was {h:.2e} s. Raise the limit, or for \
+         a stiff problem choose an implicit integrator"
+    )]
     TooManySteps {
         /// The limit.
         limit: u64,
@@ -61,7 +78,7 @@ pub enum Cause {
     },
     /// A switch changes its branch again and again at one instant.
     #[error(
-        "switch {switch} changes its branch without end at t = {t} s: in neither branch does its guard keep its sign"
+        "switch {switch} changes its branch without end at t = {t:?} s: in neither branch does its guard keep its sign"
     )]
     EventsAccumulate {
         /// The index of the switch.
@@ -81,6 +98,8 @@ pub enum Quantity {
     State,
     /// A state's rate.
     Rate,
+    /// A derivative of a state's rate, by a state or by time; of a switch none is asked for.
+    Derivative,
     /// A switch's guard.
     Guard,
 }
@@ -90,6 +109,7 @@ impl std::fmt::Display for Quantity {
         f.write_str(match self {
             Self::State => "the value",
             Self::Rate => "the rate",
+            Self::Derivative => "a derivative of the rate",
             Self::Guard => "the guard",
         })
     }
@@ -99,23 +119,26 @@ impl std::fmt::Display for Quantity {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum BadInput {
     /// The relative tolerance is not a number, or below what rounding allows.
-    #[error("the relative tolerance is {value}; it must be a finite number, at least {smallest:e}")]
+    #[error("the relative tolerance is {value:?}; it must be a finite number, at least {smallest:.2e}")]
     RelativeTolerance {
         /// The refused tolerance.
         value: f64,
         /// The smallest usable one.
         smallest: f64,
     },
-    /// An absolute tolerance is not a positive number.
-    #[error("the absolute tolerance of `{state}` is {value}; it must be a finite number above 0")]
+    /// An absolute tolerance is not a positive number, or below the smallest normal one.
+    #[error(
+        "the absolute tolerance of `{state}` is {value:?}; it must be a finite number, at least {:.2e}",
+        f64::MIN_POSITIVE
+    )]
     AbsoluteTolerance {
         /// The state's name.
         state: &'static str,
         /// The refused tolerance.
         value: f64,
     },
-    /// The end is before the start, or one of them is not a number.
-    #[error("the span from t = {t0} s to {t_end} s does not run forward")]
+    /// The end is before the start, or one of them or their difference is not finite.
+    #[error("the span from t = {t0:?} s to {t_end:?} s {}", span_fault(*.t0, *.t_end))]
     Span {
         /// Start, s.
         t0: f64,
@@ -123,15 +146,15 @@ pub enum BadInput {
         t_end: f64,
     },
     /// A state is not finite at the start.
-    #[error("the start value of `{state}` is {value}")]
+    #[error("the start value of `{state}` is {value:?}; it must be a finite number")]
     Start {
         /// The state's name.
         state: &'static str,
         /// Its value.
         value: f64,
     },
-    /// A step size is not positive, or below what rounding allows.
-    #[error("the {which} step is {value} s; it must be a number above {smallest:e} s")]
+    /// A step size is not positive, or below what rounding allows; or a fixed one is not finite.
+    #[error("the {which} step is {value:?} s; it must be {}number above {smallest:.2e} s", a_finite(.which))]
     Step {
         /// `first`, `largest` or `fixed`.
         which: &'static str,
@@ -141,7 +164,7 @@ pub enum BadInput {
         smallest: f64,
     },
     /// The sample interval is not positive, or below what rounding allows.
-    #[error("the sample interval is {value} s; it must be a number above {smallest:e} s")]
+    #[error("the sample interval is {value:?} s; it must be a number above {smallest:.2e} s")]
     SampleInterval {
         /// The refused interval, s.
         value: f64,
@@ -149,11 +172,35 @@ pub enum BadInput {
         smallest: f64,
     },
     /// A sample instant is outside the span, not a number or before the one in front of it.
-    #[error("sample instant {index}, t = {value} s, is outside the span or out of order")]
+    #[error(
+        "sample instant {index}, t = {value:?} s, is outside the span, before the one in front of it, or not a number"
+    )]
     SampleInstant {
         /// Its index.
         index: usize,
         /// The refused instant, s.
         value: f64,
     },
+}
+
+/// What is not finite, and where.
+fn not_finite(quantity: Quantity, name: &str, index: usize, value: f64, t: f64, h: f64) -> String {
+    let whose = if quantity == Quantity::Guard { format!("switch {index}") } else { format!("`{name}`") };
+    let place = if h == 0.0 { format!("at t = {t:?} s") } else { format!("in a step of {h:.2e} s from t = {t:?} s") };
+    format!("{quantity} of {whose} is {value:?} {place}")
+}
+
+/// Why a span cannot be.
+fn span_fault(t0: f64, t_end: f64) -> &'static str {
+    if !(t0.is_finite() && t_end.is_finite()) {
+        "must have finite ends"
+    } else if t_end < t0 {
+        "runs backward; the end must not be before the start"
+    } else {
+        "is too long for a number"
+    }
+}
+
+fn a_finite(which: &str) -> &'static str {
+    if which == "fixed" { "a finite " } else { "a " }
 }

@@ -4,3 +4,4 @@ pub mod examples;
 pub mod hardcases;
 pub mod power;
 pub mod record;
+pub mod switching;

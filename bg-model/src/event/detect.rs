@@ -6,6 +6,7 @@
 
 use nalgebra::SVector;
 
+use super::minimum::minimum;
 use super::{Crossing, Reading, Watch, check_finite, clearance, read};
 use crate::integrator::{Method, hermite};
 use crate::simulation::Stepper;
@@ -17,8 +18,6 @@ const PARTS: usize = 8;
 const NEAR: f64 = 0.5;
 /// Halvings of the distance to the start of the step on the search for a point on the right side.
 const HALVINGS: usize = 40;
-/// Steps of the search for a minimum by the golden section: they narrow it down to a thousandth of its interval.
-const GOLDEN_STEPS: usize = 14;
 
 /// A part of the step in which a guard crosses: parts of the step with their clearances.
 #[derive(Clone, Copy, Debug)]
@@ -153,7 +152,7 @@ impl<const G: usize> Watch<G> {
             }
         };
         let minima = (0..wrong.unwrap_or(PARTS + 1)).filter(is_minimum);
-        let dip = minima.map(|part| self.minimum(stepper, k, at(part).0)).find(|(_, value)| *value < -noise);
+        let dip = minima.map(|part| self.lowest(stepper, k, at(part).0)).find(|(_, value)| *value < -noise);
         let Some(wrong) = dip.or(wrong.map(at)) else { return Course::Clear };
         let right = (0..PARTS).rev().map(at).find(|(part, clearance)| *part < wrong.0 && *clearance > noise);
         match right {
@@ -162,38 +161,15 @@ impl<const G: usize> Watch<G> {
         }
     }
 
-    /// The lowest clearance of guard `k` near the part `near` of the step, by the golden section; stops
-    /// on the wrong side.
-    fn minimum<Sys, M, const N: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        k: usize,
-        near: f64,
-    ) -> (f64, f64)
+    /// The lowest clearance of guard `k` near the part `near` of the step; stops on the wrong side.
+    fn lowest<Sys, M, const N: usize>(&self, stepper: &mut Stepper<'_, Sys, M, N, G>, k: usize, near: f64) -> (f64, f64)
     where
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let width = 1.0 / PARTS as f64;
-        let mut at = |part: f64| (part, clearance(stepper.dense_guards(part)[k], stepper.negative[k]));
-        let (mut low, mut high) = ((near - width).max(0.0), (near + width).min(1.0));
-        let mut inner = at(high - GOLDEN * (high - low));
-        let mut outer = at(low + GOLDEN * (high - low));
-        for _ in 0..GOLDEN_STEPS {
-            let lower = if inner.1 < outer.1 { inner } else { outer };
-            if lower.1 < -self.noise(k) {
-                return lower;
-            }
-            if inner.1 < outer.1 {
-                (high, outer) = (outer.0, inner);
-                inner = at(high - GOLDEN * (high - low));
-            } else {
-                (low, inner) = (inner.0, outer);
-                outer = at(low + GOLDEN * (high - low));
-            }
-        }
-        if inner.1 < outer.1 { inner } else { outer }
+        let (low, high) = ((near - width).max(0.0), (near + width).min(1.0));
+        minimum(low, high, -self.noise(k), |part| clearance(stepper.dense_guards(part)[k], stepper.negative[k]))
     }
 
     /// The course of guard `k` that starts at zero and is on the wrong side at `wrong`.

@@ -10,6 +10,7 @@
 mod branch;
 mod detect;
 mod locate;
+mod minimum;
 mod zero;
 
 use nalgebra::SVector;

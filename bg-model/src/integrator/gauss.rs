@@ -11,6 +11,9 @@ use nalgebra::SVector;
 use super::collocation::{Collocation, GAUSS6};
 use super::{Flow, Method, Point, Scale, StepControl};
 
+/// A disagreement of this part of a state shows that a step's equations were not solved.
+const LOST: f64 = 1e-3;
+
 /// Gauss with three stages, of order 6.
 #[derive(Clone, Debug)]
 pub struct Gauss6<const N: usize> {
@@ -29,6 +32,17 @@ impl<const N: usize> Gauss6<N> {
     #[must_use]
     pub fn adaptive() -> Self {
         Self { core: Collocation::new(&GAUSS6, true), control: StepControl::Predictive { order: 4.0 } }
+    }
+}
+
+impl<const N: usize> Gauss6<N> {
+    /// Whether the quadrature disagrees with the polynomial, by a thousandth of the state and more than the tolerances: where
+    /// h J is so large that the rates at the stages are rounding errors, the equations have no solution in `f64`.
+    fn is_lost(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> bool {
+        let mut polynomial = SVector::zeros();
+        self.core.dense(start, 1.0, &mut polynomial);
+        let size = |i: usize| if end[i].abs() > start.x[i].abs() { end[i].abs() } else { start.x[i].abs() };
+        (0..N).any(|i| (end[i] - polynomial[i]).abs() > scale.allowed(i, start.x[i], 0.0) + LOST * size(i))
     }
 }
 
@@ -53,6 +67,7 @@ impl<const N: usize> Method<N> for Gauss6<N> {
             Ok(()) => {
                 *end = SVector::from_fn(|i, _| start.x[i] + self.core.quadrature(i, h));
                 match self.control {
+                    _ if self.is_lost(start, scale, end) => f64::INFINITY,
                     StepControl::Fixed { .. } => 0.0,
                     _ => self.core.estimate(flow, start, h, scale, end),
                 }

@@ -4,6 +4,8 @@
 
 use nalgebra::SVector;
 
+use super::Point;
+
 /// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerances<const N: usize> {
@@ -66,6 +68,11 @@ impl<const N: usize> Scale<N> {
     pub fn allowed(&self, i: usize, a: f64, b: f64) -> f64 {
         let (a, b) = (a.abs(), b.abs());
         self.absolute.data.0[0][i] + self.relative * if a > b { a } else { b }
+    }
+
+    /// The state at `start` whose rate is the largest part of its allowed error.
+    pub(crate) fn fastest(&self, start: &Point<N>) -> usize {
+        index_of_largest::<N>(|i| start.rate[i].abs() / self.allowed(i, start.x[i], 0.0))
     }
 
     /// The largest `|v_i|` divided by the allowed error at state `x`.

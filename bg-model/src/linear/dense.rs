@@ -40,6 +40,10 @@ impl<F: Field<f64>, const N: usize> Dense<F, N> {
             let (upper, lower) = self.rows.split_at_mut(k + 1);
             let pivot = &mut upper[k];
             pivot[k] = F::real(1.0) / pivot[k];
+            // The square of a large complex pivot overflows.
+            if pivot[k].size() == 0.0 {
+                return false;
+            }
             for row in lower {
                 let factor = row[k] * pivot[k];
                 row[k] = factor;

@@ -29,6 +29,11 @@ impl<const N: usize> Jacobian<N> {
         self.entries.resize(flow.sparsity().len(N), 0.0);
         flow.jacobian(t, x, &mut self.entries, &mut self.slope);
     }
+
+    /// Whether all derivatives are finite.
+    pub fn is_finite(&self) -> bool {
+        self.entries.iter().chain(self.slope.iter()).fold(true, |finite, value| finite & value.is_finite())
+    }
 }
 
 /// Factors of I - c J.
@@ -74,7 +79,7 @@ impl<F: Field<f64>, const N: usize> Factors<F, N> {
 fn fill<F: Field<f64>, const N: usize>(rows: &mut [[F; N]], sparsity: Sparsity, c: F, entries: &[f64]) {
     match sparsity {
         Sparsity::Full => {
-            for (j, column) in entries.chunks_exact(N).enumerate() {
+            for (j, column) in entries.chunks_exact(N.max(1)).enumerate() {
                 for (i, entry) in column.iter().enumerate() {
                     rows[i][j] = -c.scaled(*entry);
                 }

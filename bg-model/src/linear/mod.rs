@@ -39,6 +39,14 @@ impl Sparsity {
             Self::Places { entries, .. } => entries.len(),
         }
     }
+
+    /// The row of entry `k` of an `n` by `n` Jacobian.
+    pub(crate) fn row(&self, k: usize, n: usize) -> usize {
+        match self {
+            Self::Full => k % n,
+            Self::Places { entries, .. } => usize::from(entries[k].0),
+        }
+    }
 }
 
 /// A pivot below this part of the largest value that its place has had during the elimination, 1 included, counts as too

@@ -43,9 +43,10 @@ impl<F> Pivot<F> {
     where
         F: Field<S>,
     {
-        let size = self.value.size();
-        *is_regular &= (size >= SMALLEST_PIVOT * self.largest) & (size < f64::INFINITY);
-        F::real(S::from_f64(1.0)) / self.value
+        let (size, reciprocal) = (self.value.size(), F::real(S::from_f64(1.0)) / self.value);
+        // The square of a large complex pivot overflows and leaves zero.
+        *is_regular &= (size >= SMALLEST_PIVOT * self.largest) & (size < f64::INFINITY) & (reciprocal.size() > 0.0);
+        reciprocal
     }
 }
 
@@ -85,6 +86,16 @@ mod tests {
         let pivot = Pivot::new::<f64>(Complex::new(1.0, 2.0)).minus::<f64>(Complex::new(1.0, 0.0));
         assert_eq!(pivot.reciprocal::<f64>(&mut is_regular), Complex::new(0.0, -0.5));
         assert!(is_regular);
+    }
+
+    #[test]
+    fn a_complex_pivot_whose_square_overflows_is_no_pivot() {
+        for (size, expected) in [(1e150, true), (1e160, false)] {
+            let mut is_regular = true;
+            Pivot::new::<f64>(Complex::new(size, size)).reciprocal::<f64>(&mut is_regular);
+            assert_eq!(is_regular, expected, "{size}");
+        }
+        assert!(reciprocal(1e300, &[]).1);
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub struct Finish<const N: usize, const G: usize> {
     pub t: f64,
     /// State.
     pub x: SVector<f64, N>,
-    /// The branches of the switches from `t` on.
+    /// The branches of the switches from `t` on; of one whose guard has just come to zero there, the branch before.
     pub negative: [bool; G],
     /// What the run has cost.
     pub statistics: Statistics,
@@ -67,6 +67,7 @@ where
         span,
         attempts: 0,
         limit: settings.step_limit,
+        faulty_guard: None,
     };
     let outcome = settings::check(system, control, start, span, settings)
         .map_err(Cause::from)
@@ -87,6 +88,8 @@ struct Run<'a, Sys, M, const N: usize, const G: usize> {
     span: Span,
     attempts: u64,
     limit: u64,
+    /// The guard that was not finite at the end of a longer step from the present start, and its value.
+    faulty_guard: Option<(usize, f64)>,
 }
 
 impl<Sys, M, const N: usize, const G: usize> Run<'_, Sys, M, N, G>
@@ -99,8 +102,10 @@ where
         self.watch.begin_by_sign(&mut self.stepper);
         self.stepper.evaluate_start();
         self.check_start()?;
-        let longest = (self.span.t_end - self.span.t0).min(settings.largest_step);
-        if let (Some(order), None, true) = (control.order(), settings.first_step, longest > 0.0) {
+        // In an empty span a step of a run that goes on shows the branches.
+        let length = if self.span.t_end > self.span.t0 { self.span.t_end - self.span.t0 } else { 1.0 };
+        let longest = length.min(settings.largest_step);
+        if let (Some(order), None) = (control.order(), settings.first_step) {
             let (_, mut flow, start, _, scale) = self.stepper.split();
             let first = pace::first_step(&mut flow, start, scale, order, longest);
             self.pace.begin(first);
@@ -121,24 +126,26 @@ where
         self.sample(observer, self.span.t0);
         while self.stepper.start.t < self.span.t_end {
             self.try_steps()?;
-            let crossing = self.watch.inspect(&mut self.stepper);
-            let crossing = crossing.map_err(|fault| self.not_finite(Quantity::Guard, fault, self.stepper.h))?;
-            match crossing {
-                None => {
+            match self.watch.inspect(&mut self.stepper) {
+                Err(fault) => self.retreat(fault)?,
+                Ok(None) => {
                     self.accept(observer);
                     self.watch.advance();
                 }
-                Some(crossing) => {
+                Ok(Some(crossing)) => {
                     if !crossing.is_at_start {
                         self.accept(observer);
                     }
                     let before = self.stepper.negative;
                     let h = self.stepper.h;
                     self.switch(crossing.switches, observer)?;
-                    if crossing.is_at_start && self.stepper.negative == before && self.pace.is_adaptive() {
+                    if crossing.is_at_start && self.stepper.negative == before {
                         // The branch is right, so the step was too long for the guard's course.
                         self.stepper.statistics.rejected += 1;
                         self.pace.reject(h, f64::NAN);
+                        if self.pace.is_lost(self.stepper.start.t) {
+                            return Err(self.accumulate(crossing.switches));
+                        }
                     }
                 }
             }
@@ -167,7 +174,7 @@ where
                 self.stepper.project();
                 self.stepper.evaluate_end();
                 if is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
-                    self.pace.accept(h, error);
+                    self.pace.accept(t_new, h, error);
                     return Ok(());
                 }
             }
@@ -182,9 +189,22 @@ where
         }
     }
 
+    /// Gives up a step at whose end the guard of `fault` is not finite, for a shorter one.
+    fn retreat(&mut self, fault: (usize, f64)) -> Result<(), Cause> {
+        let h = self.stepper.h;
+        self.stepper.statistics.rejected += 1;
+        self.pace.reject(h, f64::NAN);
+        self.faulty_guard = Some(fault);
+        let is_last = !self.pace.is_adaptive() || self.pace.is_lost(self.stepper.start.t);
+        if is_last { Err(self.not_finite(Quantity::Guard, fault, h)) } else { Ok(()) }
+    }
+
     /// Why no step from the start of the last attempt succeeds.
     fn lost(&self, error: f64) -> Cause {
         let Stepper { method, start, end, h, scale, .. } = &self.stepper;
+        if let Some(fault) = self.faulty_guard {
+            return self.not_finite(Quantity::Guard, fault, *h);
+        }
         if !error.is_finite() {
             if let Some(fault) = method.faulty_rate() {
                 return self.not_finite(Quantity::Rate, fault, *h);
@@ -195,8 +215,14 @@ where
             if let Some(fault) = first_not_finite(&end.rate) {
                 return self.not_finite(Quantity::Rate, fault, *h);
             }
+            if let Some(fault) = self.stepper.faulty_derivative() {
+                return self.not_finite(Quantity::Derivative, fault, 0.0);
+            }
+            if !self.pace.is_adaptive() {
+                return Cause::NotSolved { t: start.t, h: *h };
+            }
         }
-        let index = method.largest_error(start, scale, &end.x);
+        let index = if error.is_finite() { method.largest_error(start, scale, &end.x) } else { scale.fastest(start) };
         let state = self.stepper.system.state_name(index);
         Cause::StepTooSmall { state, index, value: start.x[index], t: start.t, h: self.pace.step() }
     }
@@ -204,13 +230,14 @@ where
     fn not_finite(&self, quantity: Quantity, (index, value): (usize, f64), h: f64) -> Cause {
         let name = match quantity {
             Quantity::Guard => "switch",
-            Quantity::State | Quantity::Rate => self.stepper.system.state_name(index),
+            Quantity::State | Quantity::Rate | Quantity::Derivative => self.stepper.system.state_name(index),
         };
         Cause::NonFinite { quantity, name, index, value, t: self.stepper.start.t, h }
     }
 
     /// Takes the step over: gives its samples and makes its end the start of the next one.
     fn accept(&mut self, observer: &mut impl Observer<N, G>) {
+        self.faulty_guard = None;
         self.stepper.statistics.record(self.stepper.h);
         self.sampling.next_step();
         let t = self.stepper.end.t;
@@ -245,11 +272,14 @@ where
                 observer.event(t, &self.stepper.start.x, switch, &self.stepper.negative);
             }
         }
-        if self.watch.is_crowded(t, self.span.t_end - self.span.t0) {
-            let switch = switches.iter().position(|switch| *switch).unwrap_or(0);
-            return Err(Cause::EventsAccumulate { switch, t });
-        }
-        Ok(())
+        let is_crowded = self.watch.is_crowded(t, self.span.t_end - self.span.t0);
+        if is_crowded { Err(self.accumulate(switches)) } else { Ok(()) }
+    }
+
+    /// The first of `switches` finds no branch.
+    fn accumulate(&self, switches: [bool; G]) -> Cause {
+        let switch = switches.iter().position(|switch| *switch).unwrap_or(0);
+        Cause::EventsAccumulate { switch, t: self.stepper.start.t }
     }
 
     fn finish(self) -> Finish<N, G> {

@@ -42,6 +42,8 @@ pub(super) struct Pace {
     accepted: Option<(f64, f64)>,
     /// Fixed steps end at t0 + grid * step.
     grid: u64,
+    /// The longest of the next fixed step after one that was rejected, s.
+    short: f64,
 }
 
 impl Pace {
@@ -51,7 +53,16 @@ impl Pace {
             _ => settings.first_step.unwrap_or(span.t_end - span.t0),
         };
         let largest = settings.largest_step;
-        Self { control, span, largest, step: asked.min(largest), rejected: false, accepted: None, grid: 1 }
+        Self {
+            control,
+            span,
+            largest,
+            step: asked.min(largest),
+            rejected: false,
+            accepted: None,
+            grid: 1,
+            short: f64::INFINITY,
+        }
     }
 
     /// The size of the next step if nothing is in its way, s.
@@ -69,9 +80,9 @@ impl Pace {
         self.control = control;
     }
 
-    /// Takes an estimate of the first step, s.
+    /// Takes an estimate of the first step, s; one that rounding does not allow is raised, and left to the error estimate.
     pub fn begin(&mut self, step: f64) {
-        self.step = step.min(self.largest);
+        self.step = step.max(2.0 * self.least(self.span.t0)).min(self.largest);
     }
 
     /// The end of the next step from `t` (s).
@@ -86,16 +97,19 @@ impl Pace {
             self.grid += 1;
         }
         // A sliver that rounding leaves at the end belongs to the last step; a billionth of the step is no error.
-        if end_of(self.grid) >= t_end - 1e-9 * self.step { t_end } else { end_of(self.grid) }
+        let end = if end_of(self.grid) >= t_end - 1e-9 * self.step { t_end } else { end_of(self.grid) };
+        end.min(t + self.short)
     }
 
-    /// The step `h` (s) satisfied the tolerances with the error norm `error`.
-    pub fn accept(&mut self, h: f64, error: f64) {
+    /// The step `h` (s) to `t` (s) satisfied the tolerances with the error norm `error`. The next one is at least tried with
+    /// a size that rounding allows.
+    pub fn accept(&mut self, t: f64, h: f64, error: f64) {
         if self.is_adaptive() {
             let next = h * self.ratio_after(h, error);
             let next = if self.rejected { next.min(h) } else { next };
-            self.step = next.min(self.largest);
+            self.step = next.max(2.0 * self.least(t)).min(self.largest);
         }
+        self.short = f64::INFINITY;
         self.rejected = false;
     }
 
@@ -103,17 +117,27 @@ impl Pace {
     /// an iteration did not converge.
     pub fn reject(&mut self, h: f64, error: f64) {
         self.rejected = true;
-        self.step = h * match error {
+        let next = h * match error {
             _ if error.is_nan() => RETREAT,
             f64::INFINITY => HALF,
             _ => self.ratio(error).min(SAFETY),
         };
+        if self.is_adaptive() {
+            self.step = next;
+        } else {
+            self.short = next;
+        }
     }
 
     /// Whether the step to try from `t` (s) is too small to be told apart from rounding.
     pub fn is_lost(&self, t: f64) -> bool {
+        self.step.min(self.short) <= self.least(t)
+    }
+
+    /// The largest step from `t` (s) that is lost in rounding, s.
+    fn least(&self, t: f64) -> f64 {
         let span = self.span.t_end - self.span.t0;
-        self.step <= 16.0 * f64::EPSILON * t.abs().max(f64::EPSILON * span)
+        16.0 * f64::EPSILON * t.abs().max(f64::EPSILON * span)
     }
 
     fn ratio(&self, error: f64) -> f64 {

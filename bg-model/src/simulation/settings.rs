@@ -73,7 +73,7 @@ where
     Sys: System<f64, N, G>,
 {
     let Span { t0, t_end } = span;
-    if !(t0.is_finite() && t_end.is_finite() && t0 <= t_end) {
+    if !(t0.is_finite() && t_end.is_finite() && t0 <= t_end && (t_end - t0).is_finite()) {
         return Err(BadInput::Span { t0, t_end });
     }
     check_tolerances(system, &settings.tolerances)?;
@@ -108,7 +108,7 @@ where
         return Err(BadInput::RelativeTolerance { value, smallest });
     }
     let absolute = Scale::from(tolerances).absolute;
-    match absolute.iter().position(|value| !(value.is_finite() && *value > 0.0)) {
+    match absolute.iter().position(|value| !(value.is_finite() && *value >= f64::MIN_POSITIVE)) {
         Some(index) => Err(BadInput::AbsoluteTolerance { state: system.state_name(index), value: absolute[index] }),
         None => Ok(()),
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::integrator::{Flow, Method, Point, Scale};
+use crate::integrator::{Flow, Method, Point, Scale, first_not_finite};
 use crate::linear::{Field, Sparsity};
 use crate::statistics::Statistics;
 use crate::system::System;
@@ -110,6 +110,20 @@ where
         self.statistics.rate_evaluations += 1;
         let Point { t, x, rate } = &mut self.start;
         self.system.rate(*t, x, &self.negative, rate);
+    }
+
+    /// The first state whose rate has a derivative at the start of the step that is not finite, and that derivative; none
+    /// where no derivative has been asked for.
+    pub fn faulty_derivative(&self) -> Option<(usize, f64)> {
+        if self.statistics.jacobian_evaluations == 0 {
+            return None;
+        }
+        let sparsity = self.system.sparsity();
+        let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], SVector::zeros());
+        self.system.jacobian(self.start.t, &self.start.x, &self.negative, &mut entries, &mut slope);
+        let is_faulty = |(_, value): &(usize, f64)| !value.is_finite();
+        let entry = entries.into_iter().enumerate().find(is_faulty).map(|(k, value)| (sparsity.row(k, N), value));
+        entry.or_else(|| first_not_finite(&slope))
     }
 
     /// The end of the step becomes the start of the next one.

@@ -34,7 +34,8 @@ impl<const S: usize, const N: usize> Stages<S, N> {
         self.is_current = false;
     }
 
-    /// Evaluates all stages; gives whether they are numbers, or nothing where the matrix is singular.
+    /// Evaluates all stages; gives whether they are numbers, or nothing where the matrix is singular or a derivative is no
+    /// number.
     pub fn evaluate(
         &mut self,
         tableau: &Tableau<S>,
@@ -46,6 +47,9 @@ impl<const S: usize, const N: usize> Stages<S, N> {
         if !self.is_current {
             self.jacobian.evaluate(flow, start.t, &start.x);
             self.is_current = true;
+        }
+        if !self.jacobian.is_finite() {
+            return None;
         }
         let hg = h * tableau.gamma;
         if !self.factors.factor(flow, hg, &self.jacobian) {
