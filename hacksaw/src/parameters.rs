@@ -92,6 +92,7 @@ pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<
         set_from_toml(&mut parameters, path, &text)?;
     }
     for setting in settings {
+        let setting = &one_line(setting);
         let (name, value) = setting.split_once('=').ok_or_else(|| SettingError::NoValue(setting.clone()))?;
         let (name, value) = (name.trim(), value.trim());
         let number = value.parse().map_err(|_| SettingError::NotANumber {
@@ -184,7 +185,7 @@ fn set<P: Parameters>(parameters: &mut Chosen<P>, place: &str, name: &str, value
     let place = place.to_owned();
     parameters.values.set(name, value).map_err(|fault| match fault {
         ParameterError::Unknown { name } => {
-            SettingError::Unknown { place: place.clone(), near: nearest::<P>(&name), name }
+            SettingError::Unknown { place: place.clone(), near: nearest::<P>(&name), name: one_line(&name) }
         }
         fault => SettingError::Range { place: place.clone(), fault },
     })?;
@@ -258,7 +259,15 @@ mod tests {
         assert!(fault("torque = 'ten'", &[]).contains("must be a number"));
         assert!(fault("torque = 1\ntorque = = 2", &[]).contains("line 2, column 10"));
         assert!(fault("[torque]\nx = 1", &[]).contains("must be a number"));
-        for (toml, settings) in [("torqe = 1", &[][..]), ("a = [1,\n2", &[]), ("", &["k_2=-1"])] {
+        let cases = [
+            ("torqe = 1", &[][..]),
+            ("a = [1,\n2", &[]),
+            ("\"a\\nb\" = 1", &[]),
+            ("", &["k_2=-1"]),
+            ("", &["zzz\n = 1"]),
+            ("", &["torque=1\r2"]),
+        ];
+        for (toml, settings) in cases {
             assert!(!fault(toml, settings).contains('\n'));
         }
     }

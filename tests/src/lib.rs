@@ -1,6 +1,7 @@
 //! Suites across the crates: models in the macro, how they are run, and what the suites under `tests/` measure with.
 
 pub mod examples;
+pub mod fuzz;
 pub mod hardcases;
 pub mod power;
 pub mod record;

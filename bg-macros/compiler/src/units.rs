@@ -14,10 +14,10 @@ const BASE_SYMBOLS: [&str; BASES] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
 /// A product of powers of SI base units. Exponents are counted in halves, so that square roots exist.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct Dimension([i8; BASES]);
+pub struct Dimension([i16; BASES]);
 
 /// Symbol and base exponents (whole) of the derived units.
-const DERIVED: [(&str, [i8; BASES]); 17] = [
+const DERIVED: [(&str, [i16; BASES]); 17] = [
     ("rad", [0, 0, 0, 0, 0, 0, 0]),
     ("Hz", [0, 0, -1, 0, 0, 0, 0]),
     ("N", [1, 1, -2, 0, 0, 0, 0]),
@@ -82,8 +82,8 @@ impl Dimension {
     /// A whole power.
     #[must_use]
     pub fn power(self, exponent: i32) -> Self {
-        let exponent = i8::try_from(exponent.clamp(-16, 16)).unwrap_or(0);
-        Self(self.0.map(|e| e.saturating_mul(exponent)))
+        let limited = |e: i16| i32::from(e).saturating_mul(exponent).clamp(i16::MIN.into(), i16::MAX.into());
+        Self(self.0.map(|e| i16::try_from(limited(e)).unwrap_or(0)))
     }
 
     /// The square root, where its exponents are whole or half.
@@ -105,7 +105,7 @@ impl std::fmt::Display for Dimension {
             let mut text = Vec::new();
             for (symbol, &halves) in BASE_SYMBOLS.iter().zip(&self.0) {
                 if (halves > 0) == positive && halves != 0 {
-                    text.push(match halves.abs() {
+                    text.push(match halves.unsigned_abs() {
                         2 => (*symbol).to_owned(),
                         even if even % 2 == 0 => format!("{symbol}^{}", even / 2),
                         odd => format!("{symbol}^({odd}/2)"),
@@ -238,6 +238,8 @@ mod tests {
         assert_eq!(of_text("V/A").to_string(), "Ohm");
         assert_eq!(of_text("N*m/rad").to_string(), "N*m");
         assert_eq!(of_text("m^2").root().map(|d| d.to_string()), Some("m".to_owned()));
+        assert_eq!(of_text("m^255").times(of_text("m^-255/s")).to_string(), "1/s");
+        assert_eq!(of_text("1/s").power(1 << 20).to_string(), "1/s^16384");
         assert_eq!(of_text("m").root().map(|d| d.to_string()), Some("m^(1/2)".to_owned()));
     }
 }

@@ -10,7 +10,7 @@ use crate::expr::{Id, Symbol};
 use crate::graph::NodeId;
 
 /// Multipliers are the atoms from here on, apart from those of proofs.
-const MULTIPLIERS: u32 = 1 << 16;
+pub(super) const MULTIPLIERS: u32 = 1 << 16;
 
 impl Signals<'_> {
     /// The unknown effort of a residual sink.

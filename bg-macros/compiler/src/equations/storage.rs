@@ -5,10 +5,11 @@
 use std::collections::BTreeMap;
 
 use super::EquationFault;
+use super::reactions::MULTIPLIERS;
 use super::signals::Signals;
 use super::value::Value;
 use crate::ast::{ElementKind, TrackKind};
-use crate::expr::{Environment, Id, Symbol, antiderivative, derivative, evaluate, substitute};
+use crate::expr::{Environment, Id, Node, Symbol, antiderivative, derivative, evaluate, substitute};
 use crate::fault::Fault;
 use crate::graph::{BondGraph, Element, Law, NodeId, Storage, Term};
 
@@ -137,9 +138,13 @@ impl Signals<'_> {
         let switches = self.switches.len();
         let (atoms, variable) = self.state_atoms(state.0.len());
         let law = self.storage_law(node, element, &variable);
-        // Switches over atoms are of this calculation only; a law with any has no integral here.
+        // Switches over atoms are of this calculation only; a law with any has no integral here. The antiderivative would
+        // not see that a value depends on the variable by way of a guard alone.
+        let is_own =
+            |id: &Id| matches!(self.pool.node(*id), Node::Select { switch, .. } if *switch as usize >= switches);
+        let is_free = law.0.len() == 1 && !self.pool.reachable(&law.0).iter().any(is_own);
         self.switches.truncate(switches);
-        let found = if law.0.len() == 1 { antiderivative(&mut self.pool, law.0[0], atoms[0]) } else { None };
+        let found = if is_free { antiderivative(&mut self.pool, law.0[0], atoms[0]) } else { None };
         let Some(found) = found else {
             let definition = self.graph.node(node);
             let (symbol, name) = (element.kind.symbol(), definition.name.text.clone());
@@ -178,9 +183,10 @@ impl Signals<'_> {
     }
 
     /// Whether consecutive pairs of expressions have equal values at sample points, in either branch of every switch.
-    fn agree_at_samples(&self, pairs: &[Id]) -> bool {
+    fn agree_at_samples(&mut self, pairs: &[Id]) -> bool {
         let parameters: Vec<f64> = self.graph.parameters.iter().map(|parameter| parameter.default).collect();
         let guards: Vec<Id> = self.switches.iter().map(|switch| switch.guard).collect();
+        let (guards, pairs) = (self.without_multipliers(&guards), self.without_multipliers(pairs));
         // Irregular values of both signs, so that no term vanishes by symmetry.
         [0.37, -0.53, 1.21, -1.73].iter().all(|&scale| {
             let sample = |k: usize| scale * (1.0 + 0.11 * f64::from(u32::try_from(k % 97).unwrap_or(0)));
@@ -203,12 +209,19 @@ impl Signals<'_> {
                 evaluate(&self.pool, roots, &environment)
             };
             negative = point(&negative, &guards).iter().map(|&guard| guard < 0.0).collect();
-            point(&negative, pairs).chunks_exact(2).all(|pair| {
+            point(&negative, &pairs).chunks_exact(2).all(|pair| {
                 // Rounding of sums of a few terms; a wrong energy differs in the first digits.
                 (pair[0] - pair[1]).abs() <= 1e-9 * (pair[0].abs() + pair[1].abs() + 1e-300)
                     || pair.iter().any(|value| !value.is_finite())
             })
         })
+    }
+
+    /// The expressions with a number in the place of every reaction.
+    fn without_multipliers(&mut self, of: &[Id]) -> Vec<Id> {
+        let number = self.pool.number(0.83);
+        let is_multiplier = |symbol| matches!(symbol, Symbol::Atom(index) if index >= MULTIPLIERS);
+        substitute(&mut self.pool, of, &|symbol| is_multiplier(symbol).then_some(number))
     }
 
     /// The power that enters through storages whose law other quantities modulate: the energy's change at rest of the

@@ -23,5 +23,6 @@ pub use evaluate::{Environment, apply, evaluate};
 pub use node::{Function, Id, Node, Number, Symbol};
 pub use polynomial::{Monomials, monomials, same_polynomial};
 pub use pool::{Pool, children};
+pub(crate) use product::MOST_EXPONENT;
 pub use substitute::{Branch, substitute, substitute_switched};
 pub use text::text;

@@ -3,11 +3,14 @@
 //! In: nodes with whole exponents. Out: a number, a node, a [`Node::Product`], or one of these times a number.
 //! Numbers and signs stand in front of the product, powers of one base are one factor, an inner product is flattened,
 //! and the square of a square root is its argument. `x/x` is 1 for every x; a zero factor makes the product 0, and 1/0
-//! is the number infinity.
+//! is the number infinity. A power beyond [`MOST_EXPONENT`] is a call of `pow`, so that exponents never overflow.
 
 use std::collections::BTreeMap;
 
 use super::{Function, Id, Node, Pool};
+
+/// The largest size of an exponent in a product.
+pub(crate) const MOST_EXPONENT: i32 = 1024;
 
 /// A product under construction.
 struct Draft {
@@ -92,7 +95,21 @@ impl Pool {
         })
     }
 
+    /// The draft with calls of `pow` in place of its large powers.
+    fn without_large_powers(&mut self, mut draft: Draft) -> Draft {
+        let factors = draft.factors.iter().map(|(&id, &exponent)| (id, exponent));
+        let large: Vec<_> = factors.filter(|(_, exponent)| exponent.unsigned_abs() > MOST_EXPONENT as u32).collect();
+        for (base, exponent) in large {
+            draft.factors.remove(&base);
+            let exponent = self.number(f64::from(exponent));
+            let power = self.call(Function::Pow, &[base, exponent]);
+            draft.multiply(power, 1);
+        }
+        draft
+    }
+
     fn complete(&mut self, draft: Draft) -> Id {
+        let draft = self.without_large_powers(draft);
         let factors: Box<[_]> = draft.factors.into_iter().collect();
         let product = match *factors {
             [] => return self.number(draft.coefficient),
@@ -174,6 +191,26 @@ mod tests {
         assert_eq!(pool.powi(roots[0], -3), pool.powers(&[(roots[0], -1), (sum, -1)]));
         let nested = pool.call(Function::Sqrt, &[roots[0]]);
         assert_eq!(pool.powi(nested, 4), sum);
+    }
+
+    #[test]
+    fn large_powers_are_calls() {
+        let mut pool = Pool::new();
+        let [x, y, ..] = letters(&mut pool);
+        let largest = pool.powi(x, MOST_EXPONENT);
+        assert_eq!(*pool.node(largest), Node::Product([(x, MOST_EXPONENT)].into()));
+        let exponent = pool.number(2048.0);
+        let call = pool.call(Function::Pow, &[x, exponent]);
+        assert_eq!(pool.mul(largest, largest), call);
+        let mut tower = pool.mul(x, y);
+        for _ in 0..50 {
+            tower = pool.powi(tower, -16);
+        }
+        for id in pool.reachable(&[tower]) {
+            if let Node::Product(factors) = pool.node(id) {
+                assert!(factors.iter().all(|(_, exponent)| exponent.abs() <= MOST_EXPONENT));
+            }
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 use super::statics::Statics;
 use super::table::Table;
-use crate::expr::{Function, Id, Symbol};
+use crate::expr::{Function, Id, MOST_EXPONENT, Symbol};
 
 /// coefficient * core.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -132,11 +132,21 @@ impl Graph {
             }
             match &self.cores[value.core as usize] {
                 Core::One => {}
-                Core::Product(inner) => factors.extend(inner.iter().map(|&(core, inner)| (core, inner * exponent))),
+                Core::Product(inner) if has_small_powers(inner, exponent) => {
+                    factors.extend(inner.iter().map(|&(core, inner)| (core, inner * exponent)));
+                }
+                Core::Product(_) => factors.push((self.large_power(statics, value.core, exponent), 1)),
                 _ => factors.push((value.core, exponent)),
             }
         }
         Value { coefficient, core: self.power_product(factors) }
+    }
+
+    /// A product to a power as a call of `pow`.
+    fn large_power(&mut self, statics: &mut Statics, core: u32, exponent: i32) -> u32 {
+        let base = Value { coefficient: statics.one, core };
+        let exponent = Value { coefficient: statics.pool.number(f64::from(exponent)), core: ONE };
+        self.call(statics, Function::Pow, vec![base, exponent]).core
     }
 
     /// The sum of values.
@@ -218,6 +228,12 @@ impl Graph {
         }
         uses
     }
+}
+
+/// Whether this power makes no exponent of the factors large.
+fn has_small_powers(factors: &[(u32, i32)], exponent: i32) -> bool {
+    exponent == 1
+        || factors.iter().all(|&(_, inner)| inner.checked_mul(exponent).is_some_and(|e| e.abs() <= MOST_EXPONENT))
 }
 
 /// An index as stored.
