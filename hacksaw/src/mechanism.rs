@@ -19,7 +19,7 @@ macro_rules! hacksaw_mechanism {
                 /// Density of all links (steel).
                 param density: kg/m^3 = 7850, above 0;
                 /// Offset of the rod out of the plane: z of the crank's pin A and the frame's pin B.
-                param rod_offset: m = 0;
+                param rod_offset: m = 0, at least -1e3, at most 1e3;
 
                 /// Pin 1-2, translation: stiffness.
                 param k_2: N/m = 1e7, at least 0;
@@ -71,25 +71,25 @@ macro_rules! hacksaw_mechanism {
                 param r_return: N*s/m = 10, at least 0;
 
                 /// Frame: x of a post's centre from the bar's centre, to both sides.
-                param post_x: m = 0.185;
+                param post_x: m = 0.185, at least -1e3, at most 1e3;
                 /// Frame: y of the posts' centres from the bar's centre.
-                param post_y: m = -0.08;
+                param post_y: m = -0.08, at least -1e3, at most 1e3;
                 /// Frame: x of the pin B on the bar's centre line.
-                param b4_x: m = -0.2;
+                param b4_x: m = -0.2, at least -1e3, at most 1e3;
                 /// Frame: y of the blade line from the bar's centre.
-                param blade_y: m = -0.145;
+                param blade_y: m = -0.145, at least -1e3, at most 1e3;
                 /// Guide: y of the arm's centre from the block's centre.
-                param arm_y: m = 0.395;
+                param arm_y: m = 0.395, at least -1e3, at most 1e3;
                 /// Guide: y of the pivot from the block's centre.
-                param pivot_y: m = 0.745;
+                param pivot_y: m = 0.745, at least -1e3, at most 1e3;
                 /// Pivot O5 of the guide, x.
-                param o5_x: m = 0.9;
+                param o5_x: m = 0.9, at least -1e3, at most 1e3;
                 /// Pivot O5 of the guide, y.
-                param o5_y: m = 0.745;
+                param o5_y: m = 0.745, at least -1e3, at most 1e3;
                 /// Point D0 of the work, x.
-                param work_x: m = 0.9;
+                param work_x: m = 0.9, at least -1e3, at most 1e3;
                 /// Point D0 of the work, y.
-                param work_y: m = -0.145;
+                param work_y: m = -0.145, at least -1e3, at most 1e3;
 
                 gravity [0, -gravity, 0];
                 ground {

@@ -2,7 +2,9 @@
 
 pub mod examples;
 pub mod fuzz;
+pub mod hard_hacksaw;
 pub mod hardcases;
+pub mod long_term;
 pub mod power;
 pub mod record;
 pub mod switching;

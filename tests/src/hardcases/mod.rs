@@ -15,6 +15,7 @@ pub mod pollution;
 pub mod problem;
 pub mod report;
 pub mod ring_modulator;
+pub mod sheet;
 pub mod singular;
 pub mod slider_crank;
 

@@ -5,7 +5,7 @@
 use bg_model::failure::Cause;
 use bg_model::integrator::{AnyMethod, Tolerances};
 use bg_model::nalgebra::SVector;
-use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::{Model, System};
 use hacksaw::methods::Integrator;
@@ -38,6 +38,17 @@ pub struct Run {
     pub failure: Option<Cause>,
 }
 
+/// What following a run gave beside the rows.
+#[derive(Clone, Debug)]
+pub struct Followed {
+    /// The times of the switchings, s.
+    pub events: Vec<f64>,
+    /// What it cost.
+    pub statistics: Statistics,
+    /// Why it stopped before its end.
+    pub failure: Option<Cause>,
+}
+
 /// Something to run.
 pub trait Problem {
     /// The number of states.
@@ -45,6 +56,19 @@ pub trait Problem {
 
     /// Runs it from t = 0 with `integrator`.
     fn run(&self, integrator: Integrator, request: &Request) -> Run;
+}
+
+/// A problem of one system, which can be followed at any samples.
+pub trait Followable: Problem {
+    /// Runs it from t = 0 to the last instant of `request` with `integrator`; `each` is given the rows at `samples`, not
+    /// at the instants, with their times (s).
+    fn follow(
+        &self,
+        integrator: Integrator,
+        request: &Request,
+        samples: Samples,
+        each: &mut dyn FnMut(f64, Vec<f64>),
+    ) -> Followed;
 }
 
 /// A system, its start, and what is watched of it at an instant.
@@ -75,6 +99,20 @@ where
     F: Fn(&[f64; M]) -> Vec<f64> + 'static,
 {
     let start = model.start().expect("the mechanism closes");
+    followable(model, start, watch)
+}
+
+/// The same from any start, and to be followed.
+#[must_use]
+pub fn followable<Mo, F, const N: usize, const G: usize, const M: usize>(
+    model: Mo,
+    start: SVector<f64, N>,
+    watch: F,
+) -> Box<dyn Followable>
+where
+    Mo: Model<f64, N, G, M> + 'static,
+    F: Fn(&[f64; M]) -> Vec<f64> + 'static,
+{
     let watch = move |model: &Mo, t: f64, x: &SVector<f64, N>, negative: &[bool; G]| {
         let mut y = SVector::<f64, M>::zeros();
         model.outputs(t, x, negative, &mut y);
@@ -93,23 +131,62 @@ where
     }
 
     fn run(&self, integrator: Integrator, request: &Request) -> Run {
-        let Self { system, start, watch } = self;
+        let mut rows = Vec::with_capacity(request.instants.len());
+        let samples = Samples::At(request.instants.to_vec());
+        let Followed { statistics, failure, .. } =
+            self.follow(integrator, request, samples, &mut |_, row| rows.push(row));
+        Run { rows, statistics, failure }
+    }
+}
+
+impl<Sys, F, const N: usize, const G: usize> Followable for Watched<Sys, F, N, G>
+where
+    Sys: System<f64, N, G>,
+    F: Fn(&Sys, f64, &SVector<f64, N>, &[bool; G]) -> Vec<f64>,
+{
+    fn follow(
+        &self,
+        integrator: Integrator,
+        request: &Request,
+        samples: Samples,
+        each: &mut dyn FnMut(f64, Vec<f64>),
+    ) -> Followed {
         let mut method: AnyMethod<N> = integrator.method(request.fixed_step);
         let settings = Settings {
             tolerances: Tolerances::new(request.relative, request.absolute),
             first_step: request.forced_step,
             largest_step: request.forced_step.unwrap_or(f64::INFINITY),
             step_limit: request.limit,
-            samples: Samples::At(request.instants.to_vec()),
+            samples,
         };
         let span = Span { t0: 0.0, t_end: request.instants.last().copied().unwrap_or(0.0) };
-        let mut rows = Vec::with_capacity(request.instants.len());
-        let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &[bool; G]| {
-            rows.push(watch(system, t, x, negative));
-        });
-        match integrate(system, &mut method, start, span, &settings, &mut observer) {
-            Ok(finish) => Run { rows, statistics: finish.statistics, failure: None },
-            Err(failure) => Run { rows, statistics: failure.last.statistics, failure: Some(failure.cause) },
-        }
+        let mut follower = Follower { watched: self, each, events: Vec::new() };
+        let (statistics, failure) =
+            match integrate(&self.system, &mut method, &self.start, span, &settings, &mut follower) {
+                Ok(finish) => (finish.statistics, None),
+                Err(failure) => (failure.last.statistics, Some(failure.cause)),
+            };
+        Followed { events: follower.events, statistics, failure }
+    }
+}
+
+/// Hands on what is watched, and notes the switchings.
+struct Follower<'a, Sys, F, const N: usize, const G: usize> {
+    watched: &'a Watched<Sys, F, N, G>,
+    each: &'a mut dyn FnMut(f64, Vec<f64>),
+    events: Vec<f64>,
+}
+
+impl<Sys, F, const N: usize, const G: usize> Observer<N, G> for Follower<'_, Sys, F, N, G>
+where
+    F: Fn(&Sys, f64, &SVector<f64, N>, &[bool; G]) -> Vec<f64>,
+{
+    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+        let Watched { system, watch, .. } = self.watched;
+        (self.each)(t, watch(system, t, x, negative));
+    }
+
+    fn event(&mut self, t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {
+        self.events.push(t);
     }
 }

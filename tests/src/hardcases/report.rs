@@ -1,13 +1,14 @@
 //! What came of the cases as one table: text, JSON and a page.
 //!
-//! In: rows of case, integrator, tolerance and outcome. Out: text. The page is one file that needs nothing from
-//! elsewhere: a table of verdicts for each case, integrators down, tolerances across.
+//! In: rows of case, integrator, tolerance and outcome; sheets of other measurements. Out: text. The page is one file that
+//! needs nothing from elsewhere: a table of verdicts for each case, integrators down, tolerances across, then the sheets.
 
 use std::fmt::Write;
 
 use serde_json::{Value, json};
 
 use super::case::{Case, Outcome, Verdict};
+use super::sheet::{Sheet, aligned, escaped};
 
 /// One run.
 pub struct Row {
@@ -63,20 +64,9 @@ fn cells(row: &Row) -> [String; HEAD.len()] {
 /// The rows as a table of text, with a `!` behind a wrong error of the dense output, and the errors that ended runs below it.
 #[must_use]
 pub fn table(rows: &[Row]) -> String {
-    let lines: Vec<[String; HEAD.len()]> =
-        std::iter::once(HEAD.map(str::to_owned)).chain(rows.iter().map(cells)).collect();
-    let widths: [usize; HEAD.len()] =
-        std::array::from_fn(|i| lines.iter().map(|line| line[i].len()).max().unwrap_or(0));
-    let mut text = String::new();
-    for line in &lines {
-        let padded = line
-            .iter()
-            .zip(widths)
-            .enumerate()
-            .map(|(i, (cell, width))| if i < 4 { format!("{cell:<width$}") } else { format!("{cell:>width$}") });
-        text += padded.collect::<Vec<_>>().join("  ").trim_end();
-        text.push('\n');
-    }
+    let lines: Vec<Vec<String>> =
+        std::iter::once(HEAD.map(str::to_owned)).chain(rows.iter().map(cells)).map(Vec::from).collect();
+    let mut text = aligned(&lines, 4);
     for row in rows {
         if let Verdict::Failed(message) = &row.outcome.verdict {
             writeln!(text, "{} by {} at {:e}: {message}", row.case, row.integrator, row.tolerance).expect("a string");
@@ -85,12 +75,13 @@ pub fn table(rows: &[Row]) -> String {
     text
 }
 
-/// The cases and the rows as JSON. Not-a-number is null.
+/// The cases, the rows and the sheets as JSON. Not-a-number is null.
 #[must_use]
-pub fn json(cases: &[Case], rows: &[Row]) -> String {
+pub fn json(cases: &[Case], rows: &[Row], sheets: &[Sheet]) -> String {
     let cases: Vec<Value> = cases.iter().map(about).collect();
     let rows: Vec<Value> = rows.iter().map(entry).collect();
-    format!("{:#}\n", json!({ "cases": cases, "runs": rows }))
+    let sheets: Vec<Value> = sheets.iter().map(Sheet::json).collect();
+    format!("{:#}\n", json!({ "cases": cases, "runs": rows, "sheets": sheets }))
 }
 
 fn about(case: &Case) -> Value {
@@ -150,7 +141,7 @@ small { display: block; color: var(--pencil); }
 
 /// The page.
 #[must_use]
-pub fn page(cases: &[Case], rows: &[Row], tolerances: &[f64]) -> String {
+pub fn page(cases: &[Case], rows: &[Row], tolerances: &[f64], sheets: &[Sheet]) -> String {
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Hard cases</title>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>{STYLE}</style>\n</head>\n\
@@ -161,6 +152,7 @@ pub fn page(cases: &[Case], rows: &[Row], tolerances: &[f64]) -> String {
     for case in cases {
         section(&mut page, case, rows, tolerances);
     }
+    sheets.iter().for_each(|sheet| page += &sheet.html());
     page + "</body>\n</html>\n"
 }
 
@@ -198,8 +190,4 @@ fn cell(row: &Row) -> String {
         number(*error),
         statistics.rate_evaluations
     )
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
