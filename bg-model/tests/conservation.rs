@@ -41,6 +41,16 @@ fn the_oscillators_energy_stays_to_rounding() {
 }
 
 #[test]
+fn a_fixed_gauss_step_does_not_look_at_the_tolerances() {
+    let end = |tolerance: f64| {
+        let (finish, _) = run(&kepler(), Gauss6::new(0.05), [0.4, 0.0, 0.0, 2.0], 20.0, &settings(tolerance));
+        finish.x
+    };
+    assert_eq!(end(1.0), end(1e-4));
+    assert_eq!(end(1e-12), end(1e-4));
+}
+
+#[test]
 fn keplers_energy_stays_bounded_and_its_angular_momentum_to_rounding() {
     let invariants = |x: &SVector<f64, 4>| {
         let energy = 0.5 * (x[2] * x[2] + x[3] * x[3]) - 1.0 / x[0].hypot(x[1]);

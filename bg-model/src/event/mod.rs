@@ -133,6 +133,7 @@ where
     const AHEAD: f64 = 1e-6;
     let ahead = AHEAD * h;
     let value = stepper.guards(t, x);
-    let slope = (stepper.guards(t + ahead, &(x + rate * ahead)) - value) / ahead;
+    let x_ahead = SVector::from(std::array::from_fn(|i| x.data.0[0][i] + rate.data.0[0][i] * ahead));
+    let slope = (stepper.guards(t + ahead, &x_ahead) - value) / ahead;
     Reading { value, slope }
 }

@@ -9,7 +9,7 @@
 use nalgebra::SVector;
 
 use super::collocation::{Collocation, GAUSS6};
-use super::{Flow, Method, Point, Scale, StepControl};
+use super::{Flow, Method, Point, Scale, StepControl, Tolerances};
 
 /// A disagreement of this part of a state shows that a step's equations were not solved.
 const LOST: f64 = 1e-3;
@@ -19,23 +19,28 @@ const LOST: f64 = 1e-3;
 pub struct Gauss6<const N: usize> {
     core: Collocation<N, 3, 1>,
     control: StepControl,
+    /// What corrections of a fixed step are measured by: it has no tolerances.
+    own: Scale<N>,
 }
 
 impl<const N: usize> Gauss6<N> {
     /// The method with steps of `step` (s); the driver refuses a step that is not positive and finite.
     #[must_use]
     pub fn new(step: f64) -> Self {
-        Self { core: Collocation::new(&GAUSS6, true), control: StepControl::Fixed { step } }
+        Self::with(StepControl::Fixed { step })
     }
 
     /// The method with steps by the error estimate. Quadratic invariants are kept, other energies drift.
     #[must_use]
     pub fn adaptive() -> Self {
-        Self { core: Collocation::new(&GAUSS6, true), control: StepControl::Predictive { order: 4.0 } }
+        Self::with(StepControl::Predictive { order: 4.0 })
     }
-}
 
-impl<const N: usize> Gauss6<N> {
+    fn with(control: StepControl) -> Self {
+        let own = Scale::from(&Tolerances::default());
+        Self { core: Collocation::new(&GAUSS6, true), control, own }
+    }
+
     /// Whether the quadrature disagrees with the polynomial, by a thousandth of the state and more than the tolerances: where
     /// h J is so large that the rates at the stages are rounding errors, the equations have no solution in `f64`.
     fn is_lost(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> bool {
@@ -63,6 +68,7 @@ impl<const N: usize> Method<N> for Gauss6<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
+        let scale = if let StepControl::Fixed { .. } = self.control { &self.own } else { scale };
         let error = match self.core.solve(flow, start, h, scale) {
             Ok(()) => {
                 *end = SVector::from_fn(|i, _| start.x[i] + self.core.quadrature(i, h));

@@ -411,6 +411,7 @@ impl Emission<'_> {
                     #rate
                     dx.data.0 = [[#(#rates),*]];
                 }
+                #[inline(always)]
                 fn guards(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], guards: &mut SVector<S, G>) {
                     #guard
                     guards.data.0 = [[#(#guards),*]];
