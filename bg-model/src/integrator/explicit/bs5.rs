@@ -1,7 +1,8 @@
 //! The coefficients of the explicit Runge-Kutta method of order 5 of Bogacki and Shampine, with an error estimate of order 4
 //! and a dense output of order 5.
 //!
-//! Of the two estimates this is the one that does without the rate at the end of the step. Source: P. Bogacki, L. F.
+//! Of the two estimates the first does without the rate at the end of the step; the second has it and sees what changes in
+//! the last quarter of the step, which the first does not. Source: P. Bogacki, L. F.
 //! Shampine, An efficient Runge-Kutta (4,5) pair, Computers and Mathematics with Applications 32 (1996), 15-28; fractions
 //! taken from extensisq 0.6.0, `bogacki.py`, with its dense output of one further stage, which is put into the form of
 //! `dense` in exact arithmetic; all rounded to the nearest `f64`.
@@ -66,6 +67,16 @@ impl Tableau for BogackiShampine {
         (3, -0.016490384615384615),
         (4, 0.018984375),
         (5, -0.010526315789473684),
+    ];
+
+    const LATE: Row = &[
+        (0, -0.0019478942125547064),
+        (2, 0.009048699186152193),
+        (3, -0.015478743126634073),
+        (4, 0.021222718253968254),
+        (5, -0.013276905111429694),
+        (6, -0.005480370770138146),
+        (7, 0.005912495780636172),
     ];
 
     const DENSE: &'static [Row] = &[

@@ -22,7 +22,7 @@ pub use dop853::DormandPrince;
 use super::tolerances::{index_of_largest, largest};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 
-/// The method of order 5(4) of Bogacki and Shampine: seven rates a step, one more if its dense output of order 5 is asked
+/// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
 /// for.
 pub type Bs5<const N: usize> = Explicit<BogackiShampine, N>;
 
@@ -58,6 +58,9 @@ pub trait Tableau {
     const ERROR: Row;
     /// A second embedded method of lower order; empty if there is none.
     const SECOND: Row = &[];
+    /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one is
+    /// small; empty if there is none.
+    const LATE: Row = &[];
     /// The coefficients of the dense output from the fourth on: see `dense`.
     const DENSE: &'static [Row];
 }
@@ -124,6 +127,11 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         flow.rate(start.t + T::C[STAGE] * h, &SVector::from(x), &mut self.k[STAGE]);
     }
 
+    /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
+    fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
+        std::array::from_fn(|i| (combine(row, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs())
+    }
+
     /// Writes the state at the end of the step and gives the norm of its error.
     ///
     /// The norm: h e1, with the largest e1 of the scaled differences to the embedded method. With a second one, whose
@@ -172,12 +180,18 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
     ) -> f64 {
         self.k[0] = start.rate;
         self.evaluate(flow, start, h, 1, T::END);
-        self.finish_step(start, h, scale, end)
+        let norm = self.finish_step(start, h, scale, end);
+        if T::LATE.is_empty() || norm > 1.0 {
+            return norm;
+        }
+        flow.rate(start.t + h, end, &mut self.k[T::END]);
+        let late = h.abs() * largest(&self.errors(T::LATE, start, scale, end));
+        if late > norm { late } else { norm }
     }
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        let error = |i| (combine(T::ERROR, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs();
-        index_of_largest::<N>(error)
+        let errors = self.errors(T::ERROR, start, scale, end);
+        index_of_largest::<N>(|i| errors[i])
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {

@@ -135,6 +135,13 @@ fn the_steps_and_their_companions_have_their_orders() {
 }
 
 #[test]
+fn the_late_companion_of_bs5_has_its_order() {
+    let (b, difference) = (full(BogackiShampine::B), full(BogackiShampine::LATE));
+    let embedded: Stages = std::array::from_fn(|i| b[i] + difference[i]);
+    assert_eq!(order::<BogackiShampine>(&embedded, 1.0), 4);
+}
+
+#[test]
 fn the_dense_outputs_have_their_orders_inside_the_step() {
     assert_eq!(dense_order::<DormandPrince>(), 7);
     assert_eq!(dense_order::<CalvoFrancoMontijanoRandez>(), 5);
