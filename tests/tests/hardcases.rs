@@ -5,6 +5,8 @@
 //! of the default and of one fitting integrator is exactly what it was. `cargo bench -p bond-graph-tests --bench
 //! stability` prints all of it at four tolerances.
 
+#[path = "hardcases/andrews.rs"]
+mod andrews;
 #[path = "hardcases/compliance.rs"]
 mod compliance;
 #[path = "hardcases/orders.rs"]

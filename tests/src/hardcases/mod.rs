@@ -4,6 +4,7 @@
 //! ([`report`]); the orders observed on a stiff joint ([`orders`]). The suite `hardcases` and the bench `stability` use
 //! them. Reference values are copied here with their source; nothing is read at run time.
 
+pub mod andrews;
 pub mod bodies;
 pub mod case;
 pub mod compliance;
@@ -61,6 +62,10 @@ pub fn cases() -> Vec<Case> {
         orbits::arenstorf(),
         slider_crank::slider_crank(),
         slider_crank::compliant_slider_crank(),
+        andrews::andrews(),
+        andrews::ringing_andrews(),
+        andrews::damped_andrews(),
+        andrews::compliant_andrews(),
         pendulums::pendulum(),
         pendulums::compliant_pendulum(),
         pendulums::double_pendulum(),

@@ -1,5 +1,6 @@
 //! The 1/k law: what compliant joints lack of rigid ones halves as their stiffness doubles.
 
+use bond_graph_tests::hardcases::andrews::{compliant_andrews, soft_squeezers};
 use bond_graph_tests::hardcases::bodies::{compliant_heavy_top, soft_heavy_tops};
 use bond_graph_tests::hardcases::case::Case;
 use bond_graph_tests::hardcases::compliance::{Extrapolated, Law, law};
@@ -42,4 +43,9 @@ fn the_slider_crank() {
 #[test]
 fn the_heavy_top() {
     holds(compliant_heavy_top().until(0.2), &soft_heavy_tops(), 1e-2, 3e-6);
+}
+
+#[test]
+fn andrews_squeezer() {
+    holds(compliant_andrews(), &soft_squeezers(), 1e-1, 1e-4);
 }
