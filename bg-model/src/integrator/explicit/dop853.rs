@@ -14,6 +14,7 @@ pub struct DormandPrince;
 impl Tableau for DormandPrince {
     const NAME: &'static str = "DOP853";
     const ERROR_ORDER: f64 = 8.0;
+    const IS_COMPENSATED: bool = true;
     const END: usize = 12;
 
     const C: &'static [f64] = &[

@@ -61,6 +61,8 @@ pub trait Tableau {
     /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one is
     /// small; empty if there is none.
     const LATE: Row = &[];
+    /// Whether the states are summed up with what rounding has kept from them, which pays at small tolerances.
+    const IS_COMPENSATED: bool = false;
     /// The coefficients of the dense output from the fourth on: see `dense`.
     const DENSE: &'static [Row];
 }
@@ -79,6 +81,10 @@ pub struct Explicit<T, const N: usize> {
     k: Stages<N>,
     /// The dense output's coefficients.
     polynomial: [SVector<f64, N>; COEFFICIENTS],
+    /// What rounding has kept from the state at the start of the step, and what it keeps from that at its end: a compensated
+    /// sum (W. Kahan, Communications of the ACM 8 (1965); Hairer, Lubich, Wanner, section VIII.5). Without it the momenta
+    /// of long runs drift by a random walk.
+    carry: [SVector<f64, N>; 2],
     tableau: PhantomData<T>,
 }
 
@@ -87,7 +93,7 @@ impl<T, const N: usize> Explicit<T, N> {
     #[must_use]
     pub fn new() -> Self {
         let (k, polynomial) = ([SVector::zeros(); STAGES], [SVector::zeros(); COEFFICIENTS]);
-        Self { k, polynomial, tableau: PhantomData }
+        Self { k, polynomial, carry: [SVector::zeros(); 2], tableau: PhantomData }
     }
 }
 
@@ -137,12 +143,16 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// The norm: h e1, with the largest e1 of the scaled differences to the embedded method. With a second one, whose
     /// largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer, Norsett, Wanner, section II.10).
     #[inline(always)]
-    fn finish_step(&self, start: &Point<N>, h: f64, scale: &Scale<N>, end: &mut SVector<f64, N>) -> f64 {
+    fn finish_step(&mut self, start: &Point<N>, h: f64, scale: &Scale<N>, end: &mut SVector<f64, N>) -> f64 {
         let (mut first, mut second) = ([0.0; N], [0.0; N]);
         for i in 0..N {
             let from = start.x.data.0[0][i];
             let slope = combine(T::B, &self.k, i);
-            let to = from + h * slope;
+            let change = if T::IS_COMPENSATED { h * slope + self.carry[0].data.0[0][i] } else { h * slope };
+            let to = from + change;
+            if T::IS_COMPENSATED {
+                self.carry[1].data.0[0][i] = change - (to - from);
+            }
             let allowed = scale.allowed(i, from, to);
             end.data.0[0][i] = to;
             first[i] = (combine(T::ERROR, &self.k, i) / allowed).abs();
@@ -187,6 +197,14 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         flow.rate(start.t + h, end, &mut self.k[T::END]);
         let late = h.abs() * largest(&self.errors(T::LATE, start, scale, end));
         if late > norm { late } else { norm }
+    }
+
+    fn advance(&mut self) {
+        self.carry.swap(0, 1);
+    }
+
+    fn restart(&mut self) {
+        self.carry[0].fill(0.0);
     }
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
