@@ -84,7 +84,11 @@ pub fn environment(folder: &Path) -> Result<PathBuf, String> {
 /// It does not start or does not answer.
 pub fn start(python: &Path, problem: &Problem, sources: &[Source]) -> Result<Python, String> {
     let script = scripts().join("peers.py");
-    let child = Command::new(python).arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+    // CasADi leaves what it compiles in the working folder.
+    let absolute = std::path::absolute(python).map_err(|fault| format!("{}: {fault}", python.display()))?;
+    let mut started = Command::new(absolute);
+    started.arg(script).current_dir(std::env::temp_dir()).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let child = started.spawn();
     let mut child = child.map_err(|fault| format!("{}: {fault}", python.display()))?;
     let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
     let (stdin, stdout) = (stdin.expect("is piped"), BufReader::new(stdout.expect("is piped")));
