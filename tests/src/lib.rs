@@ -7,4 +7,5 @@ pub mod hardcases;
 pub mod long_term;
 pub mod power;
 pub mod record;
+pub mod rotation;
 pub mod switching;

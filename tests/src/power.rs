@@ -4,6 +4,8 @@ use bg_model::nalgebra::SVector;
 use bg_model::scalar::Dual;
 use bg_model::system::{Model, Powers};
 
+use crate::rotation::matrix;
+
 /// Numbers that look random and are the same every time (SplitMix64, Steele, Lea and Flood 2014).
 #[derive(Clone, Debug)]
 pub struct Draw(u64);
@@ -27,20 +29,10 @@ impl Draw {
 
     /// A rotation matrix, row by row: that of a random quaternion.
     fn rotation(&mut self) -> [f64; 9] {
-        let [a, b, c, d] = std::array::from_fn(|_| self.number() + 1e-3);
+        let quaternion = std::array::from_fn(|_| self.number() + 1e-3);
+        let [a, b, c, d] = quaternion;
         let square = a * a + b * b + c * c + d * d;
-        [
-            a * a + b * b - c * c - d * d,
-            2.0 * (b * c - a * d),
-            2.0 * (b * d + a * c),
-            2.0 * (b * c + a * d),
-            a * a - b * b + c * c - d * d,
-            2.0 * (c * d - a * b),
-            2.0 * (b * d - a * c),
-            2.0 * (c * d + a * b),
-            a * a - b * b - c * c + d * d,
-        ]
-        .map(|entry| entry / square)
+        matrix(quaternion).map(|entry| entry / square)
     }
 }
 

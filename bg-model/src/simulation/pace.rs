@@ -23,8 +23,8 @@ const HALF: f64 = 0.5;
 const HOLD: f64 = 1.2;
 /// The part of a stabilised control that looks at the step before.
 const DAMPING: f64 = 0.4;
-/// The least error norm that is taken for that of the step before.
-const LEAST: f64 = 1e-2;
+/// The least logarithm of an error norm that is taken for that of the step before, which is that of 0.01.
+const LEAST: f64 = -2.0 * std::f64::consts::LN_10;
 /// A step that would leave less than this part of itself to the end is stretched to it.
 const STRETCH: f64 = 0.01;
 
@@ -169,8 +169,7 @@ impl Pace {
 
     /// Notes the step `h` (s) and the logarithm of its error norm; gives those of the step before.
     fn accept_norm(&mut self, h: f64, logarithm: f64) -> Option<(f64, f64)> {
-        let least = libm::log(LEAST);
-        self.accepted.replace((h, if logarithm > least { logarithm } else { least }))
+        self.accepted.replace((h, if logarithm > LEAST { logarithm } else { LEAST }))
     }
 }
 

@@ -9,6 +9,7 @@ use super::case::{Case, Measure};
 use super::compliance::Extrapolated;
 use super::problem::{self, Problem};
 use super::{EXPLICIT, QUAD, STIFF};
+use crate::rotation::matrix;
 
 bond_graph! {
     /// The top's centre of mass is 1 m from its tip along its y axis, which lies level at the start and about which it
@@ -48,21 +49,6 @@ bond_graph! {
         rotation -> tensor;
         observe { w: rad/s = transpose(attitude) * rotation.flow; }
     }
-}
-
-/// The rotation matrix of a unit quaternion, row by row.
-fn matrix([a, b, c, d]: [f64; 4]) -> [f64; 9] {
-    [
-        a * a + b * b - c * c - d * d,
-        2.0 * (b * c - a * d),
-        2.0 * (b * d + a * c),
-        2.0 * (b * c + a * d),
-        a * a - b * b + c * c - d * d,
-        2.0 * (c * d - a * b),
-        2.0 * (b * d - a * c),
-        2.0 * (c * d + a * b),
-        a * a - b * b - c * c + d * d,
-    ]
 }
 
 fn top(name: &'static str, problem: Box<dyn Problem>) -> Case {
