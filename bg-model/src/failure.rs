@@ -137,6 +137,15 @@ pub enum BadInput {
         /// The refused tolerance.
         value: f64,
     },
+    /// The integrator needs the Taylor series of the system.
+    #[error(
+        "the integrator {method} needs the system's Taylor series, which there is not where an input changes with time, nor \
+         of a system written by hand without one; choose another integrator"
+    )]
+    NoSeries {
+        /// The integrator's name.
+        method: &'static str,
+    },
     /// The end is before the start, or one of them or their difference is not finite.
     #[error("the span from t = {t0:?} s to {t_end:?} s {}", span_fault(*.t0, *.t_end))]
     Span {

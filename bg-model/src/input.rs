@@ -46,6 +46,12 @@ impl Input {
         Self { law: Law::FunctionAndRate(Arc::new(value), Arc::new(rate)) }
     }
 
+    /// Whether the value is the same at all times: not of a closure.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        matches!(self.law, Law::Constant(_))
+    }
+
     /// The value at time `t` (s).
     ///
     /// A closure is evaluated at the `f64` nearest to `t`. With a rate, what `t` has beyond that `f64` (the low part of

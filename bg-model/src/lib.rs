@@ -89,6 +89,7 @@ pub mod integrator;
 pub mod linear;
 pub mod parameters;
 pub mod scalar;
+pub mod series;
 pub mod simulation;
 pub mod statistics;
 pub mod system;

@@ -19,6 +19,8 @@ pub struct Statistics {
     pub factorisations: u64,
     /// Those of `factorisations` that were made with row exchanges because a pivot in the planned order was too small.
     pub pivoted_factorisations: u64,
+    /// Orders of Taylor series, each of which costs one to two rates.
+    pub series_orders: u64,
     /// Evaluations of the guards, each of all guards at once.
     pub guard_evaluations: u64,
     /// Changes of a switch's branch after the start.
@@ -59,6 +61,9 @@ impl fmt::Display for Statistics {
                 ", {jacobians} Jacobians, {factorisations} factorisations ({} pivoted)",
                 self.pivoted_factorisations
             )?;
+        }
+        if self.series_orders > 0 {
+            write!(f, ", {} orders of Taylor series", self.series_orders)?;
         }
         Ok(())
     }

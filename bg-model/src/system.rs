@@ -53,6 +53,19 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     fn substitute<F: Field<S>>(&self, _factors: &[F], _b: &mut [F; N]) {
         unreachable!("only what was eliminated is substituted")
     }
+
+    /// How many numbers each order of the Taylor series of the states needs as work space; none where there is no series:
+    /// of a system written by hand, by default, and where an input changes with time.
+    fn series_width(&self) -> Option<usize> {
+        None
+    }
+
+    /// Writes the Taylor series of the states from time `t` (s) on: `series[0]` is the state there, `series[k]` becomes the
+    /// coefficient of the k-th power of (time - `t`) / `h`, which has the state's unit. `rows` has at least
+    /// [`System::series_width`] numbers for each `k` but the last. Only called where there is a series.
+    fn series(&self, _t: S, _h: S, _negative: &[bool; G], _rows: &mut [S], _series: &mut [SVector<S, N>]) {
+        unreachable!("only asked for where there is one")
+    }
 }
 
 /// Power that crosses the boundary of a model, W.

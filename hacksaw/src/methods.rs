@@ -2,7 +2,7 @@
 //!
 //! In: a name and, for methods with a fixed step, the step. Out: the method.
 
-use bg_model::integrator::{AnyMethod, Auto, Bs5, Cfmr7, Dop853, Gauss6, Radau5, Radau9, Rk4, Rodas5p, Ros2};
+use bg_model::integrator::{AnyMethod, Auto, Bs5, Cfmr7, Dop853, Gauss6, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor};
 use clap::ValueEnum;
 
 /// An integrator.
@@ -17,6 +17,8 @@ pub enum Integrator {
     Cfmr7,
     /// Explicit, order 8(5,3)
     Dop853,
+    /// Explicit, Taylor series, order by the tolerance, for high precision
+    Taylor,
     /// Rosenbrock, order 5(4), for stiff systems
     Rodas5p,
     /// Implicit, order 5, for stiff systems
@@ -40,6 +42,7 @@ impl Integrator {
             Self::Bs5 => Bs5::new().into(),
             Self::Cfmr7 => Cfmr7::new().into(),
             Self::Dop853 => Dop853::new().into(),
+            Self::Taylor => Taylor::new().into(),
             Self::Rodas5p => Rodas5p::new().into(),
             Self::Radau5 => Radau5::new().into(),
             Self::Radau9 => Radau9::new().into(),
@@ -53,6 +56,12 @@ impl Integrator {
     #[must_use]
     pub fn has_fixed_step(self) -> bool {
         matches!(self, Self::Rk4 | Self::Ros2 | Self::Gauss6)
+    }
+
+    /// Whether it needs the Taylor series of the system.
+    #[must_use]
+    pub fn needs_series(self) -> bool {
+        self == Self::Taylor
     }
 
     /// The name on the command line.

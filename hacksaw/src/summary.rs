@@ -41,6 +41,8 @@ pub struct Summary {
     pub rejected: u64,
     /// Evaluations of the rate function.
     pub rate_evaluations: u64,
+    /// Orders of Taylor series.
+    pub series_orders: u64,
     /// Evaluations of the Jacobian.
     pub jacobian_evaluations: u64,
     /// Factorisations of I - c J.
@@ -110,6 +112,7 @@ impl Summary {
             steps: statistics.steps,
             rejected: statistics.rejected,
             rate_evaluations: statistics.rate_evaluations,
+            series_orders: statistics.series_orders,
             jacobian_evaluations: statistics.jacobian_evaluations,
             factorisations: statistics.factorisations,
             pivoted_factorisations: statistics.pivoted_factorisations,
@@ -151,6 +154,9 @@ impl Summary {
         lines.push(("states", self.states.to_string()));
         lines.push(("steps", format!("{} accepted, {} rejected", self.steps, self.rejected)));
         lines.push(("rate evaluations", self.rate_evaluations.to_string()));
+        if self.series_orders > 0 {
+            lines.push(("orders of Taylor series", self.series_orders.to_string()));
+        }
         if self.factorisations > 0 {
             let pivoted = match self.pivoted_factorisations {
                 0 => String::new(),

@@ -15,7 +15,7 @@ mod steps;
 #[path = "switching/times.rs"]
 mod times;
 
-use bond_graph_tests::hardcases::integrators;
+use bond_graph_tests::hardcases::integrators_of_rates;
 use bond_graph_tests::switching::case::{Request, Run, Switched, started};
 use bond_graph_tests::switching::flow::{Flow, Guard};
 
@@ -34,8 +34,8 @@ fn one_step(end: f64) -> Request {
 
 /// Runs `problem` by every integrator and hands each run with the integrator's name to `check`.
 fn by_all(problem: &dyn Switched, request: &Request, mut check: impl FnMut(&str, &Run)) {
-    for integrator in integrators() {
-        check(&integrator.name(), &problem.run(*integrator, request));
+    for integrator in integrators_of_rates() {
+        check(&integrator.name(), &problem.run(integrator, request));
     }
 }
 

@@ -7,7 +7,7 @@ use nalgebra::SVector;
 
 use super::{
     Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2, Scale,
-    StepControl,
+    StepControl, Taylor,
 };
 
 macro_rules! any {
@@ -27,7 +27,7 @@ macro_rules! any {
     };
 }
 
-any!(Auto Bs5 Cfmr7 Dop853 Gauss6 Radau5 Radau9 Rk4 Rodas5p Ros2);
+any!(Auto Bs5 Cfmr7 Dop853 Gauss6 Radau5 Radau9 Rk4 Rodas5p Ros2 Taylor);
 
 /// Hands on to the method inside.
 macro_rules! inside {
@@ -43,6 +43,7 @@ macro_rules! inside {
             AnyMethod::Rk4($method) => $then,
             AnyMethod::Rodas5p($method) => $then,
             AnyMethod::Ros2($method) => $then,
+            AnyMethod::Taylor($method) => $then,
         }
     };
 }
@@ -54,6 +55,10 @@ impl<const N: usize> Method<N> for AnyMethod<N> {
 
     fn control(&self) -> StepControl {
         inside!(self, method => method.control())
+    }
+
+    fn needs_series(&self) -> bool {
+        inside!(self, method => method.needs_series())
     }
 
     fn attempt(

@@ -16,6 +16,7 @@ mod hermite;
 mod radau;
 mod rk4;
 mod rosenbrock;
+mod taylor;
 mod tolerances;
 
 use nalgebra::SVector;
@@ -31,6 +32,7 @@ pub(crate) use hermite::hermite;
 pub use radau::{Radau, Radau5, Radau9, Radau13};
 pub use rk4::Rk4;
 pub use rosenbrock::{Rodas5p, Ros2};
+pub use taylor::Taylor;
 pub use tolerances::{Absolute, Scale, Tolerances};
 
 /// A smooth flow: a system with its switches frozen.
@@ -56,6 +58,16 @@ pub trait Flow<const N: usize> {
     /// See [`System::substitute`](crate::system::System::substitute).
     fn substitute<F: Field<f64>>(&self, _factors: &[F], _b: &mut [F; N]) {
         unreachable!("only what was eliminated is substituted")
+    }
+
+    /// See [`System::series_width`](crate::system::System::series_width).
+    fn series_width(&self) -> Option<usize> {
+        None
+    }
+
+    /// See [`System::series`](crate::system::System::series).
+    fn series(&mut self, _t: f64, _h: f64, _rows: &mut [f64], _series: &mut [SVector<f64, N>]) {
+        unreachable!("only asked for where there is one")
     }
 
     /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small pivot.
@@ -126,6 +138,11 @@ pub trait Method<const N: usize> {
 
     /// How its steps are to be chosen.
     fn control(&self) -> StepControl;
+
+    /// Whether it needs the [`System::series`](crate::system::System::series) of the system.
+    fn needs_series(&self) -> bool {
+        false
+    }
 
     /// Tries a step of size `h` (s) from `start`, whose rate is known, and writes the state reached into `end`.
     ///

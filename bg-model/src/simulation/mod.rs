@@ -59,6 +59,7 @@ where
     O: Observer<N, G>,
 {
     let control = method.control();
+    let needs_series = method.needs_series().then(|| method.name());
     let mut run = Run {
         stepper: Stepper::new(system, method, Scale::from(&settings.tolerances), Point::at(span.t0, *start)),
         watch: Watch::new(),
@@ -70,6 +71,7 @@ where
         faulty_guard: None,
     };
     let outcome = settings::check(system, control, start, span, settings)
+        .and_then(|()| settings::check_series(system, needs_series))
         .map_err(Cause::from)
         .and_then(|()| run.begin(control, settings))
         .and_then(|()| run.advance_to_end(observer));

@@ -95,6 +95,20 @@ where
     check_samples(span, &settings.samples)
 }
 
+/// Refuses the method of this name, if there is one, on a system without a Taylor series.
+pub(super) fn check_series<Sys, const N: usize, const G: usize>(
+    system: &Sys,
+    method: Option<&'static str>,
+) -> Result<(), BadInput>
+where
+    Sys: System<f64, N, G>,
+{
+    match method {
+        Some(method) if system.series_width().is_none() => Err(BadInput::NoSeries { method }),
+        _ => Ok(()),
+    }
+}
+
 fn check_tolerances<Sys, S, const N: usize, const G: usize>(
     system: &Sys,
     tolerances: &Tolerances<N>,

@@ -42,6 +42,15 @@ where
         self.system.substitute(factors, b);
     }
 
+    fn series_width(&self) -> Option<usize> {
+        self.system.series_width()
+    }
+
+    fn series(&mut self, t: f64, h: f64, rows: &mut [f64], series: &mut [SVector<f64, N>]) {
+        self.statistics.series_orders += (series.len() - 1) as u64;
+        self.system.series(t, h, self.negative, rows, series);
+    }
+
     fn count_factorisation(&mut self, is_fallback: bool) {
         self.statistics.factorisations += 1;
         self.statistics.pivoted_factorisations += u64::from(is_fallback);

@@ -69,6 +69,8 @@ pub struct Counts {
     pub rejected: u64,
     /// Evaluations of the rate.
     pub rates: u64,
+    /// Orders of Taylor series.
+    pub orders: u64,
     /// Evaluations of the Jacobian.
     pub jacobians: u64,
     /// Factorisations.
@@ -85,6 +87,7 @@ impl From<&Statistics> for Counts {
             steps: statistics.steps,
             rejected: statistics.rejected,
             rates: statistics.rate_evaluations,
+            orders: statistics.series_orders,
             jacobians: statistics.jacobian_evaluations,
             factorisations: statistics.factorisations,
             pivoted: statistics.pivoted_factorisations,

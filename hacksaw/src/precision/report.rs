@@ -14,7 +14,7 @@ use crate::report;
 /// The entries as a table, one line each.
 #[must_use]
 pub fn table(entries: &[Entry]) -> String {
-    const HEAD: [&str; 17] = [
+    const HEAD: [&str; 18] = [
         "case",
         "integrator",
         "rtol or step",
@@ -29,12 +29,13 @@ pub fn table(entries: &[Entry]) -> String {
         "steps",
         "rejected",
         "rates",
+        "orders",
         "Jacobians",
         "LU",
         "events",
     ];
     let rows = entries.iter().map(|entry| {
-        let Counts { steps, rejected, rates, jacobians, factorisations, pivoted, events } = entry.counts;
+        let Counts { steps, rejected, rates, orders, jacobians, factorisations, pivoted, events } = entry.counts;
         let [poses, momenta, forces] = match &entry.errors {
             Some(errors) => [errors.poses, errors.momenta, errors.forces],
             None => [None; 3],
@@ -52,7 +53,7 @@ pub fn table(entries: &[Entry]) -> String {
         ];
         row.extend(numbers);
         row.extend([entry.wall_minimum_s, entry.wall_median_s].map(|seconds| format!("{:.2}", seconds * 1e3)));
-        row.extend([steps, rejected, rates, jacobians].map(|count| count.to_string()));
+        row.extend([steps, rejected, rates, orders, jacobians].map(|count| count.to_string()));
         row.extend([factorisations, events.to_string()]);
         let row: [String; HEAD.len()] = row.try_into().expect("a cell for each head");
         row
@@ -99,7 +100,9 @@ type Cost = fn(&Entry) -> f64;
 /// Name in the file's name, axis, value.
 const COSTS: [(&str, &str, Cost); 2] = [
     ("time", "wall time, ms (least of the repeats)", |entry| entry.wall_minimum_s * 1e3),
-    ("rates", "evaluations of the rate", |entry| entry.counts.rates as f64),
+    ("rates", "evaluations of the rate and orders of Taylor series", |entry| {
+        (entry.counts.rates + entry.counts.orders) as f64
+    }),
 ];
 
 /// A curve for each integrator, in the order of the entries.

@@ -8,7 +8,7 @@
 //! from the integrator. The amplification is how much the measure magnifies a relative disturbance of the state on the
 //! way, a property of the equations: no method can do without it. It is 1 but for orbits, a strong ring and free bodies.
 
-use bg_model::failure::Cause;
+use bg_model::failure::{BadInput, Cause};
 use bg_model::statistics::Statistics;
 use hacksaw::methods::Integrator;
 
@@ -73,6 +73,8 @@ pub enum Verdict {
     Unchecked,
     /// The limit of steps was reached.
     TooCostly,
+    /// The integrator needs a Taylor series that the problem, written by hand, does not have.
+    NoSeries,
     /// The run ended with this error.
     Failed(String),
 }
@@ -88,6 +90,7 @@ impl Verdict {
             Self::TooLoose => "too loose",
             Self::Unchecked => "unchecked",
             Self::TooCostly => "too costly",
+            Self::NoSeries => "no series",
             Self::Failed(_) => "failed",
         }
     }
@@ -150,6 +153,7 @@ impl Case {
             None if integrator.has_fixed_step() => Verdict::Unchecked,
             None => self.judge(error, tolerance),
             Some(Cause::TooManySteps { .. }) => Verdict::TooCostly,
+            Some(Cause::BadInput(BadInput::NoSeries { .. })) => Verdict::NoSeries,
             Some(cause) => Verdict::Failed(cause.to_string()),
         };
         let is_wrong_between = !integrator.has_fixed_step() && self.judge(between, tolerance) == Verdict::Wrong;

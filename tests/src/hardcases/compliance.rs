@@ -43,6 +43,7 @@ fn add(sum: &mut Statistics, of: &Statistics) {
     sum.steps += of.steps;
     sum.rejected += of.rejected;
     sum.rate_evaluations += of.rate_evaluations;
+    sum.series_orders += of.series_orders;
     sum.jacobian_evaluations += of.jacobian_evaluations;
     sum.factorisations += of.factorisations;
     sum.pivoted_factorisations += of.pivoted_factorisations;

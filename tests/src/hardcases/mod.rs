@@ -87,6 +87,13 @@ pub fn integrators() -> &'static [Integrator] {
     Integrator::value_variants()
 }
 
+/// Those of them that need nothing of a system but its rate.
+pub fn integrators_of_rates() -> impl ExactSizeIterator<Item = Integrator> + Clone {
+    let found: Vec<Integrator> =
+        integrators().iter().copied().filter(|integrator| !integrator.needs_series()).collect();
+    found.into_iter()
+}
+
 /// The integrator `name`.
 ///
 /// # Panics

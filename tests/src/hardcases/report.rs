@@ -24,7 +24,7 @@ pub struct Row {
     pub seconds: f64,
 }
 
-const HEAD: [&str; 12] = [
+const HEAD: [&str; 13] = [
     "case",
     "integrator",
     "rtol",
@@ -34,6 +34,7 @@ const HEAD: [&str; 12] = [
     "steps",
     "rejected",
     "rates",
+    "orders",
     "Jacobians",
     "LU",
     "ms",
@@ -55,6 +56,7 @@ fn cells(row: &Row) -> [String; HEAD.len()] {
         statistics.steps.to_string(),
         statistics.rejected.to_string(),
         statistics.rate_evaluations.to_string(),
+        statistics.series_orders.to_string(),
         statistics.jacobian_evaluations.to_string(),
         statistics.factorisations.to_string(),
         format!("{:.1}", 1e3 * row.seconds),
@@ -114,6 +116,7 @@ fn entry(row: &Row) -> Value {
         "steps": statistics.steps,
         "rejected": statistics.rejected,
         "rates": statistics.rate_evaluations,
+        "series_orders": statistics.series_orders,
         "jacobians": statistics.jacobian_evaluations,
         "factorisations": statistics.factorisations,
         "pivoted": statistics.pivoted_factorisations,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use bond_graph_tests::hardcases::orders::{COUNTS, mean_order, orders, velocity_errors};
 use bond_graph_tests::hardcases::singular::StiffJoint;
-use bond_graph_tests::hardcases::{integrator, integrators};
+use bond_graph_tests::hardcases::{integrator, integrators_of_rates};
 use hacksaw::methods::Integrator;
 
 /// The errors of the velocity and the orders, one line for each integrator; nothing below `floor`, where rounding is.
@@ -13,8 +13,8 @@ fn table(joint: StiffJoint, floor: f64) -> String {
     COUNTS.iter().for_each(|count| write!(text, " {count:>8}").expect("a string"));
     text += "   orders\n";
     // The default is two methods, of which no order can be told.
-    for integrator in integrators().iter().filter(|integrator| **integrator != Integrator::default()) {
-        let errors = velocity_errors(joint, *integrator);
+    for integrator in integrators_of_rates().filter(|integrator| *integrator != Integrator::default()) {
+        let errors = velocity_errors(joint, integrator);
         write!(text, "{:<9}", integrator.name()).expect("a string");
         let shown = |error: f64| match error {
             error if error.is_nan() => "-".to_owned(),

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::sync::OnceLock;
 
-use bond_graph_tests::hardcases::integrators;
+use bond_graph_tests::hardcases::integrators_of_rates;
 use bond_graph_tests::switching::cases;
 use hacksaw::methods::Integrator;
 
@@ -26,7 +26,7 @@ fn rows() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
     ROWS.get_or_init(|| {
         let of_case = |case: bond_graph_tests::switching::case::Case| {
-            integrators().iter().map(move |&integrator| {
+            integrators_of_rates().map(move |integrator| {
                 let step = |column: usize| case.step / f64::from(1 << column);
                 let errors = std::array::from_fn(|k| case.error(integrator, TOLERANCES[k], step(k)));
                 Row { case: case.name, amplification: case.amplification, integrator, errors }
@@ -62,7 +62,7 @@ fn all_events_are_found_and_no_others() {
 #[test]
 fn where_the_method_is_exact_so_is_the_event() {
     let exact: Vec<&Row> = rows().iter().filter(|row| row.amplification == 0.0).collect();
-    assert_eq!(exact.len(), 2 * integrators().len());
+    assert_eq!(exact.len(), 2 * integrators_of_rates().len());
     for Row { case, integrator, errors, .. } in exact {
         assert!(errors.iter().all(|error| *error <= FLOOR), "{case} by {}: {errors:?}", integrator.name());
     }

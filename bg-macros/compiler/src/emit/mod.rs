@@ -7,6 +7,7 @@ mod elimination;
 mod items;
 mod model;
 pub mod routine;
+mod series;
 mod stub;
 
 pub use model::{Parts, model};

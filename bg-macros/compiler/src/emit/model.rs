@@ -10,7 +10,7 @@ use quote::{format_ident, quote};
 
 use super::items::{Given, identifier};
 use super::routine::{Names, assignments, is_long, operand, statements};
-use super::{description, elimination};
+use super::{description, elimination, series};
 use crate::causality::CausalGraph;
 use crate::elimination::Elimination;
 use crate::equations::StateEquations;
@@ -402,6 +402,7 @@ impl Emission<'_> {
         let (project, projected) = self.function(3);
         let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
         let (parts, linear) = self.linear();
+        let series = self.series();
         let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
         quote! {
             #parts
@@ -426,6 +427,64 @@ impl Emission<'_> {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
                 #linear
+                #series
+            }
+        }
+    }
+
+    /// The Taylor series of the states.
+    fn series(&self) -> TokenStream {
+        let routine = &self.programs.dynamic.routines[0];
+        let states = bindings(&[routine], &|symbol| {
+            let Symbol::State(index) = symbol else { return None };
+            let (name, index) = (self.symbol_name(symbol), Literal::usize_unsuffixed(index as usize));
+            Some(quote!(let #name = x[#index];))
+        });
+        let inputs = bindings(&[routine], &|symbol| {
+            let Symbol::Input(index) = symbol else { return None };
+            let field = identifier(&self.equations.inputs[index as usize].name.text);
+            let name = self.symbol_name(symbol);
+            Some(quote!(let #name = self.inputs.#field.value(t_start);))
+        });
+        let series::Statements { fixed, start, start_rates, order, order_rates, products, places } =
+            self.with_names(is_long(routine), |names| series::statements(routine, names));
+        let fields: Vec<_> = self.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
+        let width = if fields.is_empty() {
+            quote!(Some(#places))
+        } else {
+            quote!((#(self.inputs.#fields.is_constant())&&*).then_some(#places))
+        };
+        let count = routine.assignments.len();
+        let array = is_long(routine).then(|| quote!(let mut v = [S::from_f64(0.0); #count];));
+        quote! {
+            fn series_width(&self) -> Option<usize> {
+                #width
+            }
+            #[inline(never)]
+            fn series(&self, t_start: S, h: S, negative: &[bool; G], rows: &mut [S], series: &mut [SVector<S, N>]) {
+                let c = &self.constants;
+                let table = rows.as_chunks_mut::<#places>().0;
+                #inputs
+                #array
+                #fixed
+                {
+                    let (k, t) = (0, t_start);
+                    let rows = &mut table[..1];
+                    let [x] = &series[0].data.0;
+                    #states
+                    #start
+                    series[1].data.0 = [[#(#start_rates * h),*]];
+                }
+                for k in 1..series.len() - 1 {
+                    let t = if k == 1 { h } else { S::from_f64(0.0) };
+                    let inner = ::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
+                    let rows = &mut table[..=k];
+                    let [x] = &series[k].data.0;
+                    #states
+                    #order
+                    let part = h / S::from_f64((k + 1) as f64);
+                    series[k + 1].data.0 = [[#(#order_rates * part),*]];
+                }
             }
         }
     }
@@ -521,8 +580,31 @@ impl Emission<'_> {
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
-    const OWN: [&str; 13] =
-        ["t", "x", "c", "u", "v", "y", "dx", "negative", "guards", "state", "projected", "entries", "slope"];
+    const OWN: [&str; 23] = [
+        "t",
+        "x",
+        "c",
+        "u",
+        "v",
+        "y",
+        "dx",
+        "negative",
+        "guards",
+        "state",
+        "projected",
+        "entries",
+        "slope",
+        "k",
+        "h",
+        "rows",
+        "series",
+        "part",
+        "t_start",
+        "table",
+        "inner",
+        "a",
+        "b",
+    ];
     let mut used: BTreeSet<String> = OWN.into_iter().map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));

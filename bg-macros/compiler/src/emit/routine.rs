@@ -45,7 +45,7 @@ pub fn assignments(of: &[Assignment], names: &Names) -> TokenStream {
     let mut tokens = TokenStream::new();
     for assignment in of {
         let target = temporary(assignment.target, names);
-        let value = operation(&assignment.operation, names);
+        let value = operation(&assignment.operation, names, &|value| operand(value, names));
         tokens.extend(if names.is_long { quote!(#target = #value;) } else { quote!(let #target = #value;) });
     }
     tokens
@@ -64,8 +64,8 @@ pub fn operand(operand: &Operand, names: &Names) -> TokenStream {
     }
 }
 
-fn operation(operation: &Operation, names: &Names) -> TokenStream {
-    let token = |value: &Operand| operand(value, names);
+/// The tokens of an operation; `token` gives those of its operands.
+pub fn operation(operation: &Operation, names: &Names, token: &dyn Fn(&Operand) -> TokenStream) -> TokenStream {
     match operation {
         Operation::Add(left, right) => binary(token(left), quote! { + }, token(right)),
         Operation::Subtract(left, right) => binary(token(left), quote! { - }, token(right)),
@@ -92,7 +92,8 @@ fn binary(left: TokenStream, operator: TokenStream, right: TokenStream) -> Token
     quote! { #left #operator #right }
 }
 
-fn temporary(index: u32, names: &Names) -> TokenStream {
+/// The tokens of a temporary.
+pub fn temporary(index: u32, names: &Names) -> TokenStream {
     if names.is_long {
         let index = Literal::u32_unsuffixed(index);
         return quote!(v[#index]);

@@ -5,7 +5,7 @@
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
-use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method, Radau9, Rk4, Tolerances};
+use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method, Radau9, Rk4, Taylor, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
@@ -30,6 +30,7 @@ pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
     vec![
         on_scene("CFMR7osc", 3..=11, |_| Cfmr7::new()),
         on_scene("DOP853", 3..=13, |_| Dop853::new()),
+        on_scene("Taylor", 3..=13, |_| Taylor::new()),
         on_scene("BS5", 3..=9, |_| Bs5::new()),
         on_scene("Radau IIA 9", 3..=9, |_| Radau9::new()),
         on_scene_by_steps("RK4, fixed step", &[2e-4, 1e-4, 5e-5, 2e-5], Rk4::new),
