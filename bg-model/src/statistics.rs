@@ -19,7 +19,7 @@ pub struct Statistics {
     pub factorisations: u64,
     /// Those of `factorisations` that were made with row exchanges because a pivot in the planned order was too small.
     pub pivoted_factorisations: u64,
-    /// Orders of Taylor series, each of which costs one to two rates.
+    /// Orders of Taylor series, each of which costs two to five rates.
     pub series_orders: u64,
     /// Evaluations of the guards, each of all guards at once.
     pub guard_evaluations: u64,

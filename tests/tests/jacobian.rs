@@ -10,9 +10,9 @@ use bg_model::nalgebra::{Complex, DMatrix, DVector, SVector};
 use bg_model::scalar::Dual;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::{Model, System};
-use bond_graph_tests::each_example;
 use bond_graph_tests::examples as models;
 use bond_graph_tests::power::{Draw, state};
+use bond_graph_tests::{each_example, each_scene};
 use hacksaw::mechanism::{
     Angles, AnglesParameters, FreeRun, FreeRunParameters, Full, FullParameters, Hacksaw, HacksawParameters, Paper,
     PaperParameters, Rigid, RigidParameters,
@@ -233,14 +233,7 @@ macro_rules! scene_agrees {
 mod scenes {
     use super::*;
 
-    scene_agrees! {
-        literal: Hacksaw (HacksawParameters);
-        paper: Paper (PaperParameters);
-        full: Full (FullParameters);
-        angles: Angles (AnglesParameters);
-        rigid: Rigid (RigidParameters);
-        free_run: FreeRun (FreeRunParameters);
-    }
+    each_scene!(scene_agrees);
 }
 
 /// Solves at 20 states of the first 0.1 s; with steps up to 1e-2 s no pivot is small there.

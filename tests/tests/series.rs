@@ -6,9 +6,9 @@
 use bg_model::input::Input;
 use bg_model::nalgebra::SVector;
 use bg_model::system::{Model, System};
-use bond_graph_tests::each_example;
 use bond_graph_tests::examples as models;
 use bond_graph_tests::power::{Draw, state};
+use bond_graph_tests::{each_example, each_scene};
 use hacksaw::mechanism::{
     Angles, AnglesParameters, FreeRun, FreeRunParameters, Full, FullParameters, Hacksaw, HacksawParameters, Paper,
     PaperParameters, Rigid, RigidParameters,
@@ -135,14 +135,7 @@ macro_rules! scene_agrees {
 mod scenes {
     use super::*;
 
-    scene_agrees! {
-        literal: Hacksaw (HacksawParameters);
-        paper: Paper (PaperParameters);
-        full: Full (FullParameters);
-        angles: Angles (AnglesParameters);
-        rigid: Rigid (RigidParameters);
-        free_run: FreeRun (FreeRunParameters);
-    }
+    each_scene!(scene_agrees);
 }
 
 #[test]
@@ -154,7 +147,7 @@ fn an_input_that_changes_leaves_no_series() {
     assert_eq!(width(Input::with_rate(|t| t, |_| 1.0)), None);
 }
 
-/// Products of two factors that change, twice, and the places of functions.
+/// Twice the products of two factors that change, and the places of quotients and functions.
 #[test]
 fn widths_of_the_hacksaw() {
     assert_eq!(Paper::new(PaperParameters::default()).unwrap().series_width(), Some(112));

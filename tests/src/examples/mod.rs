@@ -19,6 +19,21 @@ pub mod slider_crank;
 pub mod sources;
 pub mod spinning_top;
 
+/// Hands the list of the hacksaw's models to the macro `$then`: name of a test, type and parameters.
+#[macro_export]
+macro_rules! each_scene {
+    ($then:ident) => {
+        $then! {
+            literal: Hacksaw (HacksawParameters);
+            paper: Paper (PaperParameters);
+            full: Full (FullParameters);
+            angles: Angles (AnglesParameters);
+            rigid: Rigid (RigidParameters);
+            free_run: FreeRun (FreeRunParameters);
+        }
+    };
+}
+
 /// Hands the list of all example models to the macro `$then`: name of a test, module and type, parameters and inputs.
 #[macro_export]
 macro_rules! each_example {

@@ -580,32 +580,10 @@ impl Emission<'_> {
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
-    const OWN: [&str; 23] = [
-        "t",
-        "x",
-        "c",
-        "u",
-        "v",
-        "y",
-        "dx",
-        "negative",
-        "guards",
-        "state",
-        "projected",
-        "entries",
-        "slope",
-        "k",
-        "h",
-        "rows",
-        "series",
-        "part",
-        "t_start",
-        "table",
-        "inner",
-        "a",
-        "b",
-    ];
-    let mut used: BTreeSet<String> = OWN.into_iter().map(str::to_owned).collect();
+    // Words of the functions' bodies; of a series from `k` on.
+    const OWN: &str =
+        "t x c u v y dx negative guards state projected entries slope k h rows series part t_start table inner a b";
+    let mut used: BTreeSet<String> = OWN.split(' ').map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));
     }
