@@ -9,6 +9,7 @@
 
 mod any;
 mod auto;
+mod carry;
 mod collocation;
 mod explicit;
 mod gauss;

@@ -9,6 +9,7 @@
 
 use nalgebra::SVector;
 
+use super::carry::Carry;
 use super::tolerances::{index_of_largest, largest};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 
@@ -28,16 +29,15 @@ pub struct Taylor<const N: usize> {
     unit: f64,
     /// Whether the series is that of the present start.
     is_current: bool,
-    /// What rounding has kept from the states: see [`super::Explicit`].
-    carry: [SVector<f64, N>; 2],
+    /// What rounding has kept from the states.
+    carry: Carry<N>,
 }
 
 impl<const N: usize> Taylor<N> {
     /// The method, its order chosen by the relative tolerance.
     #[must_use]
     pub fn new() -> Self {
-        let carry = [SVector::zeros(); 2];
-        Self { asked: None, series: Vec::new(), rows: Vec::new(), unit: 0.0, is_current: false, carry }
+        Self { asked: None, series: Vec::new(), rows: Vec::new(), unit: 0.0, is_current: false, carry: Carry::new() }
     }
 
     /// The method of the order `order`, from 2 to 30.
@@ -135,9 +135,7 @@ impl<const N: usize> Method<N> for Taylor<N> {
         let mut weights = [0.0; N];
         for i in 0..N {
             let from = start.x.data.0[0][i];
-            let change = change[i] + self.carry[0].data.0[0][i];
-            let to = from + change;
-            self.carry[1].data.0[0][i] = change - (to - from);
+            let to = self.carry.add(i, from, change[i]);
             end.data.0[0][i] = to;
             weights[i] = 1.0 / scale.allowed(i, from, to);
         }
@@ -164,12 +162,12 @@ impl<const N: usize> Method<N> for Taylor<N> {
 
     fn advance(&mut self) {
         self.is_current = false;
-        self.carry.swap(0, 1);
+        self.carry.advance();
     }
 
     fn restart(&mut self) {
         self.is_current = false;
-        self.carry[0].fill(0.0);
+        self.carry.restart();
     }
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {

@@ -278,24 +278,27 @@ impl Emission<'_> {
 
     /// Inputs, their slopes and states that the routine uses.
     fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
-        bindings(&[routine], &|symbol| {
-            let name = self.symbol_name(symbol);
-            match symbol {
-                Symbol::State(index) => {
-                    let index = Literal::usize_unsuffixed(index as usize);
-                    Some(quote!(let #name = x[#index];))
-                }
-                Symbol::Input(index) => {
-                    let field = identifier(&self.equations.inputs[index as usize].name.text);
-                    Some(quote!(let #name = self.inputs.#field.value(t);))
-                }
-                Symbol::Slope(index) => {
-                    let field = identifier(&self.equations.inputs[index as usize].name.text);
-                    Some(quote!(let #name = self.inputs.#field.slope(t);))
-                }
-                _ => None,
+        bindings(&[routine], &|symbol| self.dynamic_binding(symbol))
+    }
+
+    /// An input at time `t`, its slope there, or a state of `x`.
+    fn dynamic_binding(&self, symbol: Symbol) -> Option<TokenStream> {
+        let name = self.symbol_name(symbol);
+        match symbol {
+            Symbol::State(index) => {
+                let index = Literal::usize_unsuffixed(index as usize);
+                Some(quote!(let #name = x[#index];))
             }
-        })
+            Symbol::Input(index) => {
+                let field = identifier(&self.equations.inputs[index as usize].name.text);
+                Some(quote!(let #name = self.inputs.#field.value(t);))
+            }
+            Symbol::Slope(index) => {
+                let field = identifier(&self.equations.inputs[index as usize].name.text);
+                Some(quote!(let #name = self.inputs.#field.slope(t);))
+            }
+            _ => None,
+        }
     }
 
     fn symbol_name(&self, symbol: Symbol) -> TokenStream {
@@ -435,58 +438,13 @@ impl Emission<'_> {
     /// The Taylor series of the states.
     fn series(&self) -> TokenStream {
         let routine = &self.programs.dynamic.routines[0];
-        let states = bindings(&[routine], &|symbol| {
-            let Symbol::State(index) = symbol else { return None };
-            let (name, index) = (self.symbol_name(symbol), Literal::usize_unsuffixed(index as usize));
-            Some(quote!(let #name = x[#index];))
-        });
-        let inputs = bindings(&[routine], &|symbol| {
-            let Symbol::Input(index) = symbol else { return None };
-            let field = identifier(&self.equations.inputs[index as usize].name.text);
-            let name = self.symbol_name(symbol);
-            Some(quote!(let #name = self.inputs.#field.value(t_start);))
-        });
-        let series::Statements { fixed, start, start_rates, order, order_rates, products, places } =
-            self.with_names(is_long(routine), |names| series::statements(routine, names));
-        let fields: Vec<_> = self.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
-        let width = if fields.is_empty() {
-            quote!(Some(#places))
-        } else {
-            quote!((#(self.inputs.#fields.is_constant())&&*).then_some(#places))
+        let reading = |is_state: bool| {
+            let reads = |symbol: Symbol| matches!(symbol, Symbol::State(_)) == is_state;
+            bindings(&[routine], &|symbol| if reads(symbol) { self.dynamic_binding(symbol) } else { None })
         };
-        let count = routine.assignments.len();
-        let array = is_long(routine).then(|| quote!(let mut v = [S::from_f64(0.0); #count];));
-        quote! {
-            fn series_width(&self) -> Option<usize> {
-                #width
-            }
-            #[inline(never)]
-            fn series(&self, t_start: S, h: S, negative: &[bool; G], rows: &mut [S], series: &mut [SVector<S, N>]) {
-                let c = &self.constants;
-                let table = rows.as_chunks_mut::<#places>().0;
-                #inputs
-                #array
-                #fixed
-                {
-                    let (k, t) = (0, t_start);
-                    let rows = &mut table[..1];
-                    let [x] = &series[0].data.0;
-                    #states
-                    #start
-                    series[1].data.0 = [[#(#start_rates * h),*]];
-                }
-                for k in 1..series.len() - 1 {
-                    let t = if k == 1 { h } else { S::from_f64(0.0) };
-                    let inner = ::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
-                    let rows = &mut table[..=k];
-                    let [x] = &series[k].data.0;
-                    #states
-                    #order
-                    let part = h / S::from_f64((k + 1) as f64);
-                    series[k + 1].data.0 = [[#(#order_rates * part),*]];
-                }
-            }
-        }
+        let fields: Vec<_> = self.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
+        let reads = series::Reads { inputs: &fields, values: reading(false), states: reading(true) };
+        self.with_names(is_long(routine), |names| series::functions(routine, names, &reads))
     }
 
     /// The Jacobian with its sparsity, and the elimination along it; before them the parts of a long Jacobian.
@@ -582,7 +540,7 @@ impl Emission<'_> {
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies; of a series from `k` on.
     const OWN: &str =
-        "t x c u v y dx negative guards state projected entries slope k h rows series part t_start table inner a b";
+        "t x c u v y dx negative guards state projected entries slope k h rows series part table inner a b";
     let mut used: BTreeSet<String> = OWN.split(' ').map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));

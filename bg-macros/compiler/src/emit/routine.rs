@@ -34,21 +34,27 @@ pub fn is_long(routine: &Routine) -> bool {
 
 /// The assignments of the routine.
 pub fn statements(routine: &Routine, names: &Names) -> TokenStream {
-    let count = routine.assignments.len();
-    let array = names.is_long.then(|| quote! { let mut v = [S::from_f64(0.0); #count]; });
+    let array = array(routine);
     let assignments = assignments(&routine.assignments, names);
     quote! { #array #assignments }
 }
 
+/// The array of the temporaries of a long routine.
+pub fn array(routine: &Routine) -> Option<TokenStream> {
+    let count = routine.assignments.len();
+    is_long(routine).then(|| quote! { let mut v = [S::from_f64(0.0); #count]; })
+}
+
 /// These assignments; in a long routine `v` is there already.
 pub fn assignments(of: &[Assignment], names: &Names) -> TokenStream {
-    let mut tokens = TokenStream::new();
-    for assignment in of {
-        let target = temporary(assignment.target, names);
-        let value = operation(&assignment.operation, names, &|value| operand(value, names));
-        tokens.extend(if names.is_long { quote!(#target = #value;) } else { quote!(let #target = #value;) });
-    }
-    tokens
+    let value = |of: &Assignment| operation(&of.operation, names, &|value| operand(value, names));
+    of.iter().map(|assignment| definition(assignment.target, &value(assignment), names)).collect()
+}
+
+/// The definition of a temporary.
+pub fn definition(target: u32, value: &TokenStream, names: &Names) -> TokenStream {
+    let target = temporary(target, names);
+    if names.is_long { quote!(#target = #value;) } else { quote!(let #target = #value;) }
 }
 
 /// The tokens of an operand.
@@ -92,8 +98,7 @@ fn binary(left: TokenStream, operator: TokenStream, right: TokenStream) -> Token
     quote! { #left #operator #right }
 }
 
-/// The tokens of a temporary.
-pub fn temporary(index: u32, names: &Names) -> TokenStream {
+fn temporary(index: u32, names: &Names) -> TokenStream {
     if names.is_long {
         let index = Literal::u32_unsuffixed(index);
         return quote!(v[#index]);

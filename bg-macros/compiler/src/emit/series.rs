@@ -5,53 +5,76 @@
 //! well, which rows of a work table keep; see `bg_model::series`. What does not change has no coefficients behind the
 //! start: nothing is left of it in the loop.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::routine::{self, Names, temporary};
+use super::routine::{self, Names};
 use crate::expr::{Function, Symbol};
 use crate::program::{Assignment, Operand, Operation, Routine};
 
-/// The statements of a series.
-pub(super) struct Statements {
-    /// What does not change with time, and yet is no constant of the model: it depends on inputs.
-    pub fixed: TokenStream,
-    /// At the start, order 0.
-    pub start: TokenStream,
-    /// The rates there.
-    pub start_rates: Vec<TokenStream>,
-    /// At order `k` > 0.
-    pub order: TokenStream,
-    /// The rates' coefficients.
-    pub order_rates: Vec<TokenStream>,
-    /// The number of products of two factors that change.
-    pub products: usize,
-    /// The number of places in a row of the table.
-    pub places: usize,
+/// What a series reads, beside constants.
+pub(super) struct Reads<'a> {
+    /// The fields of the inputs.
+    pub inputs: &'a [Ident],
+    /// `let`s of the inputs that the rates read, from the time `t`.
+    pub values: TokenStream,
+    /// `let`s of the states' coefficients, from `x`.
+    pub states: TokenStream,
 }
 
-/// The statements of the series of a routine's results.
-pub(super) fn statements(routine: &Routine, names: &Names) -> Statements {
+/// The functions `series_width` and `series`, from the routine of the rates.
+pub(super) fn functions(routine: &Routine, names: &Names, reads: &Reads) -> TokenStream {
     let changes = changing(&routine.assignments);
-    let mut writer = Writer::new(names, &changes, true);
-    writer.products = routine.assignments.iter().filter(|assignment| writer.is_product(assignment)).count();
-    let mut at_order = Writer::new(names, &changes, false);
-    at_order.products = writer.products;
     let (moving, fixed): (Vec<_>, Vec<_>) =
         routine.assignments.iter().cloned().partition(|assignment| changes[assignment.target as usize]);
-    for assignment in &moving {
-        writer.assignment(assignment);
-        at_order.assignment(assignment);
-    }
-    let rates = |writer: &Writer| routine.results.iter().map(|result| writer.value(result)).collect();
-    Statements {
-        fixed: routine::assignments(&fixed, names),
-        start_rates: rates(&writer),
-        order_rates: rates(&at_order),
-        products: writer.products,
-        places: (2 * writer.products + writer.others).max(1),
-        start: writer.tokens,
-        order: at_order.tokens,
+    let written = |is_start| {
+        let mut writer = Writer::new(names, &changes, is_start, &moving);
+        moving.iter().for_each(|assignment| writer.assignment(assignment));
+        let rates: Vec<_> = routine.results.iter().map(|result| writer.value(result)).collect();
+        (writer, rates)
+    };
+    let ((start, start_rates), (order, order_rates)) = (written(true), written(false));
+    let (products, places) = (start.products, (2 * start.products + start.others).max(1));
+    let (start, order) = (start.tokens, order.tokens);
+    let Reads { inputs, values, states } = reads;
+    let width = if inputs.is_empty() {
+        quote!(Some(#places))
+    } else {
+        quote!((#(self.inputs.#inputs.is_constant())&&*).then_some(#places))
+    };
+    let array = routine::array(routine);
+    // What does not change with time, and yet is no constant of the model: it depends on inputs.
+    let fixed = routine::assignments(&fixed, names);
+    quote! {
+        fn series_width(&self) -> Option<usize> {
+            #width
+        }
+        #[inline(never)]
+        fn series(&self, t: S, h: S, negative: &[bool; G], rows: &mut [S], series: &mut [SVector<S, N>]) {
+            let c = &self.constants;
+            let table = rows.as_chunks_mut::<#places>().0;
+            #values
+            #array
+            #fixed
+            {
+                let k = 0;
+                let rows = &mut table[..1];
+                let [x] = &series[0].data.0;
+                #states
+                #start
+                series[1].data.0 = [[#(#start_rates * h),*]];
+            }
+            for k in 1..series.len() - 1 {
+                let t = if k == 1 { h } else { S::from_f64(0.0) };
+                let inner = ::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
+                let rows = &mut table[..=k];
+                let [x] = &series[k].data.0;
+                #states
+                #order
+                let part = h / S::from_f64((k + 1) as f64);
+                series[k + 1].data.0 = [[#(#order_rates * part),*]];
+            }
+        }
     }
 }
 
@@ -88,8 +111,11 @@ struct Writer<'w, 'n> {
 }
 
 impl<'w, 'n> Writer<'w, 'n> {
-    fn new(names: &'w Names<'n>, changes: &'w [bool], is_start: bool) -> Self {
-        Self { names, changes, is_start, products: 0, product: 0, others: 0, tokens: TokenStream::new() }
+    fn new(names: &'w Names<'n>, changes: &'w [bool], is_start: bool, assignments: &[Assignment]) -> Self {
+        let tokens = TokenStream::new();
+        let mut writer = Self { names, changes, is_start, products: 0, product: 0, others: 0, tokens };
+        writer.products = assignments.iter().filter(|assignment| writer.is_product(&assignment.operation)).count();
+        writer
     }
 
     fn is_changing(&self, operand: &Operand) -> bool {
@@ -97,8 +123,8 @@ impl<'w, 'n> Writer<'w, 'n> {
     }
 
     /// Whether both factors of a product change.
-    fn is_product(&self, assignment: &Assignment) -> bool {
-        matches!(&assignment.operation, Operation::Multiply(a, b) if self.is_changing(a) && self.is_changing(b))
+    fn is_product(&self, operation: &Operation) -> bool {
+        matches!(operation, Operation::Multiply(a, b) if self.is_changing(a) && self.is_changing(b))
     }
 
     /// The coefficient of an operand.
@@ -117,13 +143,12 @@ impl<'w, 'n> Writer<'w, 'n> {
 
     fn assignment(&mut self, assignment: &Assignment) {
         let value = self.operation(&assignment.operation);
-        let target = temporary(assignment.target, self.names);
-        self.tokens.extend(if self.names.is_long { quote!(#target = #value;) } else { quote!(let #target = #value;) });
+        self.tokens.extend(routine::definition(assignment.target, &value, self.names));
     }
 
     fn operation(&mut self, operation: &Operation) -> TokenStream {
         match operation {
-            Operation::Multiply(a, b) if self.is_changing(a) && self.is_changing(b) => self.product(a, b),
+            Operation::Multiply(a, b) if self.is_product(operation) => self.product(a, b),
             Operation::Divide(a, b) if self.is_changing(b) => {
                 let at = self.reserve(2);
                 let (a, b) = (self.value(a), self.value(b));

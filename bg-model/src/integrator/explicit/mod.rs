@@ -19,6 +19,7 @@ pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
 
+use super::carry::Carry;
 use super::tolerances::{index_of_largest, largest};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 
@@ -81,10 +82,8 @@ pub struct Explicit<T, const N: usize> {
     k: Stages<N>,
     /// The dense output's coefficients.
     polynomial: [SVector<f64, N>; COEFFICIENTS],
-    /// What rounding has kept from the state at the start of the step, and what it keeps from that at its end: a compensated
-    /// sum (W. Kahan, Communications of the ACM 8 (1965); Hairer, Lubich, Wanner, section VIII.5). Without it the momenta
-    /// of long runs drift by a random walk.
-    carry: [SVector<f64, N>; 2],
+    /// What rounding has kept from the states.
+    carry: Carry<N>,
     tableau: PhantomData<T>,
 }
 
@@ -93,7 +92,7 @@ impl<T, const N: usize> Explicit<T, N> {
     #[must_use]
     pub fn new() -> Self {
         let (k, polynomial) = ([SVector::zeros(); STAGES], [SVector::zeros(); COEFFICIENTS]);
-        Self { k, polynomial, carry: [SVector::zeros(); 2], tableau: PhantomData }
+        Self { k, polynomial, carry: Carry::new(), tableau: PhantomData }
     }
 }
 
@@ -148,11 +147,8 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         for i in 0..N {
             let from = start.x.data.0[0][i];
             let slope = combine(T::B, &self.k, i);
-            let change = if T::IS_COMPENSATED { h * slope + self.carry[0].data.0[0][i] } else { h * slope };
-            let to = from + change;
-            if T::IS_COMPENSATED {
-                self.carry[1].data.0[0][i] = change - (to - from);
-            }
+            let change = h * slope;
+            let to = if T::IS_COMPENSATED { self.carry.add(i, from, change) } else { from + change };
             let allowed = scale.allowed(i, from, to);
             end.data.0[0][i] = to;
             first[i] = (combine(T::ERROR, &self.k, i) / allowed).abs();
@@ -200,11 +196,11 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
     }
 
     fn advance(&mut self) {
-        self.carry.swap(0, 1);
+        self.carry.advance();
     }
 
     fn restart(&mut self) {
-        self.carry[0].fill(0.0);
+        self.carry.restart();
     }
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
