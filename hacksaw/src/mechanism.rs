@@ -195,6 +195,16 @@ hacksaw_mechanism! {
             expect planar;
             expect states = 29;
         }
+        /// Where the links are, and nothing else: no energies, no forces.
+        scene Motion {
+            observe {
+                C2: m = crank.position; R2 = crank.orientation; C3: m = rod.position; R3 = rod.orientation;
+                C4: m = frame.position; R4 = frame.orientation; C5: m = guide.position; R5 = guide.orientation;
+            }
+            tune { torque, crank_angle, r_cut, r_return }
+            expect planar;
+            expect states = 29;
+        }
         /// The three-dimensional motion, with the rod out of the plane where `rod_offset` puts it.
         scene Full {
             expect states = 81;

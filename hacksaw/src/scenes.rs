@@ -9,7 +9,7 @@ use bg_model::system::Model;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use crate::mechanism::{Angles, FreeRun, Full, Hacksaw, HacksawParameters, Paper, Rigid};
+use crate::mechanism::{Angles, FreeRun, Full, Hacksaw, HacksawParameters, Motion, Paper, Rigid};
 use crate::parameters::number;
 use crate::trajectory::reference_columns;
 
@@ -19,6 +19,8 @@ pub enum Scene {
     /// The paper's case, reduced to the plane
     #[default]
     Paper,
+    /// Where the links are in the paper's case, and nothing else
+    Motion,
     /// The three-dimensional motion, every parameter adjustable
     Full,
     /// The multibond graph as it stands, nothing left out
@@ -67,6 +69,7 @@ impl Scene {
     pub fn visit<V: Visitor>(self, visitor: V) -> V::Output {
         match self {
             Self::Paper => visitor.visit(Paper::new),
+            Self::Motion => visitor.visit(Motion::new),
             Self::Full => visitor.visit(Full::new),
             Self::Literal => visitor.visit(Hacksaw::new),
             Self::Angles => visitor.visit(Angles::new),
@@ -162,6 +165,7 @@ mod tests {
         let of = |scene: Scene| (scene.name(), scene.description().name, scene.description().states.len());
         let expected = [
             ("paper", "Paper", 31),
+            ("motion", "Motion", 29),
             ("full", "Full", 83),
             ("literal", "Hacksaw", 85),
             ("angles", "Angles", 24),

@@ -156,7 +156,7 @@ fn scenes_and_graphs_are_printed() {
         String::from_utf8(output.stdout).unwrap()
     };
     let list = text(&["scene"]);
-    assert_eq!(list.lines().count(), 7);
+    assert_eq!(list.lines().count(), 8);
     assert!(list.lines().nth(1).unwrap().starts_with("  paper         31 "), "{list}");
     let report = text(&["scene", "paper"]);
     assert!(report.lines().nth(2).unwrap().starts_with("85 states: 46 constant; "), "{report}");

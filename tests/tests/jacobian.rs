@@ -14,8 +14,8 @@ use bond_graph_tests::examples as models;
 use bond_graph_tests::power::{Draw, state};
 use bond_graph_tests::{each_example, each_scene};
 use hacksaw::mechanism::{
-    Angles, AnglesParameters, FreeRun, FreeRunParameters, Full, FullParameters, Hacksaw, HacksawParameters, Paper,
-    PaperParameters, Rigid, RigidParameters,
+    Angles, AnglesParameters, FreeRun, FreeRunParameters, Full, FullParameters, Hacksaw, HacksawParameters, Motion,
+    MotionParameters, Paper, PaperParameters, Rigid, RigidParameters,
 };
 
 /// Largest deviation of an entry, relative to itself and, for what cancels, to 1e-2 of the largest in its row.

@@ -10,8 +10,8 @@ use bond_graph_tests::examples as models;
 use bond_graph_tests::power::{Draw, state};
 use bond_graph_tests::{each_example, each_scene};
 use hacksaw::mechanism::{
-    Angles, AnglesParameters, FreeRun, FreeRunParameters, Full, FullParameters, Hacksaw, HacksawParameters, Paper,
-    PaperParameters, Rigid, RigidParameters,
+    Angles, AnglesParameters, FreeRun, FreeRunParameters, Full, FullParameters, Hacksaw, HacksawParameters, Motion,
+    MotionParameters, Paper, PaperParameters, Rigid, RigidParameters,
 };
 
 /// The order of the polynomials.

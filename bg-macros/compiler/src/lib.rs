@@ -14,6 +14,7 @@
 //! | [`jacobian::differentiate`] | -> [`jacobian::Jacobian`] | entries that are identically zero |
 //! | [`elimination::plan`] | places -> [`elimination::Elimination`] | the order of the pivots left open |
 //! | [`program::schedule`] | -> [`program::Program`] | order left open: flat single assignment |
+//! | [`pairs::pair`] | [`program::Routine`] -> [`pairs::Paired`] | operations that could be done two at a time |
 //! | [`emit::model`] | -> tokens | |
 //!
 //! Every stage raises all its faults at once; a later stage sees only what an earlier one accepted. [`stages::stages`] gives
@@ -29,8 +30,10 @@ pub mod fault;
 pub mod graph;
 pub mod jacobian;
 pub mod mechanism;
+pub mod pairs;
 pub mod print;
 pub mod program;
+mod random;
 pub mod reduce;
 pub mod scene;
 pub mod stages;

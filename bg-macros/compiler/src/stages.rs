@@ -14,17 +14,18 @@ use crate::expr::{Id, Pool, Symbol, text};
 use crate::fault::Staged;
 use crate::graph::{BondGraph, NodeKind, Storage};
 use crate::jacobian::Jacobian;
-use crate::program::{Counts, Operand, Operation, Program, Request, Routine, schedule};
+use crate::pairs::{Half, Paired, Step, Value};
+use crate::program::{Assignment, Counts, Operand, Operation, Program, Request, Routine, schedule};
 use crate::scene::Variant;
-use crate::{causality, elimination, equations, graph, jacobian, mechanism, scene, syntax};
+use crate::{causality, elimination, equations, graph, jacobian, mechanism, pairs, scene, syntax};
 
 /// One stage of one graph.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The graph's name.
     pub graph: String,
-    /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `program`, `jacobian`
-    /// and `elimination`.
+    /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `program`, where it pays
+    /// `pairs`, `jacobian` and `elimination`.
     pub name: &'static str,
     /// The stage's result.
     pub text: String,
@@ -65,6 +66,9 @@ fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let program = schedule(&mut equations.pool, &[Request { name: "rate", roots: &rates }]);
     push("program", program_text(&equations, &program));
+    if let Some(paired) = pairs::pair(&program.routines[0]) {
+        push("pairs", paired_text(&equations, &paired));
+    }
     let jacobian = jacobian::differentiate(&equations);
     push("jacobian", jacobian_text(&equations, &jacobian));
     let elimination = elimination::plan(equations.states.len(), &jacobian.places());
@@ -188,32 +192,84 @@ fn program_text(equations: &StateEquations, program: &Program) -> String {
 }
 
 fn routine_text(equations: &StateEquations, routine: &Routine, out: &mut String) {
-    let operand = |operand: &Operand| match operand {
+    let _ = writeln!(out, "{}: {} operations", routine.name, routine.counts.total());
+    for assignment in &routine.assignments {
+        let _ = writeln!(out, "    {}", assignment_text(equations, assignment));
+    }
+    let results: Vec<String> = routine.results.iter().map(|result| operand_text(equations, result)).collect();
+    let _ = writeln!(out, "    -> {}", results.join(", "));
+}
+
+fn operand_text(equations: &StateEquations, operand: &Operand) -> String {
+    match operand {
         Operand::Number(value) => value.to_string(),
         Operand::Symbol(symbol) => equations.symbol_name(*symbol),
         Operand::Constant(index) => format!("c{index}"),
         Operand::Temporary(index) => format!("v{index}"),
+    }
+}
+
+fn assignment_text(equations: &StateEquations, assignment: &Assignment) -> String {
+    let operand = |operand| operand_text(equations, operand);
+    let text = match &assignment.operation {
+        Operation::Add(a, b) => format!("{} + {}", operand(a), operand(b)),
+        Operation::Subtract(a, b) => format!("{} - {}", operand(a), operand(b)),
+        Operation::Multiply(a, b) => format!("{} * {}", operand(a), operand(b)),
+        Operation::Divide(a, b) => format!("{} / {}", operand(a), operand(b)),
+        Operation::Negate(a) => format!("-{}", operand(a)),
+        Operation::Call(function, arguments) => {
+            let arguments: Vec<String> = arguments.iter().map(operand).collect();
+            format!("{}({})", function.name(), arguments.join(", "))
+        }
+        Operation::Select { switch, negative, positive } => {
+            format!("if guard_{switch} < 0 {{ {} }} else {{ {} }}", operand(negative), operand(positive))
+        }
     };
-    let _ = writeln!(out, "{}: {} operations", routine.name, routine.counts.total());
-    for assignment in &routine.assignments {
-        let text = match &assignment.operation {
-            Operation::Add(a, b) => format!("{} + {}", operand(a), operand(b)),
-            Operation::Subtract(a, b) => format!("{} - {}", operand(a), operand(b)),
-            Operation::Multiply(a, b) => format!("{} * {}", operand(a), operand(b)),
-            Operation::Divide(a, b) => format!("{} / {}", operand(a), operand(b)),
-            Operation::Negate(a) => format!("-{}", operand(a)),
-            Operation::Call(function, arguments) => {
-                let arguments: Vec<String> = arguments.iter().map(operand).collect();
-                format!("{}({})", function.name(), arguments.join(", "))
-            }
-            Operation::Select { switch, negative, positive } => {
-                format!("if guard_{switch} < 0 {{ {} }} else {{ {} }}", operand(negative), operand(positive))
+    format!("v{} = {text}", assignment.target)
+}
+
+/// The steps of the rate with pairs.
+fn paired_text(equations: &StateEquations, paired: &Paired) -> String {
+    let half = |half: &Half| match half {
+        Half::Of(value) => operand_text(equations, value),
+        Half::In(pair, at) => format!("w{pair}.{at}"),
+    };
+    let sign = |is_negative: bool| if is_negative { "-" } else { "" };
+    let mut out = format!("rate: {} operations\n", paired.operations());
+    let mut pairs = 0..;
+    for step in &paired.steps {
+        let text = match step {
+            Step::Single(assignment) => assignment_text(equations, assignment),
+            Step::Half { target, pair, half: at } => format!("v{target} = {}", half(&Half::In(*pair, *at))),
+            Step::Pair(value) => {
+                let value = match value {
+                    Value::States(index) => {
+                        let [first, second] =
+                            [*index, index + 1].map(|index| equations.symbol_name(Symbol::State(index)));
+                        format!("[{first}, {second}]")
+                    }
+                    Value::Numbers([first, second]) => format!("[{first}, {second}]"),
+                    Value::Constants(index) => {
+                        let [first, second] = paired.constants[*index as usize].map(|(constant, is_negative)| {
+                            format!("{}{}", sign(is_negative), operand_text(equations, &constant))
+                        });
+                        format!("[{first}, {second}]")
+                    }
+                    Value::Gather([first, second]) => format!("[{}, {}]", half(first), half(second)),
+                    Value::Add(a, b) => format!("w{a} + w{b}"),
+                    Value::Subtract(a, b) => format!("w{a} - w{b}"),
+                    Value::Multiply(a, b) => format!("w{a} * w{b}"),
+                    Value::Divide(a, b) => format!("w{a} / w{b}"),
+                    Value::Turn(of, [first, second]) => format!("[{}w{of}.0, {}w{of}.1]", sign(*first), sign(*second)),
+                };
+                format!("w{} = {value}", pairs.next().unwrap_or(0))
             }
         };
-        let _ = writeln!(out, "    v{} = {text}", assignment.target);
+        let _ = writeln!(out, "    {text}");
     }
-    let results: Vec<String> = routine.results.iter().map(operand).collect();
+    let results: Vec<String> = paired.results.iter().map(half).collect();
     let _ = writeln!(out, "    -> {}", results.join(", "));
+    out
 }
 
 impl StateEquations {

@@ -191,7 +191,8 @@ pub(crate) fn first_not_finite<const N: usize>(x: &SVector<f64, N>) -> Option<(u
     x.iter().copied().enumerate().find(|(_, value)| !value.is_finite())
 }
 
-/// Whether all entries are finite. Looks at all of them, which is faster than stopping at the first.
+/// Whether all entries are finite.
 pub(crate) fn is_finite<const N: usize>(x: &SVector<f64, N>) -> bool {
-    x.data.0[0].iter().fold(true, |finite, value| finite & value.is_finite())
+    // What is finite times 0 is 0, all of whose bits are 0; anything else times 0 is no number. Vectors do this side by side.
+    x.data.0[0].iter().fold(0, |bits, value| bits | (value.abs() * 0.0).to_bits()) == 0
 }

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Scalar;
+use super::{Both, Scalar};
 
 /// `value + slope e` with e^2 = 0, over any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +65,8 @@ impl<S: Scalar> Neg for Dual<S> {
 }
 
 impl<S: Scalar> Scalar for Dual<S> {
+    type Pair = Both<Self>;
+
     fn from_f64(value: f64) -> Self {
         Self::new(S::from_f64(value), S::from_f64(0.0))
     }

@@ -8,12 +8,14 @@
 
 mod double_double;
 mod dual;
+mod pair;
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
+pub use pair::{Both, Pair, PairOfDoubles};
 
 /// A real number that generated code can calculate with.
 ///
@@ -31,6 +33,9 @@ pub trait Scalar:
     + Neg<Output = Self>
     + 'static
 {
+    /// Two such numbers, calculated with at once.
+    type Pair: Pair<Self>;
+
     /// The number nearest to `value`.
     fn from_f64(value: f64) -> Self;
     /// The nearest `f64`.
@@ -62,6 +67,8 @@ pub trait Scalar:
 }
 
 impl Scalar for f64 {
+    type Pair = PairOfDoubles;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value

@@ -19,7 +19,7 @@ impl<Sys, const N: usize, const G: usize> Flow<N> for Frozen<'_, Sys, G>
 where
     Sys: System<f64, N, G>,
 {
-    #[inline]
+    #[inline(always)]
     fn rate(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
         self.statistics.rate_evaluations += 1;
         self.system.rate(t, x, self.negative, dx);

@@ -55,7 +55,7 @@ def solvers(problem):
         return run
 
     return [
-        {"name": name, "source": "cvode", "locates_events": True, "settings": [10.0**-k for k in ks], "run": runner(m)}
+        {"name": name, "source": "cvode", "locates_events": True, "settings": [part * 10.0**-k for k in ks for part in (1, 0.5, 0.2)], "run": runner(m)}
         for name, m, ks in METHODS
     ]
 

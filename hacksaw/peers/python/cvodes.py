@@ -14,7 +14,7 @@ METHODS = (
     ("CasADi CVODES Adams", {"linear_multistep_method": "adams", "nonlinear_solver_iteration": "functional"}),
     ("CasADi CVODES BDF", {"linear_multistep_method": "bdf", "nonlinear_solver_iteration": "newton"}),
 )
-SETTINGS = [10.0**-k for k in range(3, 12)]
+SETTINGS = [part * 10.0**-k for k in range(3, 12) for part in (1, 0.5, 0.2)]
 
 
 def solvers(problem):

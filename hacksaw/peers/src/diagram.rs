@@ -28,7 +28,7 @@ const GRID: RGBColor = RGBColor(229, 232, 235);
 /// The colours, after Okabe and Ito (2008).
 fn colour(source: Source) -> RGBColor {
     match source {
-        Source::Ours => RGBColor(213, 94, 0),
+        Source::Ours | Source::Motion => RGBColor(213, 94, 0),
         Source::ByHand => RGBColor(230, 159, 0),
         Source::Diffsol => RGBColor(0, 114, 178),
         Source::OdeSolvers => RGBColor(86, 180, 233),

@@ -10,6 +10,8 @@ use crate::scenes::Scene;
 pub enum Case {
     /// The paper's case in the plane
     Paper,
+    /// Only where the links are in the paper's case
+    Motion,
     /// The rod 25 mm out of the plane: 3-D and stiff
     FullOffset,
     /// Ideal joints
@@ -30,6 +32,7 @@ impl Case {
     pub fn scene(self) -> Scene {
         match self {
             Self::Paper => Scene::Paper,
+            Self::Motion => Scene::Motion,
             Self::FullOffset | Self::Full => Scene::Full,
             Self::Rigid => Scene::Rigid,
             Self::Literal => Scene::Literal,
@@ -42,7 +45,7 @@ impl Case {
     #[must_use]
     pub fn reference(self) -> Reference {
         match self {
-            Self::Paper | Self::Literal | Self::Full | Self::Angles => Reference::Paper,
+            Self::Paper | Self::Motion | Self::Literal | Self::Full | Self::Angles => Reference::Paper,
             Self::FullOffset => Reference::FullOffset,
             Self::Rigid => Reference::Rigid,
             Self::FreeRun => Reference::FreeRun,

@@ -26,6 +26,7 @@ macro_rules! each_scene {
         $then! {
             literal: Hacksaw (HacksawParameters);
             paper: Paper (PaperParameters);
+            motion: Motion (MotionParameters);
             full: Full (FullParameters);
             angles: Angles (AnglesParameters);
             rigid: Rigid (RigidParameters);

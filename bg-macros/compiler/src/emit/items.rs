@@ -30,7 +30,7 @@ pub(super) fn number(value: f64) -> TokenStream {
         quote!(f64::NEG_INFINITY)
     } else {
         let literal = Literal::f64_suffixed(value.abs());
-        if value < 0.0 { quote!(-#literal) } else { quote!(#literal) }
+        if value.is_sign_negative() { quote!(-#literal) } else { quote!(#literal) }
     }
 }
 

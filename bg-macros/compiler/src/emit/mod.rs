@@ -6,6 +6,7 @@ mod description;
 mod elimination;
 mod items;
 mod model;
+mod pairs;
 pub mod routine;
 mod series;
 mod stub;

@@ -10,12 +10,13 @@ use quote::{format_ident, quote};
 
 use super::items::{Given, identifier};
 use super::routine::{Names, assignments, is_long, operand, statements};
-use super::{description, elimination, series};
+use super::{description, elimination, pairs, series};
 use crate::causality::CausalGraph;
 use crate::elimination::Elimination;
 use crate::equations::StateEquations;
 use crate::expr::{Id, Symbol};
 use crate::jacobian::Jacobian;
+use crate::pairs::Paired;
 use crate::program::{Assignment, Counts, Operand, Program, Request, Routine, schedule};
 use crate::reduce::Report;
 
@@ -49,6 +50,8 @@ pub fn model(parts: Parts) -> TokenStream {
 struct Programs {
     /// Functions of the running model; they share one constant table.
     dynamic: Program,
+    /// The rates with operations done two at a time, where that pays.
+    paired: Option<Paired>,
     /// The derivatives of the rates, with a constant table of its own.
     jacobian: Program,
     /// First guesses, gaps and start state: functions of parameters and unknowns, each with its own constants.
@@ -77,10 +80,12 @@ impl Programs {
             Request { name: "powers", roots: &powers },
         ];
         let dynamic = schedule(&mut equations.pool, &requests);
+        let rate = &dynamic.routines[0];
+        let paired = if is_long(rate) { None } else { crate::pairs::pair(rate) };
         let jacobian = schedule(&mut jacobian.pool, &[Request { name: "jacobian", roots: &derivatives }]);
         let mut alone = |name, roots: &[Id]| schedule(&mut equations.pool, &[Request { name, roots }]);
         let starting = [alone("guesses", &guesses), alone("gaps", &gaps), alone("start_state", &starts)];
-        Self { dynamic, jacobian, starting }
+        Self { dynamic, paired, jacobian, starting }
     }
 }
 
@@ -142,21 +147,44 @@ impl Emission<'_> {
         let slope_table = self.constant_table(&self.programs.jacobian);
         let system = self.system();
         let model = self.model();
+        let paired = self.programs.paired.as_ref();
+        let import_pair = paired.map(|_| {
+            quote!(
+                use ::bg_model::scalar::Pair as _;
+            )
+        });
+        let pair_field = paired.map(|paired| {
+            let pairs = paired.constants.len();
+            quote!(constant_pairs: [S::Pair; #pairs],)
+        });
+        let pair_table = paired.map(|paired| {
+            let (pairs, table) =
+                (paired.constants.len(), self.with_names(false, |names| pairs::constants(paired, names)));
+            quote! {
+                /// Pairs of them.
+                fn constant_pairs(c: &[S; #constants]) -> [S::Pair; #pairs] {
+                    #table
+                }
+            }
+        });
+        let pair_value = paired.map(|_| quote!(constant_pairs: Self::constant_pairs(&constants),));
         quote! {
             #structs
 
             #[doc = #doc]
             #[derive(Clone, Debug)]
-            #visibility struct #name<S = f64> {
+            #visibility struct #name<S: ::bg_model::scalar::Scalar = f64> {
                 parameters: #parameters,
                 #input_field
                 constants: [S; #constants],
+                #pair_field
                 slope_constants: [S; #slopes],
             }
 
             #[allow(missing_docs, clippy::all, clippy::pedantic)]
             const _: () = {
                 use ::bg_model::scalar::Scalar;
+                #import_pair
                 use ::bg_model::nalgebra::SVector;
 
                 const N: usize = #states;
@@ -198,7 +226,7 @@ impl Emission<'_> {
                         ::bg_model::parameters::Parameters::validate(&parameters)?;
                         let constants = Self::constant_table(&parameters);
                         let slope_constants = Self::slope_constant_table(&parameters);
-                        Ok(Self { parameters, #input_value constants, slope_constants })
+                        Ok(Self { parameters, #input_value #pair_value constants, slope_constants })
                     }
 
                     /// The parameters.
@@ -210,6 +238,8 @@ impl Emission<'_> {
                     fn constant_table(parameters: &#parameters) -> [S; #constants] {
                         #table
                     }
+
+                    #pair_table
 
                     /// What depends on parameters only, of the Jacobian.
                     fn slope_constant_table(parameters: &#parameters) -> [S; #slopes] {
@@ -398,12 +428,32 @@ impl Emission<'_> {
         (body, results)
     }
 
+    /// The statements of the rate, and its results.
+    fn rate(&self) -> (TokenStream, Vec<TokenStream>) {
+        let Some(paired) = &self.programs.paired else { return self.function(0) };
+        let bindings = self.dynamic_bindings(&self.programs.dynamic.routines[0]);
+        self.with_names(false, |names| {
+            let statements = pairs::statements(paired, names);
+            let body = quote! {
+                let (c, q) = (&self.constants, &self.constant_pairs);
+                let [x] = &x.data.0;
+                #bindings
+                #statements
+            };
+            (body, paired.results.iter().map(|result| pairs::half(result, names)).collect())
+        })
+    }
+
     fn system(&self) -> TokenStream {
         let name = identifier(&self.causal.graph.name.text);
-        let (rate, rates) = self.function(0);
+        let (rate, rates) = self.rate();
         let (guard, guards) = self.function(1);
         let (project, projected) = self.function(3);
         let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        // Inlined into an integrator's stages, a rate takes the vectors that they take; a long one would only fill the cache.
+        const INLINED: usize = 400;
+        let is_inlined = self.programs.dynamic.routines[0].counts.total() <= INLINED;
+        let inline = is_inlined.then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
         let series = self.series();
         let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
@@ -411,6 +461,7 @@ impl Emission<'_> {
             #parts
             #[allow(unused_variables)]
             impl<S: Scalar> ::bg_model::system::System<S, N, G> for #name<S> {
+                #inline
                 fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
                     #rate
                     dx.data.0 = [[#(#rates),*]];
@@ -540,7 +591,7 @@ impl Emission<'_> {
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies; of a series from `k` on.
     const OWN: &str =
-        "t x c u v y dx negative guards state projected entries slope k h rows series part table inner a b";
+        "t x c q u v y dx negative guards state projected entries slope k h rows series part table inner a b";
     let mut used: BTreeSet<String> = OWN.split(' ').map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));
@@ -549,7 +600,7 @@ fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
     for (index, state) in equations.states.iter().enumerate() {
         let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
         let mut name: String = state.name.chars().map(letter).collect();
-        let is_temporary = name.strip_prefix('v').is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()));
+        let is_temporary = name.strip_prefix(['v', 'w']).is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()));
         if is_temporary || syn::parse_str::<Ident>(&name).is_err() || !used.insert(name.clone()) {
             name = format!("state_{index}_{name}");
             used.insert(name.clone());

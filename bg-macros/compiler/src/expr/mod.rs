@@ -12,7 +12,7 @@ mod polynomial;
 mod pool;
 mod product;
 #[cfg(test)]
-mod random;
+pub(crate) mod random;
 mod substitute;
 mod sum;
 mod text;

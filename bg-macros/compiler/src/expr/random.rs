@@ -1,22 +1,21 @@
 //! Random expressions for tests.
 //!
 //! In: a seed. Out: expressions that are smooth and finite near the environment's values.
-//! Method: linear congruential generator (Knuth, TAOCP 2, sec. 3.3.4, MMIX).
 
 use super::{Function, Id, Pool, Symbol};
+use crate::random::Random;
 
 /// A reproducible source of expressions.
-pub struct Source(u64);
+pub struct Source(Random);
 
 impl Source {
     pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15))
+        Self(Random::new(seed))
     }
 
     /// A whole number below `end`.
     pub fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % end
+        self.0.below(end)
     }
 
     /// A number between -1 and 1.

@@ -17,9 +17,9 @@ mod plan;
 mod rebuild;
 mod signs;
 mod statics;
-mod table;
+pub(crate) mod table;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use build::Parameters;
 use factor::Grouping;

@@ -7,11 +7,11 @@ use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
 /// A hash table without a random seed.
-pub(super) type Table<K, V> = HashMap<K, V, BuildHasherDefault<Mixer>>;
+pub(crate) type Table<K, V> = HashMap<K, V, BuildHasherDefault<Mixer>>;
 
 /// The state of one hash.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Mixer(u64);
+pub(crate) struct Mixer(u64);
 
 /// 2^64 over pi, the multiplier of `FxHasher`.
 const MULTIPLIER: u64 = 0x517c_c1b7_2722_0a95;

@@ -10,10 +10,13 @@ mod dense;
 mod dop853;
 #[cfg(test)]
 mod order;
+#[cfg(test)]
+mod vectors;
 
 use std::marker::PhantomData;
 
 use nalgebra::SVector;
+use pulp::{Arch, NullaryFnOnce};
 
 pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
@@ -84,6 +87,8 @@ pub struct Explicit<T, const N: usize> {
     polynomial: [SVector<f64, N>; COEFFICIENTS],
     /// What rounding has kept from the states.
     carry: Carry<N>,
+    /// The machine's vectors.
+    arch: Arch,
     tableau: PhantomData<T>,
 }
 
@@ -92,7 +97,7 @@ impl<T, const N: usize> Explicit<T, N> {
     #[must_use]
     pub fn new() -> Self {
         let (k, polynomial) = ([SVector::zeros(); STAGES], [SVector::zeros(); COEFFICIENTS]);
-        Self { k, polynomial, carry: Carry::new(), tableau: PhantomData }
+        Self { k, polynomial, carry: Carry::new(), arch: Arch::new(), tableau: PhantomData }
     }
 }
 
@@ -167,6 +172,28 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
     }
 }
 
+/// A step to be tried, for [`Arch::dispatch`]: the same code for the vectors of the machine at hand as for those of all.
+struct Attempt<'a, T, F, const N: usize> {
+    method: &'a mut Explicit<T, N>,
+    flow: &'a mut F,
+    start: &'a Point<N>,
+    h: f64,
+    scale: &'a Scale<N>,
+    end: &'a mut SVector<f64, N>,
+}
+
+impl<T: Tableau, F: Flow<N>, const N: usize> NullaryFnOnce for Attempt<'_, T, F, N> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let Self { method, flow, start, h, scale, end } = self;
+        method.k[0] = start.rate;
+        method.evaluate(flow, start, h, 1, T::END);
+        method.finish_step(start, h, scale, end)
+    }
+}
+
 impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
     fn name(&self) -> &'static str {
         T::NAME
@@ -184,9 +211,8 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        self.k[0] = start.rate;
-        self.evaluate(flow, start, h, 1, T::END);
-        let norm = self.finish_step(start, h, scale, end);
+        let arch = self.arch;
+        let norm = arch.dispatch(Attempt { method: self, flow, start, h, scale, end });
         if T::LATE.is_empty() || norm > 1.0 {
             return norm;
         }

@@ -19,7 +19,7 @@ mod elementary;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Scalar;
+use super::{Both, Scalar};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
@@ -142,6 +142,8 @@ impl Neg for DoubleDouble {
 }
 
 impl Scalar for DoubleDouble {
+    type Pair = Both<Self>;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self::from(value)

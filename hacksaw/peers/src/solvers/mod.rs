@@ -20,6 +20,8 @@ use crate::problem::Problem;
 pub enum Source {
     /// The methods of bg-model on the generated scene `Paper`
     Ours,
+    /// The methods of bg-model on the generated scene `Motion`, which integrates what the others do: no energies
+    Motion,
     /// The methods of bg-model on the right-hand side written by hand
     ByHand,
     /// The crate diffsol
@@ -134,8 +136,10 @@ fn by_tolerance<'a>(
     run: impl FnMut(f64) -> Result<Run, String> + 'a,
 ) -> Box<dyn Solver + 'a> {
     let line = Line { name: name.to_owned(), source, locates_events, setting: Setting::Tolerance };
-    // Two each decade, as precise as written.
-    let texts = exponents.flat_map(|exponent| [format!("1e-{exponent}"), format!("3e-{}", exponent + 1)]);
+    // Three each decade, as precise as written.
+    let texts = exponents.flat_map(|exponent| {
+        [format!("1e-{exponent}"), format!("5e-{}", exponent + 1), format!("2e-{}", exponent + 1)]
+    });
     let settings = texts.map(|text| text.parse().expect("a number")).collect();
     Box::new(Entry { line, settings, run })
 }

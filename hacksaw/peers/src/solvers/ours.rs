@@ -1,4 +1,4 @@
-//! Our own methods: on the generated scene `Paper`, and on the hand-written right-hand sides. Switches are located.
+//! Our own methods: on the generated scenes `Paper` and `Motion`, and on the hand-written right-hand sides. Switches are located.
 //!
 //! [`all`] lists them, one line each.
 
@@ -10,7 +10,7 @@ use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::{Model, System};
-use hacksaw::mechanism::{Paper, PaperParameters};
+use hacksaw::mechanism::{Motion, MotionParameters, Paper, PaperParameters};
 use hacksaw::trajectory::{Column, Trajectory};
 
 use super::{Entry, Line, Run, Setting, Solver, Source, Work, by_tolerance};
@@ -18,9 +18,13 @@ use crate::planar::State;
 use crate::poses::{self, Poses};
 use crate::problem::{ABSOLUTE, Problem, T_END, instants, slip};
 
-/// States and outputs of the scene.
+/// States and outputs of the paper's scene.
 const N: usize = Paper::STATES;
 const M: usize = Paper::OUTPUTS;
+
+/// States and outputs of the scene that has poses only.
+const MOTION_N: usize = Motion::STATES;
+const MOTION_M: usize = Motion::OUTPUTS;
 
 /// Our absolute tolerance over the relative one, as `hacksaw precision` has it.
 const SCENE_ABSOLUTE: f64 = 0.1;
@@ -34,6 +38,9 @@ pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
         on_scene("BS5", 3..=9, |_| Bs5::new()),
         on_scene("Radau IIA 9", 3..=9, |_| Radau9::new()),
         on_scene_by_steps("RK4, fixed step", &[2e-4, 1e-4, 5e-5, 2e-5], Rk4::new),
+        on_motion("CFMR7osc, poses only", 3..=11, |_| Cfmr7::new()),
+        on_motion("DOP853, poses only", 3..=13, |_| Dop853::new()),
+        on_motion("Taylor, poses only", 3..=13, |_| Taylor::new()),
         by_hand("CFMR7osc by hand, plain", 3..=11, |_| Cfmr7::new(), Plain(problem)),
         by_hand("DOP853 by hand, plain", 3..=13, |_| Dop853::new(), Plain(problem)),
         by_hand("DOP853 by hand, tuned", 3..=13, |_| Dop853::new(), Tuned(problem)),
@@ -42,7 +49,15 @@ pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
 
 /// The poses of the scene's run with `method`.
 pub fn scene_poses(method: &mut impl Method<N>, tolerances: Tolerances<N>) -> Result<Poses, String> {
-    run_scene(method, tolerances).map(|run| run.poses)
+    run_scene::<_, _, N, M>(&paper(), method, tolerances).map(|run| run.poses)
+}
+
+fn paper() -> Paper {
+    Paper::new(PaperParameters::default()).expect("defaults are in their ranges")
+}
+
+fn motion() -> Motion {
+    Motion::new(MotionParameters::default()).expect("defaults are in their ranges")
 }
 
 fn on_scene<Me: Method<N> + 'static>(
@@ -51,13 +66,24 @@ fn on_scene<Me: Method<N> + 'static>(
     method: fn(f64) -> Me,
 ) -> Box<dyn Solver> {
     by_tolerance(Source::Ours, name, true, exponents, move |rtol| {
-        run_scene(&mut method(rtol), Tolerances::new(rtol, SCENE_ABSOLUTE * rtol))
+        run_scene::<_, _, N, M>(&paper(), &mut method(rtol), Tolerances::new(rtol, SCENE_ABSOLUTE * rtol))
+    })
+}
+
+fn on_motion<Me: Method<MOTION_N> + 'static>(
+    name: &str,
+    exponents: RangeInclusive<i32>,
+    method: fn(f64) -> Me,
+) -> Box<dyn Solver> {
+    by_tolerance(Source::Motion, name, true, exponents, move |rtol| {
+        let tolerances = Tolerances::new(rtol, SCENE_ABSOLUTE * rtol);
+        run_scene::<_, _, MOTION_N, MOTION_M>(&motion(), &mut method(rtol), tolerances)
     })
 }
 
 fn on_scene_by_steps<Me: Method<N> + 'static>(name: &str, steps: &[f64], method: fn(f64) -> Me) -> Box<dyn Solver> {
     let line = Line { name: name.to_owned(), source: Source::Ours, locates_events: true, setting: Setting::Step };
-    let run = move |step| run_scene(&mut method(step), Tolerances::default());
+    let run = move |step| run_scene::<_, _, N, M>(&paper(), &mut method(step), Tolerances::default());
     Box::new(Entry { line, settings: steps.to_vec(), run })
 }
 
@@ -74,10 +100,17 @@ fn by_hand<'a, Me: Method<24> + 'static>(
     })
 }
 
-fn run_scene(method: &mut impl Method<N>, tolerances: Tolerances<N>) -> Result<Run, String> {
-    let model = Paper::new(PaperParameters::default()).expect("defaults are in their ranges");
+fn run_scene<Mo, Me, const N: usize, const M: usize>(
+    model: &Mo,
+    method: &mut Me,
+    tolerances: Tolerances<N>,
+) -> Result<Run, String>
+where
+    Mo: Model<f64, N, 1, M>,
+    Me: Method<N>,
+{
     let start = model.start().map_err(|fault| fault.to_string())?;
-    let samples = run(&model, method, &start, tolerances)?;
+    let samples = run(model, method, &start, tolerances)?;
     let columns = model.description().outputs.iter();
     let columns = columns.map(|output| Column { name: output.name.to_owned(), unit: output.unit.to_owned() });
     let mut trajectory = Trajectory::new(columns.collect());

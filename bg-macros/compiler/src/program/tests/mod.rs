@@ -22,27 +22,37 @@ fn single(pool: &mut Pool, roots: &[Id]) -> Program {
 }
 
 /// The values of a routine's results.
-fn run(routine: &Routine, constants: &[f64], environment: &Environment) -> Vec<f64> {
+pub(crate) fn run(routine: &Routine, constants: &[f64], environment: &Environment) -> Vec<f64> {
     let mut temporaries: Vec<f64> = Vec::new();
     for assignment in &routine.assignments {
-        let value = |operand: &Operand| value(operand, &temporaries, constants, environment);
-        let result = match &assignment.operation {
-            Operation::Add(left, right) => value(left) + value(right),
-            Operation::Subtract(left, right) => value(left) - value(right),
-            Operation::Multiply(left, right) => value(left) * value(right),
-            Operation::Divide(left, right) => value(left) / value(right),
-            Operation::Negate(only) => -value(only),
-            Operation::Call(function, all) => apply(*function, &all.iter().map(value).collect::<Vec<_>>()),
-            Operation::Select { switch, negative, positive } => {
-                value(if environment.negative[*switch as usize] { negative } else { positive })
-            }
-        };
-        temporaries.push(result);
+        temporaries.push(apply_operation(&assignment.operation, &temporaries, constants, environment));
     }
     routine.results.iter().map(|result| value(result, &temporaries, constants, environment)).collect()
 }
 
-fn value(operand: &Operand, temporaries: &[f64], constants: &[f64], environment: &Environment) -> f64 {
+/// The value of an operation.
+pub(crate) fn apply_operation(
+    operation: &Operation,
+    temporaries: &[f64],
+    constants: &[f64],
+    environment: &Environment,
+) -> f64 {
+    let value = |operand: &Operand| value(operand, temporaries, constants, environment);
+    match operation {
+        Operation::Add(left, right) => value(left) + value(right),
+        Operation::Subtract(left, right) => value(left) - value(right),
+        Operation::Multiply(left, right) => value(left) * value(right),
+        Operation::Divide(left, right) => value(left) / value(right),
+        Operation::Negate(only) => -value(only),
+        Operation::Call(function, all) => apply(*function, &all.iter().map(value).collect::<Vec<_>>()),
+        Operation::Select { switch, negative, positive } => {
+            value(if environment.negative[*switch as usize] { negative } else { positive })
+        }
+    }
+}
+
+/// The value of an operand.
+pub(crate) fn value(operand: &Operand, temporaries: &[f64], constants: &[f64], environment: &Environment) -> f64 {
     match *operand {
         Operand::Number(number) => number,
         Operand::Temporary(index) => temporaries[index as usize],

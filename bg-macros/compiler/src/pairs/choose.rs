@@ -1,0 +1,269 @@
+//! Which operations go together.
+//!
+//! In: the operations. Out: pairs of them, of the same kind and independent of each other, so that few operations remain.
+//! Method: pairs grow from neighbours among the states and the results along uses and operands, the one that saves most at
+//! the time first. `anneal` improves on what comes of it.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+use super::anneal::anneal;
+use super::nodes::{Kind, Nodes, Place, Signed};
+
+/// What an operation costs, in the units of the gains.
+const OPERATION: i32 = 4;
+/// What a pair of operands that may still become a pair is taken to cost.
+const OPEN: i32 = 1;
+
+/// The pairs chosen.
+#[derive(Clone, Debug)]
+pub(super) struct Choice {
+    /// By operation: the other one of its pair, and the half that it is itself.
+    pub partners: Vec<Option<(usize, usize)>>,
+    /// By the first operation of a pair: whether the second one's operands change places.
+    pub swapped: Vec<bool>,
+}
+
+/// Two operations that are done as one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub nodes: [usize; 2],
+    /// The operands that meet.
+    pub operands: [[Signed; 2]; 2],
+}
+
+/// What it takes to have two values as a pair.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// They are one.
+    Ready,
+    /// They are not, but may become one.
+    Open,
+    /// They have to be gathered.
+    Gathered,
+}
+
+impl Choice {
+    /// The other operation of this one's pair, and the half that this one is.
+    pub fn partner(&self, node: usize) -> Option<(usize, usize)> {
+        self.partners[node]
+    }
+
+    /// All pairs.
+    pub fn pairs<'a>(&'a self, nodes: &'a Nodes) -> impl Iterator<Item = Pair> + 'a {
+        (0..self.partners.len()).filter_map(|node| self.pair_at(nodes, node))
+    }
+
+    /// The pair whose first operation this is.
+    pub fn pair_at(&self, nodes: &Nodes, node: usize) -> Option<Pair> {
+        match self.partners[node] {
+            Some((other, 0)) => Some(meeting(nodes, [node, other], self.swapped[node])),
+            _ => None,
+        }
+    }
+
+    /// Whether these two values, in this order, are a pair.
+    pub fn is_pair(&self, [first, second]: [Place; 2]) -> bool {
+        match (first, second) {
+            (Place::Constant, Place::Constant) => true,
+            (Place::State(first), Place::State(second)) => second == first + 1,
+            (Place::Node(first), Place::Node(second)) => self.partners[first as usize] == Some((second as usize, 0)),
+            _ => false,
+        }
+    }
+}
+
+/// The operands that meet in a pair of operations.
+pub(super) fn meeting(nodes: &Nodes, pair: [usize; 2], is_swapped: bool) -> Pair {
+    let [first, second] = pair.map(|node| &nodes.all[node].operands);
+    let other = |at: usize| second[if is_swapped { 1 - at } else { at }];
+    Pair { nodes: pair, operands: [[first[0], other(0)], [first[1], other(1)]] }
+}
+
+/// The places of two operands.
+pub(super) fn places(operands: [Signed; 2]) -> [Place; 2] {
+    operands.map(Signed::place)
+}
+
+/// Whether an operation may be half of a pair with another one of its kind.
+pub(super) fn is_pairable(kind: Kind) -> bool {
+    matches!(kind, Kind::Sum | Kind::Product | Kind::Quotient)
+}
+
+/// Whether an operation needs the value of another one, with the pairs chosen; the operation itself does not count as half of
+/// its pair.
+pub(super) fn needs(nodes: &Nodes, choice: &Choice, node: usize, wanted: usize) -> bool {
+    let mut seen = vec![false; nodes.all.len()];
+    let mut pending: Vec<usize> = nodes.all[node].operands.iter().filter_map(|operand| operand.node()).collect();
+    while let Some(node) = pending.pop() {
+        if node == wanted {
+            return true;
+        }
+        if std::mem::replace(&mut seen[node], true) {
+            continue;
+        }
+        let both = [Some(node), choice.partners[node].map(|(other, _)| other)];
+        let operands = both.into_iter().flatten().flat_map(|node| &nodes.all[node].operands);
+        pending.extend(operands.filter_map(|operand| operand.node()));
+    }
+    false
+}
+
+/// Pairs of these operations.
+pub(super) fn choose(nodes: &Nodes) -> Choice {
+    let mut growth = Growth::new(nodes);
+    growth.seed();
+    growth.grow();
+    anneal(nodes, growth.choice)
+}
+
+struct Growth<'n> {
+    nodes: &'n Nodes,
+    /// The operations that use a value.
+    users: BTreeMap<Place, Vec<usize>>,
+    choice: Choice,
+    /// The operand pairs that the chosen pairs gather, each with their number.
+    gathered: BTreeMap<[Place; 2], usize>,
+    /// Pairs that might be chosen, by what they would gain when they were found.
+    candidates: BinaryHeap<(i32, Reverse<[usize; 2]>)>,
+}
+
+impl<'n> Growth<'n> {
+    fn new(nodes: &'n Nodes) -> Self {
+        let mut users: BTreeMap<Place, Vec<usize>> = BTreeMap::new();
+        for (index, node) in nodes.all.iter().enumerate().filter(|(_, node)| node.kind != Kind::Negation) {
+            for operand in &node.operands {
+                let users = users.entry(operand.place()).or_default();
+                if users.last() != Some(&index) {
+                    users.push(index);
+                }
+            }
+        }
+        let count = nodes.all.len();
+        let choice = Choice { partners: vec![None; count], swapped: vec![false; count] };
+        Self { nodes, users, choice, gathered: BTreeMap::new(), candidates: BinaryHeap::new() }
+    }
+
+    fn users(&self, of: Place) -> &[usize] {
+        self.users.get(&of).map_or(&[], Vec::as_slice)
+    }
+
+    /// The users of neighbouring states, and neighbouring results.
+    fn seed(&mut self) {
+        let states: Vec<u32> = self
+            .users
+            .keys()
+            .filter_map(|place| if let Place::State(index) = place { Some(*index) } else { None })
+            .collect();
+        for index in states {
+            self.propose_users([Place::State(index), Place::State(index + 1)]);
+        }
+        for pair in self.nodes.results.windows(2) {
+            self.propose_operands([pair[0], pair[1]]);
+        }
+    }
+
+    fn propose_users(&mut self, [first, second]: [Place; 2]) {
+        let pairs: Vec<[usize; 2]> =
+            self.users(first).iter().flat_map(|&a| self.users(second).iter().map(move |&b| [a, b])).collect();
+        pairs.into_iter().for_each(|pair| self.propose(pair));
+    }
+
+    fn propose_operands(&mut self, [first, second]: [Signed; 2]) {
+        if let (Some(first), Some(second)) = (first.node(), second.node()) {
+            self.propose([first, second]);
+        }
+    }
+
+    fn propose(&mut self, pair: [usize; 2]) {
+        if self.may_pair(pair) {
+            self.candidates.push((self.gain(pair).0, Reverse(pair)));
+        }
+    }
+
+    fn may_pair(&self, [first, second]: [usize; 2]) -> bool {
+        let kinds = [first, second].map(|node| self.nodes.all[node].kind);
+        let is_free = [first, second].iter().all(|&node| self.choice.partners[node].is_none());
+        first != second
+            && is_free
+            && kinds[0] == kinds[1]
+            && matches!(kinds[0], Kind::Sum | Kind::Product | Kind::Quotient)
+    }
+
+    fn form(&self, pair: [Place; 2]) -> Form {
+        if self.choice.is_pair(pair) {
+            return Form::Ready;
+        }
+        match pair {
+            [Place::Node(first), Place::Node(second)] if self.may_pair([first as usize, second as usize]) => Form::Open,
+            _ => Form::Gathered,
+        }
+    }
+
+    /// What a pair would save now, and whether its second operation's operands change places.
+    fn gain(&self, pair: [usize; 2]) -> (i32, bool) {
+        let cost = |is_swapped: bool| {
+            let meeting = meeting(self.nodes, pair, is_swapped).operands.map(places);
+            meeting
+                .iter()
+                .map(|&operands| match self.form(operands) {
+                    Form::Ready => 0,
+                    Form::Open => OPEN,
+                    Form::Gathered if self.gathered.contains_key(&operands) => 0,
+                    Form::Gathered => OPERATION,
+                })
+                .sum::<i32>()
+        };
+        let is_ordered = self.nodes.all[pair[0]].kind == Kind::Quotient;
+        let (straight, swapped) = (cost(false), if is_ordered { i32::MAX } else { cost(true) });
+        let values = pair.map(|node| Place::Node(u32::try_from(node).expect("a temporary's number")));
+        let ungathered = if self.gathered.contains_key(&values) { OPERATION } else { 0 };
+        let stored = if self.is_stored(pair) { OPERATION } else { 0 };
+        (OPERATION + ungathered + stored - straight.min(swapped), swapped < straight)
+    }
+
+    /// Whether the two values are neighbouring results.
+    fn is_stored(&self, pair: [usize; 2]) -> bool {
+        self.nodes.results.windows(2).any(|results| [results[0].node(), results[1].node()] == pair.map(Some))
+    }
+
+    /// Chooses candidates until none gains.
+    fn grow(&mut self) {
+        while let Some((gain, Reverse(pair))) = self.candidates.pop() {
+            if gain <= 0 {
+                return;
+            }
+            if !self.may_pair(pair) {
+                continue;
+            }
+            let (now, is_swapped) = self.gain(pair);
+            if now < gain {
+                self.candidates.push((now, Reverse(pair)));
+            } else if !needs(self.nodes, &self.choice, pair[0], pair[1])
+                && !needs(self.nodes, &self.choice, pair[1], pair[0])
+            {
+                self.join(pair, is_swapped);
+            }
+        }
+    }
+
+    fn join(&mut self, pair: [usize; 2], is_swapped: bool) {
+        let values = pair.map(|node| Place::Node(u32::try_from(node).expect("a temporary's number")));
+        for half in 0..2 {
+            self.choice.partners[pair[half]] = Some((pair[1 - half], half));
+        }
+        self.choice.swapped[pair[0]] = is_swapped;
+        self.gathered.remove(&values);
+        let meeting = meeting(self.nodes, pair, is_swapped).operands;
+        for operands in meeting {
+            if !self.choice.is_pair(places(operands)) {
+                *self.gathered.entry(places(operands)).or_default() += 1;
+            }
+        }
+        for operands in meeting {
+            self.propose_operands(operands);
+            self.propose_operands([operands[1], operands[0]]);
+        }
+        self.propose_users(values);
+    }
+}

@@ -1,0 +1,114 @@
+//! Two operations at a time: straight-line code for vectors of two numbers.
+//!
+//! In: a [`Routine`]. Out: a [`Paired`] with the same results, each rounded as before; only the sign of a zero may differ.
+//! Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind whose operands belong together
+//! become one operation on pairs, which costs what one on numbers does. `nodes` frees the routine from signs, `choose`
+//! says which operations go together, `signs` with which sign each value is held, `lower` writes the steps. Method: superword
+//! level parallelism (S. Larsen, S. Amarasinghe, PLDI 2000), grown from neighbours among the states and the results.
+
+mod anneal;
+mod choose;
+mod lower;
+mod nodes;
+mod parity;
+mod signs;
+#[cfg(test)]
+mod tests;
+
+use crate::program::{Assignment, Operand, Routine};
+
+/// Straight-line code with pairs.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Paired {
+    /// The steps; each value stands before its use.
+    pub steps: Vec<Step>,
+    /// The results, in the order of the routine's.
+    pub results: Vec<Half>,
+    /// Pairs of constants, with `true` where the constant's negative is meant. At least one of both is of the table.
+    pub constants: Vec<[(Operand, bool); 2]>,
+}
+
+/// A step.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Step {
+    /// A number, by an operation on numbers.
+    Single(Assignment),
+    /// A number that is half of a pair.
+    Half {
+        /// The temporary.
+        target: u32,
+        /// The pair.
+        pair: u32,
+        /// 0 or 1.
+        half: usize,
+    },
+    /// A pair; numbered from 0 in the order of the steps.
+    Pair(Value),
+}
+
+/// The value of a pair.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Value {
+    /// A state and the next one.
+    States(u32),
+    /// Two numbers.
+    Numbers([f64; 2]),
+    /// An entry of [`Paired::constants`].
+    Constants(u32),
+    /// Two numbers from anywhere.
+    Gather([Half; 2]),
+    /// The sums of two pairs.
+    Add(u32, u32),
+    /// The first pair minus the second.
+    Subtract(u32, u32),
+    /// The products of two pairs.
+    Multiply(u32, u32),
+    /// The first pair over the second.
+    Divide(u32, u32),
+    /// A pair with other signs where `true`.
+    Turn(u32, [bool; 2]),
+}
+
+/// A number.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Half {
+    /// One by itself.
+    Of(Operand),
+    /// One of a pair: the pair, 0 or 1.
+    In(u32, usize),
+}
+
+/// The part of the steps that has to remain at most for pairs to pay.
+const PART: f64 = 0.9;
+
+/// Shorter routines stay as they are: they take few nanoseconds, and are easier to read.
+const LEAST: usize = 40;
+
+/// The routine with pairs; none where they would save little.
+#[must_use]
+pub fn pair(routine: &Routine) -> Option<Paired> {
+    if routine.counts.total() < LEAST {
+        return None;
+    }
+    let paired = paired(routine);
+    let pays = (paired.operations() as f64) < PART * routine.counts.total() as f64;
+    pays.then_some(paired)
+}
+
+/// The routine with pairs, whether they pay or not.
+fn paired(routine: &Routine) -> Paired {
+    let nodes = nodes::Nodes::new(routine);
+    let choice = choose::choose(&nodes);
+    let negative = signs::signs(&nodes, &choice);
+    lower::lower(routine, &nodes, &choice, &negative)
+}
+
+impl Paired {
+    /// The number of steps that cost something: neither states nor constants nor the first half of a pair.
+    #[must_use]
+    pub fn operations(&self) -> usize {
+        let is_there =
+            |step: &&Step| matches!(step, Step::Pair(Value::States(_) | Value::Numbers(_) | Value::Constants(_)));
+        self.steps.iter().filter(|step| !is_there(step)).count()
+    }
+}

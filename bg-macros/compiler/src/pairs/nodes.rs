@@ -1,0 +1,110 @@
+//! The operations of a routine, freed from signs.
+//!
+//! In: a routine. Out: sums, products and quotients of signed operands; a difference is a sum, a negation is no operation.
+
+use crate::expr::Symbol;
+use crate::program::{Operand, Operation, Routine};
+
+/// A value or its negative.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Signed {
+    pub operand: Operand,
+    pub negative: bool,
+}
+
+/// What is done with the operands.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Kind {
+    Sum,
+    Product,
+    Quotient,
+    /// A function or a choice; its operands and its value have their true signs.
+    Other,
+    /// Nothing: every use of it is a use of its operand.
+    Negation,
+}
+
+/// An operation.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub kind: Kind,
+    pub operands: Vec<Signed>,
+}
+
+/// The operations of a routine, by target, and its results.
+#[derive(Debug)]
+pub(super) struct Nodes {
+    pub all: Vec<Node>,
+    pub results: Vec<Signed>,
+}
+
+/// Where a value comes from, as far as pairs are concerned.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub(super) enum Place {
+    /// Numbers and entries of the constant table: a pair of them costs nothing.
+    Constant,
+    State(u32),
+    Symbol(Symbol),
+    Node(u32),
+}
+
+impl Nodes {
+    pub fn new(routine: &Routine) -> Self {
+        let mut all: Vec<Node> = Vec::with_capacity(routine.assignments.len());
+        // What a use of each target means.
+        let mut means: Vec<Signed> = Vec::with_capacity(routine.assignments.len());
+        let signed = |operand: Operand, negative: bool, means: &[Signed]| match operand {
+            Operand::Temporary(target) => {
+                let meant = means[target as usize];
+                Signed { operand: meant.operand, negative: meant.negative ^ negative }
+            }
+            operand => Signed { operand, negative },
+        };
+        for assignment in &routine.assignments {
+            let (kind, subtracts) = match assignment.operation {
+                Operation::Add(..) => (Kind::Sum, false),
+                Operation::Subtract(..) => (Kind::Sum, true),
+                Operation::Multiply(..) => (Kind::Product, false),
+                Operation::Divide(..) => (Kind::Quotient, false),
+                Operation::Negate(_) => (Kind::Negation, false),
+                Operation::Call(..) | Operation::Select { .. } => (Kind::Other, false),
+            };
+            let operands = assignment.operation.operands();
+            let mut operands: Vec<Signed> =
+                operands.iter().enumerate().map(|(at, &value)| signed(value, subtracts && at == 1, &means)).collect();
+            let value = Operand::Temporary(assignment.target);
+            means.push(match kind {
+                Kind::Negation => Signed { negative: !operands[0].negative, ..operands[0] },
+                Kind::Product | Kind::Quotient => {
+                    let negative = operands.iter().fold(false, |negative, operand| negative ^ operand.negative);
+                    operands.iter_mut().for_each(|operand| operand.negative = false);
+                    Signed { operand: value, negative }
+                }
+                Kind::Sum | Kind::Other => Signed { operand: value, negative: false },
+            });
+            all.push(Node { kind, operands });
+        }
+        let results = routine.results.iter().map(|&result| signed(result, false, &means)).collect();
+        Self { all, results }
+    }
+}
+
+impl Signed {
+    /// The operation that gives the value, if one does.
+    pub fn node(self) -> Option<usize> {
+        if let Operand::Temporary(node) = self.operand { Some(node as usize) } else { None }
+    }
+
+    pub fn is_constant(self) -> bool {
+        self.place() == Place::Constant
+    }
+
+    pub fn place(self) -> Place {
+        match self.operand {
+            Operand::Number(_) | Operand::Constant(_) => Place::Constant,
+            Operand::Symbol(Symbol::State(index)) => Place::State(index),
+            Operand::Symbol(symbol) => Place::Symbol(symbol),
+            Operand::Temporary(node) => Place::Node(node),
+        }
+    }
+}
