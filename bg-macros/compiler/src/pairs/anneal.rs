@@ -4,7 +4,7 @@
 //! results written. Method: simulated annealing (Kirkpatrick, Gelatt, Vecchi, Science 220, 1983) from a low temperature, with a
 //! fixed sequence of random numbers; a change costs or saves only where its operations and their users are.
 
-use super::choose::{Choice, is_pairable, meeting, needs, places};
+use super::choose::{Choice, is_circular, is_pairable, meeting, places};
 use super::nodes::{Kind, Nodes, Place, Signed};
 use crate::program::table::Table;
 use crate::random::Random;
@@ -53,8 +53,6 @@ type Partners = Vec<(usize, Option<(usize, usize)>)>;
 /// A choice with its cost.
 struct State<'n> {
     nodes: &'n Nodes,
-    /// By operation, by state: the operations that use it.
-    users: [Vec<Vec<usize>>; 2],
     /// By operation: the results that are its value.
     results: Vec<Vec<usize>>,
     choice: Choice,
@@ -76,27 +74,13 @@ enum Site {
 impl<'n> State<'n> {
     fn new(nodes: &'n Nodes, choice: Choice) -> Self {
         let count = nodes.all.len();
-        let mut users = [vec![Vec::new(); count], Vec::new()];
-        for (index, node) in nodes.all.iter().enumerate().filter(|(_, node)| node.kind != Kind::Negation) {
-            for operand in &node.operands {
-                let (list, at) = match operand.place() {
-                    Place::Node(node) => (0, node as usize),
-                    Place::State(state) => (1, state as usize),
-                    _ => continue,
-                };
-                let list: &mut Vec<Vec<usize>> = &mut users[list];
-                list.resize(list.len().max(at + 1), Vec::new());
-                list[at].push(index);
-            }
-        }
         let mut results = vec![Vec::new(); count];
         for (index, result) in nodes.results.iter().enumerate() {
             if let Some(node) = result.node() {
                 results[node].push(index);
             }
         }
-        let mut state =
-            Self { nodes, users, results, choice, cost: 0, gathered: Table::default(), taken: vec![0; count] };
+        let mut state = Self { nodes, results, choice, cost: 0, gathered: Table::default(), taken: vec![0; count] };
         let sites = (0..count).map(Site::Operation).chain((0..nodes.results.len()).map(Site::Result));
         sites.for_each(|site| state.count(site, 1));
         state
@@ -130,15 +114,15 @@ impl<'n> State<'n> {
             0 | 1 => {
                 let operands = &self.nodes.all[node].operands;
                 let beside = match operands[random.below(operands.len())].place() {
-                    Place::Node(operand) => self.users[0].get(self.choice.partner(operand as usize)?.0),
-                    Place::State(index) if random.below(2) == 0 => self.users[1].get(index as usize + 1),
-                    Place::State(index) => self.users[1].get((index as usize).checked_sub(1)?),
-                    _ => None,
+                    Place::Node(operand) => Place::Node(self.choice.partner(operand)?.0),
+                    Place::State(index) if random.below(2) == 0 => Place::State(index + 1),
+                    Place::State(index) => Place::State(index.checked_sub(1)?),
+                    _ => return None,
                 };
-                pick(beside?, random)
+                pick(self.nodes.users(beside), random)
             }
             2 | 3 => {
-                let (other, _) = self.choice.partner(pick(&self.users[0][node], random)?)?;
+                let (other, _) = self.choice.partner(pick(self.nodes.users(Place::Node(node)), random)?)?;
                 let operands = &self.nodes.all[other].operands;
                 operands[random.below(operands.len())].node()
             }
@@ -150,10 +134,9 @@ impl<'n> State<'n> {
         }
     }
 
-    /// Whether the operations of a new pair need each other.
+    /// Whether a new pair's operations need each other.
     fn is_circular(&self, change: Change) -> bool {
-        let needs = |node, wanted| needs(self.nodes, &self.choice, node, wanted);
-        matches!(change, Change::Join([first, second]) if needs(first, second) || needs(second, first))
+        matches!(change, Change::Join(pair) if is_circular(self.nodes, &self.choice, pair))
     }
 
     /// Makes a change; gives the partners to go back to.
@@ -189,7 +172,7 @@ impl<'n> State<'n> {
     fn sites(&self, nodes: &[usize]) -> Vec<Site> {
         let mut sites = Vec::new();
         for &node in nodes {
-            for &user in self.users[0][node].iter().chain([&node]) {
+            for &user in self.nodes.users(Place::Node(node)).iter().chain([&node]) {
                 sites.push(Site::Operation(user));
                 sites.extend(self.choice.partner(user).map(|(other, _)| Site::Operation(other)));
             }

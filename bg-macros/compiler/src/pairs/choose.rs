@@ -67,7 +67,7 @@ impl Choice {
         match (first, second) {
             (Place::Constant, Place::Constant) => true,
             (Place::State(first), Place::State(second)) => second == first + 1,
-            (Place::Node(first), Place::Node(second)) => self.partners[first as usize] == Some((second as usize, 0)),
+            (Place::Node(first), Place::Node(second)) => self.partners[first] == Some((second, 0)),
             _ => false,
         }
     }
@@ -90,9 +90,12 @@ pub(super) fn is_pairable(kind: Kind) -> bool {
     matches!(kind, Kind::Sum | Kind::Product | Kind::Quotient)
 }
 
-/// Whether an operation needs the value of another one, with the pairs chosen; the operation itself does not count as half of
-/// its pair.
-pub(super) fn needs(nodes: &Nodes, choice: &Choice, node: usize, wanted: usize) -> bool {
+/// Whether one of two operations needs the other one's value, with the pairs chosen. The two themselves do not count as a pair.
+pub(super) fn is_circular(nodes: &Nodes, choice: &Choice, [first, second]: [usize; 2]) -> bool {
+    needs(nodes, choice, first, second) || needs(nodes, choice, second, first)
+}
+
+fn needs(nodes: &Nodes, choice: &Choice, node: usize, wanted: usize) -> bool {
     let mut seen = vec![false; nodes.all.len()];
     let mut pending: Vec<usize> = nodes.all[node].operands.iter().filter_map(|operand| operand.node()).collect();
     while let Some(node) = pending.pop() {
@@ -119,8 +122,6 @@ pub(super) fn choose(nodes: &Nodes) -> Choice {
 
 struct Growth<'n> {
     nodes: &'n Nodes,
-    /// The operations that use a value.
-    users: BTreeMap<Place, Vec<usize>>,
     choice: Choice,
     /// The operand pairs that the chosen pairs gather, each with their number.
     gathered: BTreeMap<[Place; 2], usize>,
@@ -130,32 +131,14 @@ struct Growth<'n> {
 
 impl<'n> Growth<'n> {
     fn new(nodes: &'n Nodes) -> Self {
-        let mut users: BTreeMap<Place, Vec<usize>> = BTreeMap::new();
-        for (index, node) in nodes.all.iter().enumerate().filter(|(_, node)| node.kind != Kind::Negation) {
-            for operand in &node.operands {
-                let users = users.entry(operand.place()).or_default();
-                if users.last() != Some(&index) {
-                    users.push(index);
-                }
-            }
-        }
         let count = nodes.all.len();
         let choice = Choice { partners: vec![None; count], swapped: vec![false; count] };
-        Self { nodes, users, choice, gathered: BTreeMap::new(), candidates: BinaryHeap::new() }
-    }
-
-    fn users(&self, of: Place) -> &[usize] {
-        self.users.get(&of).map_or(&[], Vec::as_slice)
+        Self { nodes, choice, gathered: BTreeMap::new(), candidates: BinaryHeap::new() }
     }
 
     /// The users of neighbouring states, and neighbouring results.
     fn seed(&mut self) {
-        let states: Vec<u32> = self
-            .users
-            .keys()
-            .filter_map(|place| if let Place::State(index) = place { Some(*index) } else { None })
-            .collect();
-        for index in states {
+        for index in self.nodes.states() {
             self.propose_users([Place::State(index), Place::State(index + 1)]);
         }
         for pair in self.nodes.results.windows(2) {
@@ -164,9 +147,10 @@ impl<'n> Growth<'n> {
     }
 
     fn propose_users(&mut self, [first, second]: [Place; 2]) {
-        let pairs: Vec<[usize; 2]> =
-            self.users(first).iter().flat_map(|&a| self.users(second).iter().map(move |&b| [a, b])).collect();
-        pairs.into_iter().for_each(|pair| self.propose(pair));
+        let nodes = self.nodes;
+        for &first in nodes.users(first) {
+            nodes.users(second).iter().for_each(|&second| self.propose([first, second]));
+        }
     }
 
     fn propose_operands(&mut self, [first, second]: [Signed; 2]) {
@@ -184,10 +168,7 @@ impl<'n> Growth<'n> {
     fn may_pair(&self, [first, second]: [usize; 2]) -> bool {
         let kinds = [first, second].map(|node| self.nodes.all[node].kind);
         let is_free = [first, second].iter().all(|&node| self.choice.partners[node].is_none());
-        first != second
-            && is_free
-            && kinds[0] == kinds[1]
-            && matches!(kinds[0], Kind::Sum | Kind::Product | Kind::Quotient)
+        first != second && is_free && kinds[0] == kinds[1] && is_pairable(kinds[0])
     }
 
     fn form(&self, pair: [Place; 2]) -> Form {
@@ -195,7 +176,7 @@ impl<'n> Growth<'n> {
             return Form::Ready;
         }
         match pair {
-            [Place::Node(first), Place::Node(second)] if self.may_pair([first as usize, second as usize]) => Form::Open,
+            [Place::Node(first), Place::Node(second)] if self.may_pair([first, second]) => Form::Open,
             _ => Form::Gathered,
         }
     }
@@ -216,7 +197,7 @@ impl<'n> Growth<'n> {
         };
         let is_ordered = self.nodes.all[pair[0]].kind == Kind::Quotient;
         let (straight, swapped) = (cost(false), if is_ordered { i32::MAX } else { cost(true) });
-        let values = pair.map(|node| Place::Node(u32::try_from(node).expect("a temporary's number")));
+        let values = pair.map(Place::Node);
         let ungathered = if self.gathered.contains_key(&values) { OPERATION } else { 0 };
         let stored = if self.is_stored(pair) { OPERATION } else { 0 };
         (OPERATION + ungathered + stored - straight.min(swapped), swapped < straight)
@@ -239,16 +220,14 @@ impl<'n> Growth<'n> {
             let (now, is_swapped) = self.gain(pair);
             if now < gain {
                 self.candidates.push((now, Reverse(pair)));
-            } else if !needs(self.nodes, &self.choice, pair[0], pair[1])
-                && !needs(self.nodes, &self.choice, pair[1], pair[0])
-            {
+            } else if !is_circular(self.nodes, &self.choice, pair) {
                 self.join(pair, is_swapped);
             }
         }
     }
 
     fn join(&mut self, pair: [usize; 2], is_swapped: bool) {
-        let values = pair.map(|node| Place::Node(u32::try_from(node).expect("a temporary's number")));
+        let values = pair.map(Place::Node);
         for half in 0..2 {
             self.choice.partners[pair[half]] = Some((pair[1 - half], half));
         }

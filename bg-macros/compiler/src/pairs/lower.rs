@@ -237,8 +237,8 @@ impl Lowering<'_> {
                 self.known_or_new(Value::States(first))
             }
             [Place::Node(first), Place::Node(_)] if self.choice.is_pair(values.map(Signed::place)) => {
-                self.make(first as usize);
-                match self.done[first as usize] {
+                self.make(first);
+                match self.done[first] {
                     Done::Pair(pair) | Done::Single(Some(pair)) => pair,
                     _ => unreachable!("a pair is made as one"),
                 }

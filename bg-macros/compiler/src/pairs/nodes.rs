@@ -2,6 +2,8 @@
 //!
 //! In: a routine. Out: sums, products and quotients of signed operands; a difference is a sum, a negation is no operation.
 
+use std::collections::BTreeMap;
+
 use crate::expr::Symbol;
 use crate::program::{Operand, Operation, Routine};
 
@@ -36,6 +38,7 @@ pub(super) struct Node {
 pub(super) struct Nodes {
     pub all: Vec<Node>,
     pub results: Vec<Signed>,
+    users: BTreeMap<Place, Vec<usize>>,
 }
 
 /// Where a value comes from, as far as pairs are concerned.
@@ -45,7 +48,7 @@ pub(super) enum Place {
     Constant,
     State(u32),
     Symbol(Symbol),
-    Node(u32),
+    Node(usize),
 }
 
 impl Nodes {
@@ -85,7 +88,26 @@ impl Nodes {
             all.push(Node { kind, operands });
         }
         let results = routine.results.iter().map(|&result| signed(result, false, &means)).collect();
-        Self { all, results }
+        let mut users: BTreeMap<Place, Vec<usize>> = BTreeMap::new();
+        for (index, node) in all.iter().enumerate().filter(|(_, node)| node.kind != Kind::Negation) {
+            for operand in &node.operands {
+                let users = users.entry(operand.place()).or_default();
+                if users.last() != Some(&index) {
+                    users.push(index);
+                }
+            }
+        }
+        Self { all, results, users }
+    }
+
+    /// The operations that use a value, in ascending order.
+    pub fn users(&self, of: Place) -> &[usize] {
+        self.users.get(&of).map_or(&[], Vec::as_slice)
+    }
+
+    /// The states that operations use, in ascending order.
+    pub fn states(&self) -> impl Iterator<Item = u32> + '_ {
+        self.users.keys().filter_map(|place| if let Place::State(index) = place { Some(*index) } else { None })
     }
 }
 
@@ -104,7 +126,7 @@ impl Signed {
             Operand::Number(_) | Operand::Constant(_) => Place::Constant,
             Operand::Symbol(Symbol::State(index)) => Place::State(index),
             Operand::Symbol(symbol) => Place::Symbol(symbol),
-            Operand::Temporary(node) => Place::Node(node),
+            Operand::Temporary(node) => Place::Node(node as usize),
         }
     }
 }

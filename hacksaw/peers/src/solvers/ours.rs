@@ -18,13 +18,8 @@ use crate::planar::State;
 use crate::poses::{self, Poses};
 use crate::problem::{ABSOLUTE, Problem, T_END, instants, slip};
 
-/// States and outputs of the paper's scene.
+/// States of the paper's scene.
 const N: usize = Paper::STATES;
-const M: usize = Paper::OUTPUTS;
-
-/// States and outputs of the scene that has poses only.
-const MOTION_N: usize = Motion::STATES;
-const MOTION_M: usize = Motion::OUTPUTS;
 
 /// Our absolute tolerance over the relative one, as `hacksaw precision` has it.
 const SCENE_ABSOLUTE: f64 = 0.1;
@@ -32,15 +27,15 @@ const SCENE_ABSOLUTE: f64 = 0.1;
 /// All our lines.
 pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
     vec![
-        on_scene("CFMR7osc", 3..=11, |_| Cfmr7::new()),
-        on_scene("DOP853", 3..=13, |_| Dop853::new()),
-        on_scene("Taylor", 3..=13, |_| Taylor::new()),
-        on_scene("BS5", 3..=9, |_| Bs5::new()),
-        on_scene("Radau IIA 9", 3..=9, |_| Radau9::new()),
+        on_scene(Source::Ours, "CFMR7osc", 3..=11, paper, Cfmr7::new),
+        on_scene(Source::Ours, "DOP853", 3..=13, paper, Dop853::new),
+        on_scene(Source::Ours, "Taylor", 3..=13, paper, Taylor::new),
+        on_scene(Source::Ours, "BS5", 3..=9, paper, Bs5::new),
+        on_scene(Source::Ours, "Radau IIA 9", 3..=9, paper, Radau9::new),
         on_scene_by_steps("RK4, fixed step", &[2e-4, 1e-4, 5e-5, 2e-5], Rk4::new),
-        on_motion("CFMR7osc, poses only", 3..=11, |_| Cfmr7::new()),
-        on_motion("DOP853, poses only", 3..=13, |_| Dop853::new()),
-        on_motion("Taylor, poses only", 3..=13, |_| Taylor::new()),
+        on_scene(Source::Motion, "CFMR7osc, poses only", 3..=11, motion, Cfmr7::new),
+        on_scene(Source::Motion, "DOP853, poses only", 3..=13, motion, Dop853::new),
+        on_scene(Source::Motion, "Taylor, poses only", 3..=13, motion, Taylor::new),
         by_hand("CFMR7osc by hand, plain", 3..=11, |_| Cfmr7::new(), Plain(problem)),
         by_hand("DOP853 by hand, plain", 3..=13, |_| Dop853::new(), Plain(problem)),
         by_hand("DOP853 by hand, tuned", 3..=13, |_| Dop853::new(), Tuned(problem)),
@@ -49,7 +44,7 @@ pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
 
 /// The poses of the scene's run with `method`.
 pub fn scene_poses(method: &mut impl Method<N>, tolerances: Tolerances<N>) -> Result<Poses, String> {
-    run_scene::<_, _, N, M>(&paper(), method, tolerances).map(|run| run.poses)
+    run_scene(&paper(), method, tolerances).map(|run| run.poses)
 }
 
 fn paper() -> Paper {
@@ -60,30 +55,25 @@ fn motion() -> Motion {
     Motion::new(MotionParameters::default()).expect("defaults are in their ranges")
 }
 
-fn on_scene<Me: Method<N> + 'static>(
+fn on_scene<Mo, Me, const N: usize, const M: usize>(
+    source: Source,
     name: &str,
     exponents: RangeInclusive<i32>,
-    method: fn(f64) -> Me,
-) -> Box<dyn Solver> {
-    by_tolerance(Source::Ours, name, true, exponents, move |rtol| {
-        run_scene::<_, _, N, M>(&paper(), &mut method(rtol), Tolerances::new(rtol, SCENE_ABSOLUTE * rtol))
-    })
-}
-
-fn on_motion<Me: Method<MOTION_N> + 'static>(
-    name: &str,
-    exponents: RangeInclusive<i32>,
-    method: fn(f64) -> Me,
-) -> Box<dyn Solver> {
-    by_tolerance(Source::Motion, name, true, exponents, move |rtol| {
-        let tolerances = Tolerances::new(rtol, SCENE_ABSOLUTE * rtol);
-        run_scene::<_, _, MOTION_N, MOTION_M>(&motion(), &mut method(rtol), tolerances)
+    model: fn() -> Mo,
+    method: fn() -> Me,
+) -> Box<dyn Solver>
+where
+    Mo: Model<f64, N, 1, M> + 'static,
+    Me: Method<N> + 'static,
+{
+    by_tolerance(source, name, true, exponents, move |rtol| {
+        run_scene(&model(), &mut method(), Tolerances::new(rtol, SCENE_ABSOLUTE * rtol))
     })
 }
 
 fn on_scene_by_steps<Me: Method<N> + 'static>(name: &str, steps: &[f64], method: fn(f64) -> Me) -> Box<dyn Solver> {
     let line = Line { name: name.to_owned(), source: Source::Ours, locates_events: true, setting: Setting::Step };
-    let run = move |step| run_scene::<_, _, N, M>(&paper(), &mut method(step), Tolerances::default());
+    let run = move |step| run_scene(&paper(), &mut method(step), Tolerances::default());
     Box::new(Entry { line, settings: steps.to_vec(), run })
 }
 
