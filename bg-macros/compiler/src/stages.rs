@@ -236,12 +236,11 @@ fn paired_text(equations: &StateEquations, paired: &Paired) -> String {
     };
     let sign = |is_negative: bool| if is_negative { "-" } else { "" };
     let mut out = format!("rate: {} operations\n", paired.operations());
-    let mut pairs = 0..;
     for step in &paired.steps {
         let text = match step {
             Step::Single(assignment) => assignment_text(equations, assignment),
             Step::Half { target, pair, half: at } => format!("v{target} = {}", half(&Half::In(*pair, *at))),
-            Step::Pair(value) => {
+            Step::Pair(index, value) => {
                 let value = match value {
                     Value::States(index) => {
                         let [first, second] =
@@ -262,7 +261,7 @@ fn paired_text(equations: &StateEquations, paired: &Paired) -> String {
                     Value::Divide(a, b) => format!("w{a} / w{b}"),
                     Value::Turn(of, [first, second]) => format!("[{}w{of}.0, {}w{of}.1]", sign(*first), sign(*second)),
                 };
-                format!("w{} = {value}", pairs.next().unwrap_or(0))
+                format!("w{index} = {value}")
             }
         };
         let _ = writeln!(out, "    {text}");

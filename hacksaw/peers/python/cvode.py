@@ -12,6 +12,8 @@ import subprocess
 import tempfile
 import time
 
+from tolerances import three_a_decade
+
 # The fields of `Model` in cvode.c.
 CONSTANTS = (
     "torque gravity masses inertias pin_o pin_a pin_b pin_c slot twist work r_cut r_return b4 bar blade block pivot "
@@ -55,7 +57,7 @@ def solvers(problem):
         return run
 
     return [
-        {"name": name, "source": "cvode", "locates_events": True, "settings": [part * 10.0**-k for k in ks for part in (1, 0.5, 0.2)], "run": runner(m)}
+        {"name": name, "source": "cvode", "locates_events": True, "settings": three_a_decade(ks), "run": runner(m)}
         for name, m, ks in METHODS
     ]
 

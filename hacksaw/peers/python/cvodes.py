@@ -9,12 +9,13 @@ import time
 import casadi as ca
 
 import model
+from tolerances import three_a_decade
 
 METHODS = (
     ("CasADi CVODES Adams", {"linear_multistep_method": "adams", "nonlinear_solver_iteration": "functional"}),
     ("CasADi CVODES BDF", {"linear_multistep_method": "bdf", "nonlinear_solver_iteration": "newton"}),
 )
-SETTINGS = [part * 10.0**-k for k in range(3, 12) for part in (1, 0.5, 0.2)]
+SETTINGS = three_a_decade(range(3, 12))
 
 
 def solvers(problem):

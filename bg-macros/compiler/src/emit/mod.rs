@@ -7,6 +7,7 @@ mod elimination;
 mod items;
 mod model;
 mod pairs;
+mod programs;
 pub mod routine;
 mod series;
 mod stub;

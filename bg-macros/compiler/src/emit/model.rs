@@ -9,15 +9,15 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::items::{Given, identifier};
-use super::routine::{Names, assignments, is_long, operand, statements};
+use super::programs::Programs;
+use super::routine::{Names, assignments, operand, statements};
 use super::{description, elimination, pairs, series};
 use crate::causality::CausalGraph;
 use crate::elimination::Elimination;
 use crate::equations::StateEquations;
-use crate::expr::{Id, Symbol};
+use crate::expr::Symbol;
 use crate::jacobian::Jacobian;
-use crate::pairs::Paired;
-use crate::program::{Assignment, Counts, Operand, Program, Request, Routine, schedule};
+use crate::program::{Assignment, Counts, Operand, Program, Routine};
 use crate::reduce::Report;
 
 /// What a model is made from.
@@ -44,49 +44,6 @@ pub fn model(parts: Parts) -> TokenStream {
     let (equations, jacobian): (&StateEquations, &Jacobian) = (equations, jacobian);
     let states = state_identifiers(equations);
     Emission { expanded, causal, equations, reduction, jacobian, elimination, programs, states }.items()
-}
-
-/// The programs of all generated functions.
-struct Programs {
-    /// Functions of the running model; they share one constant table.
-    dynamic: Program,
-    /// The rates with operations done two at a time, where that pays.
-    paired: Option<Paired>,
-    /// The derivatives of the rates, with a constant table of its own.
-    jacobian: Program,
-    /// First guesses, gaps and start state: functions of parameters and unknowns, each with its own constants.
-    starting: [Program; 3],
-}
-
-impl Programs {
-    fn new(equations: &mut StateEquations, jacobian: &mut Jacobian) -> Self {
-        let of = |ids: &mut dyn Iterator<Item = Id>| ids.collect::<Vec<Id>>();
-        let rates = of(&mut equations.states.iter().map(|state| state.rate));
-        let guards = of(&mut equations.switches.iter().map(|switch| switch.guard));
-        let outputs = of(&mut equations.outputs.iter().map(|output| output.value));
-        let projections = of(&mut equations.projections.iter().map(|&(_, id)| id));
-        let starts = of(&mut equations.states.iter().map(|state| state.start));
-        let gaps = of(&mut equations.gaps.iter().map(|gap| gap.value));
-        let guesses = equations.guesses.clone();
-        let stored = [equations.stored];
-        let powers = [equations.supplied, equations.dissipated];
-        let derivatives = jacobian.roots();
-        let requests = [
-            Request { name: "rate", roots: &rates },
-            Request { name: "guards", roots: &guards },
-            Request { name: "outputs", roots: &outputs },
-            Request { name: "project", roots: &projections },
-            Request { name: "stored_energy", roots: &stored },
-            Request { name: "powers", roots: &powers },
-        ];
-        let dynamic = schedule(&mut equations.pool, &requests);
-        let rate = &dynamic.routines[0];
-        let paired = if is_long(rate) { None } else { crate::pairs::pair(rate) };
-        let jacobian = schedule(&mut jacobian.pool, &[Request { name: "jacobian", roots: &derivatives }]);
-        let mut alone = |name, roots: &[Id]| schedule(&mut equations.pool, &[Request { name, roots }]);
-        let starting = [alone("guesses", &guesses), alone("gaps", &gaps), alone("start_state", &starts)];
-        Self { dynamic, paired, jacobian, starting }
-    }
 }
 
 struct Emission<'a> {
@@ -350,7 +307,7 @@ impl Emission<'_> {
     }
 
     fn body(&self, routine: &Routine) -> (TokenStream, Vec<TokenStream>) {
-        self.with_names(is_long(routine), |names| {
+        self.with_names(routine.is_long(), |names| {
             let results = routine.results.iter().map(|result| operand(result, names)).collect();
             (statements(routine, names), results)
         })
@@ -450,7 +407,7 @@ impl Emission<'_> {
         let (guard, guards) = self.function(1);
         let (project, projected) = self.function(3);
         let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
-        // Inlined into an integrator's stages, a rate takes the vectors that they take; a long one would only fill the cache.
+        // Inlined into an integrator's step, a rate takes the vectors that it takes; a long one would only fill the cache.
         const INLINED: usize = 400;
         let is_inlined = self.programs.dynamic.routines[0].counts.total() <= INLINED;
         let inline = is_inlined.then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
@@ -495,7 +452,7 @@ impl Emission<'_> {
         };
         let fields: Vec<_> = self.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         let reads = series::Reads { inputs: &fields, values: reading(false), states: reading(true) };
-        self.with_names(is_long(routine), |names| series::functions(routine, names, &reads))
+        self.with_names(routine.is_long(), |names| series::functions(routine, names, &reads))
     }
 
     /// The Jacobian with its sparsity, and the elimination along it; before them the parts of a long Jacobian.
@@ -507,7 +464,7 @@ impl Emission<'_> {
         let (count, slots) = (self.jacobian.entries.len(), self.elimination.slots);
         let routine = &self.programs.jacobian.routines[0];
         let constants = format_ident!("slope_constants");
-        let (parts, derivative, derivatives) = if is_long(routine) {
+        let (parts, derivative, derivatives) = if routine.is_long() {
             self.in_parts(routine, &constants)
         } else {
             let (derivative, derivatives) = self.running(routine, &constants);

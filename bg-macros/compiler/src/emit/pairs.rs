@@ -12,14 +12,13 @@ use crate::pairs::{Half, Paired, Step, Value};
 
 /// The steps of the routine.
 pub(super) fn statements(paired: &Paired, names: &Names) -> TokenStream {
-    let mut pairs = 0..;
     let steps = paired.steps.iter().map(|step| match step {
         Step::Single(assignment) => routine::assignments(std::slice::from_ref(assignment), names),
         Step::Half { target, pair, half: at } => {
             routine::definition(*target, &half(&Half::In(*pair, *at), names), names)
         }
-        Step::Pair(value) => {
-            let (name, value) = (pair(pairs.next().unwrap_or_default()), self::value(value, names));
+        Step::Pair(index, value) => {
+            let (name, value) = (pair(*index), self::value(value, names));
             quote!(let #name = #value;)
         }
     });

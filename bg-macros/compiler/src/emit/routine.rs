@@ -24,14 +24,6 @@ pub struct Names<'a> {
     pub is_long: bool,
 }
 
-/// Routines with more assignments are long.
-const LONG: usize = 2000;
-
-/// Whether the temporaries of a routine are places of one array.
-pub fn is_long(routine: &Routine) -> bool {
-    routine.assignments.len() > LONG
-}
-
 /// The assignments of the routine.
 pub fn statements(routine: &Routine, names: &Names) -> TokenStream {
     let array = array(routine);
@@ -42,7 +34,7 @@ pub fn statements(routine: &Routine, names: &Names) -> TokenStream {
 /// The array of the temporaries of a long routine.
 pub fn array(routine: &Routine) -> Option<TokenStream> {
     let count = routine.assignments.len();
-    is_long(routine).then(|| quote! { let mut v = [S::from_f64(0.0); #count]; })
+    routine.is_long().then(|| quote! { let mut v = [S::from_f64(0.0); #count]; })
 }
 
 /// These assignments; in a long routine `v` is there already.
@@ -136,7 +128,7 @@ mod tests {
                 quote! { c[#index] }
             },
             switch: &|_| quote! { below },
-            is_long: is_long(routine),
+            is_long: routine.is_long(),
         };
         let results = routine.results.iter().map(|result| operand(result, &names).to_string()).collect();
         (statements(routine, &names).to_string(), results)

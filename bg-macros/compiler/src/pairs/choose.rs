@@ -2,12 +2,11 @@
 //!
 //! In: the operations. Out: pairs of them, of the same kind and independent of each other, so that few operations remain.
 //! Method: pairs grow from neighbours among the states and the results along uses and operands, the one that saves most at
-//! the time first. `anneal` improves on what comes of it.
+//! the time first.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use super::anneal::anneal;
 use super::nodes::{Kind, Nodes, Place, Signed};
 
 /// What an operation costs, in the units of the gains.
@@ -117,7 +116,7 @@ pub(super) fn choose(nodes: &Nodes) -> Choice {
     let mut growth = Growth::new(nodes);
     growth.seed();
     growth.grow();
-    anneal(nodes, growth.choice)
+    growth.choice
 }
 
 struct Growth<'n> {

@@ -323,8 +323,9 @@ impl Lowering<'_> {
     }
 
     fn new_pair(&mut self, value: Value) -> u32 {
-        self.steps.push(Step::Pair(value));
+        let pair = self.pairs;
         self.pairs += 1;
-        self.pairs - 1
+        self.steps.push(Step::Pair(pair, value));
+        pair
     }
 }

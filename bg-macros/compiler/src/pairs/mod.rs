@@ -3,7 +3,7 @@
 //! In: a [`Routine`]. Out: a [`Paired`] with the same results, each rounded as before; only the sign of a zero may differ.
 //! Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind whose operands belong together
 //! become one operation on pairs, which costs what one on numbers does. `nodes` frees the routine from signs, `choose`
-//! says which operations go together, `signs` with which sign each value is held, `lower` writes the steps. Method: superword
+//! says which operations go together, `anneal` improves on it, `signs` with which sign each value is held, `lower` writes the steps. Method: superword
 //! level parallelism (S. Larsen, S. Amarasinghe, PLDI 2000), grown from neighbours among the states and the results.
 
 mod anneal;
@@ -42,8 +42,8 @@ pub enum Step {
         /// 0 or 1.
         half: usize,
     },
-    /// A pair; numbered from 0 in the order of the steps.
-    Pair(Value),
+    /// A pair, with its number; numbered from 0 in the order of the steps.
+    Pair(u32, Value),
 }
 
 /// The value of a pair.
@@ -84,10 +84,10 @@ const PART: f64 = 0.9;
 /// Shorter routines stay as they are: they take few nanoseconds, and are easier to read.
 const LEAST: usize = 40;
 
-/// The routine with pairs; none where they would save little.
+/// The routine with pairs; none where they would save little, nor of a long routine.
 #[must_use]
 pub fn pair(routine: &Routine) -> Option<Paired> {
-    if routine.counts.total() < LEAST {
+    if routine.counts.total() < LEAST || routine.is_long() {
         return None;
     }
     let paired = paired(routine);
@@ -98,7 +98,7 @@ pub fn pair(routine: &Routine) -> Option<Paired> {
 /// The routine with pairs, whether they pay or not.
 fn paired(routine: &Routine) -> Paired {
     let nodes = nodes::Nodes::new(routine);
-    let choice = choose::choose(&nodes);
+    let choice = anneal::anneal(&nodes, choose::choose(&nodes));
     let negative = signs::signs(&nodes, &choice);
     lower::lower(routine, &nodes, &choice, &negative)
 }
@@ -108,7 +108,7 @@ impl Paired {
     #[must_use]
     pub fn operations(&self) -> usize {
         let is_there =
-            |step: &&Step| matches!(step, Step::Pair(Value::States(_) | Value::Numbers(_) | Value::Constants(_)));
+            |step: &&Step| matches!(step, Step::Pair(_, Value::States(_) | Value::Numbers(_) | Value::Constants(_)));
         self.steps.iter().filter(|step| !is_there(step)).count()
     }
 }

@@ -17,7 +17,8 @@ fn results(of: &Paired, constants: &[f64], environment: &Environment) -> Vec<f64
                 temporaries[assignment.target as usize] = result;
             }
             Step::Half { target, pair, half } => temporaries[*target as usize] = pairs[*pair as usize][*half],
-            Step::Pair(pair) => {
+            Step::Pair(index, pair) => {
+                assert_eq!(*index as usize, pairs.len());
                 let of_both = |a: &u32, b: &u32, operation: fn(f64, f64) -> f64| {
                     let [a, b] = [a, b].map(|index| pairs[*index as usize]);
                     [operation(a[0], b[0]), operation(a[1], b[1])]

@@ -61,6 +61,17 @@ pub struct Routine {
     pub counts: Counts,
 }
 
+/// Routines with more assignments are long.
+const LONG: usize = 2000;
+
+impl Routine {
+    /// Whether its temporaries are places of one array in generated code, as it has so many.
+    #[must_use]
+    pub fn is_long(&self) -> bool {
+        self.assignments.len() > LONG
+    }
+}
+
 /// One operation with the temporary that it defines.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Assignment {

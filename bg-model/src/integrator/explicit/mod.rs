@@ -116,7 +116,7 @@ fn combine<const N: usize>(row: Row, k: &Stages<N>, i: usize) -> f64 {
 
 impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// Evaluates the stages from `first` up to `behind`. Their sums are written out, so that each finds its weights as
-    /// constants; the rate stands there once, which compiles in half the time and takes no longer.
+    /// constants; the rate stands there once, which is less to compile and takes no longer.
     #[inline(always)]
     fn evaluate(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, first: usize, behind: usize) {
         for stage in first..behind {

@@ -36,9 +36,9 @@ pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
         on_scene(Source::Motion, "CFMR7osc, poses only", 3..=11, motion, Cfmr7::new),
         on_scene(Source::Motion, "DOP853, poses only", 3..=13, motion, Dop853::new),
         on_scene(Source::Motion, "Taylor, poses only", 3..=13, motion, Taylor::new),
-        by_hand("CFMR7osc by hand, plain", 3..=11, |_| Cfmr7::new(), Plain(problem)),
-        by_hand("DOP853 by hand, plain", 3..=13, |_| Dop853::new(), Plain(problem)),
-        by_hand("DOP853 by hand, tuned", 3..=13, |_| Dop853::new(), Tuned(problem)),
+        by_hand("CFMR7osc by hand, plain", 3..=11, Cfmr7::new, Plain(problem)),
+        by_hand("DOP853 by hand, plain", 3..=13, Dop853::new, Plain(problem)),
+        by_hand("DOP853 by hand, tuned", 3..=13, Dop853::new, Tuned(problem)),
     ]
 }
 
@@ -80,12 +80,12 @@ fn on_scene_by_steps<Me: Method<N> + 'static>(name: &str, steps: &[f64], method:
 fn by_hand<'a, Me: Method<24> + 'static>(
     name: &str,
     exponents: RangeInclusive<i32>,
-    method: fn(f64) -> Me,
+    method: fn() -> Me,
     system: impl System<f64, 24, 1> + Problemed + 'a,
 ) -> Box<dyn Solver + 'a> {
     by_tolerance(Source::ByHand, name, true, exponents, move |rtol| {
         let start = SVector::from(system.problem().start);
-        let samples = run(&system, &mut method(rtol), &start, Tolerances::new(rtol, ABSOLUTE * rtol))?;
+        let samples = run(&system, &mut method(), &start, Tolerances::new(rtol, ABSOLUTE * rtol))?;
         Ok(samples.into_run(|states| states.iter().map(|(_, x, _)| poses::of(&x.data.0[0])).collect()))
     })
 }
