@@ -54,6 +54,23 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         unreachable!("only what was eliminated is substituted")
     }
 
+    /// Which states are of second order: displacements and orientations, whose rates are smooth functions of states alone;
+    /// none by default.
+    fn second_order(&self) -> [bool; N] {
+        [false; N]
+    }
+
+    /// Replaces the rates `dx` at state `x` by second derivatives with respect to time, per s^2, where
+    /// [`System::second_order`] says so.
+    fn second_derivatives(&self, _x: &SVector<S, N>, _dx: &mut SVector<S, N>) {}
+
+    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second
+    /// derivatives; what [`System::rate`] and then [`System::second_derivatives`] give, to rounding.
+    fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
+        self.rate(t, x, negative, dx);
+        self.second_derivatives(x, dx);
+    }
+
     /// How many numbers each order of the Taylor series of the states needs as work space; none where there is no series:
     /// of a system written by hand, by default, and where an input changes with time.
     fn series_width(&self) -> Option<usize> {

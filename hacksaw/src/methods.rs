@@ -2,7 +2,9 @@
 //!
 //! In: a name and, for methods with a fixed step, the step. Out: the method.
 
-use bg_model::integrator::{AnyMethod, Auto, Bs5, Cfmr7, Dop853, Gauss6, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor};
+use bg_model::integrator::{
+    AnyMethod, Auto, Bs5, Cfmr7, Dop853, Gauss6, Nystrom, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor,
+};
 use clap::ValueEnum;
 
 /// An integrator.
@@ -15,6 +17,8 @@ pub enum Integrator {
     Bs5,
     /// Explicit, order 7(5), for oscillations
     Cfmr7,
+    /// Explicit, for mechanisms with stiff, lightly damped joints
+    Nystrom,
     /// Explicit, order 8(5,3)
     Dop853,
     /// Explicit, Taylor series, order by the tolerance, for high precision
@@ -41,6 +45,7 @@ impl Integrator {
             Self::Auto => Auto::new().into(),
             Self::Bs5 => Bs5::new().into(),
             Self::Cfmr7 => Cfmr7::new().into(),
+            Self::Nystrom => Nystrom::new().into(),
             Self::Dop853 => Dop853::new().into(),
             Self::Taylor => Taylor::new().into(),
             Self::Rodas5p => Rodas5p::new().into(),

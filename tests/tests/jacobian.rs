@@ -1,7 +1,7 @@
 //! Generated Jacobians are the derivatives of the generated rates; generated eliminations solve (I - c J) y = b.
 //!
 //! The derivatives are compared with those that dual numbers give of the same rate, column by column and along time, in
-//! both branches of every switch; a place outside the pattern must have none. The solutions are put back into the system.
+//! both branches of every switch; a place outside the pattern must have none. So are the second derivatives. The solutions are put back into the system.
 
 use bg_model::input::Input;
 use bg_model::integrator::Dop853;
@@ -99,6 +99,47 @@ where
     largest
 }
 
+/// Compares the second derivatives of the states of second order with those that dual numbers give along the flow at this
+/// point; the other rates must stay. Gives how many states are of second order.
+fn second_derivatives_agree<A, B, const N: usize, const G: usize>(
+    (model, twin): (&A, &B),
+    t: f64,
+    x: &SVector<f64, N>,
+    negative: &[bool; G],
+) -> usize
+where
+    A: System<f64, N, G>,
+    B: System<Dual, N, G>,
+{
+    let mut rate = SVector::zeros();
+    model.rate(t, x, negative, &mut rate);
+    let mut found = rate;
+    model.second_derivatives(x, &mut found);
+    let moving = SVector::<Dual, N>::from_fn(|k, _| Dual::new(x[k], rate[k]));
+    let mut expected = SVector::repeat(Dual::new(0.0, 0.0));
+    twin.rate(Dual::new(t, 1.0), &moving, negative, &mut expected);
+    let is_second = model.second_order();
+    let mut forces = SVector::zeros();
+    model.forces(t, x, negative, &mut forces);
+    for (k, (force, value)) in forces.iter().zip(&found).enumerate() {
+        let scale = value.abs().max(1e-2 * found.amax());
+        assert!((force - value).abs() <= DERIVATIVE * scale, "state {k}: {force:e}, not {value:e}, at {x:?}");
+    }
+    for (k, is_second) in is_second.iter().enumerate() {
+        if *is_second {
+            let (value, scale) = (expected[k].slope, expected[k].slope.abs().max(1e-2 * rate.amax()));
+            assert!(
+                (found[k] - value).abs() <= DERIVATIVE * scale,
+                "state {k}: {:e}, not {value:e}, at {x:?}",
+                found[k]
+            );
+        } else {
+            assert_eq!(found[k].to_bits(), rate[k].to_bits(), "state {k} is of first order");
+        }
+    }
+    is_second.iter().filter(|is| **is).count()
+}
+
 /// The residual of (I - c J) y = b relative to |I - c J| |y| + |b|, maximum norms; none where a pivot is small.
 fn residual<F, Mo, const N: usize, const G: usize>(
     model: &Mo,
@@ -178,6 +219,7 @@ where
     let mut draw = Draw::new(3);
     let (mut derivative, mut rounds): (f64, usize) = (0.0, 0);
     let mut solved = Solved::default();
+    let mut second = 0;
     for round in 0..12 {
         let x = state(model, &mut draw);
         let t = 1.0 + draw.number();
@@ -188,10 +230,11 @@ where
         }
         rounds += 1;
         derivative = derivative.max(is_the_derivative((model, twin), t, &x, &negative));
+        second = second_derivatives_agree((model, twin), t, &x, &negative);
         solve(model, t, &x, &negative, &mut draw, &mut solved);
     }
     let name = model.description().name;
-    println!("{name}: {N} states, {rounds} rounds, derivatives {derivative:.1e}, {solved:?}");
+    println!("{name}: {N} states, {second} of second order, {rounds} rounds, derivatives {derivative:.1e}, {solved:?}");
     assert!(rounds >= 4, "{rounds} rounds");
     assert!(solved.refused <= rounds, "{solved:?}");
 }

@@ -150,6 +150,7 @@ impl Sample {
             unknowns: &unknowns,
             atoms: &[],
             slopes: &[],
+            rates: &[],
             negative: &self.negative,
         };
         evaluate(&equations.pool, roots, &environment)

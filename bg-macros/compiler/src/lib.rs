@@ -12,6 +12,7 @@
 //! | [`equations::derive`] | -> [`equations::StateEquations`] | bonds, ports, junctions: scalars only from here |
 //! | [`reduce::for_scene`] | -> [`equations::StateEquations`] | states and parameters that the scene does not need |
 //! | [`jacobian::differentiate`] | -> [`jacobian::Jacobian`] | entries that are identically zero |
+//! | [`second::differentiate`] | -> [`second::Second`] | states of second order among the others |
 //! | [`elimination::plan`] | places -> [`elimination::Elimination`] | the order of the pivots left open |
 //! | [`program::schedule`] | -> [`program::Program`] | order left open: flat single assignment |
 //! | [`pairs::pair`] | [`program::Routine`] -> [`pairs::Paired`] | operations that could be done two at a time |
@@ -36,6 +37,7 @@ pub mod program;
 mod random;
 pub mod reduce;
 pub mod scene;
+pub mod second;
 pub mod stages;
 pub mod syntax;
 pub mod units;
@@ -93,6 +95,7 @@ fn model(variant: &Variant) -> Staged<TokenStream> {
     let causal = causality::assign(resolved)?;
     let (mut equations, report) = variant.reduce(equations::derive(&causal)?)?;
     let mut jacobian = jacobian::differentiate(&equations);
+    let mut second = second::differentiate(&equations);
     let elimination = elimination::plan(equations.states.len(), &jacobian.places());
     Ok(emit::model(emit::Parts {
         expanded: &expanded.to_string(),
@@ -100,6 +103,7 @@ fn model(variant: &Variant) -> Staged<TokenStream> {
         equations: &mut equations,
         report: report.as_ref(),
         jacobian: &mut jacobian,
+        second: &mut second,
         elimination: &elimination,
     }))
 }

@@ -17,7 +17,8 @@ use crate::jacobian::Jacobian;
 use crate::pairs::{Half, Paired, Step, Value};
 use crate::program::{Assignment, Counts, Operand, Operation, Program, Request, Routine, schedule};
 use crate::scene::Variant;
-use crate::{causality, elimination, equations, graph, jacobian, mechanism, pairs, scene, syntax};
+use crate::second::Second;
+use crate::{causality, elimination, equations, graph, jacobian, mechanism, pairs, scene, second, syntax};
 
 /// One stage of one graph.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ pub struct Stage {
     /// The graph's name.
     pub graph: String,
     /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `program`, where it pays
-    /// `pairs`, `jacobian` and `elimination`.
+    /// `pairs`, `jacobian`, `second` and `elimination`.
     pub name: &'static str,
     /// The stage's result.
     pub text: String,
@@ -71,6 +72,7 @@ fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
     }
     let jacobian = jacobian::differentiate(&equations);
     push("jacobian", jacobian_text(&equations, &jacobian));
+    push("second", second_text(&equations, &second::differentiate(&equations)));
     let elimination = elimination::plan(equations.states.len(), &jacobian.places());
     push("elimination", elimination_text(&equations, &elimination));
     Ok(())
@@ -160,6 +162,15 @@ fn jacobian_text(equations: &StateEquations, jacobian: &Jacobian) -> String {
     let slopes = jacobian.slopes.iter().enumerate().filter(|(_, slope)| !jacobian.pool.is_zero(**slope));
     for (index, &slope) in slopes {
         let _ = writeln!(out, "    d {}' / d t = {}", name(index), equations.shown(&jacobian.pool, slope));
+    }
+    out
+}
+
+/// The states of second order with their second derivatives.
+fn second_text(equations: &StateEquations, second: &Second) -> String {
+    let mut out = format!("{} states\n", second.states.len());
+    for (&index, &derivative) in second.states.iter().zip(&second.derivatives) {
+        let _ = writeln!(out, "    {}'' = {}", equations.states[index].name, equations.shown(&second.pool, derivative));
     }
     out
 }
@@ -288,6 +299,7 @@ impl StateEquations {
             Symbol::Unknown(index) => format!("unknown_{}", index + 1),
             Symbol::Atom(index) => format!("atom_{index}"),
             Symbol::Slope(index) => format!("{}'", self.inputs[index as usize].name.text),
+            Symbol::Rate(index) => format!("{}'", self.states[index as usize].name),
         }
     }
 }

@@ -6,7 +6,7 @@
 use nalgebra::SVector;
 
 use super::{
-    Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2, Scale,
+    Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2, Scale,
     StepControl, Taylor,
 };
 
@@ -27,7 +27,7 @@ macro_rules! any {
     };
 }
 
-any!(Auto Bs5 Cfmr7 Dop853 Gauss6 Radau5 Radau9 Rk4 Rodas5p Ros2 Taylor);
+any!(Auto Bs5 Cfmr7 Dop853 Gauss6 Nystrom Radau5 Radau9 Rk4 Rodas5p Ros2 Taylor);
 
 /// Hands on to the method inside.
 macro_rules! inside {
@@ -38,6 +38,7 @@ macro_rules! inside {
             AnyMethod::Cfmr7($method) => $then,
             AnyMethod::Dop853($method) => $then,
             AnyMethod::Gauss6($method) => $then,
+            AnyMethod::Nystrom($method) => $then,
             AnyMethod::Radau5($method) => $then,
             AnyMethod::Radau9($method) => $then,
             AnyMethod::Rk4($method) => $then,

@@ -11,9 +11,11 @@ mod any;
 mod auto;
 mod carry;
 mod collocation;
+mod dense;
 mod explicit;
 mod gauss;
 mod hermite;
+mod nystrom;
 mod radau;
 mod rk4;
 mod rosenbrock;
@@ -30,6 +32,7 @@ pub use explicit::{
 };
 pub use gauss::Gauss6;
 pub(crate) use hermite::hermite;
+pub use nystrom::Nystrom;
 pub use radau::{Radau, Radau5, Radau9, Radau13};
 pub use rk4::Rk4;
 pub use rosenbrock::{Rodas5p, Ros2};
@@ -59,6 +62,20 @@ pub trait Flow<const N: usize> {
     /// See [`System::substitute`](crate::system::System::substitute).
     fn substitute<F: Field<f64>>(&self, _factors: &[F], _b: &mut [F; N]) {
         unreachable!("only what was eliminated is substituted")
+    }
+
+    /// See [`System::second_order`](crate::system::System::second_order).
+    fn second_order(&self) -> [bool; N] {
+        [false; N]
+    }
+
+    /// See [`System::second_derivatives`](crate::system::System::second_derivatives).
+    fn second_derivatives(&self, _x: &SVector<f64, N>, _dx: &mut SVector<f64, N>) {}
+
+    /// See [`System::forces`](crate::system::System::forces).
+    fn forces(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        self.rate(t, x, dx);
+        self.second_derivatives(x, dx);
     }
 
     /// See [`System::series_width`](crate::system::System::series_width).

@@ -42,6 +42,21 @@ where
         self.system.substitute(factors, b);
     }
 
+    fn second_order(&self) -> [bool; N] {
+        self.system.second_order()
+    }
+
+    #[inline(always)]
+    fn second_derivatives(&self, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        self.system.second_derivatives(x, dx);
+    }
+
+    #[inline(always)]
+    fn forces(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        self.statistics.rate_evaluations += 1;
+        self.system.forces(t, x, self.negative, dx);
+    }
+
     fn series_width(&self) -> Option<usize> {
         self.system.series_width()
     }

@@ -17,8 +17,10 @@ use crate::elimination::Elimination;
 use crate::equations::StateEquations;
 use crate::expr::Symbol;
 use crate::jacobian::Jacobian;
+use crate::pairs::Paired;
 use crate::program::{Assignment, Counts, Operand, Program, Routine};
 use crate::reduce::Report;
+use crate::second::Second;
 
 /// What a model is made from.
 pub struct Parts<'a> {
@@ -32,18 +34,20 @@ pub struct Parts<'a> {
     pub report: Option<&'a Report>,
     /// The derivatives of its rates.
     pub jacobian: &'a mut Jacobian,
+    /// Its states of second order.
+    pub second: &'a mut Second,
     /// How I - c J is factored and solved.
     pub elimination: &'a Elimination,
 }
 
 /// The items of one model: parameters, inputs, the type, its functions, its description.
 pub fn model(parts: Parts) -> TokenStream {
-    let Parts { expanded, causal, equations, report, jacobian, elimination } = parts;
-    let programs = Programs::new(equations, jacobian);
+    let Parts { expanded, causal, equations, report, jacobian, second, elimination } = parts;
+    let programs = Programs::new(equations, jacobian, second);
     let reduction = report.map(ToString::to_string).unwrap_or_default();
-    let (equations, jacobian): (&StateEquations, &Jacobian) = (equations, jacobian);
+    let (equations, jacobian, second): (&StateEquations, &Jacobian, &Second) = (equations, jacobian, second);
     let states = state_identifiers(equations);
-    Emission { expanded, causal, equations, reduction, jacobian, elimination, programs, states }.items()
+    Emission { expanded, causal, equations, reduction, jacobian, second, elimination, programs, states }.items()
 }
 
 struct Emission<'a> {
@@ -52,6 +56,7 @@ struct Emission<'a> {
     equations: &'a StateEquations,
     reduction: String,
     jacobian: &'a Jacobian,
+    second: &'a Second,
     elimination: &'a Elimination,
     programs: Programs,
     states: Vec<Ident>,
@@ -102,29 +107,35 @@ impl Emission<'_> {
         let table = self.constant_table(&self.programs.dynamic);
         let slopes = self.programs.jacobian.constants.results.len();
         let slope_table = self.constant_table(&self.programs.jacobian);
+        let second = self.programs.second.constants.results.len();
+        let second_table = self.constant_table(&self.programs.second);
         let system = self.system();
         let model = self.model();
-        let paired = self.programs.paired.as_ref();
-        let import_pair = paired.map(|_| {
+        let (of_rate, of_forces) = (self.programs.paired.as_ref(), self.programs.paired_forces.as_ref());
+        let import_pair = of_rate.or(of_forces).map(|_| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
             )
         });
-        let pair_field = paired.map(|paired| {
-            let pairs = paired.constants.len();
-            quote!(constant_pairs: [S::Pair; #pairs],)
+        let pairs = [("constant", of_rate, constants), ("second_constant", of_forces, second)];
+        let pairs = pairs.into_iter().filter_map(|(prefix, paired, count)| {
+            let (name, table) = (format_ident!("{prefix}_pairs"), format_ident!("{prefix}s"));
+            paired.map(|paired| (name, table, paired, count))
         });
-        let pair_table = paired.map(|paired| {
-            let (pairs, table) =
+        let (mut pair_field, mut pair_table, mut pair_value) =
+            (TokenStream::new(), TokenStream::new(), TokenStream::new());
+        for (name, table, paired, count) in pairs {
+            let (pairs, body) =
                 (paired.constants.len(), self.with_names(false, |names| pairs::constants(paired, names)));
-            quote! {
+            pair_field.extend(quote!(#name: [S::Pair; #pairs],));
+            pair_value.extend(quote!(#name: Self::#name(&#table),));
+            pair_table.extend(quote! {
                 /// Pairs of them.
-                fn constant_pairs(c: &[S; #constants]) -> [S::Pair; #pairs] {
-                    #table
+                fn #name(c: &[S; #count]) -> [S::Pair; #pairs] {
+                    #body
                 }
-            }
-        });
-        let pair_value = paired.map(|_| quote!(constant_pairs: Self::constant_pairs(&constants),));
+            });
+        }
         quote! {
             #structs
 
@@ -136,6 +147,7 @@ impl Emission<'_> {
                 constants: [S; #constants],
                 #pair_field
                 slope_constants: [S; #slopes],
+                second_constants: [S; #second],
             }
 
             #[allow(missing_docs, clippy::all, clippy::pedantic)]
@@ -183,7 +195,8 @@ impl Emission<'_> {
                         ::bg_model::parameters::Parameters::validate(&parameters)?;
                         let constants = Self::constant_table(&parameters);
                         let slope_constants = Self::slope_constant_table(&parameters);
-                        Ok(Self { parameters, #input_value #pair_value constants, slope_constants })
+                        let second_constants = Self::second_constant_table(&parameters);
+                        Ok(Self { parameters, #input_value #pair_value constants, slope_constants, second_constants })
                     }
 
                     /// The parameters.
@@ -203,6 +216,11 @@ impl Emission<'_> {
                         #slope_table
                     }
 
+                    /// What depends on parameters only, of the second derivatives.
+                    fn second_constant_table(parameters: &#parameters) -> [S; #second] {
+                        #second_table
+                    }
+
                     #starting
                 }
 
@@ -214,7 +232,13 @@ impl Emission<'_> {
 
     /// The functions of the running model with their operations.
     fn costs(&self) -> Vec<(&str, Counts)> {
-        let routines = self.programs.dynamic.routines.iter().chain(&self.programs.jacobian.routines);
+        let routines = self
+            .programs
+            .dynamic
+            .routines
+            .iter()
+            .chain(&self.programs.jacobian.routines)
+            .chain(&self.programs.second.routines);
         let routines = routines.map(|routine| (routine.name.as_str(), routine.counts));
         let factored = ("eliminate", self.elimination.factorisation_counts());
         let solved = ("substitute", self.elimination.substitution_counts());
@@ -302,6 +326,10 @@ impl Emission<'_> {
             }
             Symbol::Atom(index) => format_ident!("atom_{index}"),
             Symbol::Slope(index) => format_ident!("slope_{}", self.equations.inputs[index as usize].name.text),
+            Symbol::Rate(index) => {
+                let index = Literal::usize_unsuffixed(index as usize);
+                return quote!(r[#index]);
+            }
         };
         quote!(#ident)
     }
@@ -385,14 +413,15 @@ impl Emission<'_> {
         (body, results)
     }
 
-    /// The statements of the rate, and its results.
-    fn rate(&self) -> (TokenStream, Vec<TokenStream>) {
-        let Some(paired) = &self.programs.paired else { return self.function(0) };
-        let bindings = self.dynamic_bindings(&self.programs.dynamic.routines[0]);
+    /// The statements of a routine that may have pairs, and its results.
+    fn with_pairs(&self, routine: &Routine, paired: Option<&Paired>, prefix: &str) -> (TokenStream, Vec<TokenStream>) {
+        let (constants, constant_pairs) = (format_ident!("{prefix}s"), format_ident!("{prefix}_pairs"));
+        let Some(paired) = paired else { return self.running(routine, &constants) };
+        let bindings = self.dynamic_bindings(routine);
         self.with_names(false, |names| {
             let statements = pairs::statements(paired, names);
             let body = quote! {
-                let (c, q) = (&self.constants, &self.constant_pairs);
+                let (c, q) = (&self.#constants, &self.#constant_pairs);
                 let [x] = &x.data.0;
                 #bindings
                 #statements
@@ -403,7 +432,8 @@ impl Emission<'_> {
 
     fn system(&self) -> TokenStream {
         let name = identifier(&self.causal.graph.name.text);
-        let (rate, rates) = self.rate();
+        let (rate, rates) =
+            self.with_pairs(&self.programs.dynamic.routines[0], self.programs.paired.as_ref(), "constant");
         let (guard, guards) = self.function(1);
         let (project, projected) = self.function(3);
         let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
@@ -412,7 +442,7 @@ impl Emission<'_> {
         let is_inlined = self.programs.dynamic.routines[0].counts.total() <= INLINED;
         let inline = is_inlined.then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
-        let series = self.series();
+        let (second, series) = (self.second(&inline), self.series());
         let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
         quote! {
             #parts
@@ -438,7 +468,36 @@ impl Emission<'_> {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
                 #linear
+                #second
                 #series
+            }
+        }
+    }
+
+    /// The states of second order and their second derivatives.
+    fn second(&self, inline: &Option<TokenStream>) -> TokenStream {
+        if self.second.states.is_empty() {
+            return TokenStream::new();
+        }
+        let [forces, derivatives] = &self.programs.second.routines[..] else { unreachable!("two were asked for") };
+        let (force, forces) = self.with_pairs(forces, self.programs.paired_forces.as_ref(), "second_constant");
+        let (body, derivatives) = self.running(derivatives, &format_ident!("second_constants"));
+        let is_of_second_order = (0..self.equations.states.len()).map(|index| self.second.states.contains(&index));
+        let indices = self.second.states.iter().map(|&index| Literal::usize_unsuffixed(index));
+        quote! {
+            fn second_order(&self) -> [bool; N] {
+                [#(#is_of_second_order),*]
+            }
+            #inline
+            fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
+                #force
+                dx.data.0 = [[#(#forces),*]];
+            }
+            fn second_derivatives(&self, x: &SVector<S, N>, dx: &mut SVector<S, N>) {
+                let [r] = dx.data.0;
+                #body
+                let [dx] = &mut dx.data.0;
+                #(dx[#indices] = #derivatives;)*
             }
         }
     }
@@ -548,7 +607,7 @@ impl Emission<'_> {
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies; of a series from `k` on.
     const OWN: &str =
-        "t x c q u v y dx negative guards state projected entries slope k h rows series part table inner a b";
+        "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b";
     let mut used: BTreeSet<String> = OWN.split(' ').map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));

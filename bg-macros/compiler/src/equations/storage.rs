@@ -204,6 +204,7 @@ impl Signals<'_> {
                     unknowns: &unknowns,
                     atoms: &atoms,
                     slopes: &[],
+                    rates: &[],
                     negative,
                 };
                 evaluate(&self.pool, roots, &environment)

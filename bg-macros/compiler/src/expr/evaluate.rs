@@ -21,6 +21,8 @@ pub struct Environment<'a> {
     pub atoms: &'a [f64],
     /// Derivatives of the inputs with respect to time.
     pub slopes: &'a [f64],
+    /// Rates of the states.
+    pub rates: &'a [f64],
     /// Whether each switch's guard is below zero.
     pub negative: &'a [bool],
 }
@@ -35,6 +37,7 @@ impl Environment<'_> {
             Symbol::Unknown(index) => self.unknowns[index as usize],
             Symbol::Atom(index) => self.atoms[index as usize],
             Symbol::Slope(index) => self.slopes[index as usize],
+            Symbol::Rate(index) => self.rates[index as usize],
         }
     }
 }
@@ -123,6 +126,7 @@ mod tests {
             unknowns: &[1.0],
             atoms: &[1.0],
             slopes: &[-7.0],
+            rates: &[11.0],
             negative: &[false, true],
         };
         assert_eq!(

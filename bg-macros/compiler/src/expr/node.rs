@@ -23,6 +23,8 @@ pub enum Symbol {
     Atom(u32),
     /// The derivative of an input with respect to time.
     Slope(u32),
+    /// The rate of a state.
+    Rate(u32),
 }
 
 /// An elementary function.

@@ -155,7 +155,17 @@ fn outputs(of: &StateEquations, parameters: &[f64], unknowns: &[f64]) -> Vec<Vec
         evaluate(
             &of.pool,
             roots,
-            &Environment { time, states, parameters, inputs: &inputs, unknowns, atoms: &[], slopes: &[], negative },
+            &Environment {
+                time,
+                states,
+                parameters,
+                inputs: &inputs,
+                unknowns,
+                atoms: &[],
+                slopes: &[],
+                rates: &[],
+                negative,
+            },
         )
     };
     let mut x = at(&starts, 0.0, &[], &[]);

@@ -6,7 +6,6 @@
 
 mod bs5;
 mod cfmr7;
-mod dense;
 mod dop853;
 #[cfg(test)]
 mod order;
@@ -23,6 +22,7 @@ pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
 
 use super::carry::Carry;
+use super::dense::{FROM_ENDS, Polynomial};
 use super::tolerances::{index_of_largest, largest};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 
@@ -67,7 +67,7 @@ pub trait Tableau {
     const LATE: Row = &[];
     /// Whether the states are summed up with what rounding has kept from them, which pays at small tolerances.
     const IS_COMPENSATED: bool = false;
-    /// The coefficients of the dense output from the fourth on: see `dense`.
+    /// The coefficients of the dense output from the fourth on: see `super::dense`.
     const DENSE: &'static [Row];
 }
 
@@ -84,7 +84,7 @@ pub struct Explicit<T, const N: usize> {
     /// The stages' rates.
     k: Stages<N>,
     /// The dense output's coefficients.
-    polynomial: [SVector<f64, N>; COEFFICIENTS],
+    polynomial: Polynomial<N, COEFFICIENTS>,
     /// What rounding has kept from the states.
     carry: Carry<N>,
     /// The machine's vectors.
@@ -96,8 +96,8 @@ impl<T, const N: usize> Explicit<T, N> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        let (k, polynomial) = ([SVector::zeros(); STAGES], [SVector::zeros(); COEFFICIENTS]);
-        Self { k, polynomial, carry: Carry::new(), arch: Arch::new(), tableau: PhantomData }
+        let k = [SVector::zeros(); STAGES];
+        Self { k, polynomial: Polynomial::zero(), carry: Carry::new(), arch: Arch::new(), tableau: PhantomData }
     }
 }
 
@@ -246,10 +246,12 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
     fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         self.k[T::END] = end.rate;
         self.evaluate(flow, start, h, T::END + 1, T::A.len());
-        self.collect_polynomial(start, h, end);
+        let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
+        self.polynomial.set(start, h, end, |m, i, _| h * combine(row(m), &self.k, i));
     }
 
     fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        self.evaluate_polynomial(start, theta, x);
+        const { assert!(FROM_ENDS + T::DENSE.len() <= COEFFICIENTS) };
+        self.polynomial.evaluate(FROM_ENDS + T::DENSE.len(), start, theta, x);
     }
 }

@@ -3,8 +3,7 @@
 //! Source: Hairer, Norsett, Wanner, section II.2: a method has order p if for every rooted tree t of up to p nodes the
 //! elementary weight is 1 / density(t).
 
-use super::dense::FROM_ENDS;
-use super::{BogackiShampine, CalvoFrancoMontijanoRandez, DormandPrince, Row, STAGES, Tableau};
+use super::{BogackiShampine, CalvoFrancoMontijanoRandez, DormandPrince, FROM_ENDS, Row, STAGES, Tableau};
 
 type Stages = [f64; STAGES];
 

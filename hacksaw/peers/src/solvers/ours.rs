@@ -5,7 +5,7 @@
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
-use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method, Radau9, Rk4, Taylor, Tolerances};
+use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method, Nystrom, Radau9, Rk4, Taylor, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
@@ -28,12 +28,14 @@ const SCENE_ABSOLUTE: f64 = 0.1;
 pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
     vec![
         on_scene(Source::Ours, "CFMR7osc", 3..=11, paper, Cfmr7::new),
+        on_scene(Source::Ours, "Nystrom", 3..=9, paper, Nystrom::new),
         on_scene(Source::Ours, "DOP853", 3..=13, paper, Dop853::new),
         on_scene(Source::Ours, "Taylor", 3..=13, paper, Taylor::new),
         on_scene(Source::Ours, "BS5", 3..=9, paper, Bs5::new),
         on_scene(Source::Ours, "Radau IIA 9", 3..=9, paper, Radau9::new),
         on_scene_by_steps("RK4, fixed step", &[2e-4, 1e-4, 5e-5, 2e-5], Rk4::new),
         on_scene(Source::Motion, "CFMR7osc, poses only", 3..=11, motion, Cfmr7::new),
+        on_scene(Source::Motion, "Nystrom, poses only", 3..=9, motion, Nystrom::new),
         on_scene(Source::Motion, "DOP853, poses only", 3..=13, motion, Dop853::new),
         on_scene(Source::Motion, "Taylor, poses only", 3..=13, motion, Taylor::new),
         by_hand("CFMR7osc by hand, plain", 3..=11, Cfmr7::new, Plain(problem)),

@@ -149,6 +149,7 @@ fn random_graphs() {
                 unknowns: &unknowns,
                 atoms: &[],
                 slopes: &[],
+                rates: &[],
                 negative: &negative,
             };
             assert_equal(&pool, &program, &requests, &environment);
