@@ -1,7 +1,8 @@
 //! Generated Jacobians are the derivatives of the generated rates; generated eliminations solve (I - c J) y = b.
 //!
 //! The derivatives are compared with those that dual numbers give of the same rate, column by column and along time, in
-//! both branches of every switch; a place outside the pattern must have none. So are the second derivatives. The solutions are put back into the system.
+//! both branches of every switch; a place outside the pattern must have none. The second derivatives are compared with those
+//! along the flow. The solutions are put back into the system.
 
 use bg_model::input::Input;
 use bg_model::integrator::Dop853;

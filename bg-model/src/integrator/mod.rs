@@ -21,6 +21,7 @@ mod rk4;
 mod rosenbrock;
 mod taylor;
 mod tolerances;
+mod vectors;
 
 use nalgebra::SVector;
 

@@ -9,7 +9,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::items::{Given, identifier};
-use super::programs::Programs;
+use super::programs::{Programs, SecondOrder, Table};
 use super::routine::{Names, assignments, operand, statements};
 use super::{description, elimination, pairs, series};
 use crate::causality::CausalGraph;
@@ -62,6 +62,16 @@ struct Emission<'a> {
     states: Vec<Ident>,
 }
 
+/// What a model has of its tables: fields of its type, their values, the functions that calculate them and the `let`s that call
+/// these.
+#[derive(Default)]
+struct Tables {
+    fields: TokenStream,
+    values: TokenStream,
+    functions: TokenStream,
+    lets: TokenStream,
+}
+
 /// `let name = value;` for the symbols that some routines use.
 fn bindings(routines: &[&Routine], binding: &dyn Fn(Symbol) -> Option<TokenStream>) -> TokenStream {
     let operands = routines.iter().flat_map(|routine| {
@@ -97,45 +107,21 @@ impl Emission<'_> {
         );
         let (states, switches, outputs) =
             (self.equations.states.len(), self.equations.switches.len(), self.equations.outputs.len());
-        let constants = self.programs.dynamic.constants.results.len();
         let has_inputs = !graph.inputs.is_empty();
         let input_field = has_inputs.then(|| quote!(inputs: #inputs,));
         let input_argument = has_inputs.then(|| quote!(, inputs: #inputs));
         let input_value = has_inputs.then(|| quote!(inputs,));
         let input_pass = has_inputs.then(|| quote!(, inputs));
         let starting = self.starting();
-        let table = self.constant_table(&self.programs.dynamic);
-        let slopes = self.programs.jacobian.constants.results.len();
-        let slope_table = self.constant_table(&self.programs.jacobian);
-        let second = self.programs.second.constants.results.len();
-        let second_table = self.constant_table(&self.programs.second);
         let system = self.system();
         let model = self.model();
-        let (of_rate, of_forces) = (self.programs.paired.as_ref(), self.programs.paired_forces.as_ref());
-        let import_pair = of_rate.or(of_forces).map(|_| {
+        let tables = self.programs.tables();
+        let import_pair = tables.iter().any(|table| table.paired.is_some()).then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
             )
         });
-        let pairs = [("constant", of_rate, constants), ("second_constant", of_forces, second)];
-        let pairs = pairs.into_iter().filter_map(|(prefix, paired, count)| {
-            let (name, table) = (format_ident!("{prefix}_pairs"), format_ident!("{prefix}s"));
-            paired.map(|paired| (name, table, paired, count))
-        });
-        let (mut pair_field, mut pair_table, mut pair_value) =
-            (TokenStream::new(), TokenStream::new(), TokenStream::new());
-        for (name, table, paired, count) in pairs {
-            let (pairs, body) =
-                (paired.constants.len(), self.with_names(false, |names| pairs::constants(paired, names)));
-            pair_field.extend(quote!(#name: [S::Pair; #pairs],));
-            pair_value.extend(quote!(#name: Self::#name(&#table),));
-            pair_table.extend(quote! {
-                /// Pairs of them.
-                fn #name(c: &[S; #count]) -> [S::Pair; #pairs] {
-                    #body
-                }
-            });
-        }
+        let Tables { fields, values, functions, lets } = self.tables(&tables, parameters);
         quote! {
             #structs
 
@@ -144,10 +130,7 @@ impl Emission<'_> {
             #visibility struct #name<S: ::bg_model::scalar::Scalar = f64> {
                 parameters: #parameters,
                 #input_field
-                constants: [S; #constants],
-                #pair_field
-                slope_constants: [S; #slopes],
-                second_constants: [S; #second],
+                #fields
             }
 
             #[allow(missing_docs, clippy::all, clippy::pedantic)]
@@ -193,10 +176,8 @@ impl Emission<'_> {
                         -> Result<Self, ::bg_model::parameters::ParameterError>
                     {
                         ::bg_model::parameters::Parameters::validate(&parameters)?;
-                        let constants = Self::constant_table(&parameters);
-                        let slope_constants = Self::slope_constant_table(&parameters);
-                        let second_constants = Self::second_constant_table(&parameters);
-                        Ok(Self { parameters, #input_value #pair_value constants, slope_constants, second_constants })
+                        #lets
+                        Ok(Self { parameters, #input_value #values })
                     }
 
                     /// The parameters.
@@ -204,22 +185,7 @@ impl Emission<'_> {
                         &self.parameters
                     }
 
-                    /// What depends on parameters only.
-                    fn constant_table(parameters: &#parameters) -> [S; #constants] {
-                        #table
-                    }
-
-                    #pair_table
-
-                    /// What depends on parameters only, of the Jacobian.
-                    fn slope_constant_table(parameters: &#parameters) -> [S; #slopes] {
-                        #slope_table
-                    }
-
-                    /// What depends on parameters only, of the second derivatives.
-                    fn second_constant_table(parameters: &#parameters) -> [S; #second] {
-                        #second_table
-                    }
+                    #functions
 
                     #starting
                 }
@@ -232,17 +198,42 @@ impl Emission<'_> {
 
     /// The functions of the running model with their operations.
     fn costs(&self) -> Vec<(&str, Counts)> {
-        let routines = self
-            .programs
-            .dynamic
-            .routines
-            .iter()
-            .chain(&self.programs.jacobian.routines)
-            .chain(&self.programs.second.routines);
-        let routines = routines.map(|routine| (routine.name.as_str(), routine.counts));
+        let routines = self.programs.routines().map(|routine| (routine.name.as_str(), routine.counts));
         let factored = ("eliminate", self.elimination.factorisation_counts());
         let solved = ("substitute", self.elimination.substitution_counts());
         routines.chain([factored, solved]).collect()
+    }
+
+    /// The tables of constants, and of their pairs.
+    fn tables(&self, tables: &[Table], parameters: &Ident) -> Tables {
+        let mut made = Tables::default();
+        for &Table { prefix, doc, program, paired } in tables {
+            let name = |suffix: &str| format_ident!("{prefix}{suffix}");
+            let (field, table, pair_field) = (name("s"), name("_table"), name("_pairs"));
+            let (count, body) = (program.constants.results.len(), self.constant_table(program));
+            made.fields.extend(quote!(#field: [S; #count],));
+            made.lets.extend(quote!(let #field = Self::#table(&parameters);));
+            made.functions.extend(quote! {
+                #[doc = #doc]
+                fn #table(parameters: &#parameters) -> [S; #count] {
+                    #body
+                }
+            });
+            if let Some(paired) = paired {
+                let (pairs, body) =
+                    (paired.constants.len(), self.with_names(false, |names| pairs::constants(paired, names)));
+                made.fields.extend(quote!(#pair_field: [S::Pair; #pairs],));
+                made.values.extend(quote!(#pair_field: Self::#pair_field(&#field),));
+                made.functions.extend(quote! {
+                    /// Pairs of them.
+                    fn #pair_field(c: &[S; #count]) -> [S::Pair; #pairs] {
+                        #body
+                    }
+                });
+            }
+            made.values.extend(quote!(#field,));
+        }
+        made
     }
 
     fn constant_table(&self, program: &Program) -> TokenStream {
@@ -437,10 +428,7 @@ impl Emission<'_> {
         let (guard, guards) = self.function(1);
         let (project, projected) = self.function(3);
         let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
-        // Inlined into an integrator's step, a rate takes the vectors that it takes; a long one would only fill the cache.
-        const INLINED: usize = 400;
-        let is_inlined = self.programs.dynamic.routines[0].counts.total() <= INLINED;
-        let inline = is_inlined.then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
+        let inline = self.programs.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
         let (second, series) = (self.second(&inline), self.series());
         let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
@@ -476,22 +464,23 @@ impl Emission<'_> {
 
     /// The states of second order and their second derivatives.
     fn second(&self, inline: &Option<TokenStream>) -> TokenStream {
-        if self.second.states.is_empty() {
-            return TokenStream::new();
-        }
-        let [forces, derivatives] = &self.programs.second.routines[..] else { unreachable!("two were asked for") };
-        let (force, forces) = self.with_pairs(forces, self.programs.paired_forces.as_ref(), "second_constant");
-        let (body, derivatives) = self.running(derivatives, &format_ident!("second_constants"));
+        let Some(SecondOrder { program, paired }) = &self.programs.second else { return TokenStream::new() };
+        let (body, derivatives) = self.running(&program.routines[0], &format_ident!("second_constants"));
         let is_of_second_order = (0..self.equations.states.len()).map(|index| self.second.states.contains(&index));
         let indices = self.second.states.iter().map(|&index| Literal::usize_unsuffixed(index));
+        let forces = program.routines.get(1).map(|routine| {
+            let (body, forces) = self.with_pairs(routine, paired.as_ref(), "second_constant");
+            quote! {
+                #inline
+                fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
+                    #body
+                    dx.data.0 = [[#(#forces),*]];
+                }
+            }
+        });
         quote! {
             fn second_order(&self) -> [bool; N] {
                 [#(#is_of_second_order),*]
-            }
-            #inline
-            fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
-                #force
-                dx.data.0 = [[#(#forces),*]];
             }
             fn second_derivatives(&self, x: &SVector<S, N>, dx: &mut SVector<S, N>) {
                 let [r] = dx.data.0;
@@ -499,6 +488,7 @@ impl Emission<'_> {
                 let [dx] = &mut dx.data.0;
                 #(dx[#indices] = #derivatives;)*
             }
+            #forces
         }
     }
 

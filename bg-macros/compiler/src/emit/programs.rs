@@ -7,8 +7,11 @@ use crate::equations::StateEquations;
 use crate::expr::Id;
 use crate::jacobian::Jacobian;
 use crate::pairs::{Paired, pair};
-use crate::program::{Program, Request, schedule};
+use crate::program::{Program, Request, Routine, schedule};
 use crate::second::Second;
+
+/// Longer rates are not inlined into an integrator's step: they would only fill the cache.
+const INLINED: usize = 400;
 
 /// The programs of all generated functions.
 pub(super) struct Programs {
@@ -18,12 +21,29 @@ pub(super) struct Programs {
     pub paired: Option<Paired>,
     /// The derivatives of the rates, with a constant table of its own.
     pub jacobian: Program,
-    /// The second derivatives of the states of second order, with a constant table of its own.
-    pub second: Program,
-    /// The forces with operations done two at a time, where that pays.
-    pub paired_forces: Option<Paired>,
+    /// What there is for states of second order, with a constant table of its own.
+    pub second: Option<SecondOrder>,
     /// First guesses, gaps and start state: functions of parameters and unknowns, each with its own constants.
     pub starting: [Program; 3],
+}
+
+/// The programs of the functions for states of second order.
+pub(super) struct SecondOrder {
+    /// The second derivatives, and behind them the forces where rates are inlined: otherwise rates and second derivatives, one after
+    /// the other, take as long.
+    pub program: Program,
+    /// The forces with operations done two at a time, where that pays.
+    pub paired: Option<Paired>,
+}
+
+/// A table of what depends on parameters only.
+pub(super) struct Table<'a> {
+    /// What the names of the table, of its pairs and of their functions begin with.
+    pub prefix: &'static str,
+    pub doc: &'static str,
+    pub program: &'a Program,
+    /// The routine that reads pairs of the table.
+    pub paired: Option<&'a Paired>,
 }
 
 impl Programs {
@@ -50,15 +70,43 @@ impl Programs {
         let dynamic = schedule(&mut equations.pool, &requests);
         let paired = pair(&dynamic.routines[0]);
         let jacobian = schedule(&mut jacobian.pool, &[Request { name: "jacobian", roots: &derivatives }]);
-        let (derivatives, forces) = (second.derivatives.clone(), second.forces.clone());
-        let requests = [
-            Request { name: "forces", roots: if second.states.is_empty() { &[] } else { &forces } },
-            Request { name: "second_derivatives", roots: &derivatives },
-        ];
-        let second = schedule(&mut second.pool, &requests);
-        let paired_forces = pair(&second.routines[0]);
+        let second = (!second.states.is_empty()).then(|| {
+            let Second { pool, derivatives, forces, .. } = second;
+            let requests =
+                [Request { name: "second_derivatives", roots: derivatives }, Request { name: "forces", roots: forces }];
+            let program = schedule(pool, if is_inlined(&dynamic) { &requests } else { &requests[..1] });
+            let paired = program.routines.get(1).and_then(pair);
+            SecondOrder { program, paired }
+        });
         let mut alone = |name, roots: &[Id]| schedule(&mut equations.pool, &[Request { name, roots }]);
         let starting = [alone("guesses", &guesses), alone("gaps", &gaps), alone("start_state", &starts)];
-        Self { dynamic, paired, jacobian, second, paired_forces, starting }
+        Self { dynamic, paired, jacobian, second, starting }
     }
+
+    /// Whether rates are inlined into an integrator's step, and so take the vectors that it takes.
+    pub fn is_inlined(&self) -> bool {
+        is_inlined(&self.dynamic)
+    }
+
+    /// The tables of the running model.
+    pub fn tables(&self) -> Vec<Table<'_>> {
+        let table = |prefix, doc, program, paired| Table { prefix, doc, program, paired };
+        let mut tables = vec![
+            table("constant", " What depends on parameters only.", &self.dynamic, self.paired.as_ref()),
+            table("slope_constant", " What depends on parameters only, of the Jacobian.", &self.jacobian, None),
+        ];
+        tables.extend(self.second.as_ref().map(|SecondOrder { program, paired }| {
+            table("second_constant", " What depends on parameters only, of forces.", program, paired.as_ref())
+        }));
+        tables
+    }
+
+    /// The functions of the running model.
+    pub fn routines(&self) -> impl Iterator<Item = &Routine> {
+        self.tables().into_iter().flat_map(|table| &table.program.routines)
+    }
+}
+
+fn is_inlined(dynamic: &Program) -> bool {
+    dynamic.routines[0].counts.total() <= INLINED
 }

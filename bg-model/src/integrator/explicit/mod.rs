@@ -15,7 +15,7 @@ mod vectors;
 use std::marker::PhantomData;
 
 use nalgebra::SVector;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::Arch;
 
 pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
@@ -24,6 +24,7 @@ pub use dop853::DormandPrince;
 use super::carry::Carry;
 use super::dense::{FROM_ENDS, Polynomial};
 use super::tolerances::{index_of_largest, largest};
+use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 
 /// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
@@ -177,25 +178,19 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
     }
 }
 
-/// A step to be tried, for [`Arch::dispatch`]: the same code for the vectors of the machine at hand as for those of all.
-struct Attempt<'a, T, F, const N: usize> {
-    method: &'a mut Explicit<T, N>,
-    flow: &'a mut F,
-    start: &'a Point<N>,
-    h: f64,
-    scale: &'a Scale<N>,
-    end: &'a mut SVector<f64, N>,
-}
-
-impl<T: Tableau, F: Flow<N>, const N: usize> NullaryFnOnce for Attempt<'_, T, F, N> {
-    type Output = f64;
-
+impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
     #[inline(always)]
-    fn call(self) -> f64 {
-        let Self { method, flow, start, h, scale, end } = self;
-        method.k[0] = start.rate;
-        method.evaluate(flow, start, h, 1, T::END);
-        method.finish_step(start, h, scale, end)
+    fn attempt_inlined(
+        &mut self,
+        flow: &mut impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        self.k[0] = start.rate;
+        self.evaluate(flow, start, h, 1, T::END);
+        self.finish_step(start, h, scale, end)
     }
 }
 
@@ -216,8 +211,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        let arch = self.arch;
-        let norm = arch.dispatch(Attempt { method: self, flow, start, h, scale, end });
+        let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
         if T::LATE.is_empty() || norm > 1.0 {
             return norm;
         }

@@ -12,10 +12,11 @@ mod ring;
 mod tableau;
 
 use nalgebra::SVector;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::Arch;
 
 use super::dense::{FROM_ENDS, Polynomial};
 use super::tolerances::{index_of_largest, largest};
+use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 use ring::Ring;
 use tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES, Weights};
@@ -32,20 +33,18 @@ const COEFFICIENTS: usize = FROM_ENDS + DENSE.len();
 #[repr(align(32))]
 struct Aligned<const N: usize>(SVector<f64, N>);
 
-/// The Runge-Kutta-Nystrom method for stiff, lightly damped joints: nine rates a step, none more for its dense output. Of order 5, and 6
-/// where no force depends on momenta. Steps are held to where the stiffest joint is stable, whatever the tolerance.
+/// The Runge-Kutta-Nystrom method for stiff, lightly damped joints, of order 5, and 6 where no force depends on momenta.
+///
+/// Nine rates a step, none more for its dense output, and one in four steps for the stiffest joint's frequency. Steps are held
+/// to where that joint is stable, whatever the tolerance.
 #[derive(Clone, Debug)]
 pub struct Nystrom<const N: usize> {
-    /// The second derivatives of the states of second order and the rates of the others, at the stages and at the end of the step.
+    /// The second derivatives of the states of second order and the rates of the others, at the stages and at the end.
     k: [Aligned<N>; STAGES + 1],
     /// The weights of each row, state by state.
     weights: [[Aligned<N>; STAGES]; ROWS],
     /// Which states are of second order.
     is_second: [bool; N],
-    /// 1 for these, 0 for the others.
-    second: SVector<f64, N>,
-    /// Whether that may be another system's.
-    is_new: bool,
     /// The changes of the states of second order in the step by the rate at its start; 0 for the others.
     drift: SVector<f64, N>,
     /// The square of the step for the states of second order, the step for the others.
@@ -65,8 +64,6 @@ impl<const N: usize> Nystrom<N> {
             k: [Aligned(SVector::zeros()); STAGES + 1],
             weights: [[Aligned(SVector::zeros()); STAGES]; ROWS],
             is_second: [false; N],
-            second: SVector::zeros(),
-            is_new: true,
             drift: SVector::zeros(),
             unit: SVector::zeros(),
             ring: Ring::new(),
@@ -86,17 +83,15 @@ impl<const N: usize> Nystrom<N> {
             }
         }
         self.is_second = is_second;
-        self.second = SVector::from(is_second.map(f64::from));
     }
 
     /// Sets what the step's size and its start determine.
     #[inline(always)]
     fn begin(&mut self, start: &Point<N>, h: f64) {
         for i in 0..N {
-            // 0 or 1: what is multiplied by it is exact.
-            let (second, first) = (self.second.data.0[0][i], 1.0 - self.second.data.0[0][i]);
-            self.unit.data.0[0][i] = h * (first + h * second);
-            self.drift.data.0[0][i] = h * second * start.rate.data.0[0][i];
+            let is_second = self.is_second[i];
+            self.unit.data.0[0][i] = if is_second { h * h } else { h };
+            self.drift.data.0[0][i] = if is_second { h * start.rate.data.0[0][i] } else { 0.0 };
         }
     }
 
@@ -155,26 +150,20 @@ impl<const N: usize> Default for Nystrom<N> {
     }
 }
 
-/// A step to be tried, for [`Arch::dispatch`]: the same code for the vectors of the machine at hand as for those of all.
-struct Attempt<'a, F, const N: usize> {
-    method: &'a mut Nystrom<N>,
-    flow: &'a mut F,
-    start: &'a Point<N>,
-    h: f64,
-    scale: &'a Scale<N>,
-    end: &'a mut SVector<f64, N>,
-}
-
-impl<F: Flow<N>, const N: usize> NullaryFnOnce for Attempt<'_, F, N> {
-    type Output = f64;
-
+impl<const N: usize> Vectorised<N> for Nystrom<N> {
     #[inline(always)]
-    fn call(self) -> f64 {
-        let Self { method, flow, start, h, scale, end } = self;
-        method.begin(start, h);
-        method.evaluate(flow, start, h);
-        method.reach(END, STAGES, 1.0, start, end);
-        largest(&method.errors(start, scale, end))
+    fn attempt_inlined(
+        &mut self,
+        flow: &mut impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        self.begin(start, h);
+        self.evaluate(flow, start, h);
+        self.reach(END, STAGES, 1.0, start, end);
+        largest(&self.errors(start, scale, end))
     }
 }
 
@@ -195,20 +184,16 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        if self.is_new {
-            self.is_new = false;
-            let is_second = flow.second_order();
-            if is_second != self.is_second {
-                self.lay_out(is_second);
-            }
+        let is_second = flow.second_order();
+        if is_second != self.is_second {
+            self.lay_out(is_second);
         }
         self.ring.follow(flow, start, &self.is_second);
         let reach = (h * self.ring.frequency / tableau::REACH).powi(tableau::ERROR_ORDER as i32);
         if reach > 1.0 {
             return reach;
         }
-        let arch = self.arch;
-        let norm = arch.dispatch(Attempt { method: self, flow, start, h, scale, end });
+        let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
         if norm < reach { reach } else { norm }
     }
 
@@ -217,7 +202,6 @@ impl<const N: usize> Method<N> for Nystrom<N> {
     }
 
     fn restart(&mut self) {
-        self.is_new = true;
         self.ring.restart();
     }
 

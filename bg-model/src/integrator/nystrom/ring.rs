@@ -65,6 +65,7 @@ impl<const N: usize> Ring<N> {
         let x = point.x + self.direction * size;
         let (mut moved, mut second) = (SVector::zeros(), point.rate);
         flow.second_derivatives(&point.x, &mut second);
+        // Not `Flow::forces`, which may round otherwise: their difference is small.
         flow.rate(point.t, &x, &mut moved);
         flow.second_derivatives(&x, &mut moved);
         let change = masked(&(moved - second));
