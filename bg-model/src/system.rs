@@ -2,6 +2,8 @@
 //!
 //! In: nothing. Out: the traits that `bond_graph!` implements and that a hand-written system can implement as well.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use crate::assembly::AssemblyError;
@@ -54,10 +56,10 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         unreachable!("only what was eliminated is substituted")
     }
 
-    /// Which states are of second order: displacements and orientations, whose rates are smooth functions of states alone;
-    /// none by default.
-    fn second_order(&self) -> [bool; N] {
-        [false; N]
+    /// The states of second order, side by side: displacements and orientations, whose rates are smooth functions of states
+    /// alone; none by default.
+    fn second_order(&self) -> Range<usize> {
+        0..0
     }
 
     /// Replaces the rates `dx` at state `x` by second derivatives with respect to time, per s^2, where

@@ -3,6 +3,8 @@
 
 mod problems;
 
+use std::ops::Range;
+
 use bg_model::integrator::{Cfmr7, Method, Nystrom};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
@@ -34,8 +36,8 @@ impl System<f64, 4, 0> for Pendulum {
         *dx = SVector::from([x[2], x[3], -force * along_x, -force * along_y - 9.81]);
     }
 
-    fn second_order(&self) -> [bool; 4] {
-        [self.is_second, self.is_second, false, false]
+    fn second_order(&self) -> Range<usize> {
+        0..if self.is_second { 2 } else { 0 }
     }
 
     fn second_derivatives(&self, _x: &SVector<f64, 4>, dx: &mut SVector<f64, 4>) {

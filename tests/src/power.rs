@@ -1,5 +1,6 @@
 //! The power balance of a model at states drawn at random.
 
+use bg_model::description::StateInfo;
 use bg_model::nalgebra::SVector;
 use bg_model::scalar::Dual;
 use bg_model::system::{Model, Powers};
@@ -34,24 +35,42 @@ impl Draw {
         let square = a * a + b * b + c * c + d * d;
         matrix(quaternion).map(|entry| entry / square)
     }
+
+    /// A rotation matrix about z.
+    fn turn(&mut self) -> [f64; 9] {
+        let (sine, cosine) = libm::sincos(4.0 * self.number());
+        [cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0]
+    }
 }
 
-/// A state drawn at random: storages and positions anywhere near their start, orientations any rotation.
+/// A state drawn at random: storages and positions anywhere near their start, orientations any rotation; about z, where a scene
+/// integrates less than the whole matrix.
 pub fn state<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, draw: &mut Draw) -> SVector<f64, N>
 where
     Mo: Model<f64, N, G, M>,
 {
     let mut x = model.start().expect("the mechanism closes");
     let states = model.description().states;
+    // What stands before the row and the column in an orientation's name.
+    let stem = |index: usize| {
+        let StateInfo { name, storage, .. } = &states[index];
+        (*storage == "orientation").then(|| &name[..name.len() - 2])
+    };
     let mut index = 0;
     while index < N {
-        if states[index].storage == "orientation" {
-            x.as_mut_slice()[index..index + 9].copy_from_slice(&draw.rotation());
-            index += 9;
-        } else {
+        let length = (index..N).take_while(|&other| stem(other).is_some() && stem(other) == stem(index)).count();
+        if length == 0 {
             x[index] += (1.0 + x[index].abs()) * draw.number();
             index += 1;
+            continue;
         }
+        let rotation = if length == 9 { draw.rotation() } else { draw.turn() };
+        for entry in index..index + length {
+            let name = states[entry].name.as_bytes();
+            let [row, column] = [2, 1].map(|back| usize::from(name[name.len() - back] - b'1'));
+            x[entry] = rotation[3 * row + column];
+        }
+        index += length;
     }
     x
 }

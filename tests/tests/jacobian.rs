@@ -4,6 +4,7 @@
 //! both branches of every switch; a place outside the pattern must have none. The second derivatives are compared with those
 //! along the flow. The solutions are put back into the system.
 
+use bg_model::bond_graph;
 use bg_model::input::Input;
 use bg_model::integrator::Dop853;
 use bg_model::linear::{Field, SMALLEST_PIVOT, Sparsity};
@@ -119,15 +120,15 @@ where
     let moving = SVector::<Dual, N>::from_fn(|k, _| Dual::new(x[k], rate[k]));
     let mut expected = SVector::repeat(Dual::new(0.0, 0.0));
     twin.rate(Dual::new(t, 1.0), &moving, negative, &mut expected);
-    let is_second = model.second_order();
+    let of_second_order = model.second_order();
     let mut forces = SVector::zeros();
     model.forces(t, x, negative, &mut forces);
     for (k, (force, value)) in forces.iter().zip(&found).enumerate() {
         let scale = value.abs().max(1e-2 * found.amax());
         assert!((force - value).abs() <= DERIVATIVE * scale, "state {k}: {force:e}, not {value:e}, at {x:?}");
     }
-    for (k, is_second) in is_second.iter().enumerate() {
-        if *is_second {
+    for k in 0..N {
+        if of_second_order.contains(&k) {
             let (value, scale) = (expected[k].slope, expected[k].slope.abs().max(1e-2 * rate.amax()));
             assert!(
                 (found[k] - value).abs() <= DERIVATIVE * scale,
@@ -138,7 +139,7 @@ where
             assert_eq!(found[k].to_bits(), rate[k].to_bits(), "state {k} is of first order");
         }
     }
-    is_second.iter().filter(|is| **is).count()
+    of_second_order.len()
 }
 
 /// The residual of (I - c J) y = b relative to |I - c J| |y| + |b|, maximum norms; none where a pivot is small.
@@ -325,18 +326,25 @@ fn a_dense_solution_is_the_same() {
     }
 }
 
+bond_graph! {
+    /// A block on a floor that resists in one direction only, and pushes in the other.
+    graph Block {
+        1 motion: translation; I block = 2; R floor(v) = if v < 0 { -4 * v } else { 3 * v };
+        motion -> block; motion -> floor;
+        observe { v: m/s = motion.flow; }
+    }
+}
+
 #[test]
 fn a_pivot_that_vanishes_is_refused() {
-    use models::nonlinear::{UnequalDamper, UnequalDamperParameters};
-    let model = UnequalDamper::new(UnequalDamperParameters::default()).unwrap();
-    let x = model.start().unwrap();
+    let model = Block::new(BlockParameters::default()).unwrap();
+    let x = SVector::from([1.0]);
     for negative in [false, true] {
-        let (entries, matrix, _) = jacobian(&model, 0.0, &x, &[negative; UnequalDamper::SWITCHES]);
-        let (place, rate) =
-            (0..UnequalDamper::STATES).map(|k| (k, matrix[(k, k)])).find(|(_, rate)| *rate != 0.0).unwrap();
+        let (entries, matrix, _) = jacobian(&model, 0.0, &x, &[negative]);
+        let rate = matrix[(0, 0)];
         let Sparsity::Places { factors, .. } = model.sparsity() else { panic!("a generated model knows its pattern") };
         let eliminated = |c: f64| model.eliminate(c, &entries, &mut vec![0.0; factors]);
-        assert!(!eliminated(1.0 / rate), "state {place}");
+        assert!(!eliminated(1.0 / rate), "{negative}: {rate}");
         assert!(!eliminated((1.0 + 0.1 * SMALLEST_PIVOT) / rate));
         assert!(eliminated((1.0 + 10.0 * SMALLEST_PIVOT) / rate));
         assert!(!eliminated(f64::NAN) && !eliminated(f64::INFINITY));
@@ -360,6 +368,6 @@ where
 
 #[test]
 fn counts_of_the_hacksaw() {
-    assert_eq!(counts(&Paper::new(PaperParameters::default()).unwrap()), [243, 251, 778, 869, 486]);
-    assert_eq!(counts(&Hacksaw::new(HacksawParameters::default()).unwrap()), [1696, 1749, 9345, 15354, 3442]);
+    assert_eq!(counts(&Paper::new(PaperParameters::default()).unwrap()), [243, 251, 779, 869, 486]);
+    assert_eq!(counts(&Hacksaw::new(HacksawParameters::default()).unwrap()), [1696, 1750, 9322, 15366, 3443]);
 }

@@ -8,7 +8,7 @@ use bg_compiler::causality::CausalGraph;
 use bg_compiler::equations::StateEquations;
 use bg_compiler::expr::{Environment, Id, Symbol, derivative, evaluate};
 use bg_compiler::graph::{BondGraph, NodeId, NodeKind};
-use bg_compiler::{causality, equations, graph, mechanism, syntax};
+use bg_compiler::{causality, equations, graph, mechanism, second, syntax};
 use bg_model::bond_graph;
 use bg_model::input::Input;
 use bg_model::nalgebra::SVector;
@@ -99,7 +99,8 @@ fn compiled(text: &str) -> (CausalGraph, StateEquations) {
     let expanded = mechanism::expand(&source.graphs[0]).unwrap_or_else(|faults| shown(faults));
     let resolved = graph::resolve(&expanded).unwrap_or_else(|faults| shown(faults));
     let causal = causality::assign(resolved).unwrap_or_else(|faults| shown(faults));
-    let equations = equations::derive(&causal).unwrap_or_else(|faults| shown(faults));
+    let mut equations = equations::derive(&causal).unwrap_or_else(|faults| shown(faults));
+    second::arrange(&mut equations);
     (causal, equations)
 }
 

@@ -6,7 +6,7 @@ fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let Some(file) = arguments.next() else {
         eprintln!(
-            "usage: stages FILE [source|expanded|resolved|causal|equations|reduction|reduced|program|pairs|jacobian|elimination]"
+            "usage: stages FILE [source|expanded|resolved|causal|equations|reduction|reduced|program|pairs|jacobian|second|elimination]"
         );
         return ExitCode::from(2);
     };

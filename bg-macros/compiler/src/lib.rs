@@ -11,8 +11,9 @@
 //! | [`causality::assign`] | -> [`causality::CausalGraph`] | a bond without a stroke |
 //! | [`equations::derive`] | -> [`equations::StateEquations`] | bonds, ports, junctions: scalars only from here |
 //! | [`reduce::for_scene`] | -> [`equations::StateEquations`] | states and parameters that the scene does not need |
+//! | [`second::arrange`] | -> [`equations::StateEquations`] | states of second order among the others, kinds mixed |
 //! | [`jacobian::differentiate`] | -> [`jacobian::Jacobian`] | entries that are identically zero |
-//! | [`second::differentiate`] | -> [`second::Second`] | states of second order among the others |
+//! | [`second::differentiate`] | -> [`second::Second`] | second derivatives: those of the displacements that follow momenta |
 //! | [`elimination::plan`] | places -> [`elimination::Elimination`] | the order of the pivots left open |
 //! | [`program::schedule`] | -> [`program::Program`] | order left open: flat single assignment |
 //! | [`pairs::pair`] | [`program::Routine`] -> [`pairs::Paired`] | operations that could be done two at a time |

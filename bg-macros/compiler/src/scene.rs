@@ -10,6 +10,7 @@ use crate::equations::StateEquations;
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::graph::Parameter;
 use crate::reduce::{self, Fate, Report};
+use crate::second;
 
 /// A fault of a scene.
 #[derive(Clone, Debug)]
@@ -95,18 +96,21 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// The equations of the variant's graph as its model needs them: those of a scene reduced, with the report of it.
+    /// The equations of the variant's graph as its model needs them, their states arranged: those of a scene reduced, with the
+    /// report of it.
     ///
     /// # Errors
     /// Tuned parameters that there are not, expectations that do not hold.
     pub fn reduce(&self, mut equations: StateEquations) -> Staged<(StateEquations, Option<Report>)> {
         let Some(scene) = &self.scene else {
             reduce::solve_reactions(&mut equations);
+            second::arrange(&mut equations);
             return Ok((equations, None));
         };
         let tuned = tuned(scene, &equations.parameters)?;
-        let (equations, report) = reduce::for_scene(equations, &tuned, scene.angles);
+        let (mut equations, report) = reduce::for_scene(equations, &tuned, scene.angles);
         check(scene, &report)?;
+        second::arrange(&mut equations);
         Ok((equations, Some(report)))
     }
 }

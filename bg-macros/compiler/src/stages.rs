@@ -169,7 +169,7 @@ fn jacobian_text(equations: &StateEquations, jacobian: &Jacobian) -> String {
 /// The states of second order with their second derivatives.
 fn second_text(equations: &StateEquations, second: &Second) -> String {
     let mut out = format!("{} states\n", second.states.len());
-    for (&index, &derivative) in second.states.iter().zip(&second.derivatives) {
+    for (index, &derivative) in second.states.clone().zip(&second.derivatives) {
         let _ = writeln!(out, "    {}'' = {}", equations.states[index].name, equations.shown(&second.pool, derivative));
     }
     out

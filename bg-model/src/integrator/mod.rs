@@ -23,6 +23,8 @@ mod taylor;
 mod tolerances;
 mod vectors;
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use crate::linear::{Field, Sparsity, differences};
@@ -66,8 +68,8 @@ pub trait Flow<const N: usize> {
     }
 
     /// See [`System::second_order`](crate::system::System::second_order).
-    fn second_order(&self) -> [bool; N] {
-        [false; N]
+    fn second_order(&self) -> Range<usize> {
+        0..0
     }
 
     /// See [`System::second_derivatives`](crate::system::System::second_derivatives).

@@ -1,5 +1,7 @@
 //! One step of a system by a method: the attempt, the projection, the rate at its end and the states in between.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use crate::integrator::{Flow, Method, Point, Scale, first_not_finite};
@@ -42,7 +44,8 @@ where
         self.system.substitute(factors, b);
     }
 
-    fn second_order(&self) -> [bool; N] {
+    #[inline(always)]
+    fn second_order(&self) -> Range<usize> {
         self.system.second_order()
     }
 

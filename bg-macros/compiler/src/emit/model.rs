@@ -466,8 +466,9 @@ impl Emission<'_> {
     fn second(&self, inline: &Option<TokenStream>) -> TokenStream {
         let Some(SecondOrder { program, paired }) = &self.programs.second else { return TokenStream::new() };
         let (body, derivatives) = self.running(&program.routines[0], &format_ident!("second_constants"));
-        let is_of_second_order = (0..self.equations.states.len()).map(|index| self.second.states.contains(&index));
-        let indices = self.second.states.iter().map(|&index| Literal::usize_unsuffixed(index));
+        let states = &self.second.states;
+        let [first, behind] = [states.start, states.end].map(Literal::usize_unsuffixed);
+        let indices = states.clone().map(Literal::usize_unsuffixed);
         let forces = program.routines.get(1).map(|routine| {
             let (body, forces) = self.with_pairs(routine, paired.as_ref(), "second_constant");
             quote! {
@@ -479,8 +480,9 @@ impl Emission<'_> {
             }
         });
         quote! {
-            fn second_order(&self) -> [bool; N] {
-                [#(#is_of_second_order),*]
+            #[inline(always)]
+            fn second_order(&self) -> ::core::ops::Range<usize> {
+                #first..#behind
             }
             fn second_derivatives(&self, x: &SVector<S, N>, dx: &mut SVector<S, N>) {
                 let [r] = dx.data.0;

@@ -105,6 +105,21 @@ impl Pool {
         self.reachable(roots).into_iter().filter_map(symbol).collect()
     }
 
+    /// Gives each state another index, `to[k]` for `k`; the indices are the same all in all. Nodes keep their ids, and so the
+    /// order of what they are sums and products of.
+    pub fn renumber_states(&mut self, to: &[u32]) {
+        let mut renumbered = Vec::new();
+        for (node, id) in self.nodes.iter_mut().zip((0..).map(Id)) {
+            let Node::Symbol(Symbol::State(index)) = *node else { continue };
+            if let Some(&to) = to.get(index as usize) {
+                self.ids.remove(node);
+                *node = Node::Symbol(Symbol::State(to));
+                renumbered.push((node.clone(), id));
+            }
+        }
+        self.ids.extend(renumbered);
+    }
+
     /// The id of a node in canonical form; stores the node if it is new.
     pub(super) fn intern(&mut self, node: Node) -> Id {
         if let Some(&id) = self.ids.get(&node) {

@@ -89,26 +89,51 @@ pub(super) fn is_pairable(kind: Kind) -> bool {
     matches!(kind, Kind::Sum | Kind::Product | Kind::Quotient)
 }
 
-/// Whether one of two operations needs the other one's value, with the pairs chosen. The two themselves do not count as a pair.
-pub(super) fn is_circular(nodes: &Nodes, choice: &Choice, [first, second]: [usize; 2]) -> bool {
-    needs(nodes, choice, first, second) || needs(nodes, choice, second, first)
+/// Which operations need which, with the pairs chosen.
+pub(super) struct Needs {
+    /// By operation: the last search that has seen it.
+    seen: Vec<u32>,
+    searches: u32,
+    pending: Vec<usize>,
 }
 
-fn needs(nodes: &Nodes, choice: &Choice, node: usize, wanted: usize) -> bool {
-    let mut seen = vec![false; nodes.all.len()];
-    let mut pending: Vec<usize> = nodes.all[node].operands.iter().filter_map(|operand| operand.node()).collect();
-    while let Some(node) = pending.pop() {
-        if node == wanted {
-            return true;
-        }
-        if std::mem::replace(&mut seen[node], true) {
-            continue;
-        }
-        let both = [Some(node), choice.partners[node].map(|(other, _)| other)];
-        let operands = both.into_iter().flatten().flat_map(|node| &nodes.all[node].operands);
-        pending.extend(operands.filter_map(|operand| operand.node()));
+impl Needs {
+    pub fn new(operations: usize) -> Self {
+        Self { seen: vec![0; operations], searches: 0, pending: Vec::new() }
     }
-    false
+
+    /// Whether one of two operations needs the other one's value. The two themselves do not count as a pair.
+    pub fn is_circular(&mut self, nodes: &Nodes, choice: &Choice, [first, second]: [usize; 2]) -> bool {
+        self.needs(nodes, choice, first, second) || self.needs(nodes, choice, second, first)
+    }
+
+    fn needs(&mut self, nodes: &Nodes, choice: &Choice, node: usize, wanted: usize) -> bool {
+        self.searches += 1;
+        self.pending.clear();
+        self.open(nodes, node);
+        while let Some(node) = self.pending.pop() {
+            if node == wanted {
+                return true;
+            }
+            self.open(nodes, node);
+            if let Some((other, _)) = choice.partners[node] {
+                self.open(nodes, other);
+            }
+        }
+        false
+    }
+
+    /// The operations whose values this one uses become pending, once in a search.
+    fn open(&mut self, nodes: &Nodes, node: usize) {
+        for operand in &nodes.all[node].operands {
+            if let Some(operand) = operand.node()
+                && self.seen[operand] != self.searches
+            {
+                self.seen[operand] = self.searches;
+                self.pending.push(operand);
+            }
+        }
+    }
 }
 
 /// Pairs of these operations.
@@ -126,13 +151,14 @@ struct Growth<'n> {
     gathered: BTreeMap<[Place; 2], usize>,
     /// Pairs that might be chosen, by what they would gain when they were found.
     candidates: BinaryHeap<(i32, Reverse<[usize; 2]>)>,
+    needs: Needs,
 }
 
 impl<'n> Growth<'n> {
     fn new(nodes: &'n Nodes) -> Self {
         let count = nodes.all.len();
         let choice = Choice { partners: vec![None; count], swapped: vec![false; count] };
-        Self { nodes, choice, gathered: BTreeMap::new(), candidates: BinaryHeap::new() }
+        Self { nodes, choice, gathered: BTreeMap::new(), candidates: BinaryHeap::new(), needs: Needs::new(count) }
     }
 
     /// The users of neighbouring states, and neighbouring results.
@@ -219,7 +245,7 @@ impl<'n> Growth<'n> {
             let (now, is_swapped) = self.gain(pair);
             if now < gain {
                 self.candidates.push((now, Reverse(pair)));
-            } else if !is_circular(self.nodes, &self.choice, pair) {
+            } else if !self.needs.is_circular(self.nodes, &self.choice, pair) {
                 self.join(pair, is_swapped);
             }
         }

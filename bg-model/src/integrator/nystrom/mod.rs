@@ -11,18 +11,19 @@ mod order;
 mod ring;
 mod tableau;
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 use pulp::Arch;
 
 use super::dense::{FROM_ENDS, Polynomial};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
-use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
+use super::{Flow, Method, Point, Scale, StepControl};
 use ring::Ring;
-use tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES, Weights};
+use tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES};
 
-/// The method's rows: those of the stages, of the state at the end, and of the error estimate.
-const ROWS: usize = STAGES + 2;
+/// Behind the rows of the stages: those of the state at the end, and of the error estimate.
 const END: usize = STAGES;
 const ERROR: usize = STAGES + 1;
 /// The coefficients of the dense output: it has degree 5 in the part of the step.
@@ -41,14 +42,10 @@ struct Aligned<const N: usize>(SVector<f64, N>);
 pub struct Nystrom<const N: usize> {
     /// The second derivatives of the states of second order and the rates of the others, at the stages and at the end.
     k: [Aligned<N>; STAGES + 1],
-    /// The weights of each row, state by state.
-    weights: [[Aligned<N>; STAGES]; ROWS],
-    /// Which states are of second order.
-    is_second: [bool; N],
-    /// The changes of the states of second order in the step by the rate at its start; 0 for the others.
-    drift: SVector<f64, N>,
-    /// The square of the step for the states of second order, the step for the others.
-    unit: SVector<f64, N>,
+    /// The states of second order.
+    second: Range<usize>,
+    /// The magnitudes of the differences to the embedded method, in parts of what is allowed.
+    errors: [f64; N],
     /// The fastest oscillation.
     ring: Ring<N>,
     polynomial: Polynomial<N, COEFFICIENTS>,
@@ -60,61 +57,48 @@ impl<const N: usize> Nystrom<N> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        let mut method = Self {
+        Self {
             k: [Aligned(SVector::zeros()); STAGES + 1],
-            weights: [[Aligned(SVector::zeros()); STAGES]; ROWS],
-            is_second: [false; N],
-            drift: SVector::zeros(),
-            unit: SVector::zeros(),
+            second: 0..0,
+            errors: [0.0; N],
             ring: Ring::new(),
             polynomial: Polynomial::zero(),
             arch: Arch::new(),
-        };
-        method.lay_out([false; N]);
-        method
-    }
-
-    /// Gives each state the weights of its order.
-    fn lay_out(&mut self, is_second: [bool; N]) {
-        for (row, weights) in self.weights.iter_mut().enumerate() {
-            for (stage, weights) in weights.iter_mut().enumerate() {
-                let of = |table: &Weights| table[row].get(stage).copied().unwrap_or(0.0);
-                weights.0 = SVector::from_fn(|i, _| of(if is_second[i] { &SECOND } else { &FIRST }));
-            }
-        }
-        self.is_second = is_second;
-    }
-
-    /// Sets what the step's size and its start determine.
-    #[inline(always)]
-    fn begin(&mut self, start: &Point<N>, h: f64) {
-        for i in 0..N {
-            let is_second = self.is_second[i];
-            self.unit.data.0[0][i] = if is_second { h * h } else { h };
-            self.drift.data.0[0][i] = if is_second { h * start.rate.data.0[0][i] } else { 0.0 };
         }
     }
 
-    /// The sum of the stages before `behind` for state `i`, with the weights of a row.
+    /// The sum of the stages for state `i`.
     #[inline(always)]
-    fn combine(&self, row: usize, behind: usize, i: usize) -> f64 {
-        let weights = &self.weights[row];
+    fn combine(&self, weights: &[f64], i: usize) -> f64 {
         // Adding to -0 changes nothing, not even the sign of a zero.
-        let sum = (0..behind).fold(-0.0, |sum, j| sum + weights[j].0.data.0[0][i] * self.k[j].0.data.0[0][i]);
-        self.unit.data.0[0][i] * sum
+        (0..weights.len()).fold(-0.0, |sum, j| sum + weights[j] * self.k[j].0.data.0[0][i])
     }
 
-    /// Writes the state of a row at the instant `c` of the step, whose weights are those of the stages before `behind`.
+    /// Writes the state of a row at the instant `c` of the step.
     #[inline(always)]
-    fn reach(&self, row: usize, behind: usize, c: f64, start: &Point<N>, x: &mut SVector<f64, N>) {
-        for (i, x) in x.data.0[0].iter_mut().enumerate() {
-            *x = start.x.data.0[0][i] + (c * self.drift.data.0[0][i] + self.combine(row, behind, i));
+    fn reach<const ROW: usize>(
+        &self,
+        second: &Range<usize>,
+        c: f64,
+        start: &Point<N>,
+        h: f64,
+        x: &mut SVector<f64, N>,
+    ) {
+        let (from, rate, x) = (&start.x.data.0[0], &start.rate.data.0[0], &mut x.data.0[0]);
+        for i in 0..second.start {
+            x[i] = from[i] + h * self.combine(FIRST[ROW], i);
+        }
+        for i in second.clone() {
+            x[i] = from[i] + h * (c * rate[i] + h * self.combine(SECOND[ROW], i));
+        }
+        for i in second.end..N {
+            x[i] = from[i] + h * self.combine(FIRST[ROW], i);
         }
     }
 
-    /// Evaluates the stages. Their sums are written out, so that each takes what it needs in one go.
+    /// Evaluates the stages. Their sums are written out, so that each finds its weights as constants.
     #[inline(always)]
-    fn evaluate(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64) {
+    fn evaluate(&mut self, flow: &mut impl Flow<N>, second: &Range<usize>, start: &Point<N>, h: f64) {
         let mut x = start.x;
         self.k[0].0 = start.rate;
         flow.second_derivatives(&x, &mut self.k[0].0);
@@ -122,7 +106,7 @@ impl<const N: usize> Nystrom<N> {
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage => self.reach($stage, $stage, *c, start, &mut x), )*
+                        $( $stage => self.reach::<$stage>(second, *c, start, h, &mut x), )*
                         _ => unreachable!("a step has nine stages"),
                     }
                 };
@@ -132,15 +116,17 @@ impl<const N: usize> Nystrom<N> {
         }
     }
 
-    /// The magnitudes of the differences to the embedded method, in parts of what is allowed.
+    /// Sets the errors of a step.
     #[inline(always)]
-    fn errors(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
+    fn compare(&mut self, second: &Range<usize>, start: &Point<N>, h: f64, scale: &Scale<N>, end: &SVector<f64, N>) {
+        let allowed = |i: usize| scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i]);
         let mut errors = [0.0; N];
-        for (i, error) in errors.iter_mut().enumerate() {
-            let allowed = scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i]);
-            *error = (self.combine(ERROR, STAGES, i) / allowed).abs();
+        for i in 0..N {
+            let sum =
+                if second.contains(&i) { h * self.combine(SECOND[ERROR], i) } else { self.combine(FIRST[ERROR], i) };
+            errors[i] = (h * sum / allowed(i)).abs();
         }
-        errors
+        self.errors = errors;
     }
 }
 
@@ -160,10 +146,11 @@ impl<const N: usize> Vectorised<N> for Nystrom<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        self.begin(start, h);
-        self.evaluate(flow, start, h);
-        self.reach(END, STAGES, 1.0, start, end);
-        largest(&self.errors(start, scale, end))
+        let second = flow.second_order();
+        self.evaluate(flow, &second, start, h);
+        self.reach::<END>(&second, 1.0, start, h, end);
+        self.compare(&second, start, h, scale, end);
+        largest(&self.errors)
     }
 }
 
@@ -184,11 +171,8 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        let is_second = flow.second_order();
-        if is_second != self.is_second {
-            self.lay_out(is_second);
-        }
-        self.ring.follow(flow, start, &self.is_second);
+        self.second = flow.second_order();
+        self.ring.follow(flow, start, &self.second);
         let reach = (h * self.ring.frequency / tableau::REACH).powi(tableau::ERROR_ORDER as i32);
         if reach > 1.0 {
             return reach;
@@ -205,27 +189,28 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         self.ring.restart();
     }
 
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        let errors = self.errors(start, scale, end);
-        index_of_largest::<N>(|i| errors[i])
+    fn largest_error(&self, _start: &Point<N>, _scale: &Scale<N>, _end: &SVector<f64, N>) -> usize {
+        index_of_largest::<N>(|i| self.errors[i])
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
-        self.k[..STAGES].iter().find_map(|k| first_not_finite(&k.0))
+        // A force that is no number makes the second derivatives none that follow from it.
+        let forces_first = || (0..N).filter(|i| !self.second.contains(i)).chain(self.second.clone());
+        self.k[..STAGES].iter().find_map(|k| forces_first().map(|i| (i, k.0[i])).find(|(_, rate)| !rate.is_finite()))
     }
 
     fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         self.k[END].0 = end.rate;
         flow.second_derivatives(&end.x, &mut self.k[END].0);
-        let Self { k, unit, is_second, polynomial, .. } = self;
+        let Self { k, second, polynomial, .. } = self;
         polynomial.set(start, h, end, |m, i, [_, first, third]| {
-            if is_second[i] {
+            if second.contains(&i) {
                 // The polynomial of degree 5 through the second derivatives at both ends, too.
-                let [before, behind] = [k[0].0[i], k[END].0[i]].map(|second| 0.5 * unit[i] * second);
+                let [before, behind] = [k[0].0[i], k[END].0[i]].map(|second| 0.5 * h * h * second);
                 let at_start = before + first - third;
                 if m == 0 { at_start } else { behind + first + 2.0 * third - at_start }
             } else {
-                unit[i] * DENSE[m].iter().zip(k.iter()).map(|(weight, k)| weight * k.0[i]).sum::<f64>()
+                h * DENSE[m].iter().zip(k.iter()).map(|(weight, k)| weight * k.0[i]).sum::<f64>()
             }
         });
     }

@@ -5,6 +5,8 @@
 //! Shampine, J. G. Verwer, Journal of Computational and Applied Mathematics 88 (1998), 315-326). Stiff joints turn with the links, so
 //! one rate in so many steps keeps up with them.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use crate::integrator::{Flow, Point};
@@ -47,8 +49,8 @@ impl<const N: usize> Ring<N> {
     }
 
     /// Iterates once if it is time to.
-    pub fn follow(&mut self, flow: &mut impl Flow<N>, point: &Point<N>, is_second: &[bool; N]) {
-        if !is_second.contains(&true) {
+    pub fn follow(&mut self, flow: &mut impl Flow<N>, point: &Point<N>, states: &Range<usize>) {
+        if states.is_empty() {
             self.frequency = 0.0;
             return;
         }
@@ -57,7 +59,8 @@ impl<const N: usize> Ring<N> {
             return;
         }
         self.is_done = true;
-        let masked = |x: &SVector<f64, N>| SVector::<f64, N>::from_fn(|i, _| if is_second[i] { x[i] } else { 0.0 });
+        let masked =
+            |x: &SVector<f64, N>| SVector::<f64, N>::from_fn(|i, _| if states.contains(&i) { x[i] } else { 0.0 });
         if self.direction.amax() == 0.0 {
             self.direction = masked(&SVector::<f64, N>::repeat(1.0)).normalize();
         }
