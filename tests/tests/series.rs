@@ -150,7 +150,7 @@ fn an_input_that_changes_leaves_no_series() {
 /// Twice the products of two factors that change, and the places of quotients and functions.
 #[test]
 fn widths_of_the_hacksaw() {
-    assert_eq!(Paper::new(PaperParameters::default()).unwrap().series_width(), Some(112));
+    assert_eq!(Paper::new(PaperParameters::default()).unwrap().series_width(), Some(116));
     assert_eq!(FreeRun::new(FreeRunParameters::default()).unwrap().series_width(), Some(64));
     assert_eq!(Hacksaw::new(HacksawParameters::default()).unwrap().series_width(), Some(572));
 }

@@ -184,8 +184,15 @@ pub fn schedule(pool: &mut Pool, requests: &[Request]) -> Program {
     let mut table = Constants::default();
     let mut routines = Vec::with_capacity(requests.len());
     for request in requests {
-        let plan = plan(&mut statics, request.roots, Parameters::Static);
-        routines.push(flat::flatten(&mut statics, &plan, request.name, &mut table));
+        // In an order of their own: in which order the results are wanted changes nothing in how they are calculated.
+        let mut roots = request.roots.to_vec();
+        roots.sort_unstable();
+        roots.dedup();
+        let plan = plan(&mut statics, &roots, Parameters::Static);
+        let mut routine = flat::flatten(&mut statics, &plan, request.name, &mut table);
+        let place = |root| roots.binary_search(root).expect("it is among them");
+        routine.results = request.roots.iter().map(|root| routine.results[place(root)]).collect();
+        routines.push(routine);
     }
     let plan = plan(&mut statics, &table.ids, Parameters::Dynamic);
     let constants = flat::flatten(&mut statics, &plan, "constants", &mut Constants::default());

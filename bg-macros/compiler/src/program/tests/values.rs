@@ -324,3 +324,14 @@ fn states_that_cancel_in_normal_form_are_no_constants() {
     assert!(found.iter().all(is_known), "{found:?}");
     assert_eq!(program.routines[0].results[..2], [Operand::Number(0.0); 2]);
 }
+
+#[test]
+fn the_order_of_the_results_changes_nothing_in_how_they_are_calculated() {
+    let mut pool = Pool::new();
+    let mut roots = Source(3).expressions(&mut pool, 90).split_off(60);
+    let forwards = single(&mut pool, &roots).routines.remove(0);
+    roots.reverse();
+    let mut backwards = single(&mut pool, &roots).routines.remove(0);
+    backwards.results.reverse();
+    assert_eq!(forwards, backwards);
+}
