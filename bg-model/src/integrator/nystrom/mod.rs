@@ -119,12 +119,11 @@ impl<const N: usize> Nystrom<N> {
     /// Sets the errors of a step.
     #[inline(always)]
     fn compare(&mut self, second: &Range<usize>, start: &Point<N>, h: f64, scale: &Scale<N>, end: &SVector<f64, N>) {
-        let allowed = |i: usize| scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i]);
         let mut errors = [0.0; N];
-        for i in 0..N {
+        for (i, error) in errors.iter_mut().enumerate() {
             let sum =
                 if second.contains(&i) { h * self.combine(SECOND[ERROR], i) } else { self.combine(FIRST[ERROR], i) };
-            errors[i] = (h * sum / allowed(i)).abs();
+            *error = (h * sum / scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i])).abs();
         }
         self.errors = errors;
     }
