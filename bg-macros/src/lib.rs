@@ -47,9 +47,10 @@ use proc_macro::TokenStream;
 ///           | ground | gravity | body | joint | spring | drive | contact | scene
 /// ```
 ///
-/// Order is free: a name may be used before it is declared. States and outputs keep the order of declaration. A
-/// statement ends with `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in
-/// front of `graph`, `scene`, `param` and `input` and become the documentation of the generated items.
+/// Order is free: a name may be used before it is declared. Outputs keep the order of declaration; so do states of one
+/// kind and unit, which stand side by side in the state vector: `description().states` names them. A statement ends with
+/// `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in front of `graph`, `scene`,
+/// `param` and `input` and become the documentation of the generated items.
 ///
 /// Names are Rust identifiers, Rust's keywords excluded. Names of `let`s, junctions, elements, tracks and outputs may
 /// have dots (`pin.slip`); those of graphs, scenes, parameters, inputs, bodies, points, joints, springs, drives and

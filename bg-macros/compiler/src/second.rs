@@ -1,8 +1,9 @@
 //! The states of second order and their second derivatives.
 //!
-//! In: [`StateEquations`]. Out: the same with their states arranged; then the displacements and orientations that follow the momenta, each with d2x/dt2 as a function
-//! of the states and their rates, in a [`Second`] with a pool of its own. In a bond graph these are the kinematics: where
-//! things are follows from how they move. What a resistor moves, as a spring behind a damper, is of first order.
+//! In: [`StateEquations`]. Out: the same with their states arranged; then the displacements and orientations that follow the
+//! momenta, each with d2x/dt2 as a function of the states and their rates, in a [`Second`] with a pool of its own. In a bond graph
+//! these are the kinematics: where things are follows from how they move. What a resistor moves, as a spring behind a damper, is
+//! of first order.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
