@@ -10,7 +10,6 @@ fn the_crank_turns_as_far_as_it_should_on_all_bushings() {
         let name = if damping == 0.0 { "dop853" } else { "radau9" };
         let outcome = bushings("andrews", line).run(integrator(name), 1e-6, 40_000);
         println!("{stiffness:e} {damping} by {name}: {:e}, {}", outcome.error, outcome.statistics);
-        // A hundredth of the tolerance: what rounding makes of the steps moves errors between 1e-11 and 3e-9.
-        assert!(outcome.error < 1e-8, "{stiffness:e} {damping} by {name}: {:e}", outcome.error);
+        assert!(outcome.error < 3e-9, "{stiffness:e} {damping} by {name}: {:e}", outcome.error);
     }
 }
