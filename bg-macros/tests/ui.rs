@@ -9,7 +9,7 @@ use std::path::Path;
 fn messages() {
     let cases = trybuild::TestCases::new();
     cases.pass("tests/ui/pass.rs");
-    for stage in ["syntax", "mechanism", "graph", "causality", "equations"] {
+    for stage in ["syntax", "mechanism", "graph", "causality", "equations", "values"] {
         cases.compile_fail(format!("tests/ui/{stage}_*.rs"));
     }
 }
@@ -37,5 +37,5 @@ fn no_error_follows() {
         // A fault is at its token, not at the whole call.
         assert!(!text.contains("bond_graph! {"), "{name}:\n{text}");
     }
-    assert_eq!(files, 20);
+    assert_eq!(files, 21);
 }

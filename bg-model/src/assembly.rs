@@ -8,6 +8,8 @@
 use nalgebra::{DMatrix, DVector, SVector};
 use thiserror::Error;
 
+use crate::requirement::Impossible;
+
 /// The largest gap of a closed joint, in the gap's unit (m or rad).
 pub const CLOSED: f64 = 1e-10;
 
@@ -63,6 +65,9 @@ pub enum AssemblyError {
         /// Its value.
         value: f64,
     },
+    /// A start value cannot be, such as an orientation that is no rotation.
+    #[error(transparent)]
+    Impossible(#[from] Impossible),
 }
 
 fn also_open(others: &[OpenGap]) -> String {

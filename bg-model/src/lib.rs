@@ -88,6 +88,7 @@ pub mod input;
 pub mod integrator;
 pub mod linear;
 pub mod parameters;
+pub mod requirement;
 pub mod scalar;
 pub mod series;
 pub mod simulation;

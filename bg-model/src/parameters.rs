@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::description::{ParameterInfo, Range};
+use crate::requirement::Impossible;
 
 /// A generated parameter struct, seen by name.
 pub trait Parameters: Clone + Default {
@@ -64,6 +65,9 @@ pub enum ParameterError {
         /// The range in words.
         range: String,
     },
+    /// A value that the parameters give cannot be, such as a mass that is not above 0.
+    #[error(transparent)]
+    Impossible(#[from] Impossible),
 }
 
 fn check(parameter: &ParameterInfo, value: f64) -> Result<(), ParameterError> {

@@ -118,7 +118,7 @@ const CAUSALITY: [(&str, &str); 4] = [
     ("BG0404", "Sf a = 1; 1 j: translation; R ▸r(effort e) = 2 * e; a -> j -> r;"),
 ];
 
-const EQUATIONS: [(&str, &str); 5] = [
+const EQUATIONS: [(&str, &str); 7] = [
     ("BG0501", "Se e = 1; 1 j: translation; R a = 1; 0 k; R b = 2; e -> j -> a; j -> ▸k -> b;"),
     (
         "BG0502",
@@ -132,6 +132,53 @@ const EQUATIONS: [(&str, &str); 5] = [
          1 j[3]: translation; position x of j; I m = 2; 1 s: translation; MTF d(v) = v.x;\n\
          C c = k at ▸x.y; j -> m; j -> d -> s -> c;",
     ),
+    (
+        "BG0506",
+        "param k: N/m = 50;\n\
+         1 j: translation; I m = 2;\n\
+         C s(q) = if q < 1 { 0 } else { k * q } energy ▸if q < 1 { 0 } else { k * q * q / 2 };\n\
+         j -> m; j -> s;",
+    ),
+    (
+        "BG0507",
+        "param k: N/m = 50;\n\
+         1 j: translation; I m = 2; C s(q) = k * q * sqrt(-1) energy k * q ▸* q; j -> m; j -> s;",
+    ),
+];
+
+/// Values that no physics allows.
+const VALUES: [(&str, &str); 3] = [
+    ("BG0701", "Se f = 1; 1 j: translation; I m = 2; R r = ▸-3; f -> j -> m; j -> r;"),
+    ("BG0702", "body rod { mass 1; inertia ▸[[1, 2, 0], [0, 2, 0], [0, 0, 3]]; }"),
+    ("BG0703", "body rod { sphere radius 1; density 1; start turned ▸[[1, 0.2, 0], [0, 1, 0], [0, 0, 1]]; }"),
+];
+
+/// More of what has a code: other words of it, and where they stand.
+const MORE: [(&str, &str); 16] = [
+    ("BG0202", "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> ▸rod.end) { stiffness 1; }"),
+    ("BG0202", "body rod { sphere radius 1; density 1; point end = [1, 0, 0]; start ▸top at [0, 0, 0]; }"),
+    ("BG0314", "gravity ▸-9.81;\nbody rod { sphere radius 1; density 1; }"),
+    ("BG0314", "Se f = 1; 1 j: translation; I m = 2; R r = norm(▸[0, 1]); f -> j -> m; j -> r;"),
+    ("BG0314", "body rod { sphere radius 1; density 1; point end = ▸[0, 1]; }"),
+    ("BG0314", "body rod { mass 1; inertia ▸2; }"),
+    ("BG0318", "param a: m = 1;\nlet c = ▸root(sqrt(a), sqrt(a));\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
+    ("BG0323", "let v: m/s = 1; body rod { sphere radius 1; density 1; point end = [v * ▸t, 0, 0]; }"),
+    (
+        "BG0323",
+        "param T: s = 1; input f: N; let k: N/m = f / 1; body rod { sphere radius 1; density 1; }\n\
+                joint pin: spherical (ground -> rod) { stiffness ▸k; damping 1; }",
+    ),
+    (
+        "BG0323",
+        "param T: s = 1; body rod { sphere radius 1; density 1; }\n\
+                joint pin: spherical (ground -> rod) { stiffness 1; damping 2 * ▸t / T; }",
+    ),
+    ("BG0330", "body rod { mass ▸guess(2); inertia [1, 1, 1]; }"),
+    ("BG0701", "body rod { cuboid ▸[1, 1, -1]; density 1; }"),
+    ("BG0701", "let heavy: kg = 2; body rod { mass 1 ▸- heavy / 2; inertia [1, 1, 1]; }"),
+    ("BG0701", "Se f = 1; 0 j: hydraulic; R r(effort p) = 1e-8 * root(p, ▸0); f -> j -> r;"),
+    ("BG0702", "body rod { mass 1; inertia ▸[1, 1, 100]; }"),
+    ("BG0703", "body rod { sphere radius 1; cuboid [1, 2, 3] turned ▸diagonal([1, 1, -1]); density 1; }"),
 ];
 
 /// A mass on a spring, with a place for scenes.
@@ -191,13 +238,13 @@ fn source(statements: &str) -> String {
 }
 
 fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
-    SYNTAX.into_iter().chain(MECHANISM).chain(GRAPH).chain(CAUSALITY).chain(EQUATIONS).chain(SCENES)
+    SYNTAX.into_iter().chain(MECHANISM).chain(GRAPH).chain(CAUSALITY).chain(EQUATIONS).chain(VALUES).chain(SCENES)
 }
 
 #[test]
 fn each_fault_has_its_code_and_its_place() {
     let mut wrong = String::new();
-    for (code, statements) in all() {
+    for (code, statements) in all().chain(MORE) {
         let (text, expected) = unmarked(&source(statements));
         let faults = compiled(&text).err().unwrap_or_default();
         let found: Vec<_> = faults.iter().map(|fault| (fault.code, place(fault))).collect();
@@ -211,7 +258,7 @@ fn each_fault_has_its_code_and_its_place() {
 #[test]
 fn the_catalogue_of_faults() {
     let mut catalogue = String::new();
-    for (code, statements) in all() {
+    for (code, statements) in all().chain(MORE) {
         let (text, _) = unmarked(&source(statements));
         for fault in compiled(&text).err().unwrap_or_default() {
             let statements = if statements == DEEP { "let a = ((...((1))...));" } else { statements };

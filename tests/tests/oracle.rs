@@ -459,3 +459,16 @@ fn a_storage_that_switches_has_an_energy_that_switches() {
     assert!(!items.contains("atom_"), "the generated code does not compile");
     assert_eq!(compiled(text).1.switches.len(), 1);
 }
+
+/// As sums from tables and from programs are: the length of a sum is no nesting.
+#[test]
+fn a_law_of_a_thousand_terms_compiles() {
+    let terms = |form: fn(usize) -> String| (1..=1000).map(form).collect::<Vec<_>>();
+    let functions = terms(|k| format!("tanh(v / {k})")).join(" + ");
+    let powers = terms(|k| format!("{k} * v")).join(" - ");
+    for law in [functions, powers] {
+        let text = format!("graph G {{ 1 j: translation; I m = 2; R r(v) = {law}; j -> m; j -> r; }}");
+        let items = bg_compiler::compile(text.parse().expect("tokens")).to_string();
+        assert!(!items.contains("compile_error"), "{}", &items[..400]);
+    }
+}

@@ -17,6 +17,7 @@ mod physics {
     mod modulated;
     mod nonlinear;
     mod orbit;
+    mod orifice;
     mod rlc_circuit;
     mod slider_crank;
     mod sources;

@@ -4,6 +4,8 @@
 
 use proc_macro2::Span;
 
+use crate::clause::Clause;
+
 /// All graphs of one macro call.
 #[derive(Clone, Debug)]
 pub struct Source {
@@ -119,6 +121,8 @@ pub struct Let {
     pub unit: Option<Unit>,
     /// Its value.
     pub value: Expression,
+    /// The clause of a mechanism word that it stands for, if any.
+    pub clause: Option<Clause>,
 }
 
 /// A unit as written, `kg*m^2/s`: factors with their exponents (negative behind a `/`). `1` has none.
@@ -527,8 +531,9 @@ pub enum ExpressionKind {
     Name(String),
     /// `-a`
     Negate(Box<Expression>),
-    /// `a + b` and its like.
-    Binary(BinaryOperator, Box<Expression>, Box<Expression>),
+    /// `a + b - c` or `a * b / c`: operators that bind alike, from left to right. The first operand is neither, so that a chain
+    /// of any length is one level of the tree.
+    Chain(Box<Expression>, Vec<Operation>),
     /// `f(a, b)`
     Call(Name, Vec<Expression>),
     /// `[a, b, c]`; a matrix is a vector of its rows.
@@ -550,6 +555,38 @@ pub struct Choice {
     pub then: Expression,
     /// The value elsewhere.
     pub otherwise: Expression,
+}
+
+/// What a chain does next.
+#[derive(Clone, Debug)]
+pub struct Operation {
+    /// The operator.
+    pub operator: BinaryOperator,
+    /// Where it stands.
+    pub span: Span,
+    /// Its right side.
+    pub operand: Expression,
+}
+
+impl Expression {
+    /// The value, where it is made of numbers only.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match &self.kind {
+            ExpressionKind::Number(value) => Some(*value),
+            ExpressionKind::Negate(inner) => Some(-inner.number()?),
+            ExpressionKind::Chain(first, rest) => rest.iter().try_fold(first.number()?, |value, operation| {
+                let right = operation.operand.number()?;
+                Some(match operation.operator {
+                    BinaryOperator::Add => value + right,
+                    BinaryOperator::Subtract => value - right,
+                    BinaryOperator::Multiply => value * right,
+                    BinaryOperator::Divide => value / right,
+                })
+            }),
+            _ => None,
+        }
+    }
 }
 
 /// The operator of an `if`.

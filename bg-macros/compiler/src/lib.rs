@@ -24,6 +24,7 @@
 
 pub mod ast;
 pub mod causality;
+pub mod clause;
 pub mod elimination;
 pub mod emit;
 pub mod equations;
@@ -37,6 +38,7 @@ pub mod print;
 pub mod program;
 mod random;
 pub mod reduce;
+pub mod requirements;
 pub mod scene;
 pub mod second;
 pub mod stages;

@@ -9,7 +9,7 @@ use crate::{
     ast::{
         AxisLaw, Body, Bound, Choice, Close, Contact, Drive, Element, Ends, Expectation, Expression, ExpressionKind,
         Graph, Gravity, Ground, Input, Item, Joint, JointKind, Junction, JunctionKind, LawVariable, Let, Name,
-        Observation, Parameter, Part, Point, Rigid, Scene, Shape, Source, Spring, Track, Unit,
+        Observation, Operation, Parameter, Part, Point, Rigid, Scene, Shape, Source, Spring, Track, Unit,
     },
     syntax::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of},
 };
@@ -437,7 +437,7 @@ impl Display for Expression {
                 f.write_str("-")?;
                 enclosed(f, operand, is_number || binding(operand) < MINUS)
             }
-            ExpressionKind::Binary(..) => operations(f, self),
+            ExpressionKind::Chain(first, rest) => operations(f, first, rest),
             ExpressionKind::Call(function, arguments) => write!(f, "{function}({})", separated(arguments)),
             ExpressionKind::Vector(elements) => write!(f, "[{}]", separated(elements)),
             ExpressionKind::If(choice) => choice.fmt(f),
@@ -456,19 +456,13 @@ impl Display for Choice {
     }
 }
 
-/// A sum or product of any length: down its left sides in a loop, so that only true nesting takes stack.
-fn operations(f: &mut Formatter<'_>, expression: &Expression) -> Result {
-    let (mut first, mut weakest, mut rest) = (expression, 0, Vec::new());
-    while let ExpressionKind::Binary(operator, left, right) = &first.kind
-        && strength(*operator) >= weakest
-    {
-        rest.push((operator, right));
-        (first, weakest) = (left, strength(*operator));
-    }
+/// A sum or product of any length.
+fn operations(f: &mut Formatter<'_>, first: &Expression, rest: &[Operation]) -> Result {
+    let weakest = rest.first().map_or(MINUS, |operation| strength(operation.operator));
     enclosed(f, first, binding(first) < weakest)?;
-    for (operator, right) in rest.into_iter().rev() {
+    for Operation { operator, operand, .. } in rest {
         write!(f, " {} ", word_of(&OPERATORS, operator))?;
-        enclosed(f, right, binding(right) <= strength(*operator))?;
+        enclosed(f, operand, binding(operand) <= strength(*operator))?;
     }
     Ok(())
 }
@@ -479,10 +473,10 @@ fn enclosed(f: &mut Formatter<'_>, operand: &Expression, parentheses: bool) -> R
 }
 
 /// How strongly an expression holds together; an `if` stands in parentheses as an operand, for the eye.
-const fn binding(expression: &Expression) -> u8 {
+fn binding(expression: &Expression) -> u8 {
     match &expression.kind {
         ExpressionKind::If(_) => 0,
-        ExpressionKind::Binary(operator, ..) => strength(*operator),
+        ExpressionKind::Chain(_, rest) => rest.first().map_or(MINUS, |operation| strength(operation.operator)),
         _ => MINUS,
     }
 }

@@ -110,6 +110,7 @@ impl Variant {
         let tuned = tuned(scene, &equations.parameters)?;
         let (mut equations, report) = reduce::for_scene(equations, &tuned, scene.angles);
         check(scene, &report)?;
+        equations.requirements.decide(&equations.parameters)?;
         second::arrange(&mut equations);
         Ok((equations, Some(report)))
     }

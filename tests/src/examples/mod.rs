@@ -13,6 +13,7 @@ pub mod mass_spring_damper;
 pub mod modulated;
 pub mod nonlinear;
 pub mod orbit;
+pub mod orifice;
 pub mod permuted;
 pub mod rlc_circuit;
 pub mod slider_crank;
@@ -44,6 +45,7 @@ macro_rules! each_example {
             rlc_circuit: rlc_circuit RlcCircuit (RlcCircuitParameters, RlcCircuitInputs { voltage });
             dc_motor: dc_motor DcMotor (DcMotorParameters, DcMotorInputs { voltage });
             hydraulic_cylinder: hydraulic_cylinder HydraulicCylinder (HydraulicCylinderParameters, HydraulicCylinderInputs { pump_flow });
+            orifice: orifice Orifice (OrificeParameters);
             slider_crank: slider_crank SliderCrank (SliderCrankParameters);
             double_pendulum: double_pendulum DoublePendulum (DoublePendulumParameters);
             spinning_top: spinning_top SpinningTop (SpinningTopParameters);

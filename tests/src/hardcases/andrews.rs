@@ -2,7 +2,7 @@
 //!
 //! In: nothing. Out: the mechanism on ideal pins, on bushings of given stiffness, and on bushings through the 1/k law. A
 //! bushing is the same in all directions of the plane. The start is the ideal mechanism's, at rest, so bushings ring.
-//! Moments of inertia about x and y do not matter in the plane.
+//! Moments of inertia about x and y do not matter in the plane; they are such that a body can have them.
 
 use bg_model::bond_graph;
 
@@ -36,39 +36,39 @@ bond_graph! {
             point C = [0.014, 0.072, 0];
         }
         body crank {
-            mass 0.04325; inertia [1e-6, 1e-6, 2.194e-6]; center [0.00092, 0, 0];
+            mass 0.04325; inertia [1.6e-5, 1.6e-5, 2.194e-6]; center [0.00092, 0, 0];
             point F = [0.007, 0, 0];
             start at [0, 0, 0]; start turned rotation_z(beta0);
         }
         body coupler {
-            mass 0.00365; inertia [1e-6, 1e-6, 4.410e-7]; center [-0.0115, 0, 0];
+            mass 0.00365; inertia [1.6e-5, 1.6e-5, 4.410e-7]; center [-0.0115, 0, 0];
             point E = [-0.028, 0, 0];
             start at rotation_z(beta0) * [0.007, 0, 0]; start turned rotation_z(beta0);
         }
         body triangle {
-            mass 0.02373; inertia [1e-6, 1e-6, 5.255e-6]; center [0.01043, -0.01874, 0];
+            mass 0.02373; inertia [1.6e-5, 1.6e-5, 5.255e-6]; center [0.01043, -0.01874, 0];
             point E = [0, -0.035, 0]; point D = [0.02, -0.018, 0];
             start at [-0.03635, 0.03273, 0]; start turned rotation_z(gamma0);
         }
         body left_rod {
-            mass 0.00706; inertia [1e-6, 1e-6, 5.667e-7]; center [0, -0.00579, 0];
+            mass 0.00706; inertia [1.6e-5, 1.6e-5, 5.667e-7]; center [0, -0.00579, 0];
             point E = [0, -0.02, 0];
             start at [-0.06934, -0.00227, 0] + rotation_z(delta0) * [0.04, 0, 0];
             start turned rotation_z(delta0 + phi0);
         }
         body left_arm {
-            mass 0.07050; inertia [1e-6, 1e-6, 1.169e-5]; center [0.02308, 0.00916, 0];
+            mass 0.07050; inertia [1.6e-5, 1.6e-5, 1.169e-5]; center [0.02308, 0.00916, 0];
             point G = [0.04, 0, 0];
             start at [-0.06934, -0.00227, 0]; start turned rotation_z(delta0);
         }
         body right_rod {
-            mass 0.00706; inertia [1e-6, 1e-6, 5.667e-7]; center [0.00579, 0, 0];
+            mass 0.00706; inertia [1.6e-5, 1.6e-5, 5.667e-7]; center [0.00579, 0, 0];
             point E = [0.02, 0, 0];
             start at [-0.06934, -0.00227, 0] + rotation_z(epsilon0) * [0, -0.04, 0];
             start turned rotation_z(epsilon0 - phi0);
         }
         body right_arm {
-            mass 0.05498; inertia [1e-6, 1e-6, 1.912e-5]; center [-0.00449, -0.01228, 0];
+            mass 0.05498; inertia [1.6e-5, 1.6e-5, 1.912e-5]; center [-0.00449, -0.01228, 0];
             point H = [0, -0.04, 0];
             start at [-0.06934, -0.00227, 0]; start turned rotation_z(epsilon0);
         }

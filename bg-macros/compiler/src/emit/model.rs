@@ -113,6 +113,8 @@ impl Emission<'_> {
         let input_value = has_inputs.then(|| quote!(inputs,));
         let input_pass = has_inputs.then(|| quote!(, inputs));
         let starting = self.starting();
+        let unknowns = self.equations.guesses.len();
+        let required = self.required(false, &quote!(&parameters), &quote!(&[0.0; #unknowns]));
         let system = self.system();
         let model = self.model();
         let tables = self.programs.tables();
@@ -159,7 +161,7 @@ impl Emission<'_> {
                     /// The model with these parameters, in `f64`.
                     ///
                     /// # Errors
-                    /// A parameter outside its range.
+                    /// A parameter outside its range, a value that parameters give and that cannot be.
                     pub fn new(parameters: #parameters #input_argument)
                         -> Result<Self, ::bg_model::parameters::ParameterError>
                     {
@@ -171,11 +173,12 @@ impl Emission<'_> {
                     /// The model with these parameters, calculating in `S`.
                     ///
                     /// # Errors
-                    /// A parameter outside its range.
+                    /// A parameter outside its range, a value that parameters give and that cannot be.
                     pub fn in_scalar(parameters: #parameters #input_argument)
                         -> Result<Self, ::bg_model::parameters::ParameterError>
                     {
                         ::bg_model::parameters::Parameters::validate(&parameters)?;
+                        #required
                         #lets
                         Ok(Self { parameters, #input_value #values })
                     }
@@ -243,11 +246,12 @@ impl Emission<'_> {
         quote! { #parameters #statements [#(#results),*] }
     }
 
-    /// Guesses, gaps and start state, each with its constants inside.
+    /// Guesses, gaps, start state and what is asked of values, each with its constants inside.
     fn starting(&self) -> TokenStream {
         let name = identifier(&format!("{}Parameters", self.causal.graph.name.text));
         let unknowns = self.equations.guesses.len();
-        let functions = self.programs.starting.iter().map(|program| {
+        let required = self.programs.required.iter().filter(|program| !program.routines[0].results.is_empty());
+        let functions = self.programs.starting.iter().chain(required).map(|program| {
             let routine = &program.routines[0];
             let function = identifier(&routine.name);
             let parameters = self.parameter_bindings(&[&program.constants, routine]);
@@ -265,6 +269,40 @@ impl Emission<'_> {
             }
         });
         quote! { #(#functions)* }
+    }
+
+    /// The check of what is asked of values, in `new` or in `start`.
+    fn required(&self, is_of_start: bool, parameters: &TokenStream, unknowns: &TokenStream) -> Option<TokenStream> {
+        let (name, pool) = (identifier(&self.causal.graph.name.text), &self.equations.requirements.pool);
+        let program = &self.programs.required[usize::from(is_of_start)];
+        let function = identifier(&program.routines[0].name);
+        let table: Vec<TokenStream> = self
+            .equations
+            .requirements
+            .of(is_of_start)
+            .map(|requirement| {
+                let (subject, wanted, is_strict) = (&requirement.subject, requirement.wanted, requirement.is_strict);
+                let unit = match &requirement.unit {
+                    Some(unit) => quote!(::core::option::Option::Some(#unit)),
+                    None => quote!(::core::option::Option::None),
+                };
+                let parameters = pool.symbols(&[requirement.value]).into_iter().filter_map(|symbol| match symbol {
+                    Symbol::Parameter(index) => Some(&self.equations.parameters[index as usize].name.text),
+                    _ => None,
+                });
+                quote! {
+                    ::bg_model::requirement::Requirement {
+                        subject: #subject, wanted: #wanted, unit: #unit, is_strict: #is_strict, parameters: &[#(#parameters),*],
+                    }
+                }
+            })
+            .collect();
+        (!table.is_empty()).then(|| {
+            quote! {
+                static REQUIREMENTS: &[::bg_model::requirement::Requirement] = &[#(#table),*];
+                ::bg_model::requirement::require(REQUIREMENTS, &#name::<f64>::#function(#parameters, #unknowns))?;
+            }
+        })
     }
 
     fn parameter_bindings(&self, routines: &[&Routine]) -> TokenStream {
@@ -559,6 +597,7 @@ impl Emission<'_> {
         let (energy, stored) = self.function(4);
         let (power, powers) = self.function(5);
         let (supplied, dissipated) = (&powers[0], &powers[1]);
+        let required = self.required(true, &quote!(&self.parameters), &quote!(&unknowns));
         let gaps = self.equations.gaps.iter().map(|gap| {
             let (joint, component, unit) = (&gap.joint, gap.component, &gap.unit);
             quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
@@ -575,6 +614,7 @@ impl Emission<'_> {
                     let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
                         gaps.copy_from_slice(&#name::<f64>::gaps(&self.parameters, unknowns));
                     })?;
+                    #required
                     let unknowns = unknowns.map(S::from_f64);
                     Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
                 }

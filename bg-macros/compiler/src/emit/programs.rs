@@ -25,6 +25,9 @@ pub(super) struct Programs {
     pub second: Option<SecondOrder>,
     /// First guesses, gaps and start state: functions of parameters and unknowns, each with its own constants.
     pub starting: [Program; 3],
+    /// The scalars of what is asked of values, in the order of the requirements: those for `new`, those for `start`. Functions of
+    /// parameters and unknowns, too.
+    pub required: [Program; 2],
 }
 
 /// The programs of the functions for states of second order.
@@ -80,7 +83,12 @@ impl Programs {
         });
         let mut alone = |name, roots: &[Id]| schedule(&mut equations.pool, &[Request { name, roots }]);
         let starting = [alone("guesses", &guesses), alone("gaps", &gaps), alone("start_state", &starts)];
-        Self { dynamic, paired, jacobian, second, starting }
+        let required = ["required", "required_at_start"].map(|name| {
+            let is_of_start = name == "required_at_start";
+            let roots: Vec<Id> = equations.requirements.of(is_of_start).map(|requirement| requirement.value).collect();
+            schedule(&mut equations.requirements.pool, &[Request { name, roots: &roots }])
+        });
+        Self { dynamic, paired, jacobian, second, starting, required }
     }
 
     /// Whether rates are inlined into an integrator's step, and so take the vectors that it takes.

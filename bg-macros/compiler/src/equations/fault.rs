@@ -10,6 +10,8 @@ pub enum EquationFault {
     NotLinear { symbol: &'static str, name: String },
     NoEnergy { symbol: &'static str, name: String },
     EnergyOfOtherLaw { symbol: &'static str, name: String },
+    EnergyJumps { symbol: &'static str, name: String, by: f64, at: Vec<f64> },
+    EnergyNotCompared { symbol: &'static str, name: String, points: usize },
     DisplacementOfOtherFlow { name: String },
 }
 
@@ -23,6 +25,8 @@ impl Explain for EquationFault {
             F::NoEnergy { .. } => "BG0503",
             F::EnergyOfOtherLaw { .. } => "BG0504",
             F::DisplacementOfOtherFlow { .. } => "BG0505",
+            F::EnergyJumps { .. } => "BG0506",
+            F::EnergyNotCompared { .. } => "BG0507",
         }
     }
 
@@ -42,6 +46,15 @@ impl Explain for EquationFault {
             F::EnergyOfOtherLaw { symbol, name } => {
                 format!("the energy given for {symbol} `{name}` does not have the law as its derivative")
             }
+            F::EnergyJumps { symbol, name, by, at } => {
+                let at: Vec<String> = at.iter().map(|&value| rounded(value)).collect();
+                let (by, at) = (rounded(by.abs()), at.join(", "));
+                format!("the energy given for {symbol} `{name}` jumps by {by} J where its law switches, at {at}")
+            }
+            F::EnergyNotCompared { symbol, name, points } => format!(
+                "the energy given for {symbol} `{name}` could not be compared with its law: at most of {points} points one \
+                 of them is not a finite number"
+            ),
             F::DisplacementOfOtherFlow { name } => {
                 format!("the displacement given for C `{name}` does not change with the flow of its bond")
             }
@@ -57,9 +70,20 @@ impl Explain for EquationFault {
             F::NotLinear { .. } => "write it as a factor times the variable, or as `dot`, `cross` of it".to_owned(),
             F::NoEnergy { .. } => "give it behind the law, `energy E`".to_owned(),
             F::EnergyOfOtherLaw { .. } => "correct the energy, or leave it out".to_owned(),
+            F::EnergyJumps { .. } => {
+                "add a constant to the energy of one branch, so that both give the same at the switch".to_owned()
+            }
+            F::EnergyNotCompared { .. } => {
+                "write law and energy so that they are finite for states of either sign, with `abs` or `if`".to_owned()
+            }
             F::DisplacementOfOtherFlow { .. } => {
                 "leave `at` out, then the displacement is a state of its own".to_owned()
             }
         }
     }
+}
+
+/// A number with four digits, as short as it can be.
+fn rounded(value: f64) -> String {
+    format!("{value:.3e}").parse::<f64>().map_or_else(|_| value.to_string(), |value| value.to_string())
 }

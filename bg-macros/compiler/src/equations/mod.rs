@@ -4,10 +4,12 @@
 //! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one expression;
 //! storages in integral causality turn theirs into rates.
 
+mod energy;
 mod fault;
 mod kinematics;
 mod laws;
 mod reactions;
+mod requirements;
 mod signals;
 mod storage;
 mod terms;
@@ -18,6 +20,7 @@ use crate::causality::CausalGraph;
 use crate::expr::{Id, Pool, Symbol};
 use crate::fault::Staged;
 use crate::graph::{Input, Parameter};
+use crate::requirements::Requirements;
 
 pub use fault::EquationFault;
 pub use value::Value;
@@ -53,6 +56,8 @@ pub struct StateEquations {
     pub reactions: Vec<Reaction>,
     /// Effort and flow of every bond, component by component.
     pub bonds: Vec<(Vec<Id>, Vec<Id>)>,
+    /// What is asked of the values that parameters give.
+    pub requirements: Requirements,
     /// The equations of the causal graph as text, one line each.
     pub texts: Vec<String>,
 }
@@ -121,7 +126,7 @@ pub struct Output {
 /// Derives the state equations.
 ///
 /// # Errors
-/// Algebraic loops, transformers that are not linear, energies that cannot be found.
+/// Algebraic loops, transformers that are not linear, energies that cannot be found, numbers that no physics allows.
 pub fn derive(causal: &CausalGraph) -> Staged<StateEquations> {
     signals::Signals::new(causal).derive()
 }

@@ -106,6 +106,8 @@ impl<'a> Signals<'a> {
         if !self.faults.is_empty() {
             return Err(self.faults);
         }
+        let mut requirements = self.requirements();
+        requirements.decide(&self.graph.parameters)?;
         Ok(StateEquations {
             pool: self.pool,
             parameters: self.graph.parameters.clone(),
@@ -121,6 +123,7 @@ impl<'a> Signals<'a> {
             projections,
             reactions,
             bonds,
+            requirements,
             texts,
         })
     }

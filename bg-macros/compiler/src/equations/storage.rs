@@ -5,13 +5,12 @@
 use std::collections::BTreeMap;
 
 use super::EquationFault;
-use super::reactions::MULTIPLIERS;
 use super::signals::Signals;
 use super::value::Value;
 use crate::ast::{ElementKind, TrackKind};
-use crate::expr::{Environment, Id, Node, Symbol, antiderivative, derivative, evaluate, substitute};
+use crate::expr::{Id, Node, Symbol, antiderivative, derivative, substitute};
 use crate::fault::Fault;
-use crate::graph::{BondGraph, Element, Law, NodeId, Storage, Term};
+use crate::graph::{BondGraph, Element, Law, NodeId, Storage};
 
 /// Atoms that stand for a storage's own state start here, apart from those of linear laws.
 const STATE_ATOMS: u32 = 32;
@@ -127,7 +126,7 @@ impl Signals<'_> {
     }
 
     /// Atoms in the place of a storage's own state.
-    fn state_atoms(&mut self, components: usize) -> (Vec<Symbol>, Value) {
+    pub(super) fn state_atoms(&mut self, components: usize) -> (Vec<Symbol>, Value) {
         let atoms: Vec<Symbol> = (STATE_ATOMS..).take(components).map(Symbol::Atom).collect();
         let value = Value(atoms.iter().map(|&atom| self.pool.symbol(atom)).collect());
         (atoms, value)
@@ -154,75 +153,10 @@ impl Signals<'_> {
         substitute(&mut self.pool, &[found], &|symbol| (symbol == atoms[0]).then_some(state.0[0]))[0]
     }
 
-    /// Tests the user's energy against the law at a few states: d(energy)/d(state) = law.
-    fn check_energy(&mut self, node: NodeId, element: &Element, term: &Term) {
-        let switches = self.switches.len();
-        let components = self.graph.bond(self.graph.node(node).bonds[0]).cardinality;
-        let (atoms, variable) = self.state_atoms(components);
-        let law = self.storage_law(node, element, &variable);
-        let energy = self.evaluate(term, Some(&variable)).0[0];
-        let one = self.pool.one();
-        let mut pairs = Vec::new();
-        for (&atom, &expected) in atoms.iter().zip(&law.0) {
-            let slope = derivative(&mut self.pool, &[energy], &BTreeMap::from([(atom, one)]))[0];
-            pairs.extend([slope, expected]);
-        }
-        let agree = self.agree_at_samples(&pairs);
-        self.switches.truncate(switches);
-        if !agree {
-            let definition = self.graph.node(node);
-            let (symbol, name) = (definition.kind.symbol(), definition.name.text.clone());
-            self.fault_once(Fault::new(term.span, &EquationFault::EnergyOfOtherLaw { symbol, name }));
-        }
-    }
-
-    fn fault_once(&mut self, fault: Fault) {
+    pub(super) fn fault_once(&mut self, fault: Fault) {
         if self.faults.iter().all(|known| known.message != fault.message) {
             self.faults.push(fault);
         }
-    }
-
-    /// Whether consecutive pairs of expressions have equal values at sample points, in either branch of every switch.
-    fn agree_at_samples(&mut self, pairs: &[Id]) -> bool {
-        let parameters: Vec<f64> = self.graph.parameters.iter().map(|parameter| parameter.default).collect();
-        let guards: Vec<Id> = self.switches.iter().map(|switch| switch.guard).collect();
-        let (guards, pairs) = (self.without_multipliers(&guards), self.without_multipliers(pairs));
-        // Irregular values of both signs, so that no term vanishes by symmetry.
-        [0.37, -0.53, 1.21, -1.73].iter().all(|&scale| {
-            let sample = |k: usize| scale * (1.0 + 0.11 * f64::from(u32::try_from(k % 97).unwrap_or(0)));
-            let states: Vec<f64> = (0..self.states.len()).map(sample).collect();
-            let atoms: Vec<f64> = (0..STATE_ATOMS as usize + 9).map(sample).collect();
-            let inputs = vec![scale; self.graph.inputs.len()];
-            let unknowns = vec![scale; self.graph.guesses.len()];
-            let mut negative = vec![false; guards.len()];
-            let point = |negative: &[bool], roots: &[Id]| {
-                let environment = Environment {
-                    time: scale.abs(),
-                    states: &states,
-                    parameters: &parameters,
-                    inputs: &inputs,
-                    unknowns: &unknowns,
-                    atoms: &atoms,
-                    slopes: &[],
-                    rates: &[],
-                    negative,
-                };
-                evaluate(&self.pool, roots, &environment)
-            };
-            negative = point(&negative, &guards).iter().map(|&guard| guard < 0.0).collect();
-            point(&negative, &pairs).chunks_exact(2).all(|pair| {
-                // Rounding of sums of a few terms; a wrong energy differs in the first digits.
-                (pair[0] - pair[1]).abs() <= 1e-9 * (pair[0].abs() + pair[1].abs() + 1e-300)
-                    || pair.iter().any(|value| !value.is_finite())
-            })
-        })
-    }
-
-    /// The expressions with a number in the place of every reaction.
-    fn without_multipliers(&mut self, of: &[Id]) -> Vec<Id> {
-        let number = self.pool.number(0.83);
-        let is_multiplier = |symbol| matches!(symbol, Symbol::Atom(index) if index >= MULTIPLIERS);
-        substitute(&mut self.pool, of, &|symbol| is_multiplier(symbol).then_some(number))
     }
 
     /// The power that enters through storages whose law other quantities modulate: the energy's change at rest of the

@@ -23,18 +23,21 @@ impl Signals<'_> {
                 let inner = self.evaluate(inner, variable);
                 inner.negate(&mut self.pool)
             }
-            TermKind::Binary(operator, left, right) => {
-                let (left, right) = (self.evaluate(left, variable), self.evaluate(right, variable));
-                let pool = &mut self.pool;
-                match operator {
-                    BinaryOperator::Add => left.add(pool, &right),
-                    BinaryOperator::Subtract => {
-                        let right = right.negate(pool);
-                        left.add(pool, &right)
+            TermKind::Chain(first, rest) => {
+                let first = self.evaluate(first, variable);
+                rest.iter().fold(first, |left, operation| {
+                    let right = self.evaluate(&operation.operand, variable);
+                    let pool = &mut self.pool;
+                    match operation.operator {
+                        BinaryOperator::Add => left.add(pool, &right),
+                        BinaryOperator::Subtract => {
+                            let right = right.negate(pool);
+                            left.add(pool, &right)
+                        }
+                        BinaryOperator::Multiply => left.multiply(pool, &right),
+                        BinaryOperator::Divide => left.divide(pool, right.0[0]),
                     }
-                    BinaryOperator::Multiply => left.multiply(pool, &right),
-                    BinaryOperator::Divide => left.divide(pool, right.0[0]),
-                }
+                })
             }
             TermKind::Call(builtin, arguments) => {
                 let arguments: Vec<Value> = arguments.iter().map(|part| self.evaluate(part, variable)).collect();
@@ -201,6 +204,7 @@ impl Signals<'_> {
             B::RotationX => return Value::rotation(pool, 0, arguments[0].0[0]),
             B::RotationY => return Value::rotation(pool, 1, arguments[0].0[0]),
             B::RotationZ => return Value::rotation(pool, 2, arguments[0].0[0]),
+            B::Root => return Value::scalar(pool.laminar_root(arguments[0].0[0], arguments[1].0[0])),
             B::Sqrt => Function::Sqrt,
             B::Sin => Function::Sin,
             B::Cos => Function::Cos,

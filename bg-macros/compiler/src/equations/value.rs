@@ -17,11 +17,7 @@ impl Value {
 
     /// Its shape.
     pub fn shape(&self) -> Shape {
-        match self.0.len() {
-            1 => Shape::Scalar,
-            3 => Shape::Vector,
-            _ => Shape::Matrix,
-        }
+        Shape::of_components(self.0.len())
     }
 
     /// Zero of this many components.

@@ -35,6 +35,17 @@ impl Pool {
         if negative == positive { negative } else { self.intern(Node::Select { switch, negative, positive }) }
     }
 
+    /// The square root of `x` with the sign of `x`, linear for `x` small beside `laminar`: x / (x^2 + laminar^2)^(1/4). Odd,
+    /// monotone and differentiable any number of times for `laminar` above 0.
+    /// Source: Modelica Standard Library, `Modelica.Fluid.Utilities.regRoot`.
+    pub fn laminar_root(&mut self, x: Id, laminar: Id) -> Id {
+        let squares = [self.powi(x, 2), self.powi(laminar, 2)];
+        let radius = self.sum(&squares);
+        let radius = self.call(Function::Sqrt, &[radius]);
+        let root = self.call(Function::Sqrt, &[radius]);
+        self.div(x, root)
+    }
+
     /// The exact value, where it is the same at run time on every machine.
     fn exact(&self, function: Function, arguments: &[Id]) -> Option<f64> {
         let first = self.as_number(arguments[0])?;
@@ -75,7 +86,7 @@ fn parity(function: Function) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expr::Symbol;
+    use crate::expr::{Environment, Symbol, evaluate, gradient};
 
     #[test]
     fn exact_values_fold() {
@@ -150,6 +161,26 @@ mod tests {
             let power = pool.call(Function::Pow, &[x, number]);
             assert_eq!(*pool.node(power), Node::Call(Function::Pow, [x, number].into()));
         }
+    }
+
+    #[test]
+    fn a_root_with_a_laminar_range_is_odd_monotone_and_smooth() {
+        let mut pool = Pool::new();
+        let (x, laminar) = (pool.symbol(Symbol::State(0)), pool.symbol(Symbol::State(1)));
+        let root = pool.laminar_root(x, laminar);
+        let opposite = pool.neg(x);
+        let back = pool.laminar_root(opposite, laminar);
+        assert_eq!(back, pool.neg(root));
+        let slope = gradient(&mut pool, root, &[Symbol::State(0)])[0];
+        let second = gradient(&mut pool, slope, &[Symbol::State(0)])[0];
+        let at = |x: f64| {
+            evaluate(&pool, &[root, slope, second], &Environment { states: &[x, 4.0], ..Environment::default() })
+        };
+        // Linear at zero, with the slope 1 / sqrt(laminar); the root far from it, to laminar^2 / (4 x^2).
+        assert_eq!(at(0.0), [0.0, 0.5, 0.0]);
+        let far = at(4e4)[0] / 200.0 - 1.0;
+        assert!((far + 0.25e-8).abs() < 1e-12, "{far}");
+        assert!((-400..=400).all(|k| at(0.1 * f64::from(k))[1] > 0.0));
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod pool;
 mod product;
 #[cfg(test)]
 pub(crate) mod random;
+mod sign;
 mod substitute;
 mod sum;
 mod text;
@@ -24,5 +25,6 @@ pub use node::{Function, Id, Node, Number, Symbol};
 pub use polynomial::{Monomials, monomials, same_polynomial};
 pub use pool::{Pool, children};
 pub(crate) use product::MOST_EXPONENT;
+pub use sign::{Signs, signs};
 pub use substitute::{Branch, substitute, substitute_switched};
 pub use text::text;

@@ -105,6 +105,12 @@ impl Pool {
         self.reachable(roots).into_iter().filter_map(symbol).collect()
     }
 
+    /// Whether the roots contain a switched value.
+    #[must_use]
+    pub fn has_select(&self, roots: &[Id]) -> bool {
+        self.reachable(roots).into_iter().any(|id| matches!(self.node(id), Node::Select { .. }))
+    }
+
     /// Gives each state another index, `to[k]` for `k`; the indices are the same all in all. Nodes keep their ids, and so the
     /// order of what they are sums and products of.
     pub fn renumber_states(&mut self, to: &[u32]) {

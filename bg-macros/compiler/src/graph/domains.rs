@@ -147,7 +147,13 @@ fn check(graph: &mut BondGraph, efforts: &[Option<Dimension>], faults: &mut Vec<
         let graph: &BondGraph = graph;
         let types = Types::new(graph, efforts);
         for definition in &graph.lets {
-            let (_, found) = types.of(&definition.value, None, faults);
+            let (shape, found) = types.of(&definition.value, None, faults);
+            if let Some(clause) = &definition.clause
+                && shape != Shape::of_components(clause.components)
+            {
+                let (what, expected) = (clause.what.clone(), Shape::of_components(clause.components));
+                faults.push(Fault::new(definition.value.span, &GraphFault::ShapeOf { what, expected, found: shape }));
+            }
             if let (Some(declared), Quantity::Known(found)) = (definition.dimension, found)
                 && declared != found
             {

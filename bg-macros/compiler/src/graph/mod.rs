@@ -10,11 +10,12 @@ mod term;
 mod typing;
 
 use crate::ast::{ElementKind, Name, Role, TrackKind};
+use crate::clause::Clause;
 use crate::units::{Dimension, Domain};
 
 pub use fault::GraphFault;
 pub use resolve::resolve;
-pub use term::{Builtin, Reference, Term, TermKind};
+pub use term::{Builtin, Operation, Reference, Term, TermKind};
 pub use typing::Shape;
 
 /// A resolved multibond graph. Indices of its tables are typed by their names: `NodeId`, `BondId`.
@@ -110,6 +111,8 @@ pub struct Let {
     pub dimension: Option<Dimension>,
     /// The unit as written.
     pub unit: Option<String>,
+    /// The clause of a mechanism word that it stands for, if any.
+    pub clause: Option<Clause>,
 }
 
 /// A junction or an element.
@@ -310,6 +313,32 @@ impl BondGraph {
             NodeKind::Element(element) => Some(element),
             NodeKind::Zero | NodeKind::One => None,
         }
+    }
+
+    /// Whether a term is no more than the clause of a mechanism word, or a component of it.
+    #[must_use]
+    pub fn is_clause(&self, term: &Term) -> bool {
+        match &term.kind {
+            TermKind::Reference(Reference::Let(index)) => self.lets[*index].clause.is_some(),
+            TermKind::Component(inner, _) => self.is_clause(inner),
+            _ => false,
+        }
+    }
+
+    /// Hands every part of every expression to `each`.
+    pub fn each_term<'g>(&'g self, each: &mut dyn FnMut(&'g Term)) {
+        self.lets.iter().for_each(|definition| definition.value.visit(each));
+        for node in &self.nodes {
+            let NodeKind::Element(element) = &node.kind else { continue };
+            let clauses = [&element.frame, &element.displacement, &element.start, &element.energy];
+            element.law.term().visit(each);
+            clauses.into_iter().flatten().for_each(|term| term.visit(each));
+        }
+        self.tracks.iter().filter_map(|track| track.start.as_ref()).for_each(|term| term.visit(each));
+        self.closes.iter().for_each(|close| close.gap.visit(each));
+        self.observations.iter().for_each(|observation| observation.value.visit(each));
+        self.guesses.iter().for_each(|guess| guess.visit(each));
+        self.integrals.iter().for_each(|integral| integral.value.visit(each));
     }
 
     /// +1 where the bond's half arrow points into the node, -1 where it points out.

@@ -27,8 +27,8 @@ pub enum TermKind {
     Component(Box<Term>, usize),
     /// `-a`
     Negate(Box<Term>),
-    /// `a + b` and its like.
-    Binary(BinaryOperator, Box<Term>, Box<Term>),
+    /// Operators that bind alike, from left to right.
+    Chain(Box<Term>, Vec<Operation>),
     /// A function.
     Call(Builtin, Vec<Term>),
     /// A vector, or a matrix by its rows.
@@ -39,6 +39,17 @@ pub enum TermKind {
     Guess(usize),
     /// A time integral since t = 0.
     Integral(usize),
+}
+
+/// What a chain does next.
+#[derive(Clone, Debug)]
+pub struct Operation {
+    /// The operator.
+    pub operator: BinaryOperator,
+    /// Where it stands.
+    pub span: Span,
+    /// Its right side.
+    pub operand: Term,
 }
 
 /// A quantity of the graph.
@@ -81,6 +92,7 @@ pub enum Reference {
 #[expect(missing_docs, reason = "the names are those of the language; `NAMES` lists them")]
 pub enum Builtin {
     Sqrt,
+    Root,
     Sin,
     Cos,
     Tan,
@@ -107,8 +119,9 @@ pub enum Builtin {
 }
 
 /// Name, function and number of arguments.
-const NAMES: [(&str, Builtin, usize); 24] = [
+const NAMES: [(&str, Builtin, usize); 25] = [
     ("sqrt", Builtin::Sqrt, 1),
+    ("root", Builtin::Root, 2),
     ("sin", Builtin::Sin, 1),
     ("cos", Builtin::Cos, 1),
     ("tan", Builtin::Tan, 1),
@@ -154,18 +167,27 @@ impl Builtin {
 }
 
 impl Term {
+    /// Hands every part of the expression to `each`, itself first, in the order of reading.
+    pub fn visit<'t>(&'t self, each: &mut dyn FnMut(&'t Term)) {
+        each(self);
+        match &self.kind {
+            TermKind::Number(_) | TermKind::Reference(_) | TermKind::Guess(_) | TermKind::Integral(_) => {}
+            TermKind::Component(inner, _) | TermKind::Negate(inner) => inner.visit(each),
+            TermKind::Chain(first, rest) => {
+                first.visit(each);
+                rest.iter().for_each(|operation| operation.operand.visit(each));
+            }
+            TermKind::Call(_, parts) | TermKind::Vector(parts) => parts.iter().for_each(|part| part.visit(each)),
+            TermKind::If(_, parts) => parts.iter().for_each(|part| part.visit(each)),
+        }
+    }
+
     /// The references in the expression itself (not behind its lets), in the order of reading.
     pub fn references(&self, found: &mut Vec<Reference>) {
-        match &self.kind {
-            TermKind::Reference(reference) => found.push(*reference),
-            TermKind::Number(_) | TermKind::Guess(_) | TermKind::Integral(_) => {}
-            TermKind::Component(inner, _) | TermKind::Negate(inner) => inner.references(found),
-            TermKind::Binary(_, left, right) => {
-                left.references(found);
-                right.references(found);
+        self.visit(&mut |part| {
+            if let TermKind::Reference(reference) = part.kind {
+                found.push(reference);
             }
-            TermKind::Call(_, parts) | TermKind::Vector(parts) => parts.iter().for_each(|part| part.references(found)),
-            TermKind::If(_, parts) => parts.iter().for_each(|part| part.references(found)),
-        }
+        });
     }
 }

@@ -5,7 +5,9 @@
 
 use std::cell::RefCell;
 
-use super::term::{Builtin, Reference, Term, TermKind};
+use proc_macro2::Span;
+
+use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::{BondGraph, GraphFault, NodeId, NodeKind};
 use crate::ast::{BinaryOperator, TrackKind};
 use crate::fault::{Explain, Fault};
@@ -27,6 +29,16 @@ impl Shape {
     #[must_use]
     pub fn of_cardinality(cardinality: usize) -> Self {
         if cardinality == 1 { Self::Scalar } else { Self::Vector }
+    }
+
+    /// The shape of this many components: 1, 3 or 9.
+    #[must_use]
+    pub fn of_components(components: usize) -> Self {
+        match components {
+            1 => Self::Scalar,
+            3 => Self::Vector,
+            _ => Self::Matrix,
+        }
     }
 
     /// The names of the components behind a quantity's name: none, `_x`.., `_11`..
@@ -106,7 +118,8 @@ impl<'a> Types<'a> {
         let known = self.lets.borrow()[index];
         known.unwrap_or_else(|| {
             let definition = &self.graph.lets[index];
-            let (shape, quantity) = self.silently(&definition.value, None);
+            let (found, quantity) = self.silently(&definition.value, None);
+            let shape = definition.clause.as_ref().map_or(found, |clause| Shape::of_components(clause.components));
             let typed = (shape, definition.dimension.map_or(quantity, Quantity::Known));
             self.lets.borrow_mut()[index] = Some(typed);
             typed
@@ -147,6 +160,14 @@ impl<'a> Types<'a> {
     }
 }
 
+/// The left or right side of an operator.
+#[derive(Clone, Copy)]
+struct Operand {
+    typed: Typed,
+    /// Whether it is a literal zero, which fits any shape.
+    is_zero: bool,
+}
+
 struct Checker<'a, 'g> {
     types: &'a Types<'g>,
     variable: Option<Typed>,
@@ -156,8 +177,8 @@ struct Checker<'a, 'g> {
 }
 
 impl Checker<'_, '_> {
-    fn fault(&mut self, term: &Term, fault: &impl Explain) {
-        self.faults.push(Fault::new(term.span, fault));
+    fn fault(&mut self, span: Span, fault: &impl Explain) {
+        self.faults.push(Fault::new(span, fault));
     }
 
     fn check(&mut self, term: &Term) -> Typed {
@@ -169,11 +190,11 @@ impl Checker<'_, '_> {
             TermKind::Component(inner, _) => {
                 let (shape, quantity) = self.check(inner);
                 if shape != Shape::Vector {
-                    self.fault(term, &GraphFault::NoComponent { found: shape });
+                    self.fault(term.span, &GraphFault::NoComponent { found: shape });
                 }
                 (Shape::Scalar, quantity)
             }
-            TermKind::Binary(operator, left, right) => self.binary(term, *operator, left, right),
+            TermKind::Chain(first, rest) => self.chain(first, rest),
             TermKind::Call(builtin, arguments) => self.call(term, *builtin, arguments),
             TermKind::Vector(parts) => self.vector(term, parts),
             TermKind::If(_, parts) => {
@@ -195,19 +216,28 @@ impl Checker<'_, '_> {
 
     /// Two terms that must have the same shape and unit.
     fn alike(&mut self, term: &Term, what: &'static str, left: &Term, right: &Term) -> Typed {
-        let (left_shape, left_unit) = self.check(left);
-        let (right_shape, right_unit) = self.check(right);
-        if left_shape != right_shape && !is_zero(left) && !is_zero(right) {
-            self.fault(term, &GraphFault::Shapes { what, left: left_shape, right: right_shape });
-        }
-        let shape = if is_zero(left) { right_shape } else { left_shape };
-        (shape, self.same_unit(term, what, left_unit, right_unit))
+        let (left, right) = (self.operand(left), self.operand(right));
+        self.joined(term.span, what, left, right).typed
     }
 
-    fn same_unit(&mut self, term: &Term, what: &str, left: Quantity, right: Quantity) -> Quantity {
+    fn operand(&mut self, term: &Term) -> Operand {
+        Operand { typed: self.check(term), is_zero: is_zero(term) }
+    }
+
+    /// Two operands that must have the same shape and unit.
+    fn joined(&mut self, span: Span, what: &'static str, left: Operand, right: Operand) -> Operand {
+        let ((left_shape, left_unit), (right_shape, right_unit)) = (left.typed, right.typed);
+        if left_shape != right_shape && !left.is_zero && !right.is_zero {
+            self.fault(span, &GraphFault::Shapes { what, left: left_shape, right: right_shape });
+        }
+        let shape = if left.is_zero { right_shape } else { left_shape };
+        Operand { typed: (shape, self.same_unit(span, what, left_unit, right_unit)), is_zero: false }
+    }
+
+    fn same_unit(&mut self, span: Span, what: &str, left: Quantity, right: Quantity) -> Quantity {
         match (left, right) {
             (Quantity::Known(a), Quantity::Known(b)) if a != b => {
-                self.fault(term, &GraphFault::Units { what: format!("cannot {what} these"), left: a, right: b });
+                self.fault(span, &GraphFault::Units { what: format!("cannot {what} these"), left: a, right: b });
                 Quantity::Unknown
             }
             (Quantity::Known(dimension), _) | (_, Quantity::Known(dimension)) => Quantity::Known(dimension),
@@ -216,48 +246,60 @@ impl Checker<'_, '_> {
         }
     }
 
-    fn binary(&mut self, term: &Term, operator: BinaryOperator, left: &Term, right: &Term) -> Typed {
-        match operator {
-            BinaryOperator::Add => self.alike(term, "add", left, right),
-            BinaryOperator::Subtract => self.alike(term, "subtract", left, right),
-            BinaryOperator::Multiply => {
-                let (a, left_unit) = self.check(left);
-                let (b, right_unit) = self.check(right);
-                let shape = match (a, b) {
-                    (Shape::Scalar, other) | (other, Shape::Scalar) => other,
-                    (Shape::Matrix, other) => other,
-                    (Shape::Vector, _) => {
-                        self.fault(term, &GraphFault::Shapes { what: "multiply", left: a, right: b });
-                        a
-                    }
-                };
-                (shape, times(left_unit, right_unit))
-            }
-            BinaryOperator::Divide => {
-                let (a, left_unit) = self.check(left);
-                let (b, right_unit) = self.check(right);
-                if b != Shape::Scalar {
-                    self.fault(term, &GraphFault::Shapes { what: "divide", left: a, right: b });
+    /// Operations from left to right.
+    fn chain(&mut self, first: &Term, rest: &[Operation]) -> Typed {
+        let mut left = self.operand(first);
+        for Operation { operator, span, operand } in rest {
+            let right = self.operand(operand);
+            left = match operator {
+                BinaryOperator::Add => self.joined(*span, "add", left, right),
+                BinaryOperator::Subtract => self.joined(*span, "subtract", left, right),
+                BinaryOperator::Multiply => {
+                    Operand { typed: self.product(*span, left.typed, right.typed), is_zero: false }
                 }
-                (a, per(left_unit, right_unit))
-            }
+                BinaryOperator::Divide => {
+                    Operand { typed: self.quotient(*span, left.typed, right.typed), is_zero: false }
+                }
+            };
         }
+        left.typed
+    }
+
+    fn product(&mut self, span: Span, (a, left_unit): Typed, (b, right_unit): Typed) -> Typed {
+        let shape = match (a, b) {
+            (Shape::Scalar, other) | (other, Shape::Scalar) => other,
+            (Shape::Matrix, other) => other,
+            (Shape::Vector, _) => {
+                self.fault(span, &GraphFault::Shapes { what: "multiply", left: a, right: b });
+                a
+            }
+        };
+        (shape, times(left_unit, right_unit))
+    }
+
+    fn quotient(&mut self, span: Span, (a, left_unit): Typed, (b, right_unit): Typed) -> Typed {
+        if b != Shape::Scalar {
+            self.fault(span, &GraphFault::Shapes { what: "divide", left: a, right: b });
+        }
+        (a, per(left_unit, right_unit))
     }
 
     fn vector(&mut self, term: &Term, parts: &[Term]) -> Typed {
         let mut shape = None;
         let mut unit = Quantity::Any;
         if parts.len() != 3 {
-            let what = "a vector of other than three components".to_owned();
-            self.fault(term, &GraphFault::ShapeOf { what, expected: Shape::Vector, found: Shape::Scalar });
+            self.fault(term.span, &GraphFault::VectorLength { found: parts.len() });
         }
         for part in parts {
             let (part_shape, part_unit) = self.check(part);
             let first = *shape.get_or_insert(part_shape);
             if part_shape != first || part_shape == Shape::Matrix {
-                self.fault(part, &GraphFault::Shapes { what: "put into one vector", left: first, right: part_shape });
+                self.fault(
+                    part.span,
+                    &GraphFault::Shapes { what: "put into one vector", left: first, right: part_shape },
+                );
             }
-            unit = self.same_unit(part, "put into one vector", unit, part_unit);
+            unit = self.same_unit(part.span, "put into one vector", unit, part_unit);
         }
         let shape = if shape == Some(Shape::Vector) { Shape::Matrix } else { Shape::Vector };
         (shape, unit)
@@ -267,7 +309,7 @@ impl Checker<'_, '_> {
         let (found, unit) = self.check(argument);
         if found != expected {
             let what = format!("the argument of `{}`", builtin.name());
-            self.fault(argument, &GraphFault::ShapeOf { what, expected, found });
+            self.fault(argument.span, &GraphFault::ShapeOf { what, expected, found });
         }
         unit
     }
@@ -277,7 +319,7 @@ impl Checker<'_, '_> {
             && found != Dimension::NONE
         {
             let what = format!("the argument of `{}`", builtin.name());
-            self.fault(argument, &GraphFault::NotDimensionless { what, found });
+            self.fault(argument.span, &GraphFault::NotDimensionless { what, found });
         }
     }
 
@@ -290,7 +332,15 @@ impl Checker<'_, '_> {
                 self.number(builtin, &arguments[0]);
                 (Scalar, pure)
             }
-            B::Sqrt => (Scalar, self.root(term, &arguments[0])),
+            B::Sqrt => {
+                let unit = self.argument(builtin, &arguments[0], Scalar);
+                (Scalar, self.root(term, unit))
+            }
+            B::Root => {
+                self.argument(builtin, &arguments[0], Scalar);
+                let (_, unit) = self.alike(term, "compare", &arguments[0], &arguments[1]);
+                (Scalar, self.root(term, unit))
+            }
             B::Atan2 => {
                 self.argument(builtin, &arguments[0], Scalar);
                 self.alike(term, "compare", &arguments[0], &arguments[1]);
@@ -319,12 +369,13 @@ impl Checker<'_, '_> {
         times(left, right)
     }
 
-    fn root(&mut self, term: &Term, argument: &Term) -> Quantity {
-        match self.argument(Builtin::Sqrt, argument, Shape::Scalar) {
+    /// The unit of a square root of a quantity in `unit`.
+    fn root(&mut self, term: &Term, unit: Quantity) -> Quantity {
+        match unit {
             Quantity::Known(found) => match found.root() {
                 Some(root) => Quantity::Known(root),
                 None => {
-                    self.fault(term, &GraphFault::NoRoot { found });
+                    self.fault(term.span, &GraphFault::NoRoot { found });
                     Quantity::Unknown
                 }
             },

@@ -4,6 +4,7 @@
 
 use super::{End, Expansion, MechanismFault, expression};
 use crate::ast::{Contact, Drive, DriveKind, Element, ElementKind, Expression, ExpressionKind, Item, Name, Spring};
+use crate::clause::{Allowed, Clause, Given};
 use crate::fault::near_miss;
 
 impl Expansion<'_> {
@@ -17,9 +18,10 @@ impl Expansion<'_> {
             self.fault(span, &MechanismFault::MissingClause { word, name, clause, why });
             return;
         };
-        self.bind(&format!("{name}.stiffness"), "N/m", stiffness);
+        let clause = |what: &str| Clause::new(format!("the {what} of spring `{name}`"), 1);
+        self.bind(&format!("{name}.stiffness"), "N/m", stiffness, stiff(clause("stiffness")));
         match &spring.length {
-            Some(length) => self.bind(&format!("{name}.length"), "m", length),
+            Some(length) => self.bind(&format!("{name}.length"), "m", length, clause("length").given(Given::Free)),
             None => self.text(span, &format!("let {name}.length: m = 0;")),
         }
         self.force_junction(span, name, (&a, &b), (a.arm.clone(), b.arm.clone()));
@@ -35,7 +37,8 @@ impl Expansion<'_> {
             ),
         );
         if let Some(damping) = &spring.damping {
-            self.bind(&format!("{name}.damping"), "N*s/m", damping);
+            let clause = clause("damping").allowed(Allowed::NotNegative);
+            self.bind(&format!("{name}.damping"), "N*s/m", damping, clause);
             self.text(span, &format!("R {name}.damper = {name}.damping; {name}.stretch -> {name}.damper;"));
         }
     }
@@ -178,7 +181,8 @@ impl Expansion<'_> {
             return;
         };
         let units = if domain == "rotation" { ("N*m/rad", "N*m*s/rad") } else { ("N/m", "N*s/m") };
-        self.bind(&format!("{name}.stiffness"), units.0, stiffness);
+        let clause = |what: &str| Clause::new(format!("the {what} of drive `{name}`"), 1);
+        self.bind(&format!("{name}.stiffness"), units.0, stiffness, stiff(clause("stiffness")));
         self.source(drive, false);
         self.text(
             span,
@@ -189,7 +193,7 @@ impl Expansion<'_> {
             ),
         );
         if let Some(damping) = &drive.damping {
-            self.bind(&format!("{name}.damping"), units.1, damping);
+            self.bind(&format!("{name}.damping"), units.1, damping, clause("damping").allowed(Allowed::NotNegative));
             self.text(span, &format!("R {name}.damper = {name}.damping; {name}.lag -> {name}.damper;"));
         }
     }
@@ -213,13 +217,20 @@ impl Expansion<'_> {
     }
 }
 
+/// What a stiffness must be.
+pub(super) fn stiff(clause: Clause) -> Clause {
+    clause.given(Given::State).allowed(Allowed::NotNegative)
+}
+
 /// All names in an expression.
 fn names(expression: &Expression) -> Vec<String> {
     match &expression.kind {
         ExpressionKind::Number(_) => Vec::new(),
         ExpressionKind::Name(name) => vec![name.clone()],
         ExpressionKind::Negate(inner) => names(inner),
-        ExpressionKind::Binary(_, left, right) => [names(left), names(right)].concat(),
+        ExpressionKind::Chain(first, rest) => {
+            [&**first].into_iter().chain(rest.iter().map(|operation| &operation.operand)).flat_map(names).collect()
+        }
         ExpressionKind::Call(_, parts) | ExpressionKind::Vector(parts) => parts.iter().flat_map(names).collect(),
         ExpressionKind::If(choice) => {
             [&choice.left, &choice.right, &choice.then, &choice.otherwise].into_iter().flat_map(names).collect()

@@ -2,8 +2,9 @@
 //!
 //! In: `ast::Body`. Out: bond-graph words. Momenta and the tensor are in inertial axes; the tensor turns with the body.
 
-use super::{AXES, Expansion, MechanismFault, is_vector};
+use super::{AXES, Expansion, MechanismFault, ORIGIN, is_among, is_vector, unknown_point};
 use crate::ast::{Body, Expression, ExpressionKind, Name, Part, Shape};
+use crate::clause::{Allowed, Clause, Given};
 
 impl Expansion<'_> {
     /// Expands a body.
@@ -56,13 +57,16 @@ impl Expansion<'_> {
         };
         match (&body.mass, &body.inertia) {
             (Some(mass), Some(inertia)) => {
-                self.bind(&format!("{name}.mass"), "kg", mass);
+                self.bind(&format!("{name}.mass"), "kg", mass, mass_of(name));
                 let principal = matches!(&inertia.kind, ExpressionKind::Vector(parts) if !parts.iter().any(is_vector));
+                let clause = Clause::new(format!("the inertia of body `{name}`"), if principal { 3 } else { 9 });
+                let clause = clause.allowed(Allowed::Inertia);
                 if principal {
-                    self.bind(&format!("{name}.moments"), "kg*m^2", inertia);
-                    self.text(inertia.span, &format!("let {name}.tensor = diagonal({name}.moments);"));
+                    self.bind(&format!("{name}.moments"), "kg*m^2", inertia, clause);
+                    let tensor = format!("let {name}.tensor = diagonal({name}.moments);");
+                    self.text_as(inertia.span, &tensor, &tensor_of(name));
                 } else {
-                    self.bind(&format!("{name}.tensor"), "kg*m^2", inertia);
+                    self.bind(&format!("{name}.tensor"), "kg*m^2", inertia, clause);
                 }
             }
             (None, _) => self.fault(span, &missing("mass")),
@@ -74,7 +78,10 @@ impl Expansion<'_> {
             self.fault(density.span, &MechanismFault::SuperfluousClause { word, name, clause: "density", why });
         }
         match &body.center {
-            Some(center) => self.bind(&format!("{name}.center"), "m", center),
+            Some(center) => {
+                let clause = Clause::new(format!("the center of body `{name}`"), 3);
+                self.bind(&format!("{name}.center"), "m", center, clause);
+            }
             None => self.text(span, &format!("let {name}.center: m = [0, 0, 0];")),
         }
     }
@@ -83,11 +90,12 @@ impl Expansion<'_> {
     fn mass_of_parts(&mut self, body: &Body) {
         let (name, span) = (&body.name.text, body.name.span);
         if let Some(density) = &body.density {
-            self.bind(&format!("{name}.density"), "kg/m^3", density);
+            let clause = Clause::new(format!("the density of body `{name}`"), 1).allowed(Allowed::NotNegative);
+            self.bind(&format!("{name}.density"), "kg/m^3", density, clause);
         }
         let parts: Vec<String> = (1..=body.parts.len()).map(|k| format!("{name}.part{k}")).collect();
-        for (part, label) in body.parts.iter().zip(&parts) {
-            self.part(body, part, label);
+        for (index, (part, label)) in body.parts.iter().zip(&parts).enumerate() {
+            self.part(body, part, label, &format!("part {} of body `{name}`", index + 1));
         }
         let sum = |term: &dyn Fn(&String) -> String| parts.iter().map(term).collect::<Vec<_>>().join(" + ");
         let masses = sum(&|part| format!("{part}.mass"));
@@ -98,22 +106,23 @@ impl Expansion<'_> {
                  outer({part}.offset, {part}.offset))"
             )
         });
-        self.text(
-            span,
-            &format!(
-                "let {name}.mass: kg = {masses}; let {name}.center: m = ({moments}) / {name}.mass;
-                 let {name}.tensor: kg*m^2 = {tensors};"
-            ),
-        );
+        // Solids of densities and edges that are not negative, some of them with a mass, have an inertia that can be.
+        self.text_as(span, &format!("let {name}.mass: kg = {masses};"), &mass_of(name).allowed(Allowed::Total));
+        self.text(span, &format!("let {name}.center: m = ({moments}) / {name}.mass;"));
+        self.text_as(span, &format!("let {name}.tensor: kg*m^2 = {tensors};"), &tensor_of(name));
         for part in &parts {
             self.text(span, &format!("let {part}.offset: m = {part}.place - {name}.center;"));
         }
     }
 
-    fn part(&mut self, body: &Body, part: &Part, label: &str) {
+    /// One solid; `words` name it.
+    fn part(&mut self, body: &Body, part: &Part, label: &str, words: &str) {
         let (name, span) = (&body.name.text, part.span);
+        let size = |what: &str, components| {
+            Clause::new(format!("the {what} of {words}"), components).allowed(Allowed::NotNegative)
+        };
         match (&part.density, &body.density) {
-            (Some(density), _) => self.bind(&format!("{label}.density"), "kg/m^3", density),
+            (Some(density), _) => self.bind(&format!("{label}.density"), "kg/m^3", density, size("density", 1)),
             (None, Some(_)) => self.text(span, &format!("let {label}.density = {name}.density;")),
             (None, None) => {
                 let (word, name, clause) = ("body", name.clone(), "density");
@@ -123,13 +132,15 @@ impl Expansion<'_> {
             }
         }
         match &part.at {
-            Some(place) => self.bind(&format!("{label}.place"), "m", place),
+            Some(place) => {
+                self.bind(&format!("{label}.place"), "m", place, Clause::new(format!("the place of {words}"), 3))
+            }
             None => self.text(span, &format!("let {label}.place: m = [0, 0, 0];")),
         }
         let pi = std::f64::consts::PI;
         match &part.shape {
-            Shape::Cuboid(size) => {
-                self.bind(&format!("{label}.size"), "m", size);
+            Shape::Cuboid(edges) => {
+                self.bind(&format!("{label}.size"), "m", edges, size("edges", 3));
                 let square = |axis: &str| format!("{label}.size.{axis} * {label}.size.{axis}");
                 let (x, y, z) = (square("x"), square("y"), square("z"));
                 self.text(
@@ -141,8 +152,8 @@ impl Expansion<'_> {
                 );
             }
             Shape::Cylinder { radius, length, axis } => {
-                self.bind(&format!("{label}.radius"), "m", radius);
-                self.bind(&format!("{label}.length"), "m", length);
+                self.bind(&format!("{label}.radius"), "m", radius, size("radius", 1));
+                self.bind(&format!("{label}.length"), "m", length, size("length", 1));
                 let across = format!("(3 * {label}.radius * {label}.radius + {label}.length * {label}.length) / 12");
                 let along = format!("{label}.radius * {label}.radius / 2");
                 let moments = AXES.map(|k| if k == *axis { along.clone() } else { across.clone() }).join(", ");
@@ -155,7 +166,7 @@ impl Expansion<'_> {
                 );
             }
             Shape::Sphere(radius) => {
-                self.bind(&format!("{label}.radius"), "m", radius);
+                self.bind(&format!("{label}.radius"), "m", radius, size("radius", 1));
                 self.text(
                     span,
                     &format!(
@@ -167,7 +178,8 @@ impl Expansion<'_> {
         }
         match &part.turned {
             Some(turned) => {
-                self.bind(&format!("{label}.turned"), "1", turned);
+                let clause = Clause::new(format!("the orientation of {words}"), 9).allowed(Allowed::Rotation);
+                self.bind(&format!("{label}.turned"), "1", turned, clause);
                 let tensor = format!("{label}.turned * {label}.upright * transpose({label}.turned)");
                 self.text(span, &format!("let {label}.tensor = {tensor};"));
             }
@@ -179,7 +191,8 @@ impl Expansion<'_> {
     fn points(&mut self, body: &Body) {
         let name = &body.name.text;
         for point in &body.points {
-            self.bind(&format!("{name}.{}.place", point.name.text), "m", &point.place);
+            let clause = Clause::new(format!("point `{}` of body `{name}`", point.name.text), 3);
+            self.bind(&format!("{name}.{}.place", point.name.text), "m", &point.place, clause);
         }
         let span = body.name.span;
         self.text(span, &format!("let {name}.origin.place: m = [0, 0, 0];"));
@@ -199,16 +212,20 @@ impl Expansion<'_> {
     /// Pose and motion at t = 0.
     fn start(&mut self, body: &Body) {
         let (name, span) = (&body.name.text, body.name.span);
+        let clause = |what: &str, components| {
+            Clause::new(format!("the {what} of body `{name}`"), components).given(Given::Start)
+        };
+        let orientation = clause("start orientation", 9).allowed(Allowed::Rotation);
         self.bind_or(
-            &format!("{name}.start.orientation"),
-            "1",
+            ("start.orientation", "1"),
             body.start_orientation.as_ref(),
             "identity()",
             &body.name,
+            orientation,
         );
         let reference = match &body.start_position {
             Some((point, place)) => {
-                self.bind(&format!("{name}.start.place"), "m", place);
+                self.bind(&format!("{name}.start.place"), "m", place, clause("start", 3));
                 point.as_ref().map_or("origin", |point| point.text.as_str()).to_owned()
             }
             None => {
@@ -216,11 +233,11 @@ impl Expansion<'_> {
                 "origin".to_owned()
             }
         };
-        if reference != "origin" && body.points.iter().all(|point| point.name.text != reference) {
-            let known = body.points.iter().map(|point| point.name.text.as_str());
-            let near = crate::fault::near_miss(&reference, known).map(str::to_owned);
-            let (body_name, point) = (name.clone(), reference.clone());
-            self.fault(span, &MechanismFault::UnknownPoint { body: body_name, point, near });
+        if let Some((Some(point), _)) = &body.start_position
+            && reference != ORIGIN
+            && !is_among(&body.points, &reference)
+        {
+            self.fault(point.span, &unknown_point(name, &reference, &body.points));
             return;
         }
         self.text(
@@ -230,15 +247,34 @@ impl Expansion<'_> {
                  ({name}.center - {name}.{reference}.place);"
             ),
         );
-        self.bind_or(&format!("{name}.start.velocity"), "m/s", body.start_velocity.as_ref(), "[0, 0, 0]", &body.name);
-        self.bind_or(&format!("{name}.start.spin"), "rad/s", body.start_spin.as_ref(), "[0, 0, 0]", &body.name);
+        let (velocity, spin) = (clause("start velocity", 3), clause("start spin", 3));
+        self.bind_or(("start.velocity", "m/s"), body.start_velocity.as_ref(), "[0, 0, 0]", &body.name, velocity);
+        self.bind_or(("start.spin", "rad/s"), body.start_spin.as_ref(), "[0, 0, 0]", &body.name, spin);
     }
 
-    /// Binds the user's expression, or the default where there is none.
-    fn bind_or(&mut self, name: &str, unit: &str, value: Option<&Expression>, default: &str, at: &Name) {
+    /// Binds the user's expression to a name of the body, or the default where there is none.
+    fn bind_or(
+        &mut self,
+        (name, unit): (&str, &str),
+        value: Option<&Expression>,
+        default: &str,
+        body: &Name,
+        clause: Clause,
+    ) {
+        let name = format!("{}.{name}", body.text);
         match value {
-            Some(value) => self.bind(name, unit, value),
-            None => self.text(at.span, &format!("let {name}: {unit} = {default};")),
+            Some(value) => self.bind(&name, unit, value, clause),
+            None => self.text(body.span, &format!("let {name}: {unit} = {default};")),
         }
     }
+}
+
+/// What the mass of a body must be.
+fn mass_of(body: &str) -> Clause {
+    Clause::new(format!("the mass of body `{body}`"), 1).allowed(Allowed::Positive)
+}
+
+/// What the tensor of a body must be that is made from what is looked at itself.
+fn tensor_of(body: &str) -> Clause {
+    Clause::new(format!("the tensor of body `{body}`"), 9)
 }

@@ -7,7 +7,7 @@ use crate::fault::Explain;
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum MechanismFault {
     UnknownBody { name: String, near: Option<String> },
-    UnknownPoint { body: String, point: String, near: Option<String> },
+    UnknownPoint { body: String, point: String, known: Vec<String>, near: Option<String> },
     MissingClause { word: &'static str, name: String, clause: &'static str, why: &'static str },
     SuperfluousClause { word: &'static str, name: String, clause: &'static str, why: &'static str },
     NoMass { name: String },
@@ -65,7 +65,10 @@ impl Explain for MechanismFault {
             | F::UnknownPoint { near: Some(near), .. }
             | F::UnknownTarget { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownBody { name, .. } => format!("declare `body {name} {{ ... }}`"),
-            F::UnknownPoint { point, .. } => format!("add `point {point} = [x, y, z];` to it"),
+            F::UnknownPoint { point, known, .. } => {
+                let known: Vec<String> = known.iter().map(|point| format!("`{point}`")).collect();
+                format!("use {}, or add `point {point} = [x, y, z];` to it", known.join(", "))
+            }
             F::MissingClause { clause, .. } => format!("add `{clause} ...;`"),
             F::SuperfluousClause { clause, .. } => format!("remove `{clause}`"),
             F::NoMass { .. } => {

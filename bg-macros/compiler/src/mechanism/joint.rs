@@ -6,8 +6,10 @@
 //! rotations are about inertial axes and their displacements integrate the relative angular velocity; without it they
 //! are direction cosines of the two bodies' axes, which the poses determine.
 
+use super::attachment::stiff;
 use super::{AXES, End, Expansion, MechanismFault, is_vector};
-use crate::ast::{Axis, Expression, Item, Joint, JointKind};
+use crate::ast::{Axis, Expression, ExpressionKind, Item, Joint, JointKind};
+use crate::clause::{Allowed, Clause, Given};
 
 impl JointKind {
     /// The axis of the free rotation that a drive can turn.
@@ -36,6 +38,7 @@ impl JointKind {
 
 /// One held rotation: its name, the direction of its moment and its displacement as text.
 struct HeldRotation {
+    axis: Axis,
     label: String,
     direction: String,
     displacement: String,
@@ -63,8 +66,14 @@ impl Expansion<'_> {
         let name = &joint.name.text;
         let mut complete = true;
         let missing = |clause, why| MechanismFault::MissingClause { word: "joint", name: name.clone(), clause, why };
+        let clause = |what: &str, value: &Expression| {
+            Clause::new(format!("the {what} of joint `{name}`"), if is_vector(value) { 3 } else { 1 })
+        };
+        // What a rigid joint does not use may be anything.
+        let stiff = |clause: Clause| if joint.rigid { clause.given(Given::State) } else { stiff(clause) };
+        let damped = |clause: Clause| if joint.rigid { clause } else { clause.allowed(Allowed::NotNegative) };
         match &joint.stiffness {
-            Some(value) => self.bind(&format!("{name}.stiffness"), "N/m", value),
+            Some(value) => self.bind(&format!("{name}.stiffness"), "N/m", value, stiff(clause("stiffness", value))),
             None if joint.rigid => {}
             None => {
                 complete = false;
@@ -72,7 +81,7 @@ impl Expansion<'_> {
             }
         }
         if let Some(value) = &joint.damping {
-            self.bind(&format!("{name}.damping"), "N*s/m", value);
+            self.bind(&format!("{name}.damping"), "N*s/m", value, damped(clause("damping", value)));
         }
         let superfluous = |clause| MechanismFault::SuperfluousClause {
             word: "joint",
@@ -81,7 +90,10 @@ impl Expansion<'_> {
             why: "it holds no rotation",
         };
         match (&joint.tilt_stiffness, joint.kind.holds_rotation()) {
-            (Some(value), true) => self.bind(&format!("{name}.tilt_stiffness"), "N*m/rad", value),
+            (Some(value), true) => {
+                let clause = stiff(clause("tilt stiffness", value));
+                self.bind(&format!("{name}.tilt_stiffness"), "N*m/rad", value, clause);
+            }
             (Some(value), false) => self.fault(value.span, &superfluous("tilt stiffness")),
             (None, true) if joint.rigid => {}
             (None, true) => {
@@ -91,7 +103,10 @@ impl Expansion<'_> {
             (None, false) => {}
         }
         match (&joint.tilt_damping, joint.kind.holds_rotation()) {
-            (Some(value), true) => self.bind(&format!("{name}.tilt_damping"), "N*m*s/rad", value),
+            (Some(value), true) => {
+                let clause = damped(clause("tilt damping", value));
+                self.bind(&format!("{name}.tilt_damping"), "N*m*s/rad", value, clause);
+            }
             (Some(value), false) => self.fault(value.span, &superfluous("tilt damping")),
             (None, _) => {}
         }
@@ -105,14 +120,10 @@ impl Expansion<'_> {
         let per_axis = !joint.rigid && (has_axes(&joint.stiffness) || has_axes(&joint.damping));
         if slide.is_none() && !per_axis {
             self.force_junction(span, name, (a, b), (a.arm.clone(), b.arm.clone()));
-            self.text(
-                span,
-                &format!(
-                    "let {name}.gap: m = {} - {};
-                     close {name} = {name}.gap;",
-                    b.position, a.position
-                ),
-            );
+            self.text(span, &format!("let {name}.gap: m = {} - {};", b.position, a.position));
+            if joint.rigid || !is_absent(joint.stiffness.as_ref(), Axis::X) {
+                self.text(span, &format!("close {name} = {name}.gap;"));
+            }
             if joint.rigid {
                 self.text(
                     span,
@@ -141,10 +152,12 @@ impl Expansion<'_> {
                 &format!(
                     "1 {label}: translation; MTF {label}_axis(v) = dot({direction}, v);
                      {name}.slip -> {label}_axis -> {label};
-                     let {label}_offset: m = dot({direction}, {name}.gap);
-                     close {name} = {label}_offset;"
+                     let {label}_offset: m = dot({direction}, {name}.gap);"
                 ),
             );
+            if joint.rigid || !is_absent(joint.stiffness.as_ref(), axis) {
+                self.text(span, &format!("close {name} = {label}_offset;"));
+            }
             if joint.rigid {
                 self.text(span, &format!("rSe {label}_reaction = 0 at {label}_offset; {label} -> {label}_reaction;"));
                 continue;
@@ -188,7 +201,9 @@ impl Expansion<'_> {
             ),
         );
         for rotation in &held {
-            self.text(span, &format!("close {name} = {};", rotation.displacement));
+            if joint.rigid || !is_absent(joint.tilt_stiffness.as_ref(), rotation.axis) {
+                self.text(span, &format!("close {name} = {};", rotation.displacement));
+            }
         }
         let alike = joint.tilt_stiffness.as_ref().is_none_or(|value| !is_vector(value))
             && joint.tilt_damping.as_ref().is_none_or(|value| !is_vector(value));
@@ -224,7 +239,7 @@ impl Expansion<'_> {
     fn held_rotation(&mut self, joint: &Joint, rotation: &HeldRotation) {
         let (name, span) = (&joint.name.text, joint.name.span);
         let label = format!("{name}.{}", rotation.label);
-        let axis = AXES.into_iter().find(|axis| rotation.label.ends_with(axis.letter())).unwrap_or(Axis::X);
+        let axis = rotation.axis;
         if joint.rigid {
             let HeldRotation { direction, displacement, .. } = rotation;
             self.text(
@@ -293,6 +308,16 @@ fn of_axis(value: Option<&Expression>, name: &str, axis: Axis) -> String {
     if value.is_some_and(is_vector) { format!("{name}.{}", axis.letter()) } else { name.to_owned() }
 }
 
+/// Whether the stiffness of one axis is the number 0: no gap along it or about it is there to close. A parameter that happens
+/// to be 0 closes as any other value of it does, so that the start pose does not depend on it.
+fn is_absent(value: Option<&Expression>, axis: Axis) -> bool {
+    let of_axis = value.map(|value| match &value.kind {
+        ExpressionKind::Vector(parts) => parts.get(axis as usize).unwrap_or(value),
+        _ => value,
+    });
+    of_axis.and_then(Expression::number) == Some(0.0)
+}
+
 /// The held rotations as direction cosines: for small angles each is the angle about its axis, and its rate is the
 /// component of the relative angular velocity along `direction`.
 fn held_rotations(kind: JointKind, a: &str, b: &str) -> Vec<HeldRotation> {
@@ -305,6 +330,7 @@ fn held_rotations(kind: JointKind, a: &str, b: &str) -> Vec<HeldRotation> {
             format!("cross({b}.{k}_axis, {a}.{j}_axis)")
         };
         HeldRotation {
+            axis: i,
             label: format!("tilt_{}", i.letter()),
             direction: cross,
             displacement: format!("{sign}dot({a}.{j}_axis, {b}.{k}_axis)"),

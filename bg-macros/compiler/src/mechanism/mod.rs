@@ -13,7 +13,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Group, Span, TokenStream, TokenTree};
 
-use crate::ast::{Axis, Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name};
+use crate::ast::{Axis, Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name, Point};
+use crate::clause::{Clause, Given};
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::graph::GraphFault;
 use crate::syntax;
@@ -52,6 +53,9 @@ impl End {
         self.arm.as_ref().map(|_| format!("({place} - {}.position)", self.body))
     }
 }
+
+/// The name of a body's origin, and the ground's, beside those of its points.
+const ORIGIN: &str = "origin";
 
 struct Expansion<'a> {
     source: &'a Graph,
@@ -109,7 +113,10 @@ impl<'a> Expansion<'a> {
         for item in &self.source.items {
             match item {
                 Item::Ground(_) => {}
-                Item::Gravity(gravity) => self.bind("gravity_field", "m/s^2", &gravity.acceleration),
+                Item::Gravity(gravity) => {
+                    let clause = Clause::new("the gravity", 3).given(Given::Source);
+                    self.bind("gravity_field", "m/s^2", &gravity.acceleration, clause);
+                }
                 Item::Body(body) => self.body(body),
                 Item::Joint(joint) => self.joint(joint),
                 Item::Spring(spring) => self.spring(spring),
@@ -143,7 +150,9 @@ impl<'a> Expansion<'a> {
              let ground.x_axis: 1 = [1, 0, 0]; let ground.y_axis: 1 = [0, 1, 0]; let ground.z_axis: 1 = [0, 0, 1];",
         );
         for point in self.ground.map_or(&[][..], |ground| &ground.points[..]) {
-            self.bind(&format!("ground.{}.position", point.name.text), "m", &point.place);
+            let name = &point.name.text;
+            let clause = Clause::new(format!("point `{name}` of the ground"), 3);
+            self.bind(&format!("ground.{name}.position"), "m", &point.place, clause);
         }
     }
 
@@ -152,12 +161,23 @@ impl<'a> Expansion<'a> {
         self.items.extend(fragment(span, template));
     }
 
-    /// `let NAME: UNIT = VALUE;` with the user's expression as the value.
-    fn bind(&mut self, name: &str, unit: &str, value: &Expression) {
+    /// `let NAME: UNIT = VALUE;` with the user's expression as the value, and what it must be.
+    fn bind(&mut self, name: &str, unit: &str, value: &Expression, clause: Clause) {
         for item in fragment(value.span, &format!("let {name}: {unit} = 0;")) {
             if let Item::Let(definition) = item {
-                self.items.push(Item::Let(Let { value: value.clone(), ..definition }));
+                let (value, clause) = (value.clone(), Some(clause.clone()));
+                self.items.push(Item::Let(Let { value, clause, ..definition }));
             }
+        }
+    }
+
+    /// Adds the `let` of a template, with what it must be.
+    fn text_as(&mut self, span: Span, template: &str, clause: &Clause) {
+        for item in fragment(span, template) {
+            self.items.push(match item {
+                Item::Let(definition) => Item::Let(Let { clause: Some(clause.clone()), ..definition }),
+                other => other,
+            });
         }
     }
 
@@ -172,7 +192,7 @@ impl<'a> Expansion<'a> {
         Some((from, to))
     }
 
-    /// `body.POINT`, or `body` for its origin.
+    /// `body.POINT`, or `body` or `body.origin` for its origin.
     fn end(&mut self, name: &Name) -> Option<End> {
         let (body, point) = match name.text.split_once('.') {
             Some((body, point)) => (body, Some(point)),
@@ -187,12 +207,11 @@ impl<'a> Expansion<'a> {
             self.fault(name.span, &MechanismFault::UnknownBody { name: body.to_owned(), near });
             return None;
         };
+        let point = point.filter(|&point| point != ORIGIN || is_among(points, point));
         if let Some(point) = point
-            && points.iter().all(|known| known.name.text != point)
+            && !is_among(points, point)
         {
-            let near = near_miss(point, points.iter().map(|known| known.name.text.as_str())).map(str::to_owned);
-            let (body, point) = (body.to_owned(), point.to_owned());
-            self.fault(name.span, &MechanismFault::UnknownPoint { body, point, near });
+            self.fault(name.span, &unknown_point(body, point, points));
             return None;
         }
         let place = match (point, body == GROUND) {
@@ -238,6 +257,18 @@ impl<'a> Expansion<'a> {
             );
         }
     }
+}
+
+/// Whether a point of this name is declared.
+fn is_among(points: &[Point], name: &str) -> bool {
+    points.iter().any(|point| point.name.text == name)
+}
+
+/// A point that the body does not have, with those that it has.
+fn unknown_point(body: &str, point: &str, points: &[Point]) -> MechanismFault {
+    let known: Vec<String> = points.iter().map(|point| point.name.text.clone()).chain([ORIGIN.to_owned()]).collect();
+    let near = near_miss(point, known.iter().map(String::as_str)).map(str::to_owned);
+    MechanismFault::UnknownPoint { body: body.to_owned(), point: point.to_owned(), known, near }
 }
 
 /// The name of a mechanism's part.

@@ -61,6 +61,7 @@ fn fold_parameters(equations: &mut StateEquations, tuned: &[bool]) {
             equations.pool.number(parameter.default)
         });
     }
+    equations.requirements.fold(&equations.parameters, tuned);
     equations.parameters = kept;
     equations.replace(&|symbol| match symbol {
         Symbol::Parameter(parameter) => images.get(parameter as usize).copied(),

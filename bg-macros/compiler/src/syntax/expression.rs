@@ -1,7 +1,7 @@
 //! Expressions, by precedence climbing.
 //!
 //! In: the tokens of a value. Out: an [`Expression`] no higher than [`DEEPEST`], so that later stages may recurse on
-//! it. It ends in front of the first token that continues no expression, such as `;`, `,` or a clause's word.
+//! it; a sum or product of any length is one level. It ends in front of the first token that continues no expression, such as `;`, `,` or a clause's word.
 //! Method: operator precedence parsing (Pratt, Top down operator precedence, POPL 1973).
 
 use proc_macro2::{Delimiter, Span};
@@ -13,11 +13,11 @@ use super::{
     words::{COMPARISONS, OPERATORS, strength, value_of},
 };
 use crate::{
-    ast::{BinaryOperator, Choice, Comparison, Expression, ExpressionKind},
+    ast::{BinaryOperator, Choice, Comparison, Expression, ExpressionKind, Operation},
     fault::near_miss,
 };
 
-/// The greatest height of an expression's tree, far beyond any law that a human writes; a sum of n terms has height n.
+/// The greatest height of an expression's tree, far beyond any law that a human writes.
 pub const DEEPEST: usize = 200;
 
 /// The deepest nesting of operands. Without optimization this parser takes up to 8 kB of stack for each, and a thread
@@ -60,11 +60,26 @@ impl Cursor<'_> {
         while let Some(operator) = self.operator().filter(|&operator| strength(operator) >= weakest) {
             let span = self.advance();
             let right = self.binary(strength(operator) + 1)?;
-            let height = left.height.max(right.height);
-            let kind = ExpressionKind::Binary(operator, Box::new(left.expression), Box::new(right.expression));
-            left = self.above(height, kind, span)?;
+            left = self.joined(left, right.height, Operation { operator, span, operand: right.expression })?;
         }
         Ok(left)
+    }
+
+    /// `left` with one more operation on it: longer, where it is a chain that binds alike, otherwise one level higher.
+    fn joined(&self, left: Tall, height: usize, operation: Operation) -> Parsed<Tall> {
+        let span = operation.span;
+        match left.expression.kind {
+            ExpressionKind::Chain(first, mut rest) if alike(&rest, operation.operator) => {
+                rest.push(operation);
+                let below = (left.height - 1).max(height);
+                self.above(below, ExpressionKind::Chain(first, rest), span)
+            }
+            kind => {
+                let first = Expression { kind, span: left.expression.span };
+                let chain = ExpressionKind::Chain(Box::new(first), vec![operation]);
+                self.above(left.height.max(height), chain, span)
+            }
+        }
     }
 
     /// The operator ahead.
@@ -251,6 +266,11 @@ impl Cursor<'_> {
         }
         Ok(Tall { expression: Expression { kind, span }, height: height + 1 })
     }
+}
+
+/// Whether an operator binds as those of a chain.
+fn alike(chain: &[Operation], operator: BinaryOperator) -> bool {
+    chain.first().is_some_and(|operation| strength(operation.operator) == strength(operator))
 }
 
 /// The value of a decimal literal without suffix; `None` also when it is beyond all floating-point numbers.

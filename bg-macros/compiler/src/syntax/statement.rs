@@ -206,7 +206,7 @@ fn binding(cursor: &mut Cursor) -> Parsed<Let> {
     cursor.expect("=")?;
     let value = cursor.expression()?;
     cursor.end_statement(OPERATOR);
-    Ok(Let { name, unit, value })
+    Ok(Let { name, unit, value, clause: None })
 }
 
 /// Whether a name is ahead that is no slip of a statement's word, and behind it a symbol where `->` could be meant.

@@ -59,10 +59,10 @@ fn expression(text: &str) -> Expression {
 fn grouped(expression: &Expression) -> String {
     match &expression.kind {
         ExpressionKind::Negate(operand) => format!("(-{})", grouped(operand)),
-        ExpressionKind::Binary(operator, left, right) => {
-            let symbol = super::words::word_of(&super::words::OPERATORS, operator);
-            format!("({}{symbol}{})", grouped(left), grouped(right))
-        }
+        ExpressionKind::Chain(first, rest) => rest.iter().fold(grouped(first), |left, operation| {
+            let symbol = super::words::word_of(&super::words::OPERATORS, &operation.operator);
+            format!("({left}{symbol}{})", grouped(&operation.operand))
+        }),
         _ => expression.to_string(),
     }
 }

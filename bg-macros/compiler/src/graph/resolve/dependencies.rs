@@ -2,12 +2,15 @@
 //!
 //! In: terms with references. Out: faults of circles, modulation and start values; shapes and units of outputs.
 
+use proc_macro2::Span;
+
 use super::Resolver;
 use crate::ast::ElementKind;
+use crate::clause::{Clause, Given};
 use crate::fault::Fault;
 use crate::graph::term::{Reference, Term, TermKind};
 use crate::graph::typing::{Quantity, Shape, Types};
-use crate::graph::{Bond, GraphFault, Law, NodeId, NodeKind};
+use crate::graph::{Bond, GraphFault, Law, Let, NodeId, NodeKind};
 use crate::units::Dimension;
 
 impl Resolver {
@@ -30,7 +33,7 @@ impl Resolver {
     /// Lets that are defined by themselves.
     pub(super) fn let_circles(&mut self) {
         for (index, definition) in self.graph.lets.iter().enumerate() {
-            if self.deep_references(&definition.value).contains(&Reference::Let(index)) {
+            if self.deep_references(&definition.value, &|_| true).contains(&Reference::Let(index)) {
                 let name = definition.name.text.clone();
                 self.faults.push(Fault::new(definition.name.span, &GraphFault::LetCycle { name }));
             }
@@ -43,7 +46,8 @@ impl Resolver {
         let mut faults = Vec::new();
         for node in &self.graph.nodes {
             let NodeKind::Element(element) = &node.kind else { continue };
-            let depends = self.deep_references(element.law.term());
+            let is_clause = self.graph.is_clause(element.law.term());
+            let depends = if is_clause { Vec::new() } else { self.depends(element.law.term()) };
             let linear = !matches!(element.law, Law::Of { .. });
             let allowed = |reference: &Reference| match element.kind {
                 K::Se | K::Sf => is_given(*reference),
@@ -73,14 +77,47 @@ impl Resolver {
         self.faults.extend(faults);
     }
 
+    /// What the clauses of mechanism words may depend on, each at the token that is wrong.
+    pub(super) fn clauses(&mut self) {
+        let mut faults = Vec::new();
+        for definition in &self.graph.lets {
+            let Some(clause) = &definition.clause else { continue };
+            definition.value.visit(&mut |part| {
+                if matches!(part.kind, TermKind::Guess(_)) && !matches!(clause.given, Given::Start | Given::Free) {
+                    faults.push(Fault::new(part.span, &GraphFault::GuessOutsideStart));
+                }
+            });
+            let allowed = |reference: &Reference| match clause.given {
+                Given::Constant | Given::Start => is_constant(*reference),
+                Given::Source => is_given(*reference),
+                Given::State => !matches!(reference, Reference::Input(_)),
+                Given::Free => true,
+            };
+            let found = self.depends(&definition.value).into_iter().find(|reference| !allowed(reference));
+            if let Some(reference) = found {
+                let span = place_of(&definition.value, reference).unwrap_or(definition.value.span);
+                let (what, by) = (clause.what.clone(), self.describe(reference));
+                faults.push(Fault::new(span, &GraphFault::NotConstant { what, by }));
+            }
+        }
+        self.faults.extend(faults);
+    }
+
     fn start_depends(&self, start: &Term, name: &str) -> Option<Fault> {
-        let by = self.deep_references(start).into_iter().find(|reference| !is_constant(*reference))?;
+        let by = self.depends(start).into_iter().find(|reference| !is_constant(*reference))?;
         let what = format!("the start value of `{name}`");
         Some(Fault::new(start.span, &GraphFault::NotConstant { what, by: self.describe(by) }))
     }
 
-    /// All references of a term, those behind its lets included.
-    fn deep_references(&self, term: &Term) -> Vec<Reference> {
+    /// What a term depends on; of the clauses of mechanism words that may depend on little, which are looked at themselves, only
+    /// the names.
+    fn depends(&self, term: &Term) -> Vec<Reference> {
+        let is_open = |clause: &Clause| matches!(clause.given, Given::State | Given::Free);
+        self.deep_references(term, &|definition| definition.clause.as_ref().is_none_or(is_open))
+    }
+
+    /// All references of a term, those behind the lets included that `opens` wants to look into.
+    fn deep_references(&self, term: &Term, opens: &dyn Fn(&Let) -> bool) -> Vec<Reference> {
         let mut found = Vec::new();
         term.references(&mut found);
         let mut seen = vec![false; self.graph.lets.len()];
@@ -88,6 +125,7 @@ impl Resolver {
         while next < found.len() {
             if let Reference::Let(index) = found[next]
                 && !std::mem::replace(&mut seen[index], true)
+                && opens(&self.graph.lets[index])
             {
                 self.graph.lets[index].value.references(&mut found);
             }
@@ -158,6 +196,17 @@ impl Resolver {
         }
         self.faults.extend(faults);
     }
+}
+
+/// Where a term names the quantity itself.
+fn place_of(term: &Term, reference: Reference) -> Option<Span> {
+    let mut place = None;
+    term.visit(&mut |part| {
+        if matches!(part.kind, TermKind::Reference(found) if found == reference) {
+            place.get_or_insert(part.span);
+        }
+    });
+    place
 }
 
 /// Parameters and numbers.

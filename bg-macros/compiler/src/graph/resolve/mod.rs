@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use proc_macro2::Span;
 
-use super::term::{Builtin, Reference, Term, TermKind};
+use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::typing::Shape;
 use super::{
     BondGraph, Close, Element, GraphFault, Input, Integral, Law, Let, Node, NodeId, NodeKind, Observation, Parameter,
@@ -55,6 +55,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
     resolver.let_circles();
     resolver.checked()?;
     domains::assign(&mut resolver.graph, &resolver.domains, &mut resolver.faults);
+    resolver.clauses();
     resolver.dependencies();
     resolver.finish_outputs();
     resolver.checked()?;
@@ -188,7 +189,7 @@ impl Resolver {
 
     /// The value of an expression of numbers.
     fn number(&mut self, expression: &Expression) -> f64 {
-        if let Some(value) = number(expression)
+        if let Some(value) = expression.number()
             && value.is_finite()
         {
             return value;
@@ -221,7 +222,8 @@ impl Resolver {
                     let value = self.term(&definition.value, Place::Plain);
                     let dimension = definition.unit.as_ref().map(|unit| self.unit(unit));
                     let unit = definition.unit.as_ref().map(ToString::to_string);
-                    self.graph.lets.push(Let { name: definition.name.clone(), value, dimension, unit });
+                    let (name, clause) = (definition.name.clone(), definition.clause.clone());
+                    self.graph.lets.push(Let { name, value, dimension, unit, clause });
                 }
                 Item::Junction(junction) => {
                     let kind = match junction.kind {
@@ -340,8 +342,10 @@ impl Resolver {
             ExpressionKind::Number(value) => TermKind::Number(*value),
             ExpressionKind::Name(name) => return self.named(name, span, place),
             ExpressionKind::Negate(inner) => TermKind::Negate(Box::new(self.term(inner, place))),
-            ExpressionKind::Binary(operator, left, right) => {
-                TermKind::Binary(*operator, Box::new(self.term(left, place)), Box::new(self.term(right, place)))
+            ExpressionKind::Chain(first, rest) => {
+                let first = Box::new(self.term(first, place));
+                let operations = rest.iter().map(|operation| self.operation(operation, place)).collect();
+                TermKind::Chain(first, operations)
             }
             ExpressionKind::Vector(parts) => {
                 TermKind::Vector(parts.iter().map(|part| self.term(part, place)).collect())
@@ -353,6 +357,11 @@ impl Resolver {
             ExpressionKind::Call(function, arguments) => return self.call(function, arguments, place),
         };
         Term { kind, span }
+    }
+
+    fn operation(&mut self, operation: &ast::Operation, place: Place<'_>) -> Operation {
+        let &ast::Operation { operator, span, .. } = operation;
+        Operation { operator, span, operand: self.term(&operation.operand, place) }
     }
 
     fn call(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
@@ -465,23 +474,5 @@ fn law_text(element: &ast::Element) -> String {
     match &element.variable {
         Some(variable) => format!("({}) = {}", variable.name.text, element.law),
         None => element.law.to_string(),
-    }
-}
-
-/// Numbers: what a parameter's default may be made of.
-fn number(expression: &Expression) -> Option<f64> {
-    match &expression.kind {
-        ExpressionKind::Number(value) => Some(*value),
-        ExpressionKind::Negate(inner) => Some(-number(inner)?),
-        ExpressionKind::Binary(operator, left, right) => {
-            let (left, right) = (number(left)?, number(right)?);
-            Some(match operator {
-                ast::BinaryOperator::Add => left + right,
-                ast::BinaryOperator::Subtract => left - right,
-                ast::BinaryOperator::Multiply => left * right,
-                ast::BinaryOperator::Divide => left / right,
-            })
-        }
-        _ => None,
     }
 }

@@ -96,8 +96,7 @@ fn nesting_of_any_depth_is_a_fault_and_no_overflow() {
         format!("{}1{}", "[".repeat(MANY), "]".repeat(MANY)),
         format!("{}1{}", "f(".repeat(MANY), ")".repeat(MANY)),
         format!("{}a", "-".repeat(MANY)),
-        format!("a{}", "+ a".repeat(MANY)),
-        format!("a{}", "* a + a".repeat(MANY)),
+        format!("{}a{}", "f(a + a * ".repeat(67), ")".repeat(67)),
         format!("{} 2", "if a < b { 1 } else ".repeat(MANY)),
         format!("{}1{}", "if a < b { ".repeat(MANY), "} else { 1 }".repeat(MANY)),
     ];
@@ -115,10 +114,21 @@ fn nesting_of_any_depth_is_a_fault_and_no_overflow() {
 
 #[test]
 fn the_deepest_expression_is_read_and_printed() {
-    let sum = format!("a{}", " + a".repeat(DEEPEST - 1));
     let nested = format!("{}a{}", "f(".repeat(MOST_NESTED - 1), ")".repeat(MOST_NESTED - 1));
-    for text in [sum, nested] {
+    // Four levels to begin with, three more for each call.
+    let tall = format!("{}a{}", "f(a + a * ".repeat(66), ")".repeat(66));
+    assert_eq!(1 + 3 * 66, DEEPEST - 1);
+    for text in [nested, tall] {
         assert_eq!(super::expression(&text).to_string(), text);
-        assert!(!super::faults(&format!("graph G {{ let a = f({text}); }}")).is_empty());
+        assert!(!super::faults(&format!("graph G {{ let a = f(f({text})); }}")).is_empty());
+    }
+}
+
+#[test]
+fn sums_and_products_of_any_length_are_no_nesting() {
+    const MANY: usize = 20_000;
+    for form in [" + a", " - a", " * a / b", " * a + b"] {
+        let text = format!("a{}", form.repeat(MANY));
+        assert_eq!(super::expression(&text).to_string(), text);
     }
 }

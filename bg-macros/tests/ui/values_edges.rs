@@ -1,0 +1,35 @@
+//! A body of a solid whose edges no physics allows.
+
+use bg_model::bond_graph;
+use bg_model::integrator::Dop853;
+use bg_model::simulation::{Settings, Span, integrate};
+use bg_model::system::{Model, System};
+
+bond_graph! {
+    graph Motor {
+        param winding: Ohm = 0.8, above 0;
+        body rod { cuboid [0.1, winding_edge, -0.1]; density 7850; }
+        let winding_edge: m = 0.2;
+    }
+}
+
+fn main() {
+    let mut parameters = MotorParameters::default();
+    parameters.winding = 2.0;
+    let motor = Motor::new(parameters).expect("in range");
+    let start = motor.start().expect("closed");
+    let span = Span { t0: 0.0, t_end: 1e-3 };
+    let finish = integrate(&motor, &mut Dop853::new(), &start, span, &Settings::default(), &mut ()).expect("runs");
+    let mut rate = finish.x;
+    motor.rate(finish.t, &finish.x, &finish.negative, &mut rate);
+    let power = motor.powers(finish.t, &finish.x, &finish.negative);
+    println!(
+        "{} {} {} {} {} {}",
+        motor.description().name,
+        motor.parameters().winding,
+        Motor::STATES,
+        Motor::OUTPUTS,
+        motor.stored_energy(finish.t, &finish.x, &finish.negative),
+        power.supplied - power.dissipated,
+    );
+}
