@@ -7,7 +7,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use bg_compiler::fault::{Fault, Staged};
-use bg_compiler::{causality, equations, graph, mechanism, scene, syntax};
+use bg_compiler::pipeline;
+use bg_compiler::source::syntax;
 
 const MARK: char = '▸';
 
@@ -156,16 +157,10 @@ const SCENES: [(&str, &str); 7] = [
     ("BG0607", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene ▸S { observe { m.p } }"),
 ];
 
-/// All stages but the last, which has no faults.
+/// All stages that have faults.
 fn compiled(text: &str) -> Staged<()> {
     let source = syntax::parse(text.parse().unwrap_or_else(|error| panic!("{error}\n{text}")))?;
-    for graph in &source.graphs {
-        for variant in scene::variants(graph)? {
-            let causal = causality::assign(graph::resolve(&mechanism::expand(&variant.graph)?)?)?;
-            variant.reduce(equations::derive(&causal)?)?;
-        }
-    }
-    Ok(())
+    pipeline::models(&source).map(drop)
 }
 
 /// The source with its mark removed and the mark's line and column, counted from 1.

@@ -3,12 +3,14 @@
 //! The expanded graph in a model's description is valid source. So each model's own text is compiled once more with the
 //! library, as far as its state equations, and these are evaluated by `expr::evaluate` at random states and parameters.
 
-use bg_compiler::ast::TrackKind;
-use bg_compiler::causality::CausalGraph;
-use bg_compiler::equations::StateEquations;
 use bg_compiler::expr::{Environment, Id, Symbol, derivative, evaluate};
+use bg_compiler::graph::causality::CausalGraph;
 use bg_compiler::graph::{BondGraph, NodeId, NodeKind};
-use bg_compiler::{causality, equations, graph, mechanism, second, syntax};
+use bg_compiler::pipeline::{self, Derived};
+use bg_compiler::source::ast::TrackKind;
+use bg_compiler::source::syntax;
+use bg_compiler::system::equations::{Kind, StateEquations};
+use bg_compiler::system::second_order;
 use bg_model::bond_graph;
 use bg_model::input::Input;
 use bg_model::nalgebra::SVector;
@@ -96,11 +98,9 @@ fn compiled(text: &str) -> (CausalGraph, StateEquations) {
         )
     };
     let source = syntax::parse(text.parse().expect("tokens")).unwrap_or_else(|faults| shown(faults));
-    let expanded = mechanism::expand(&source.graphs[0]).unwrap_or_else(|faults| shown(faults));
-    let resolved = graph::resolve(&expanded).unwrap_or_else(|faults| shown(faults));
-    let causal = causality::assign(resolved).unwrap_or_else(|faults| shown(faults));
-    let mut equations = equations::derive(&causal).unwrap_or_else(|faults| shown(faults));
-    second::arrange(&mut equations);
+    let Derived { causal, mut equations, .. } =
+        pipeline::derive(&source.graphs[0]).unwrap_or_else(|faults| shown(faults));
+    second_order::arrange(&mut equations);
     (causal, equations)
 }
 
@@ -119,7 +119,7 @@ impl Sample {
         let mut states: Vec<f64> = equations.states.iter().map(|_| random.real()).collect();
         let mut first = 0;
         while first < states.len() {
-            if equations.states[first].storage == "orientation" {
+            if equations.states[first].origin.kind() == Kind::Orientation {
                 let angles = [(); 3].map(|()| 3.0 * random.real());
                 let turn = bg_model::nalgebra::Rotation3::from_euler_angles(angles[0], angles[1], angles[2]);
                 for k in 0..9 {

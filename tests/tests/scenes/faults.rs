@@ -1,27 +1,13 @@
 use bg_compiler::fault::Fault;
-use bg_compiler::{causality, equations, graph, mechanism, reduce, scene, syntax};
+use bg_compiler::pipeline;
+use bg_compiler::source::syntax;
 
 const MARK: char = '▸';
 
 /// All faults of the graph and its scenes, as the macro finds them.
 fn faults(text: &str) -> Vec<Fault> {
     let source = syntax::parse(text.parse().expect("tokens")).expect("syntax");
-    let variants = match scene::variants(&source.graphs[0]) {
-        Ok(variants) => variants,
-        Err(faults) => return faults,
-    };
-    let mut found = Vec::new();
-    for variant in &variants {
-        let reduced = || {
-            let causal = causality::assign(graph::resolve(&mechanism::expand(&variant.graph)?)?)?;
-            let equations = equations::derive(&causal)?;
-            let Some(scene) = &variant.scene else { return Ok(()) };
-            let tuned = scene::tuned(scene, &equations.parameters)?;
-            scene::check(scene, &reduce::for_scene(equations, &tuned, scene.angles).1)
-        };
-        found.extend(reduced().err().unwrap_or_default());
-    }
-    found
+    pipeline::models(&source).err().unwrap_or_default()
 }
 
 /// Line and column of the mark, from 1, and the text without it.

@@ -9,57 +9,33 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::items::{Given, identifier};
-use super::programs::{Programs, SecondOrder, Table};
 use super::routine::{Names, assignments, operand, statements};
 use super::{description, elimination, pairs, series};
-use crate::causality::CausalGraph;
-use crate::elimination::Elimination;
-use crate::equations::StateEquations;
 use crate::expr::Symbol;
-use crate::jacobian::Jacobian;
-use crate::pairs::Paired;
-use crate::program::{Assignment, Counts, Operand, Program, Routine};
-use crate::reduce::Report;
-use crate::second::Second;
-
-/// What a model is made from.
-pub struct Parts<'a> {
-    /// The graph in bond-graph words as text.
-    pub expanded: &'a str,
-    /// The graph with its strokes.
-    pub causal: &'a CausalGraph,
-    /// Its equations.
-    pub equations: &'a mut StateEquations,
-    /// What a scene left out of it.
-    pub report: Option<&'a Report>,
-    /// The derivatives of its rates.
-    pub jacobian: &'a mut Jacobian,
-    /// Its states of second order.
-    pub second: &'a mut Second,
-    /// How I - c J is factored and solved.
-    pub elimination: &'a Elimination,
-}
+use crate::pipeline::Compiled;
+use crate::program::pairs::Paired;
+use crate::program::{Assignment, Counts, Operand, Programs, Routine, SecondOrderPrograms};
+use crate::system::equations::StateEquations;
 
 /// The items of one model: parameters, inputs, the type, its functions, its description.
-pub fn model(parts: Parts) -> TokenStream {
-    let Parts { expanded, causal, equations, report, jacobian, second, elimination } = parts;
-    let programs = Programs::new(equations, jacobian, second);
-    let reduction = report.map(ToString::to_string).unwrap_or_default();
-    let (equations, jacobian, second): (&StateEquations, &Jacobian, &Second) = (equations, jacobian, second);
-    let states = state_identifiers(equations);
-    Emission { expanded, causal, equations, reduction, jacobian, second, elimination, programs, states }.items()
+#[must_use]
+pub fn model(model: &Compiled) -> TokenStream {
+    Emission { model, states: state_identifiers(&model.equations) }.items()
 }
 
 struct Emission<'a> {
-    expanded: &'a str,
-    causal: &'a CausalGraph,
-    equations: &'a StateEquations,
-    reduction: String,
-    jacobian: &'a Jacobian,
-    second: &'a Second,
-    elimination: &'a Elimination,
-    programs: Programs,
+    model: &'a Compiled,
     states: Vec<Ident>,
+}
+
+/// A table of what depends on parameters only.
+struct Table<'a> {
+    /// What the names of the table, of its pairs and of their functions begin with.
+    prefix: &'static str,
+    doc: &'static str,
+    constants: &'a Routine,
+    /// The routine that reads pairs of the table.
+    paired: Option<&'a Paired>,
 }
 
 /// What a model has of its tables: fields of its type, their values, the functions that calculate them and the `let`s that call
@@ -86,27 +62,32 @@ fn bindings(routines: &[&Routine], binding: &dyn Fn(Symbol) -> Option<TokenStrea
 
 impl Emission<'_> {
     fn items(&self) -> TokenStream {
-        let graph = &self.causal.graph;
+        let graph = &self.model.derived.causal.graph;
         let given = Given {
             name: &graph.name.text,
             visibility: &graph.visibility,
-            parameters: &self.equations.parameters,
+            parameters: &self.model.equations.parameters,
             inputs: &graph.inputs,
         };
         let structs = given.structs();
         let (name, visibility) = (&identifier(&graph.name.text), &graph.visibility);
         let (parameters, inputs) = (&given.parameters_name(), &given.inputs_name());
         let costs = self.costs();
-        let pattern = (self.jacobian, self.elimination);
-        let doc = description::documentation(&graph.docs, self.equations, pattern, &costs);
+        let expanded = self.model.derived.expanded.to_string();
+        let reduction = self.model.reduction.as_ref().map(ToString::to_string).unwrap_or_default();
+        let pattern = (&self.model.jacobian, &self.model.elimination);
+        let doc = description::documentation(&graph.docs, &self.model.equations, pattern, &costs);
         let description = description::description(
-            &description::Texts { expanded: self.expanded, reduction: &self.reduction },
-            self.causal,
-            self.equations,
+            &description::Texts { expanded: &expanded, reduction: &reduction },
+            &self.model.derived.causal,
+            &self.model.equations,
             &costs,
         );
-        let (states, switches, outputs) =
-            (self.equations.states.len(), self.equations.switches.len(), self.equations.outputs.len());
+        let (states, switches, outputs) = (
+            self.model.equations.states.len(),
+            self.model.equations.switches.len(),
+            self.model.equations.outputs.len(),
+        );
         let has_inputs = !graph.inputs.is_empty();
         let input_field = has_inputs.then(|| quote!(inputs: #inputs,));
         let input_argument = has_inputs.then(|| quote!(, inputs: #inputs));
@@ -115,7 +96,7 @@ impl Emission<'_> {
         let starting = self.starting();
         let system = self.system();
         let model = self.model();
-        let tables = self.programs.tables();
+        let tables = self.constant_tables();
         let import_pair = tables.iter().any(|table| table.paired.is_some()).then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
@@ -198,19 +179,19 @@ impl Emission<'_> {
 
     /// The functions of the running model with their operations.
     fn costs(&self) -> Vec<(&str, Counts)> {
-        let routines = self.programs.routines().map(|routine| (routine.name.as_str(), routine.counts));
-        let factored = ("eliminate", self.elimination.factorisation_counts());
-        let solved = ("substitute", self.elimination.substitution_counts());
+        let routines = self.model.programs.costs();
+        let factored = ("eliminate", self.model.elimination.factorisation_counts());
+        let solved = ("substitute", self.model.elimination.substitution_counts());
         routines.chain([factored, solved]).collect()
     }
 
     /// The tables of constants, and of their pairs.
     fn tables(&self, tables: &[Table], parameters: &Ident) -> Tables {
         let mut made = Tables::default();
-        for &Table { prefix, doc, program, paired } in tables {
+        for &Table { prefix, doc, constants, paired } in tables {
             let name = |suffix: &str| format_ident!("{prefix}{suffix}");
             let (field, table, pair_field) = (name("s"), name("_table"), name("_pairs"));
-            let (count, body) = (program.constants.results.len(), self.constant_table(program));
+            let (count, body) = (constants.results.len(), self.constant_table(constants));
             made.fields.extend(quote!(#field: [S; #count],));
             made.lets.extend(quote!(let #field = Self::#table(&parameters);));
             made.functions.extend(quote! {
@@ -236,8 +217,24 @@ impl Emission<'_> {
         made
     }
 
-    fn constant_table(&self, program: &Program) -> TokenStream {
-        let routine = &program.constants;
+    /// The tables of the running model.
+    fn constant_tables(&self) -> Vec<Table<'_>> {
+        let Programs { running, jacobian, second_order, .. } = &self.model.programs;
+        let table = |prefix, doc, constants, paired| Table { prefix, doc, constants, paired };
+        let of_rates = " What depends on parameters only.";
+        let of_jacobian = " What depends on parameters only, of the Jacobian.";
+        let of_forces = " What depends on parameters only, of forces.";
+        let mut tables = vec![
+            table("constant", of_rates, &running.constants, running.paired_rate.as_ref()),
+            table("slope_constant", of_jacobian, &jacobian.constants, None),
+        ];
+        tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, paired_forces, .. }| {
+            table("second_constant", of_forces, constants, paired_forces.as_ref())
+        }));
+        tables
+    }
+
+    fn constant_table(&self, routine: &Routine) -> TokenStream {
         let parameters = self.parameter_bindings(&[routine]);
         let (statements, results) = self.body(routine);
         quote! { #parameters #statements [#(#results),*] }
@@ -245,10 +242,10 @@ impl Emission<'_> {
 
     /// Guesses, gaps and start state, each with its constants inside.
     fn starting(&self) -> TokenStream {
-        let name = identifier(&format!("{}Parameters", self.causal.graph.name.text));
-        let unknowns = self.equations.guesses.len();
-        let functions = self.programs.starting.iter().map(|program| {
-            let routine = &program.routines[0];
+        let name = identifier(&format!("{}Parameters", self.model.derived.causal.graph.name.text));
+        let unknowns = self.model.equations.guesses.len();
+        let functions = self.model.programs.starting.programs().map(|program| {
+            let [routine] = &program.routines;
             let function = identifier(&routine.name);
             let parameters = self.parameter_bindings(&[&program.constants, routine]);
             let (constants, table) = self.body(&program.constants);
@@ -270,7 +267,7 @@ impl Emission<'_> {
     fn parameter_bindings(&self, routines: &[&Routine]) -> TokenStream {
         bindings(routines, &|symbol| match symbol {
             Symbol::Parameter(index) => {
-                let field = identifier(&self.equations.parameters[index as usize].name.text);
+                let field = identifier(&self.model.equations.parameters[index as usize].name.text);
                 let name = self.symbol_name(symbol);
                 Some(quote!(let #name = S::from_f64(parameters.#field);))
             }
@@ -292,11 +289,11 @@ impl Emission<'_> {
                 Some(quote!(let #name = x[#index];))
             }
             Symbol::Input(index) => {
-                let field = identifier(&self.equations.inputs[index as usize].name.text);
+                let field = identifier(&self.model.equations.inputs[index as usize].name.text);
                 Some(quote!(let #name = self.inputs.#field.value(t);))
             }
             Symbol::Slope(index) => {
-                let field = identifier(&self.equations.inputs[index as usize].name.text);
+                let field = identifier(&self.model.equations.inputs[index as usize].name.text);
                 Some(quote!(let #name = self.inputs.#field.slope(t);))
             }
             _ => None,
@@ -308,15 +305,15 @@ impl Emission<'_> {
             Symbol::Time => format_ident!("t"),
             Symbol::State(index) => self.states[index as usize].clone(),
             Symbol::Parameter(index) => {
-                format_ident!("p_{}", self.equations.parameters[index as usize].name.text)
+                format_ident!("p_{}", self.model.equations.parameters[index as usize].name.text)
             }
-            Symbol::Input(index) => format_ident!("u_{}", self.equations.inputs[index as usize].name.text),
+            Symbol::Input(index) => format_ident!("u_{}", self.model.equations.inputs[index as usize].name.text),
             Symbol::Unknown(index) => {
                 let index = Literal::usize_unsuffixed(index as usize);
                 return quote!(u[#index]);
             }
             Symbol::Atom(index) => format_ident!("atom_{index}"),
-            Symbol::Slope(index) => format_ident!("slope_{}", self.equations.inputs[index as usize].name.text),
+            Symbol::Slope(index) => format_ident!("slope_{}", self.model.equations.inputs[index as usize].name.text),
             Symbol::Rate(index) => {
                 let index = Literal::usize_unsuffixed(index as usize);
                 return quote!(r[#index]);
@@ -387,8 +384,8 @@ impl Emission<'_> {
     }
 
     /// The statements of a function of the running model, and its results.
-    fn function(&self, index: usize) -> (TokenStream, Vec<TokenStream>) {
-        self.running(&self.programs.dynamic.routines[index], &format_ident!("constants"))
+    fn function(&self, routine: &Routine) -> (TokenStream, Vec<TokenStream>) {
+        self.running(routine, &format_ident!("constants"))
     }
 
     /// The statements of a routine that reads states and this table of constants, and its results.
@@ -422,13 +419,13 @@ impl Emission<'_> {
     }
 
     fn system(&self) -> TokenStream {
-        let name = identifier(&self.causal.graph.name.text);
-        let (rate, rates) =
-            self.with_pairs(&self.programs.dynamic.routines[0], self.programs.paired.as_ref(), "constant");
-        let (guard, guards) = self.function(1);
-        let (project, projected) = self.function(3);
-        let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
-        let inline = self.programs.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
+        let name = identifier(&self.model.derived.causal.graph.name.text);
+        let running = &self.model.programs.running;
+        let (rate, rates) = self.with_pairs(&running.rate, running.paired_rate.as_ref(), "constant");
+        let (guard, guards) = self.function(&running.guards);
+        let (project, projected) = self.function(&running.project);
+        let indices = self.model.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        let inline = running.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
         let (second, series) = (self.second(&inline), self.series());
         let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
@@ -464,13 +461,13 @@ impl Emission<'_> {
 
     /// The states of second order and their second derivatives.
     fn second(&self, inline: &Option<TokenStream>) -> TokenStream {
-        let Some(SecondOrder { program, paired }) = &self.programs.second else { return TokenStream::new() };
-        let (body, derivatives) = self.running(&program.routines[0], &format_ident!("second_constants"));
-        let states = &self.second.states;
+        let Some(programs) = &self.model.programs.second_order else { return TokenStream::new() };
+        let (body, derivatives) = self.running(&programs.second_derivatives, &format_ident!("second_constants"));
+        let states = &self.model.second_order.states;
         let [first, behind] = [states.start, states.end].map(Literal::usize_unsuffixed);
         let indices = states.clone().map(Literal::usize_unsuffixed);
-        let forces = program.routines.get(1).map(|routine| {
-            let (body, forces) = self.with_pairs(routine, paired.as_ref(), "second_constant");
+        let forces = programs.forces.as_ref().map(|routine| {
+            let (body, forces) = self.with_pairs(routine, programs.paired_forces.as_ref(), "second_constant");
             quote! {
                 #inline
                 fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
@@ -496,24 +493,24 @@ impl Emission<'_> {
 
     /// The Taylor series of the states.
     fn series(&self) -> TokenStream {
-        let routine = &self.programs.dynamic.routines[0];
+        let routine = &self.model.programs.running.rate;
         let reading = |is_state: bool| {
             let reads = |symbol: Symbol| matches!(symbol, Symbol::State(_)) == is_state;
             bindings(&[routine], &|symbol| if reads(symbol) { self.dynamic_binding(symbol) } else { None })
         };
-        let fields: Vec<_> = self.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
+        let fields: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         let reads = series::Reads { inputs: &fields, values: reading(false), states: reading(true) };
         self.with_names(routine.is_long(), |names| series::functions(routine, names, &reads))
     }
 
     /// The Jacobian with its sparsity, and the elimination along it; before them the parts of a long Jacobian.
     fn linear(&self) -> (TokenStream, TokenStream) {
-        let places = self.jacobian.entries.iter().map(|entry| {
+        let places = self.model.jacobian.entries.iter().map(|entry| {
             let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
             quote!((#row, #column))
         });
-        let (count, slots) = (self.jacobian.entries.len(), self.elimination.slots);
-        let routine = &self.programs.jacobian.routines[0];
+        let (count, slots) = (self.model.jacobian.entries.len(), self.model.elimination.slots);
+        let [routine] = &self.model.programs.jacobian.routines;
         let constants = format_ident!("slope_constants");
         let (parts, derivative, derivatives) = if routine.is_long() {
             self.in_parts(routine, &constants)
@@ -523,7 +520,7 @@ impl Emission<'_> {
         };
         let (entries, slopes) = derivatives.split_at(count);
         let (factorisation, substitution) =
-            (elimination::factorisation(self.elimination), elimination::substitution(self.elimination));
+            (elimination::factorisation(&self.model.elimination), elimination::substitution(&self.model.elimination));
         let functions = quote! {
             fn sparsity(&self) -> ::bg_model::linear::Sparsity {
                 static ENTRIES: [(u16, u16); #count] = [#(#places),*];
@@ -554,12 +551,13 @@ impl Emission<'_> {
     }
 
     fn model(&self) -> TokenStream {
-        let name = identifier(&self.causal.graph.name.text);
-        let (output, outputs) = self.function(2);
-        let (energy, stored) = self.function(4);
-        let (power, powers) = self.function(5);
+        let name = identifier(&self.model.derived.causal.graph.name.text);
+        let running = &self.model.programs.running;
+        let (output, outputs) = self.function(&running.outputs);
+        let (energy, stored) = self.function(&running.stored_energy);
+        let (power, powers) = self.function(&running.powers);
         let (supplied, dissipated) = (&powers[0], &powers[1]);
-        let gaps = self.equations.gaps.iter().map(|gap| {
+        let gaps = self.model.equations.gaps.iter().map(|gap| {
             let (joint, component, unit) = (&gap.joint, gap.component, &gap.unit);
             quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
         });

@@ -8,9 +8,9 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::items::{Given, identifier};
-use crate::ast::{Graph, Item, Source};
+use crate::graph::units::Dimension;
 use crate::graph::{Input, Parameter};
-use crate::units::Dimension;
+use crate::source::ast::{Graph, Item, Source};
 
 /// Stubs of all graphs.
 #[must_use]

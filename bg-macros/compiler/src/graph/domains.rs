@@ -6,9 +6,9 @@
 
 use super::typing::{Quantity, Shape, Typed, Types, is_junction};
 use super::{BondGraph, BondId, Element, GraphFault, Law, Node, NodeId};
-use crate::ast::{ElementKind, Role, TrackKind};
 use crate::fault::Fault;
-use crate::units::{Dimension, Domain};
+use crate::graph::units::{Dimension, Domain};
+use crate::source::ast::{ElementKind, Role, TrackKind};
 
 /// Gives every bond its units and checks every law. `declared` are the junctions that name their domain.
 pub fn assign(graph: &mut BondGraph, declared: &[(NodeId, Domain)], faults: &mut Vec<Fault>) {

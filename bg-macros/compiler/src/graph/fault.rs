@@ -2,13 +2,12 @@
 
 use super::Shape;
 use crate::fault::Explain;
-use crate::units::Dimension;
+use crate::graph::units::Dimension;
 
 /// A fault of the resolution.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum GraphFault {
-    Duplicate { name: String },
     Reserved { name: String },
     UnknownName { name: String, near: Option<String> },
     UnknownFunction { name: String, near: Option<String> },
@@ -48,7 +47,6 @@ use GraphFault as F;
 impl Explain for GraphFault {
     fn code(&self) -> &'static str {
         match self {
-            F::Duplicate { .. } => "BG0302",
             F::UnknownName { .. } => "BG0303",
             F::UnknownFunction { .. } => "BG0304",
             F::UnknownDomain { .. } => "BG0305",
@@ -86,7 +84,6 @@ impl Explain for GraphFault {
 
     fn message(&self) -> String {
         match self {
-            F::Duplicate { name } => format!("`{name}` is declared twice"),
             F::Reserved { name } => format!("`{name}` is the time"),
             F::UnknownName { name, .. } => format!("nothing is called `{name}`"),
             F::UnknownFunction { name, .. } => format!("there is no function `{name}`"),
@@ -139,7 +136,6 @@ impl Explain for GraphFault {
 
     fn help(&self) -> String {
         match self {
-            F::Duplicate { .. } => "give one of them another name".to_owned(),
             F::Reserved { .. } => "give it another name".to_owned(),
             F::UnknownName { near: Some(near), .. } | F::UnknownFunction { near: Some(near), .. } => {
                 format!("did you mean `{near}`?")
@@ -150,7 +146,7 @@ impl Explain for GraphFault {
             }
             F::UnknownDomain { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownDomain { .. } => {
-                let names: Vec<_> = crate::units::DOMAINS.iter().map(|domain| domain.name).collect();
+                let names: Vec<_> = crate::graph::units::DOMAINS.iter().map(|domain| domain.name).collect();
                 format!("use one of {}", names.join(" "))
             }
             F::ArgumentCount { expected, .. } => format!("give it {expected}"),

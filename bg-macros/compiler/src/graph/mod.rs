@@ -2,15 +2,17 @@
 //!
 //! In: `ast` of bond-graph words. Out: [`BondGraph`]. No longer occurs: names, missing ports, unknown cardinalities, units.
 
+pub mod causality;
 mod connect;
 mod domains;
 mod fault;
 mod resolve;
 mod term;
 mod typing;
+pub mod units;
 
-use crate::ast::{ElementKind, Name, Role, TrackKind};
-use crate::units::{Dimension, Domain};
+use crate::graph::units::{Dimension, Domain};
+use crate::source::ast::{ElementKind, Name, Role, TrackKind};
 
 pub use fault::GraphFault;
 pub use resolve::resolve;

@@ -5,7 +5,7 @@
 use proc_macro2::Span;
 
 use super::NodeId;
-use crate::ast::{BinaryOperator, Comparison};
+use crate::source::ast::{BinaryOperator, Comparison};
 
 /// An expression with its place in the source.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ use std::cell::RefCell;
 
 use super::term::{Builtin, Reference, Term, TermKind};
 use super::{BondGraph, GraphFault, NodeId, NodeKind};
-use crate::ast::{BinaryOperator, TrackKind};
 use crate::fault::{Explain, Fault};
-use crate::units::Dimension;
+use crate::graph::units::Dimension;
+use crate::source::ast::{BinaryOperator, TrackKind};
 
 /// The shape of a value.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

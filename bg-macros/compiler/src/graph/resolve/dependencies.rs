@@ -3,12 +3,12 @@
 //! In: terms with references. Out: faults of circles, modulation and start values; shapes and units of outputs.
 
 use super::Resolver;
-use crate::ast::ElementKind;
 use crate::fault::Fault;
 use crate::graph::term::{Reference, Term, TermKind};
 use crate::graph::typing::{Quantity, Shape, Types};
+use crate::graph::units::Dimension;
 use crate::graph::{Bond, GraphFault, Law, NodeId, NodeKind};
-use crate::units::Dimension;
+use crate::source::ast::ElementKind;
 
 impl Resolver {
     /// The unit of a value as its definition writes it: J and N*m are one dimension but read differently.

@@ -14,9 +14,9 @@ use super::{
     BondGraph, Close, Element, GraphFault, Input, Integral, Law, Let, Node, NodeId, NodeKind, Observation, Parameter,
     Storage, Track, connect, domains,
 };
-use crate::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role};
-use crate::fault::{Fault, Staged, near_miss};
-use crate::units::{self, Dimension, Domain};
+use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
+use crate::graph::units::{self, Dimension, Domain};
+use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role};
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -111,7 +111,7 @@ impl Resolver {
         if self.faults.is_empty() { Ok(()) } else { Err(std::mem::take(&mut self.faults)) }
     }
 
-    fn fault(&mut self, span: Span, fault: &GraphFault) {
+    fn fault(&mut self, span: Span, fault: &impl Explain) {
         self.faults.push(Fault::new(span, fault));
     }
 
@@ -119,7 +119,7 @@ impl Resolver {
         if name.text == "t" {
             self.fault(name.span, &GraphFault::Reserved { name: name.text.clone() });
         } else if self.names.insert(name.text.clone(), entity).is_some() {
-            self.fault(name.span, &GraphFault::Duplicate { name: name.text.clone() });
+            self.fault(name.span, &DeclaredTwice { name: name.text.clone() });
         }
     }
 
@@ -328,7 +328,7 @@ impl Resolver {
         let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
         let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
         if self.graph.observations.iter().any(|known| known.name == name) {
-            self.fault(observation.value.span, &GraphFault::Duplicate { name: name.clone() });
+            self.fault(observation.value.span, &DeclaredTwice { name: name.clone() });
         }
         self.observed.push(declared);
         self.graph.observations.push(Observation { name, value, shape: Shape::Scalar, unit });
