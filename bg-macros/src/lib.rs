@@ -677,13 +677,12 @@ use proc_macro::TokenStream;
 /// | BG0504 | a given energy whose derivative is not the law |
 /// | BG0505 | a given displacement that does not change with the flow |
 /// | **scenes** | |
-/// | BG0601 | two models of one name |
+/// | BG0601 | two models of one name, or a model with the name of another one's parameter or input struct |
 /// | BG0602 | no such part to leave out |
 /// | BG0603 | no such parameter to tune |
 /// | BG0604 | a scene that is not planar as expected |
 /// | BG0605 | a scene with another number of states than expected |
 /// | BG0606 | no such joint to make rigid |
-/// | BG0607 | a graph or scene with a name of the generated code's own (`S`, `Scalar`, `SVector`) |
 #[proc_macro]
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
     bg_compiler::compile(tokens.into()).into()

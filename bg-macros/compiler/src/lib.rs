@@ -5,6 +5,7 @@
 //! | function | from -> to | what no longer occurs after it |
 //! |---|---|---|
 //! | [`syntax::parse`] | tokens -> [`ast::Source`] | tokens |
+//! | [`scene::check_names`] | [`ast::Source`] -> the same | two models of one name |
 //! | [`scene::variants`] | [`ast::Graph`] -> the literal graph and one for each scene | scenes |
 //! | [`mechanism::expand`] | [`ast::Graph`] -> [`ast::Graph`] | bodies, joints, springs, drives, contacts |
 //! | [`graph::resolve`] | [`ast::Graph`] -> [`graph::BondGraph`] | names, missing ports, unknown cardinalities and units |
@@ -32,6 +33,7 @@ pub mod fault;
 pub mod graph;
 pub mod jacobian;
 pub mod mechanism;
+mod names;
 pub mod pairs;
 pub mod print;
 pub mod program;
@@ -64,7 +66,7 @@ pub fn compile(tokens: TokenStream) -> TokenStream {
 /// The models of all graphs, or the faults of all of them.
 fn models(source: &Source) -> Staged<TokenStream> {
     let mut items = TokenStream::new();
-    let mut faults = Faults::new();
+    let mut faults = scene::check_names(source).err().unwrap_or_default();
     for graph in &source.graphs {
         match scene::variants(graph) {
             Ok(variants) => each_variant(&variants, &mut items, &mut faults),

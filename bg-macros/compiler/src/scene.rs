@@ -3,12 +3,11 @@
 //! In: one `ast::Graph` with scenes. Out: the literal graph, and for each scene the graph without what it leaves out and
 //! with what it watches. No longer occurs: `Item::Scene`.
 
-use std::collections::BTreeSet;
-
-use crate::ast::{Expectation, Graph, Item, Name, Rigid, Scene};
+use crate::ast::{Expectation, Graph, Item, Name, Rigid, Scene, Source};
 use crate::equations::StateEquations;
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::graph::Parameter;
+use crate::names;
 use crate::reduce::{self, Fate, Report};
 use crate::second;
 
@@ -22,13 +21,10 @@ pub enum SceneFault {
     NotPlanar { scene: String, states: Vec<String> },
     StateCount { scene: String, expected: usize, states: Vec<String> },
     UnknownJoint { name: String, near: Option<String> },
-    Reserved { name: String },
+    NameOfStruct { name: String, of: String, part: &'static str },
 }
 
 use SceneFault as F;
-
-/// Types that the generated code uses without a path.
-const OWN: [&str; 3] = ["S", "Scalar", "SVector"];
 
 /// How many states a message lists.
 const LISTED: usize = 40;
@@ -36,13 +32,12 @@ const LISTED: usize = 40;
 impl Explain for SceneFault {
     fn code(&self) -> &'static str {
         match self {
-            F::SameName { .. } => "BG0601",
+            F::SameName { .. } | F::NameOfStruct { .. } => "BG0601",
             F::UnknownPart { .. } => "BG0602",
             F::UnknownParameter { .. } => "BG0603",
             F::NotPlanar { .. } => "BG0604",
             F::StateCount { .. } => "BG0605",
             F::UnknownJoint { .. } => "BG0606",
-            F::Reserved { .. } => "BG0607",
         }
     }
 
@@ -57,7 +52,7 @@ impl Explain for SceneFault {
             F::StateCount { scene, expected, states } => {
                 format!("scene `{scene}` integrates {} states, not {expected}: {}", states.len(), list(states))
             }
-            F::Reserved { name } => format!("`{name}` is a name of the generated code's own"),
+            F::NameOfStruct { name, of, part } => format!("`{name}` would be a model and the {part} of `{of}`"),
             F::UnknownJoint { name, .. } => format!("there is no joint `{name}` to make rigid"),
         }
     }
@@ -65,7 +60,7 @@ impl Explain for SceneFault {
     fn help(&self) -> String {
         match self {
             F::SameName { .. } => "give one of them another name".to_owned(),
-            F::Reserved { .. } => "give the model another name".to_owned(),
+            F::NameOfStruct { .. } => "give one of the two models another name".to_owned(),
             F::UnknownPart { near: Some(near), .. }
             | F::UnknownParameter { near: Some(near), .. }
             | F::UnknownJoint { near: Some(near), .. } => format!("did you mean `{near}`?"),
@@ -115,27 +110,26 @@ impl Variant {
     }
 }
 
+/// Each generated struct of a macro call has a name of its own.
+///
+/// # Errors
+/// Models of one name, or with the name of another model's parameters or inputs.
+pub fn check_names(source: &Source) -> Staged<()> {
+    let faults = names::models(source).1;
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
+}
+
 /// The literal graph and one variant for each scene.
 ///
 /// # Errors
-/// Two models of one name, parts to leave out that there are not.
+/// Parts to leave out that there are not.
 pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     let mut faults = Vec::new();
     let items: Vec<Item> = source.items.iter().filter(|item| !matches!(item, Item::Scene(_))).cloned().collect();
     let literal = Graph { items, ..source.clone() };
-    let mut names = BTreeSet::from([source.name.text.clone()]);
     let mut variants = vec![Variant { graph: literal.clone(), scene: None }];
-    let scenes =
-        source.items.iter().filter_map(|item| if let Item::Scene(scene) = item { Some(&scene.name) } else { None });
-    for name in scenes.chain([&source.name]).filter(|name| OWN.contains(&name.text.as_str())) {
-        faults.push(Fault::new(name.span, &F::Reserved { name: name.text.clone() }));
-    }
     for item in &source.items {
         let Item::Scene(scene) = item else { continue };
-        if !names.insert(scene.name.text.clone()) {
-            let name = scene.name.text.clone();
-            faults.push(Fault::new(scene.name.span, &F::SameName { name }));
-        }
         let mut items = left(&literal.items, &scene.without, &mut faults);
         stiffen(&mut items, &scene.rigid, &mut faults);
         variants.push(Variant { graph: watched(&literal, items, scene), scene: Some(scene.clone()) });

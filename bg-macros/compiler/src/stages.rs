@@ -38,6 +38,7 @@ pub struct Stage {
 /// The faults of the first graph that has any.
 pub fn stages(tokens: TokenStream) -> Staged<Vec<Stage>> {
     let source = syntax::parse(tokens)?;
+    scene::check_names(&source)?;
     let mut stages = Vec::new();
     for graph in &source.graphs {
         for variant in scene::variants(graph)? {

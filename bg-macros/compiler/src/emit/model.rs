@@ -70,6 +70,7 @@ struct Tables {
     values: TokenStream,
     functions: TokenStream,
     lets: TokenStream,
+    has_pairs: bool,
 }
 
 /// `let name = value;` for the symbols that some routines use.
@@ -93,106 +94,106 @@ impl Emission<'_> {
             parameters: &self.equations.parameters,
             inputs: &graph.inputs,
         };
-        let structs = given.structs();
-        let (name, visibility) = (&identifier(&graph.name.text), &graph.visibility);
-        let (parameters, inputs) = (&given.parameters_name(), &given.inputs_name());
+        let (name, scalar) = (identifier(given.name), given.scalar());
+        let fields = given.fields();
         let costs = self.costs();
         let pattern = (self.jacobian, self.elimination);
         let doc = description::documentation(&graph.docs, self.equations, pattern, &costs);
+        let tables = self.programs.tables();
+        let made = self.tables(&tables, &scalar);
+        let table_fields = &made.fields;
+        let definition = quote! {
+            #[doc = #doc]
+            #[derive(Clone, Debug)]
+            pub struct #name<#scalar: ::bg_model::scalar::Scalar = ::core::primitive::f64> {
+                #fields
+                #table_fields
+            }
+        };
+        given.items(&definition, &self.code(&costs, &made))
+    }
+
+    /// What the model's struct implements.
+    fn code(&self, costs: &[(&str, Counts)], tables: &Tables) -> TokenStream {
         let description = description::description(
             &description::Texts { expanded: self.expanded, reduction: &self.reduction },
             self.causal,
             self.equations,
-            &costs,
+            costs,
         );
         let (states, switches, outputs) =
             (self.equations.states.len(), self.equations.switches.len(), self.equations.outputs.len());
-        let has_inputs = !graph.inputs.is_empty();
-        let input_field = has_inputs.then(|| quote!(inputs: #inputs,));
-        let input_argument = has_inputs.then(|| quote!(, inputs: #inputs));
+        let has_inputs = !self.causal.graph.inputs.is_empty();
+        let input_argument = has_inputs.then(|| quote!(, inputs: Inputs));
         let input_value = has_inputs.then(|| quote!(inputs,));
         let input_pass = has_inputs.then(|| quote!(, inputs));
         let starting = self.starting();
         let system = self.system();
         let model = self.model();
-        let tables = self.programs.tables();
-        let import_pair = tables.iter().any(|table| table.paired.is_some()).then(|| {
+        let Tables { values, functions, lets, has_pairs, .. } = tables;
+        let import_pair = has_pairs.then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
             )
         });
-        let Tables { fields, values, functions, lets } = self.tables(&tables, parameters);
         quote! {
-            #structs
+            use ::bg_model::scalar::Scalar;
+            #import_pair
+            use ::bg_model::nalgebra::SVector;
 
-            #[doc = #doc]
-            #[derive(Clone, Debug)]
-            #visibility struct #name<S: ::bg_model::scalar::Scalar = f64> {
-                parameters: #parameters,
-                #input_field
-                #fields
+            const N: usize = #states;
+            const G: usize = #switches;
+            const M: usize = #outputs;
+            static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
+                ::std::sync::LazyLock::new(|| {
+                    let PARAMETERS = <Parameters as ::bg_model::parameters::Parameters>::table();
+                    #description
+                });
+
+            impl Model {
+                /// Number of states.
+                pub const STATES: usize = N;
+                /// Number of switches.
+                pub const SWITCHES: usize = G;
+                /// Number of scalar outputs.
+                pub const OUTPUTS: usize = M;
+
+                /// The model with these parameters, in `f64`.
+                ///
+                /// # Errors
+                /// A parameter outside its range.
+                pub fn new(parameters: Parameters #input_argument)
+                    -> Result<Self, ::bg_model::parameters::ParameterError>
+                {
+                    Self::in_scalar(parameters #input_pass)
+                }
             }
 
-            #[allow(missing_docs, clippy::all, clippy::pedantic)]
-            const _: () = {
-                use ::bg_model::scalar::Scalar;
-                #import_pair
-                use ::bg_model::nalgebra::SVector;
-
-                const N: usize = #states;
-                const G: usize = #switches;
-                const M: usize = #outputs;
-                static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
-                    ::std::sync::LazyLock::new(|| {
-                        let PARAMETERS = <#parameters as ::bg_model::parameters::Parameters>::table();
-                        #description
-                    });
-
-                impl #name {
-                    /// Number of states.
-                    pub const STATES: usize = N;
-                    /// Number of switches.
-                    pub const SWITCHES: usize = G;
-                    /// Number of scalar outputs.
-                    pub const OUTPUTS: usize = M;
-
-                    /// The model with these parameters, in `f64`.
-                    ///
-                    /// # Errors
-                    /// A parameter outside its range.
-                    pub fn new(parameters: #parameters #input_argument)
-                        -> Result<Self, ::bg_model::parameters::ParameterError>
-                    {
-                        Self::in_scalar(parameters #input_pass)
-                    }
+            impl<S: Scalar> Model<S> {
+                /// The model with these parameters, calculating in `S`.
+                ///
+                /// # Errors
+                /// A parameter outside its range.
+                pub fn in_scalar(parameters: Parameters #input_argument)
+                    -> Result<Self, ::bg_model::parameters::ParameterError>
+                {
+                    ::bg_model::parameters::Parameters::validate(&parameters)?;
+                    #lets
+                    Ok(Self { parameters, #input_value #values })
                 }
 
-                impl<S: Scalar> #name<S> {
-                    /// The model with these parameters, calculating in `S`.
-                    ///
-                    /// # Errors
-                    /// A parameter outside its range.
-                    pub fn in_scalar(parameters: #parameters #input_argument)
-                        -> Result<Self, ::bg_model::parameters::ParameterError>
-                    {
-                        ::bg_model::parameters::Parameters::validate(&parameters)?;
-                        #lets
-                        Ok(Self { parameters, #input_value #values })
-                    }
-
-                    /// The parameters.
-                    pub fn parameters(&self) -> &#parameters {
-                        &self.parameters
-                    }
-
-                    #functions
-
-                    #starting
+                /// The parameters.
+                pub fn parameters(&self) -> &Parameters {
+                    &self.parameters
                 }
 
-                #system
-                #model
-            };
+                #functions
+
+                #starting
+            }
+
+            #system
+            #model
         }
     }
 
@@ -204,25 +205,26 @@ impl Emission<'_> {
         routines.chain([factored, solved]).collect()
     }
 
-    /// The tables of constants, and of their pairs.
-    fn tables(&self, tables: &[Table], parameters: &Ident) -> Tables {
+    /// The tables of constants, and of their pairs; `scalar` is what the model's struct calls it.
+    fn tables(&self, tables: &[Table], scalar: &Ident) -> Tables {
         let mut made = Tables::default();
         for &Table { prefix, doc, program, paired } in tables {
             let name = |suffix: &str| format_ident!("{prefix}{suffix}");
             let (field, table, pair_field) = (name("s"), name("_table"), name("_pairs"));
             let (count, body) = (program.constants.results.len(), self.constant_table(program));
-            made.fields.extend(quote!(#field: [S; #count],));
+            made.fields.extend(quote!(#field: [#scalar; #count],));
             made.lets.extend(quote!(let #field = Self::#table(&parameters);));
             made.functions.extend(quote! {
                 #[doc = #doc]
-                fn #table(parameters: &#parameters) -> [S; #count] {
+                fn #table(parameters: &Parameters) -> [S; #count] {
                     #body
                 }
             });
             if let Some(paired) = paired {
                 let (pairs, body) =
                     (paired.constants.len(), self.with_names(false, |names| pairs::constants(paired, names)));
-                made.fields.extend(quote!(#pair_field: [S::Pair; #pairs],));
+                made.has_pairs = true;
+                made.fields.extend(quote!(#pair_field: [#scalar::Pair; #pairs],));
                 made.values.extend(quote!(#pair_field: Self::#pair_field(&#field),));
                 made.functions.extend(quote! {
                     /// Pairs of them.
@@ -245,7 +247,6 @@ impl Emission<'_> {
 
     /// Guesses, gaps and start state, each with its constants inside.
     fn starting(&self) -> TokenStream {
-        let name = identifier(&format!("{}Parameters", self.causal.graph.name.text));
         let unknowns = self.equations.guesses.len();
         let functions = self.programs.starting.iter().map(|program| {
             let routine = &program.routines[0];
@@ -256,7 +257,7 @@ impl Emission<'_> {
             let length = results.len();
             let entries = table.len();
             quote! {
-                fn #function(parameters: &#name, u: &[S; #unknowns]) -> [S; #length] {
+                fn #function(parameters: &Parameters, u: &[S; #unknowns]) -> [S; #length] {
                     #parameters
                     let c: [S; #entries] = { #constants [#(#table),*] };
                     #statements
@@ -422,7 +423,6 @@ impl Emission<'_> {
     }
 
     fn system(&self) -> TokenStream {
-        let name = identifier(&self.causal.graph.name.text);
         let (rate, rates) =
             self.with_pairs(&self.programs.dynamic.routines[0], self.programs.paired.as_ref(), "constant");
         let (guard, guards) = self.function(1);
@@ -431,11 +431,10 @@ impl Emission<'_> {
         let inline = self.programs.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
         let (second, series) = (self.second(&inline), self.series());
-        let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
+        let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
             #parts
-            #[allow(unused_variables)]
-            impl<S: Scalar> ::bg_model::system::System<S, N, G> for #name<S> {
+            impl<S: Scalar> ::bg_model::system::System<S, N, G> for Model<S> {
                 #inline
                 fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
                     #rate
@@ -554,7 +553,6 @@ impl Emission<'_> {
     }
 
     fn model(&self) -> TokenStream {
-        let name = identifier(&self.causal.graph.name.text);
         let (output, outputs) = self.function(2);
         let (energy, stored) = self.function(4);
         let (power, powers) = self.function(5);
@@ -564,16 +562,15 @@ impl Emission<'_> {
             quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
         });
         quote! {
-            #[allow(unused_variables)]
-            impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for #name<S> {
+            impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for Model<S> {
                 fn description(&self) -> &'static ::bg_model::description::Description {
                     &DESCRIPTION
                 }
                 fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
                     static GAPS: &[::bg_model::assembly::Gap] = &[#(#gaps),*];
-                    let guess = #name::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
+                    let guess = Model::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
                     let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
-                        gaps.copy_from_slice(&#name::<f64>::gaps(&self.parameters, unknowns));
+                        gaps.copy_from_slice(&Model::<f64>::gaps(&self.parameters, unknowns));
                     })?;
                     let unknowns = unknowns.map(S::from_f64);
                     Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
@@ -597,10 +594,10 @@ impl Emission<'_> {
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
-    // Words of the functions' bodies; of a series from `k` on.
-    const OWN: &str =
-        "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b";
-    let mut used: BTreeSet<String> = OWN.split(' ').map(str::to_owned).collect();
+    // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b \
+        N G M DESCRIPTION Some None Ok Err";
+    let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));
     }
