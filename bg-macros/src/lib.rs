@@ -582,7 +582,7 @@ use proc_macro::TokenStream;
 /// | `Motor<S = f64>` | the model, generic over the scalar; its documentation has the tables of states and of operation counts |
 /// | `Motor::STATES`, `SWITCHES`, `OUTPUTS` | the sizes |
 /// | `Motor::new(parameters)`, `Motor::new(parameters, inputs)` | checks the ranges and calculates what depends on parameters only; `in_scalar` is the same for any `S: Scalar` |
-/// | `impl System` | `rate`, `guards`, `project`, `state_name`; nothing is allocated |
+/// | `impl System` | `rate`, `guards`, `project`, `state_name`, `switch_name`, `not_finite` and more; nothing is allocated |
 /// | `impl Model` | `start`, `outputs`, `stored_energy`, `powers`, `description` with the tables, the expanded graph and, of a scene, the report |
 ///
 /// Generated code names `::bg_model` only: a crate that uses the macro needs that one dependency.

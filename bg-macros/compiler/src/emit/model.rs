@@ -431,6 +431,7 @@ impl Emission<'_> {
         let inline = self.programs.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
         let (second, series) = (self.second(&inline), self.series());
+        let (switch_name, not_finite) = (self.switch_name(), self.not_finite());
         let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
             #parts
@@ -454,11 +455,59 @@ impl Emission<'_> {
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
+                #switch_name
+                #not_finite
                 #linear
                 #second
                 #series
             }
         }
+    }
+
+    /// What switches are called.
+    fn switch_name(&self) -> Option<TokenStream> {
+        (!self.equations.switches.is_empty()).then(|| {
+            quote! {
+                fn switch_name(&self, index: usize) -> Option<&'static str> {
+                    DESCRIPTION.switches.get(index).map(|switch| switch.name)
+                }
+            }
+        })
+    }
+
+    /// Which input or law is the first whose value is not finite; nothing where none can be.
+    fn not_finite(&self) -> Option<TokenStream> {
+        let program = &self.programs.origins;
+        let routine = &program.routines[0];
+        let (origins, inputs) = (&self.equations.origins, &self.equations.inputs);
+        if origins.is_empty() && inputs.is_empty() {
+            return None;
+        }
+        let inputs = inputs.iter().map(|input| {
+            let (field, name) = (identifier(&input.name.text), &input.name.text);
+            quote!(("input", #name, self.inputs.#field.value(t)))
+        });
+        let parameters = self.parameter_bindings(&[&program.constants, routine]);
+        let (constants, table) = self.body(&program.constants);
+        let bindings = self.dynamic_bindings(routine);
+        let (statements, values) = self.body(routine);
+        let entries = table.len();
+        let laws = origins.iter().zip(values).map(|(origin, value)| {
+            let (kind, element) = (origin.kind, &origin.element);
+            quote!((#kind, #element, #value))
+        });
+        Some(quote! {
+            #[cold]
+            fn not_finite(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> Option<::bg_model::failure::Origin> {
+                let parameters = &self.parameters;
+                #parameters
+                let c: [S; #entries] = { #constants [#(#table),*] };
+                let [x] = &x.data.0;
+                #bindings
+                #statements
+                ::bg_model::failure::Origin::first(&[#(#inputs,)* #(#laws,)*])
+            }
+        })
     }
 
     /// The states of second order and their second derivatives.

@@ -23,6 +23,8 @@ pub(super) struct Programs {
     pub jacobian: Program,
     /// What there is for states of second order, with a constant table of its own.
     pub second: Option<SecondOrder>,
+    /// What laws give that can make numbers which are not finite, with its own constants.
+    pub origins: Program,
     /// First guesses, gaps and start state: functions of parameters and unknowns, each with its own constants.
     pub starting: [Program; 3],
 }
@@ -56,6 +58,7 @@ impl Programs {
         let starts = of(&mut equations.states.iter().map(|state| state.start));
         let gaps = of(&mut equations.gaps.iter().map(|gap| gap.value));
         let guesses = equations.guesses.clone();
+        let origins = of(&mut equations.origins.iter().map(|origin| origin.value));
         let stored = [equations.stored];
         let powers = [equations.supplied, equations.dissipated];
         let derivatives = jacobian.roots();
@@ -80,7 +83,8 @@ impl Programs {
         });
         let mut alone = |name, roots: &[Id]| schedule(&mut equations.pool, &[Request { name, roots }]);
         let starting = [alone("guesses", &guesses), alone("gaps", &gaps), alone("start_state", &starts)];
-        Self { dynamic, paired, jacobian, second, starting }
+        let origins = alone("not_finite", &origins);
+        Self { dynamic, paired, jacobian, second, origins, starting }
     }
 
     /// Whether rates are inlined into an integrator's step, and so take the vectors that it takes.

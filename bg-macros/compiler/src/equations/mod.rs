@@ -7,6 +7,7 @@
 mod fault;
 mod kinematics;
 mod laws;
+mod origins;
 mod reactions;
 mod signals;
 mod storage;
@@ -20,6 +21,7 @@ use crate::fault::Staged;
 use crate::graph::{Input, Parameter};
 
 pub use fault::EquationFault;
+pub use origins::Origin;
 pub use value::Value;
 
 /// The model as scalar expressions over one pool.
@@ -49,6 +51,8 @@ pub struct StateEquations {
     pub dissipated: Id,
     /// States with the expression that `project` gives them.
     pub projections: Vec<(usize, Id)>,
+    /// What laws give that can make numbers which are not finite, in the order of evaluation.
+    pub origins: Vec<Origin>,
     /// Reactions of rigid joints that are not solved for yet.
     pub reactions: Vec<Reaction>,
     /// Effort and flow of every bond, component by component.
@@ -101,8 +105,10 @@ pub struct Gap {
 /// A switch of a law.
 #[derive(Clone, Debug)]
 pub struct Switch {
-    /// What switches.
+    /// What switches: an element, a `let` or an output.
     pub element: String,
+    /// The comparison as written.
+    pub condition: String,
     /// The guard: below zero the first branch holds.
     pub guard: Id,
 }

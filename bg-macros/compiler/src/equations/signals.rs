@@ -5,8 +5,9 @@
 
 use std::collections::BTreeMap;
 
+use super::origins::Nature;
 use super::value::Value;
-use super::{EquationFault, Gap, Output, State, StateEquations, Switch, storage, text};
+use super::{EquationFault, Gap, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::ast::{ElementKind, TrackKind};
 use crate::causality::{CausalGraph, End};
 use crate::expr::{Id, Pool, Symbol, substitute};
@@ -60,6 +61,9 @@ pub(super) struct Signals<'a> {
     pub(super) switches: Vec<Switch>,
     /// What is being evaluated, for the switches' names.
     pub(super) owner: String,
+    pub(super) origins: Vec<Origin>,
+    /// What is known of the lets.
+    pub(super) natures: Vec<Option<Nature>>,
     path: Vec<(Variable, BondId)>,
     pub(super) faults: Vec<Fault>,
 }
@@ -78,6 +82,8 @@ impl<'a> Signals<'a> {
             reactions: BTreeMap::new(),
             switches: Vec::new(),
             owner: String::new(),
+            origins: Vec::new(),
+            natures: vec![None; causal.graph.lets.len()],
             path: Vec::new(),
             faults: Vec::new(),
         };
@@ -88,6 +94,7 @@ impl<'a> Signals<'a> {
     /// Runs the derivation.
     pub(super) fn derive(mut self) -> Staged<StateEquations> {
         self.prove_displacements();
+        self.origins.clear();
         let bonds: Vec<(Vec<Id>, Vec<Id>)> =
             (0..self.graph.bonds.len()).map(|k| (self.effort(BondId(k)).0, self.flow(BondId(k)).0)).collect();
         if !self.faults.is_empty() {
@@ -119,6 +126,7 @@ impl<'a> Signals<'a> {
             supplied,
             dissipated,
             projections,
+            origins: self.origins,
             reactions,
             bonds,
             texts,
@@ -206,10 +214,12 @@ impl<'a> Signals<'a> {
             End::From => (ends.from, ends.to),
             End::To => (ends.to, ends.from),
         };
+        let owner = std::mem::take(&mut self.owner);
         let value = match variable {
             Variable::Effort => self.given_effort(other, bond),
             Variable::Flow => self.given_flow(stroke_node, bond),
         };
+        self.owner = owner;
         self.path.pop();
         *self.entry(variable, bond) = Entry::Done(value.clone());
         value
@@ -245,7 +255,11 @@ impl<'a> Signals<'a> {
                 None => Value::zero(&mut self.pool, self.graph.bond(bond).cardinality),
             },
             NodeKind::One => self.balance(node, bond, Variable::Effort),
-            NodeKind::Element(element) => self.element_effort(node, element, bond),
+            NodeKind::Element(element) => {
+                let effort = self.element_effort(node, element, bond);
+                self.note_origin(node, element, &effort);
+                effort
+            }
         }
     }
 
@@ -254,7 +268,11 @@ impl<'a> Signals<'a> {
         match &self.graph.node(node).kind {
             NodeKind::One => self.junction_flow(node),
             NodeKind::Zero => self.balance(node, bond, Variable::Flow),
-            NodeKind::Element(element) => self.element_flow(node, element, bond),
+            NodeKind::Element(element) => {
+                let flow = self.element_flow(node, element, bond);
+                self.note_origin(node, element, &flow);
+                flow
+            }
         }
     }
 
@@ -303,7 +321,7 @@ impl<'a> Signals<'a> {
     fn integral_rates(&mut self) {
         let graph = self.graph;
         for (index, integral) in graph.integrals.iter().enumerate() {
-            "integral".clone_into(&mut self.owner);
+            self.owner.clone_from(&integral.name);
             let value = self.evaluate(&integral.value, None);
             self.states[self.first_integral + index].rate = value.0[0];
         }

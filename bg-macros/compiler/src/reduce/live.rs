@@ -7,7 +7,7 @@
 use super::report::{Fate, Report};
 use super::{index, keep_switches, state_of};
 use crate::equations::StateEquations;
-use crate::expr::{Branch, Id, Node, Symbol};
+use crate::expr::{Branch, Id, Node, Pool, Symbol};
 
 /// Drops states and switches that no output needs.
 pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report) {
@@ -30,6 +30,9 @@ pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report
         })
         .collect();
     forget_energies(equations, &live, &switches);
+    let mut origins = std::mem::take(&mut equations.origins);
+    origins.retain(|origin| is_known(&equations.pool, origin.value, &live, &switches));
+    equations.origins = origins;
     keep_states(equations, report, &live);
     keep_switches(equations, &branches);
 }
@@ -79,16 +82,19 @@ fn quadratures(equations: &StateEquations) -> Vec<usize> {
 fn forget_energies(equations: &mut StateEquations, live: &[bool], switches: &[bool]) {
     let unknown = equations.pool.number(f64::NAN);
     for quantity in [&mut equations.stored, &mut equations.supplied, &mut equations.dissipated] {
-        let pool = &equations.pool;
-        let goes = |id: Id| match pool.node(id) {
-            Node::Symbol(symbol) => state_of(*symbol).is_some_and(|state| !live[state]),
-            Node::Select { switch, .. } => !switches[*switch as usize],
-            _ => false,
-        };
-        if pool.reachable(&[*quantity]).into_iter().any(goes) {
+        if !is_known(&equations.pool, *quantity, live, switches) {
             *quantity = unknown;
         }
     }
+}
+
+/// Whether an expression needs no state and no switch that goes.
+fn is_known(pool: &Pool, id: Id, live: &[bool], switches: &[bool]) -> bool {
+    pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
+        Node::Symbol(symbol) => state_of(*symbol).is_none_or(|state| live[state]),
+        Node::Select { switch, .. } => switches[*switch as usize],
+        _ => true,
+    })
 }
 
 /// Takes away the states without `kept`, to which nothing refers any more, and numbers the others anew.

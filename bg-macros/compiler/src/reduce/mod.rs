@@ -148,6 +148,12 @@ impl StateEquations {
         for (root, id) in self.roots().into_iter().zip(after) {
             *root = id;
         }
+        // By themselves, after the others: so they have no influence on the order of terms.
+        let values: Vec<Id> = self.origins.iter().map(|origin| origin.value).collect();
+        let after = substitute_switched(&mut pool, &values, replace, branch);
+        for (origin, value) in self.origins.iter_mut().zip(after) {
+            origin.value = value;
+        }
         self.pool = pool;
     }
 
