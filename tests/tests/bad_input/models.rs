@@ -76,7 +76,9 @@ fn an_input_that_stops_being_a_number_is_named_with_the_state_that_it_moves() {
         let name = integrator.name();
         let failure =
             integrate(&model, &mut integrator.method(0.01), &start, span, &settings, &mut ()).expect_err(&name);
-        let Cause::NonFinite { origin, quantity, name: state, t, .. } = &failure.cause else { panic!("{name}: {failure}") };
+        let Cause::NonFinite { origin, quantity, name: state, t, .. } = &failure.cause else {
+            panic!("{name}: {failure}")
+        };
         assert!(matches!(quantity, Quantity::Rate | Quantity::Derivative), "{name}: {failure}");
         let origin = origin.map(|origin| (origin.kind, origin.name));
         assert_eq!(origin, Some(("input", "force")), "{name}: {failure}");
