@@ -374,3 +374,74 @@ impl<'a> Signals<'a> {
         projections
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::{Environment, Id, Symbol, evaluate};
+    use crate::{causality, equations, graph, mechanism, syntax};
+
+    type Matrix = [[f64; 3]; 3];
+
+    fn product(a: &Matrix, b: &Matrix) -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+    }
+
+    fn transpose(a: &Matrix) -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
+    }
+
+    /// The largest difference of two entries.
+    fn distance(a: &Matrix, b: &Matrix) -> f64 {
+        a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// What an orientation's projection makes of a matrix.
+    fn projected(matrix: &Matrix) -> Matrix {
+        let text = "graph G { 1 j[3]: rotation; I m = 1; orientation R of j; j -> m; observe { R } }";
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        let resolved = graph::resolve(&mechanism::expand(&source.graphs[0]).expect("words")).expect("names");
+        let equations = equations::derive(&causality::assign(resolved).expect("strokes")).expect("equations");
+        let mut states = vec![0.0; equations.states.len()];
+        let first = equations.states.iter().position(|state| state.name == "R_11").expect("an orientation");
+        states[first..first + 9].copy_from_slice(matrix.as_flattened());
+        let (places, ids): (Vec<usize>, Vec<Id>) = equations.projections.iter().copied().unzip();
+        assert_eq!(places, (first..first + 9).collect::<Vec<_>>());
+        assert!(!equations.pool.symbols(&ids).contains(&Symbol::Time));
+        let values = evaluate(&equations.pool, &ids, &Environment { states: &states, ..Environment::default() });
+        std::array::from_fn(|i| std::array::from_fn(|j| values[3 * i + j]))
+    }
+
+    /// A rotation far from the identity, so that what is done on the left of a matrix and on its right are different things.
+    fn rotation() -> Matrix {
+        let ((s, c), (t, d)) = (0.9_f64.sin_cos(), 0.6_f64.sin_cos());
+        product(&[[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], &[[1.0, 0.0, 0.0], [0.0, d, -t], [0.0, t, d]])
+    }
+
+    /// Nearest to Q (1 + E) with symmetric E is Q (polar factor); one step leaves 3/2 Q E^2 of it.
+    #[test]
+    fn a_projection_is_a_step_to_the_nearest_orientation() {
+        let rotation = rotation();
+        let stretch = |size: f64| {
+            let strain: Matrix = [[0.9, -0.4, 0.3], [-0.4, -0.7, 0.5], [0.3, 0.5, 0.2]];
+            std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j)) + size * strain[i][j]))
+        };
+        for size in [1e-2, 1e-4] {
+            let result = projected(&product(&rotation, &stretch(size)));
+            let far = distance(&result, &rotation) / (size * size);
+            assert!(far > 0.5 && far < 3.0, "{size:e}: {far}");
+        }
+        assert!(distance(&projected(&rotation), &rotation) < 4e-16);
+    }
+
+    /// R (3 - R^T R) / 2, far from an orientation.
+    #[test]
+    fn a_projection_is_that_of_newton_and_schulz() {
+        let matrix: Matrix = [[1.1, 0.3, -0.2], [-0.4, 0.8, 0.5], [0.7, -0.1, 1.3]];
+        let square = product(&transpose(&matrix), &matrix);
+        let factor =
+            std::array::from_fn(|i| std::array::from_fn(|j| 1.5 * f64::from(u8::from(i == j)) - 0.5 * square[i][j]));
+        assert!(distance(&projected(&matrix), &product(&matrix, &factor)) < 1e-15);
+        // The other product makes something else of it.
+        assert!(distance(&square, &product(&matrix, &transpose(&matrix))) > 0.1);
+    }
+}

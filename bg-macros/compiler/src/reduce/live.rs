@@ -204,4 +204,16 @@ mod tests {
         assert_eq!(scene.words(&["x_y"]), ["unwatched"]);
         scene.agrees();
     }
+
+    /// The rates of one column of an orientation need this column only, its projection needs all three.
+    #[test]
+    fn what_a_projection_reads_is_watched() {
+        let graph = "param a: rad = 0.4; param b: rad = 0.7; param s: 1 = 1.05;
+            1 j[3]: rotation; Sf spin = [1, 2, 3]; spin -> j;
+            orientation R of j start s * rotation_x(a) * rotation_y(b);
+            observe { r = R; }";
+        let scene = scene(graph, "observe { x = dot([1, 0, 0], R * [1, 0, 0]); }");
+        assert_eq!(scene.left().len(), 9, "{}", scene.report);
+        scene.agrees();
+    }
 }
