@@ -111,3 +111,62 @@ fn can_fail(builtin: Builtin, arguments: &[Term]) -> bool {
         _ => false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{causality, equations, graph, mechanism, syntax};
+
+    /// The elements that a number can begin to be not finite at.
+    fn origins(statements: &str) -> Vec<String> {
+        let text = format!("graph G {{ {statements} }}");
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        let resolved = graph::resolve(&mechanism::expand(&source.graphs[0]).expect("words")).expect("names and units");
+        let equations = equations::derive(&causality::assign(resolved).expect("strokes")).expect("equations");
+        equations.origins.into_iter().map(|origin| format!("{} {}", origin.kind, origin.element)).collect()
+    }
+
+    /// A mass with a resistor that gives an effort.
+    fn of_law(law: &str) -> Vec<String> {
+        origins(&format!("param a: m/s = 2; 1 j: translation; I m = 2; MR r(v) = 1 * {law}; j -> m; j -> r;"))
+    }
+
+    #[test]
+    fn laws_that_can_fail_are_known_and_others_are_not() {
+        for law in
+            ["sqrt(v / 1)", "ln(v / 1)", "exp(v / 1)", "tan(v / 1)", "asin(v / 1)", "acos(v / 1)", "1 / v", "a / t"]
+        {
+            assert_eq!(of_law(law), ["MR r"], "{law}");
+        }
+        for law in ["pow(v / 1, 0.5)", "pow(v / 1, -1)", "pow(2, v / 1)", "(if v < a { 1 / v } else { v })"] {
+            assert_eq!(of_law(law), ["MR r"], "{law}");
+        }
+        for law in
+            ["sin(v / 1)", "tanh(v / 1)", "abs(v)", "atan2(v, a)", "pow(v, 2)", "v / 2", "v / a", "v / sqrt(a / 1)"]
+        {
+            assert!(of_law(law).is_empty(), "{law}");
+        }
+    }
+
+    #[test]
+    fn what_a_law_takes_from_a_let_or_a_displacement_counts() {
+        let slope = |of: &str| {
+            origins(&format!("1 j: translation; let b: s/m = {of}; I m = 2; MR r(v) = b * v * 3; j -> m; j -> r;"))
+        };
+        assert_eq!(slope("1 / (m.p / 2)"), ["MR r"]);
+        assert!(slope("1 / 2").is_empty());
+        let coil = "param k: N/m = 3; 1 j[3]: translation; position x of j; I m = 1; j -> m; let d: m = norm(x);
+            1 s: translation; MTF along(v) = dot(x, v) / d; C c = k at d; j -> along -> s -> c;";
+        assert_eq!(origins(coil), vec!["MTF along"; 4], "one effort for each axis and a flow; a length is finite");
+    }
+
+    #[test]
+    fn a_linear_law_that_is_used_the_other_way_round_divides() {
+        let valve = |word: &str, law: &str| {
+            origins(&format!(
+                "param k: m^3/Pa = 1; Se p = 1; 0 j: hydraulic; C c = k; 1 v; {word} r = {law}; j -> c; j -> v -> r; R o = 1; 0 q: hydraulic; p -> q; q -> o;"
+            ))
+        };
+        assert_eq!(valve("MR", "1 - t / 1"), ["MR r"]);
+        assert!(valve("R", "2").is_empty());
+    }
+}

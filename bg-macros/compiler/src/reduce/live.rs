@@ -216,4 +216,18 @@ mod tests {
         assert_eq!(scene.left().len(), 9, "{}", scene.report);
         scene.agrees();
     }
+
+    /// What is gone cannot be asked for its values; what stays keeps its element.
+    #[test]
+    fn laws_that_can_fail_go_with_the_states_they_read() {
+        let graph = "1 a: translation; I am = 2 start 1; R ar(v) = 1 * sqrt(v / 1); a -> am; a -> ar;
+            1 b: translation; I bm = 3 start 2; R br(v) = 1 / v; b -> bm; b -> br; observe { a: m/s = a.flow; b: m/s = b.flow; }";
+        let elements = |observed: &str| {
+            let reduced = scene(graph, &format!("observe {{ {observed} }}")).reduced;
+            reduced.origins.into_iter().map(|origin| origin.element).collect::<Vec<_>>()
+        };
+        assert_eq!(elements("a = a.flow"), ["ar"]);
+        assert_eq!(elements("b = b.flow"), ["br"]);
+        assert_eq!(elements("a = a.flow; b = b.flow"), ["ar", "br"]);
+    }
 }
