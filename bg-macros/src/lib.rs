@@ -52,9 +52,11 @@ use proc_macro::TokenStream;
 /// `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in front of `graph`, `scene`,
 /// `param` and `input` and become the documentation of the generated items.
 ///
-/// Names are Rust identifiers, Rust's keywords excluded. Names of `let`s, junctions, elements, tracks and outputs may
-/// have dots (`pin.slip`); those of graphs, scenes, parameters, inputs, bodies, points, joints, springs, drives and
-/// contacts have none. All of a graph's names are different, its outputs' among themselves; `t` is the time.
+/// Names are Rust identifiers, Rust's keywords excluded; `gen`, a keyword of the edition 2024 only, makes a field `r#gen`.
+/// A graph, a scene or a parameter may be called `Option`, `f64` or whatever else: generated code means something else by
+/// none of them. Names of `let`s, junctions, elements, tracks and outputs may have dots (`pin.slip`); those of graphs,
+/// scenes, parameters, inputs, bodies, points, joints, springs, drives and contacts have none. All of a graph's names are
+/// different, its outputs' among themselves; `t` is the time.
 ///
 /// ## `param`, `input`, `let`
 ///
@@ -392,7 +394,7 @@ use proc_macro::TokenStream;
 /// ```text
 /// scene  = "scene" NAME "{" { clause } "}"
 /// clause = observe | "tune" NAMES | "without" NAMES | "rigid" ( "joints" ";" | "{" NAME { "," NAME } "}" )
-///        | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
+///        | "angles" ";" | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
 /// NAMES  = "{" [NAME { "," NAME }] "}" | NAME { "," NAME } ";"
 /// ```
 ///
@@ -539,9 +541,10 @@ use proc_macro::TokenStream;
 /// observe = "observe" "{" [NAME [":" UNIT] "="] EXPRESSION { (";" | ",") ... } "}"
 /// ```
 ///
-/// What the model's `outputs` gives, in the order of declaration. A unit is worth writing: an angle reads as `1`
-/// without it, and so does what has lost its unit in a product with bare numbers, such as a `travel` along an axis of
-/// the ground. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
+/// What the model's `outputs` gives, in the order of declaration. A name alone has the unit that it was declared with, such
+/// as rad for `pin.angle` and m for `slide.travel`. In an expression a unit is worth writing: an angle reads as `1`
+/// without it, and so does what has lost its unit in a product with a bare number, such as
+/// `2 * slide.travel`. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
 /// name the output is called like its expression.
 ///
 /// ```
@@ -582,7 +585,7 @@ use proc_macro::TokenStream;
 /// | `Motor<S = f64>` | the model, generic over the scalar; its documentation has the tables of states and of operation counts |
 /// | `Motor::STATES`, `SWITCHES`, `OUTPUTS` | the sizes |
 /// | `Motor::new(parameters)`, `Motor::new(parameters, inputs)` | checks the ranges and calculates what depends on parameters only; `in_scalar` is the same for any `S: Scalar` |
-/// | `impl System` | `rate`, `guards`, `project`, `state_name`; nothing is allocated |
+/// | `impl System` | `rate`, `guards`, `project`, `state_name`, `switch_name`, `not_finite` and more; nothing is allocated |
 /// | `impl Model` | `start`, `outputs`, `stored_energy`, `powers`, `description` with the tables, the expanded graph and, of a scene, the report |
 ///
 /// Generated code names `::bg_model` only: a crate that uses the macro needs that one dependency.
@@ -677,13 +680,12 @@ use proc_macro::TokenStream;
 /// | BG0504 | a given energy whose derivative is not the law |
 /// | BG0505 | a given displacement that does not change with the flow |
 /// | **scenes** | |
-/// | BG0601 | two models of one name |
+/// | BG0601 | two models of one name, or a model with the name of another one's parameter or input struct |
 /// | BG0602 | no such part to leave out |
 /// | BG0603 | no such parameter to tune |
 /// | BG0604 | a scene that is not planar as expected |
 /// | BG0605 | a scene with another number of states than expected |
 /// | BG0606 | no such joint to make rigid |
-/// | BG0607 | a graph or scene with a name of the generated code's own (`S`, `Scalar`, `SVector`) |
 #[proc_macro]
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
     bg_compiler::compile(tokens.into()).into()

@@ -127,7 +127,9 @@ pub struct OutputInfo {
 /// A switch of a law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SwitchInfo {
-    /// The element whose law switches.
+    /// The comparison as written and where, such as ``if v < 0` of `valve``.
+    pub name: &'static str,
+    /// The element whose law switches, or the `let` or output that does.
     pub element: &'static str,
     /// The guard as text; below zero the law's first branch holds.
     pub guard: &'static str,

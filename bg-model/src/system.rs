@@ -8,6 +8,7 @@ use nalgebra::SVector;
 
 use crate::assembly::AssemblyError;
 use crate::description::Description;
+use crate::failure::Origin;
 use crate::linear::{Field, Sparsity, differences};
 use crate::scalar::Scalar;
 
@@ -31,6 +32,17 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// The name of state `index`, for messages.
     fn state_name(&self, _index: usize) -> &'static str {
         "state"
+    }
+
+    /// The comparison of switch `index` and whose it is, such as ``if v < 0` of `valve``, for messages; by default none.
+    fn switch_name(&self, _index: usize) -> Option<&'static str> {
+        None
+    }
+
+    /// The first input or element, in the order of evaluation, whose value at time `t` (s) and state `x` is not finite; asked for
+    /// where a run stops. By default none is known.
+    fn not_finite(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G]) -> Option<Origin> {
+        None
     }
 
     /// Where the Jacobian df/dx can differ from zero; everywhere by default.

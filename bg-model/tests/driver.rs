@@ -110,7 +110,7 @@ fn failure<const N: usize>(
 fn a_rate_that_stops_being_a_number_names_its_state_and_keeps_the_last() {
     let rate = |t: f64, x: &SVector<f64, 2>, _: &[bool; 0]| [-x[0], if t > 0.5 { f64::NAN } else { 1.0 }];
     let failure = failure(rate, [1.0, 0.0], [0.0, 1.0], &settings(1e-9));
-    let Cause::NonFinite { quantity: Quantity::Rate, name: "rod.p", index: 1, value, t, h } = failure.cause else {
+    let Cause::NonFinite { quantity: Quantity::Rate, name: "rod.p", index: 1, value, t, h, .. } = failure.cause else {
         panic!("{failure}")
     };
     assert!(value.is_nan() && t <= 0.5 && 0.5 - t < 1e-13 && h > 0.0, "{failure}");

@@ -11,8 +11,8 @@ use crate::graph::causality::{self, CausalGraph};
 use crate::program::elimination::{self, Elimination};
 use crate::program::{self, Programs};
 use crate::source::ast::{Graph, Source};
-use crate::source::mechanism;
 use crate::source::scene::{self, Variant};
+use crate::source::{mechanism, names};
 use crate::system::equations::{self, StateEquations};
 use crate::system::expectation;
 use crate::system::jacobian::{self, Jacobian};
@@ -57,7 +57,7 @@ pub struct Compiled {
 /// The faults of all graphs.
 pub fn models(source: &Source) -> Staged<Vec<Compiled>> {
     let mut models = Vec::new();
-    let mut faults = Faults::new();
+    let mut faults = names::check(source).err().unwrap_or_default();
     for graph in &source.graphs {
         match scene::variants(graph) {
             Ok(variants) => each_variant(&variants, &mut models, &mut faults),

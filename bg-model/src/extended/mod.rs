@@ -72,10 +72,12 @@ pub enum Fault {
         h: f64,
     },
     /// A switch changes its branch again and again at one instant.
-    #[error("switch {switch} changes its branch without end at t = {t} s")]
+    #[error("{} changes its branch without end at t = {t} s", crate::failure::switch_text(.name, *.switch))]
     EventsAccumulate {
         /// The switch.
         switch: usize,
+        /// Its name, such as ``if v < 0` of `valve``; empty where it has none.
+        name: &'static str,
         /// Time, s.
         t: f64,
     },

@@ -230,11 +230,16 @@ where
     }
 
     fn not_finite(&self, quantity: Quantity, (index, value): (usize, f64), h: f64) -> Cause {
-        let name = match quantity {
-            Quantity::Guard => "switch",
-            Quantity::State | Quantity::Rate | Quantity::Derivative => self.stepper.system.state_name(index),
+        let (name, origin) = match quantity {
+            Quantity::Guard => (self.stepper.system.switch_name(index).unwrap_or_default(), None),
+            Quantity::State | Quantity::Rate | Quantity::Derivative => {
+                (self.stepper.system.state_name(index), self.stepper.origin())
+            }
         };
-        Cause::NonFinite { quantity, name, index, value, t: self.stepper.start.t, h }
+        // A derivative is asked for at the start of the step, what it comes from shows on the way.
+        let is_ahead = quantity == Quantity::Derivative && origin.is_some();
+        let h = if is_ahead { self.stepper.h } else { h };
+        Cause::NonFinite { origin, quantity, name, index, value, t: self.stepper.start.t, h }
     }
 
     /// Takes the step over: gives its samples and makes its end the start of the next one.
@@ -281,7 +286,8 @@ where
     /// The first of `switches` finds no branch.
     fn accumulate(&self, switches: [bool; G]) -> Cause {
         let switch = switches.iter().position(|switch| *switch).unwrap_or(0);
-        Cause::EventsAccumulate { switch, t: self.stepper.start.t }
+        let name = self.stepper.system.switch_name(switch).unwrap_or_default();
+        Cause::EventsAccumulate { switch, name, t: self.stepper.start.t }
     }
 
     fn finish(self) -> Finish<N, G> {

@@ -28,9 +28,13 @@ observe { p: m = bob.position; }
 ";
 
 /// Statements after those of `GRAPH`, in its sixth line and on; then what the one fault says.
-const CASES: [(&str, &str); 10] = [
+const CASES: [(&str, &str); 11] = [
     ("scene A {}\nscene ▸A {}", "[BG0601] there are two models called `A`\nhelp: give one of them another name"),
     ("scene ▸G {}", "[BG0601] there are two models called `G`\nhelp: give one of them another name"),
+    (
+        "scene ▸GParameters {}",
+        "[BG0601] `GParameters` would be a model and the parameters of `G`\nhelp: give one of the two models another name",
+    ),
     (
         "scene A {\n    without { band, ▸pivott }\n}",
         "[BG0602] the mechanism has no part `pivott` to leave out\nhelp: did you mean `pivot`?",
@@ -84,7 +88,7 @@ fn faults_of_a_scene_s_lists_come_at_once() {
         "{GRAPH}scene A {{ without {{ engine }} rigid {{ wheel }} }}\nscene A {{}}\nscene B {{ without {{ engine }} }}\n}}"
     );
     let codes: Vec<_> = faults(&text).iter().map(|fault| fault.code).collect();
-    assert_eq!(codes, ["BG0602", "BG0606", "BG0601", "BG0602"]);
+    assert_eq!(codes, ["BG0601", "BG0602", "BG0606", "BG0602"]);
     let text = format!("{GRAPH}scene A {{ expect planar; expect states = 3; expect states = 4; }}\n}}");
     let codes: Vec<_> = faults(&text).iter().map(|fault| fault.code).collect();
     assert_eq!(codes, ["BG0605", "BG0605"]);

@@ -79,8 +79,10 @@ pub(super) fn description(
         quote!(::bg_model::description::OutputInfo { name: #name, unit: #unit })
     });
     let switches = equations.switches.iter().map(|switch| {
-        let (element, guard) = (&switch.element, equations.shown(&equations.pool, switch.guard));
-        quote!(::bg_model::description::SwitchInfo { element: #element, guard: #guard })
+        let (element, condition) = (&switch.element, &switch.condition);
+        let (name, guard) =
+            (format!("`if {condition}` of `{element}`"), equations.shown(&equations.pool, switch.guard));
+        quote!(::bg_model::description::SwitchInfo { name: #name, element: #element, guard: #guard })
     });
     let elements = graph.nodes.iter().map(|node| {
         let (kind, name) = (node.kind.symbol(), &node.name.text);

@@ -46,6 +46,7 @@ struct Tables {
     values: TokenStream,
     functions: TokenStream,
     lets: TokenStream,
+    has_pairs: bool,
 }
 
 /// `let name = value;` for the symbols that some routines use.
@@ -69,111 +70,111 @@ impl Emission<'_> {
             parameters: &self.model.equations.parameters,
             inputs: &graph.inputs,
         };
-        let structs = given.structs();
-        let (name, visibility) = (&identifier(&graph.name.text), &graph.visibility);
-        let (parameters, inputs) = (&given.parameters_name(), &given.inputs_name());
+        let (name, scalar) = (identifier(given.name), given.scalar());
+        let fields = given.fields();
         let costs = self.costs();
-        let expanded = self.model.derived.expanded.to_string();
-        let reduction = self.model.reduction.as_ref().map(ToString::to_string).unwrap_or_default();
         let pattern = (&self.model.jacobian, &self.model.elimination);
         let doc = description::documentation(&graph.docs, &self.model.equations, pattern, &costs);
+        let tables = self.constant_tables();
+        let made = self.tables(&tables, &scalar);
+        let table_fields = &made.fields;
+        let definition = quote! {
+            #[doc = #doc]
+            #[derive(Clone, Debug)]
+            pub struct #name<#scalar: ::bg_model::scalar::Scalar = ::core::primitive::f64> {
+                #fields
+                #table_fields
+            }
+        };
+        given.items(&definition, &self.code(&costs, &made))
+    }
+
+    /// What the model's struct implements.
+    fn code(&self, costs: &[(&str, Counts)], tables: &Tables) -> TokenStream {
+        let expanded = self.model.derived.expanded.to_string();
+        let reduction = self.model.reduction.as_ref().map(ToString::to_string).unwrap_or_default();
         let description = description::description(
             &description::Texts { expanded: &expanded, reduction: &reduction },
             &self.model.derived.causal,
             &self.model.equations,
-            &costs,
+            costs,
         );
         let (states, switches, outputs) = (
             self.model.equations.states.len(),
             self.model.equations.switches.len(),
             self.model.equations.outputs.len(),
         );
-        let has_inputs = !graph.inputs.is_empty();
-        let input_field = has_inputs.then(|| quote!(inputs: #inputs,));
-        let input_argument = has_inputs.then(|| quote!(, inputs: #inputs));
+        let has_inputs = !self.model.derived.causal.graph.inputs.is_empty();
+        let input_argument = has_inputs.then(|| quote!(, inputs: Inputs));
         let input_value = has_inputs.then(|| quote!(inputs,));
         let input_pass = has_inputs.then(|| quote!(, inputs));
         let starting = self.starting();
         let system = self.system();
         let model = self.model();
-        let tables = self.constant_tables();
-        let import_pair = tables.iter().any(|table| table.paired.is_some()).then(|| {
+        let Tables { values, functions, lets, has_pairs, .. } = tables;
+        let import_pair = has_pairs.then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
             )
         });
-        let Tables { fields, values, functions, lets } = self.tables(&tables, parameters);
         quote! {
-            #structs
+            use ::bg_model::scalar::Scalar;
+            #import_pair
+            use ::bg_model::nalgebra::SVector;
 
-            #[doc = #doc]
-            #[derive(Clone, Debug)]
-            #visibility struct #name<S: ::bg_model::scalar::Scalar = f64> {
-                parameters: #parameters,
-                #input_field
-                #fields
+            const N: usize = #states;
+            const G: usize = #switches;
+            const M: usize = #outputs;
+            static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
+                ::std::sync::LazyLock::new(|| {
+                    let PARAMETERS = <Parameters as ::bg_model::parameters::Parameters>::table();
+                    #description
+                });
+
+            impl Model {
+                /// Number of states.
+                pub const STATES: usize = N;
+                /// Number of switches.
+                pub const SWITCHES: usize = G;
+                /// Number of scalar outputs.
+                pub const OUTPUTS: usize = M;
+
+                /// The model with these parameters, in `f64`.
+                ///
+                /// # Errors
+                /// A parameter outside its range.
+                pub fn new(parameters: Parameters #input_argument)
+                    -> Result<Self, ::bg_model::parameters::ParameterError>
+                {
+                    Self::in_scalar(parameters #input_pass)
+                }
             }
 
-            #[allow(missing_docs, clippy::all, clippy::pedantic)]
-            const _: () = {
-                use ::bg_model::scalar::Scalar;
-                #import_pair
-                use ::bg_model::nalgebra::SVector;
-
-                const N: usize = #states;
-                const G: usize = #switches;
-                const M: usize = #outputs;
-                static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
-                    ::std::sync::LazyLock::new(|| {
-                        let PARAMETERS = <#parameters as ::bg_model::parameters::Parameters>::table();
-                        #description
-                    });
-
-                impl #name {
-                    /// Number of states.
-                    pub const STATES: usize = N;
-                    /// Number of switches.
-                    pub const SWITCHES: usize = G;
-                    /// Number of scalar outputs.
-                    pub const OUTPUTS: usize = M;
-
-                    /// The model with these parameters, in `f64`.
-                    ///
-                    /// # Errors
-                    /// A parameter outside its range.
-                    pub fn new(parameters: #parameters #input_argument)
-                        -> Result<Self, ::bg_model::parameters::ParameterError>
-                    {
-                        Self::in_scalar(parameters #input_pass)
-                    }
+            impl<S: Scalar> Model<S> {
+                /// The model with these parameters, calculating in `S`.
+                ///
+                /// # Errors
+                /// A parameter outside its range.
+                pub fn in_scalar(parameters: Parameters #input_argument)
+                    -> Result<Self, ::bg_model::parameters::ParameterError>
+                {
+                    ::bg_model::parameters::Parameters::validate(&parameters)?;
+                    #lets
+                    Ok(Self { parameters, #input_value #values })
                 }
 
-                impl<S: Scalar> #name<S> {
-                    /// The model with these parameters, calculating in `S`.
-                    ///
-                    /// # Errors
-                    /// A parameter outside its range.
-                    pub fn in_scalar(parameters: #parameters #input_argument)
-                        -> Result<Self, ::bg_model::parameters::ParameterError>
-                    {
-                        ::bg_model::parameters::Parameters::validate(&parameters)?;
-                        #lets
-                        Ok(Self { parameters, #input_value #values })
-                    }
-
-                    /// The parameters.
-                    pub fn parameters(&self) -> &#parameters {
-                        &self.parameters
-                    }
-
-                    #functions
-
-                    #starting
+                /// The parameters.
+                pub fn parameters(&self) -> &Parameters {
+                    &self.parameters
                 }
 
-                #system
-                #model
-            };
+                #functions
+
+                #starting
+            }
+
+            #system
+            #model
         }
     }
 
@@ -185,25 +186,26 @@ impl Emission<'_> {
         routines.chain([factored, solved]).collect()
     }
 
-    /// The tables of constants, and of their pairs.
-    fn tables(&self, tables: &[Table], parameters: &Ident) -> Tables {
+    /// The tables of constants, and of their pairs; `scalar` is what the model's struct calls it.
+    fn tables(&self, tables: &[Table], scalar: &Ident) -> Tables {
         let mut made = Tables::default();
         for &Table { prefix, doc, constants, paired } in tables {
             let name = |suffix: &str| format_ident!("{prefix}{suffix}");
             let (field, table, pair_field) = (name("s"), name("_table"), name("_pairs"));
             let (count, body) = (constants.results.len(), self.constant_table(constants));
-            made.fields.extend(quote!(#field: [S; #count],));
+            made.fields.extend(quote!(#field: [#scalar; #count],));
             made.lets.extend(quote!(let #field = Self::#table(&parameters);));
             made.functions.extend(quote! {
                 #[doc = #doc]
-                fn #table(parameters: &#parameters) -> [S; #count] {
+                fn #table(parameters: &Parameters) -> [S; #count] {
                     #body
                 }
             });
             if let Some(paired) = paired {
                 let (pairs, body) =
                     (paired.constants.len(), self.with_names(false, |names| pairs::constants(paired, names)));
-                made.fields.extend(quote!(#pair_field: [S::Pair; #pairs],));
+                made.has_pairs = true;
+                made.fields.extend(quote!(#pair_field: [#scalar::Pair; #pairs],));
                 made.values.extend(quote!(#pair_field: Self::#pair_field(&#field),));
                 made.functions.extend(quote! {
                     /// Pairs of them.
@@ -242,7 +244,6 @@ impl Emission<'_> {
 
     /// Guesses, gaps and start state, each with its constants inside.
     fn starting(&self) -> TokenStream {
-        let name = identifier(&format!("{}Parameters", self.model.derived.causal.graph.name.text));
         let unknowns = self.model.equations.guesses.len();
         let functions = self.model.programs.starting.programs().map(|program| {
             let [routine] = &program.routines;
@@ -253,7 +254,7 @@ impl Emission<'_> {
             let length = results.len();
             let entries = table.len();
             quote! {
-                fn #function(parameters: &#name, u: &[S; #unknowns]) -> [S; #length] {
+                fn #function(parameters: &Parameters, u: &[S; #unknowns]) -> [S; #length] {
                     #parameters
                     let c: [S; #entries] = { #constants [#(#table),*] };
                     #statements
@@ -419,7 +420,6 @@ impl Emission<'_> {
     }
 
     fn system(&self) -> TokenStream {
-        let name = identifier(&self.model.derived.causal.graph.name.text);
         let running = &self.model.programs.running;
         let (rate, rates) = self.with_pairs(&running.rate, running.paired_rate.as_ref(), "constant");
         let (guard, guards) = self.function(&running.guards);
@@ -428,11 +428,11 @@ impl Emission<'_> {
         let inline = running.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
         let (second, series) = (self.second(&inline), self.series());
-        let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
+        let (switch_name, not_finite) = (self.switch_name(), self.not_finite());
+        let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
             #parts
-            #[allow(unused_variables)]
-            impl<S: Scalar> ::bg_model::system::System<S, N, G> for #name<S> {
+            impl<S: Scalar> ::bg_model::system::System<S, N, G> for Model<S> {
                 #inline
                 fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
                     #rate
@@ -452,11 +452,59 @@ impl Emission<'_> {
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
+                #switch_name
+                #not_finite
                 #linear
                 #second
                 #series
             }
         }
+    }
+
+    /// What switches are called.
+    fn switch_name(&self) -> Option<TokenStream> {
+        (!self.model.equations.switches.is_empty()).then(|| {
+            quote! {
+                fn switch_name(&self, index: usize) -> Option<&'static str> {
+                    DESCRIPTION.switches.get(index).map(|switch| switch.name)
+                }
+            }
+        })
+    }
+
+    /// Which input or law is the first whose value is not finite; nothing where none can be.
+    fn not_finite(&self) -> Option<TokenStream> {
+        let program = &self.model.programs.not_finite;
+        let [routine] = &program.routines;
+        let (fallible, inputs) = (&self.model.equations.fallible, &self.model.equations.inputs);
+        if fallible.is_empty() && inputs.is_empty() {
+            return None;
+        }
+        let inputs = inputs.iter().map(|input| {
+            let (field, name) = (identifier(&input.name.text), &input.name.text);
+            quote!(("input", #name, self.inputs.#field.value(t)))
+        });
+        let parameters = self.parameter_bindings(&[&program.constants, routine]);
+        let (constants, table) = self.body(&program.constants);
+        let bindings = self.dynamic_bindings(routine);
+        let (statements, values) = self.body(routine);
+        let entries = table.len();
+        let laws = fallible.iter().zip(values).map(|(law, value)| {
+            let (kind, element) = (law.kind, &law.element);
+            quote!((#kind, #element, #value))
+        });
+        Some(quote! {
+            #[cold]
+            fn not_finite(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> Option<::bg_model::failure::Origin> {
+                let parameters = &self.parameters;
+                #parameters
+                let c: [S; #entries] = { #constants [#(#table),*] };
+                let [x] = &x.data.0;
+                #bindings
+                #statements
+                ::bg_model::failure::Origin::first(&[#(#inputs,)* #(#laws,)*])
+            }
+        })
     }
 
     /// The states of second order and their second derivatives.
@@ -551,7 +599,6 @@ impl Emission<'_> {
     }
 
     fn model(&self) -> TokenStream {
-        let name = identifier(&self.model.derived.causal.graph.name.text);
         let running = &self.model.programs.running;
         let (output, outputs) = self.function(&running.outputs);
         let (energy, stored) = self.function(&running.stored_energy);
@@ -562,16 +609,15 @@ impl Emission<'_> {
             quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
         });
         quote! {
-            #[allow(unused_variables)]
-            impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for #name<S> {
+            impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for Model<S> {
                 fn description(&self) -> &'static ::bg_model::description::Description {
                     &DESCRIPTION
                 }
                 fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
                     static GAPS: &[::bg_model::assembly::Gap] = &[#(#gaps),*];
-                    let guess = #name::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
+                    let guess = Model::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
                     let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
-                        gaps.copy_from_slice(&#name::<f64>::gaps(&self.parameters, unknowns));
+                        gaps.copy_from_slice(&Model::<f64>::gaps(&self.parameters, unknowns));
                     })?;
                     let unknowns = unknowns.map(S::from_f64);
                     Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
@@ -595,10 +641,10 @@ impl Emission<'_> {
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
-    // Words of the functions' bodies; of a series from `k` on.
-    const OWN: &str =
-        "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b";
-    let mut used: BTreeSet<String> = OWN.split(' ').map(str::to_owned).collect();
+    // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b \
+        N G M DESCRIPTION Some None Ok Err";
+    let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));
     }

@@ -33,8 +33,8 @@ pub enum TermKind {
     Call(Builtin, Vec<Term>),
     /// A vector, or a matrix by its rows.
     Vector(Vec<Term>),
-    /// `if left < right { then } else { otherwise }`
-    If(Comparison, Box<[Term; 4]>),
+    /// `if left < right { then } else { otherwise }`, with `left < right` as written.
+    If(Comparison, String, Box<[Term; 4]>),
     /// The solution of the assembly for this guess.
     Guess(usize),
     /// A time integral since t = 0.
@@ -165,7 +165,7 @@ impl Term {
                 right.references(found);
             }
             TermKind::Call(_, parts) | TermKind::Vector(parts) => parts.iter().for_each(|part| part.references(found)),
-            TermKind::If(_, parts) => parts.iter().for_each(|part| part.references(found)),
+            TermKind::If(_, _, parts) => parts.iter().for_each(|part| part.references(found)),
         }
     }
 }

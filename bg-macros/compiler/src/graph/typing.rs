@@ -176,7 +176,7 @@ impl Checker<'_, '_> {
             TermKind::Binary(operator, left, right) => self.binary(term, *operator, left, right),
             TermKind::Call(builtin, arguments) => self.call(term, *builtin, arguments),
             TermKind::Vector(parts) => self.vector(term, parts),
-            TermKind::If(_, parts) => {
+            TermKind::If(_, _, parts) => {
                 let [left, right, then, otherwise] = &**parts;
                 self.alike(term, "compare", left, right);
                 self.alike(term, "choose between", then, otherwise)

@@ -24,6 +24,8 @@ pub struct Programs {
     pub second_order: Option<SecondOrderPrograms>,
     /// Functions of parameters and unknowns, from which the start is made.
     pub starting: Starting,
+    /// What the laws give that can make numbers which are not finite, with its own constants.
+    pub not_finite: Program<1>,
 }
 
 /// The functions of the running model.
@@ -79,7 +81,9 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let jacobian = schedule(&mut jacobian.pool, [Request { name: "jacobian", roots: &derivatives }]);
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
     let starting = starting(equations);
-    Programs { running, jacobian, second_order, starting }
+    let fallible = roots(&equations.fallible, |law| law.value);
+    let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
+    Programs { running, jacobian, second_order, starting, not_finite }
 }
 
 /// The operations of the rate function as it would be generated from the equations.

@@ -4,6 +4,7 @@
 
 pub mod ast;
 pub mod mechanism;
+pub mod names;
 pub mod print;
 pub mod scene;
 pub mod syntax;

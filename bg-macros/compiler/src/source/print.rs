@@ -443,10 +443,16 @@ impl Display for Expression {
     }
 }
 
+impl Choice {
+    /// The comparison as text.
+    pub(crate) fn condition(&self) -> String {
+        format!("{} {} {}", self.left, word_of(&COMPARISONS, &self.comparison), self.right)
+    }
+}
+
 impl Display for Choice {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let comparison = word_of(&COMPARISONS, &self.comparison);
-        write!(f, "if {} {comparison} {} {{ {} }} else ", self.left, self.right, self.then)?;
+        write!(f, "if {} {{ {} }} else ", self.condition(), self.then)?;
         match &self.otherwise.kind {
             ExpressionKind::If(next) => next.fmt(f),
             _ => write!(f, "{{ {} }}", self.otherwise),

@@ -3,8 +3,6 @@
 //! In: one `ast::Graph` with scenes. Out: the literal graph, and for each scene the graph without what it leaves out and
 //! with what it watches. No longer occurs: `Item::Scene`.
 
-use std::collections::BTreeSet;
-
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::source::ast::{Graph, Item, Name, Rigid, Scene};
 
@@ -12,40 +10,29 @@ use crate::source::ast::{Graph, Item, Name, Rigid, Scene};
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum SceneFault {
-    SameName { name: String },
     UnknownPart { name: String, near: Option<String> },
     UnknownJoint { name: String, near: Option<String> },
-    Reserved { name: String },
 }
 
 use SceneFault as F;
 
-/// Types that the generated code uses without a path.
-const OWN: [&str; 3] = ["S", "Scalar", "SVector"];
-
 impl Explain for SceneFault {
     fn code(&self) -> &'static str {
         match self {
-            F::SameName { .. } => "BG0601",
             F::UnknownPart { .. } => "BG0602",
             F::UnknownJoint { .. } => "BG0606",
-            F::Reserved { .. } => "BG0607",
         }
     }
 
     fn message(&self) -> String {
         match self {
-            F::SameName { name } => format!("there are two models called `{name}`"),
             F::UnknownPart { name, .. } => format!("the mechanism has no part `{name}` to leave out"),
-            F::Reserved { name } => format!("`{name}` is a name of the generated code's own"),
             F::UnknownJoint { name, .. } => format!("there is no joint `{name}` to make rigid"),
         }
     }
 
     fn help(&self) -> String {
         match self {
-            F::SameName { .. } => "give one of them another name".to_owned(),
-            F::Reserved { .. } => "give the model another name".to_owned(),
             F::UnknownPart { near: Some(near), .. } | F::UnknownJoint { near: Some(near), .. } => {
                 format!("did you mean `{near}`?")
             }
@@ -67,24 +54,14 @@ pub struct Variant {
 /// The literal graph and one variant for each scene.
 ///
 /// # Errors
-/// Two models of one name, parts to leave out that there are not.
+/// Parts to leave out that there are not.
 pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     let mut faults = Vec::new();
     let items: Vec<Item> = source.items.iter().filter(|item| !matches!(item, Item::Scene(_))).cloned().collect();
     let literal = Graph { items, ..source.clone() };
-    let mut names = BTreeSet::from([source.name.text.clone()]);
     let mut variants = vec![Variant { graph: literal.clone(), scene: None }];
-    let scenes =
-        source.items.iter().filter_map(|item| if let Item::Scene(scene) = item { Some(&scene.name) } else { None });
-    for name in scenes.chain([&source.name]).filter(|name| OWN.contains(&name.text.as_str())) {
-        faults.push(Fault::new(name.span, &F::Reserved { name: name.text.clone() }));
-    }
     for item in &source.items {
         let Item::Scene(scene) = item else { continue };
-        if !names.insert(scene.name.text.clone()) {
-            let name = scene.name.text.clone();
-            faults.push(Fault::new(scene.name.span, &F::SameName { name }));
-        }
         let mut items = left(&literal.items, &scene.without, &mut faults);
         stiffen(&mut items, &scene.rigid, &mut faults);
         variants.push(Variant { graph: watched(&literal, items, scene), scene: Some(scene.clone()) });

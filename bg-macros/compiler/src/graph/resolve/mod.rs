@@ -348,7 +348,8 @@ impl Resolver {
             }
             ExpressionKind::If(choice) => {
                 let parts = [&choice.left, &choice.right, &choice.then, &choice.otherwise];
-                TermKind::If(choice.comparison, Box::new(parts.map(|part| self.term(part, place))))
+                let parts = Box::new(parts.map(|part| self.term(part, place)));
+                TermKind::If(choice.comparison, choice.condition(), parts)
             }
             ExpressionKind::Call(function, arguments) => return self.call(function, arguments, place),
         };

@@ -326,3 +326,34 @@ fn held_rotations(kind: JointKind, a: &str, b: &str) -> Vec<HeldRotation> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::graph;
+    use crate::source::{mechanism, syntax};
+
+    /// What a graph observes, with units.
+    fn observed(statements: &str) -> Vec<String> {
+        let source = syntax::parse(format!("graph G {{ {statements} }}").parse().expect("tokens")).expect("syntax");
+        let resolved = graph::resolve(&mechanism::expand(&source.graphs[0]).expect("words")).expect("names and units");
+        resolved.observations.iter().map(|observation| format!("{} {}", observation.name, observation.unit)).collect()
+    }
+
+    #[test]
+    fn free_motion_has_its_unit_whatever_the_first_body_is() {
+        for first in ["ground", "base"] {
+            let text = format!(
+                "body base {{ mass 1; inertia [1, 1, 1]; }} body rod {{ mass 1; inertia [1, 1, 1]; }}
+                 joint j: cylindrical x ({first} -> rod) {{ stiffness 1; tilt stiffness 1; }}
+                 joint k: fixed (ground -> base) {{ stiffness 1; tilt stiffness 1; }}
+                 observe {{ j.travel; j.angle; j.speed; double = 2 * j.travel; j.gap }}"
+            );
+            // In an expression an angle is a pure number.
+            assert_eq!(
+                observed(&text),
+                ["j.travel m", "j.angle rad", "j.speed rad/s", "double 1", "j.gap m"],
+                "{first}"
+            );
+        }
+    }
+}

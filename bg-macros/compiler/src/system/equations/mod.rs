@@ -4,6 +4,7 @@
 //! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one expression;
 //! storages in integral causality turn theirs into rates.
 
+mod fallible;
 mod fault;
 mod kinematics;
 mod laws;
@@ -20,6 +21,7 @@ use crate::fault::Staged;
 use crate::graph::causality::CausalGraph;
 use crate::graph::{Input, Parameter};
 
+pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use origin::{Kind, Origin};
 pub use value::Value;
@@ -51,6 +53,8 @@ pub struct StateEquations {
     pub dissipated: Id,
     /// States with the expression that `project` gives them.
     pub projections: Vec<(usize, Id)>,
+    /// What laws give that can make numbers which are not finite, in the order of evaluation.
+    pub fallible: Vec<FallibleLaw>,
     /// Reactions of rigid joints that are not solved for yet.
     pub reactions: Vec<Reaction>,
     /// Effort and flow of every bond, component by component.
@@ -103,8 +107,10 @@ pub struct Gap {
 /// A switch of a law.
 #[derive(Clone, Debug)]
 pub struct Switch {
-    /// What switches.
+    /// What switches: an element, a `let` or an output.
     pub element: String,
+    /// The comparison as written.
+    pub condition: String,
     /// The guard: below zero the first branch holds.
     pub guard: Id,
 }

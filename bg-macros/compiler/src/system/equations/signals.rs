@@ -5,8 +5,9 @@
 
 use std::collections::BTreeMap;
 
+use super::fallible::Nature;
 use super::value::Value;
-use super::{EquationFault, Gap, Origin, Output, State, StateEquations, Switch, storage, text};
+use super::{EquationFault, FallibleLaw, Gap, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::causality::{CausalGraph, End};
@@ -60,6 +61,9 @@ pub(super) struct Signals<'a> {
     pub(super) switches: Vec<Switch>,
     /// What is being evaluated, for the switches' names.
     pub(super) owner: String,
+    pub(super) fallible: Vec<FallibleLaw>,
+    /// What is known of the lets.
+    pub(super) natures: Vec<Option<Nature>>,
     path: Vec<(Variable, BondId)>,
     pub(super) faults: Vec<Fault>,
 }
@@ -78,6 +82,8 @@ impl<'a> Signals<'a> {
             reactions: BTreeMap::new(),
             switches: Vec::new(),
             owner: String::new(),
+            fallible: Vec::new(),
+            natures: vec![None; causal.graph.lets.len()],
             path: Vec::new(),
             faults: Vec::new(),
         };
@@ -88,6 +94,7 @@ impl<'a> Signals<'a> {
     /// Runs the derivation.
     pub(super) fn derive(mut self) -> Staged<StateEquations> {
         self.prove_displacements();
+        self.fallible.clear();
         let bonds: Vec<(Vec<Id>, Vec<Id>)> =
             (0..self.graph.bonds.len()).map(|k| (self.effort(BondId(k)).0, self.flow(BondId(k)).0)).collect();
         if !self.faults.is_empty() {
@@ -119,6 +126,7 @@ impl<'a> Signals<'a> {
             supplied,
             dissipated,
             projections,
+            fallible: self.fallible,
             reactions,
             bonds,
             texts,
@@ -207,10 +215,12 @@ impl<'a> Signals<'a> {
             End::From => (ends.from, ends.to),
             End::To => (ends.to, ends.from),
         };
+        let owner = std::mem::take(&mut self.owner);
         let value = match variable {
             Variable::Effort => self.given_effort(other, bond),
             Variable::Flow => self.given_flow(stroke_node, bond),
         };
+        self.owner = owner;
         self.path.pop();
         *self.entry(variable, bond) = Entry::Done(value.clone());
         value
@@ -246,7 +256,11 @@ impl<'a> Signals<'a> {
                 None => Value::zero(&mut self.pool, self.graph.bond(bond).cardinality),
             },
             NodeKind::One => self.balance(node, bond, Variable::Effort),
-            NodeKind::Element(element) => self.element_effort(node, element, bond),
+            NodeKind::Element(element) => {
+                let effort = self.element_effort(node, element, bond);
+                self.note_fallible(node, element, &effort);
+                effort
+            }
         }
     }
 
@@ -255,7 +269,11 @@ impl<'a> Signals<'a> {
         match &self.graph.node(node).kind {
             NodeKind::One => self.junction_flow(node),
             NodeKind::Zero => self.balance(node, bond, Variable::Flow),
-            NodeKind::Element(element) => self.element_flow(node, element, bond),
+            NodeKind::Element(element) => {
+                let flow = self.element_flow(node, element, bond);
+                self.note_fallible(node, element, &flow);
+                flow
+            }
         }
     }
 
@@ -304,7 +322,7 @@ impl<'a> Signals<'a> {
     fn integral_rates(&mut self) {
         let graph = self.graph;
         for (index, integral) in graph.integrals.iter().enumerate() {
-            "integral".clone_into(&mut self.owner);
+            self.owner.clone_from(&integral.name);
             let value = self.evaluate(&integral.value, None);
             self.states[self.first_integral + index].rate = value.0[0];
         }
@@ -355,5 +373,76 @@ impl<'a> Signals<'a> {
             projections.extend(projected.0.into_iter().enumerate().map(|(k, id)| (first + k, id)));
         }
         projections
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::{Environment, Id, Symbol, evaluate};
+    use crate::pipeline;
+    use crate::source::syntax;
+
+    type Matrix = [[f64; 3]; 3];
+
+    fn product(a: &Matrix, b: &Matrix) -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+    }
+
+    fn transpose(a: &Matrix) -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
+    }
+
+    /// The largest difference of two entries.
+    fn distance(a: &Matrix, b: &Matrix) -> f64 {
+        a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// What an orientation's projection makes of a matrix.
+    fn projected(matrix: &Matrix) -> Matrix {
+        let text = "graph G { 1 j[3]: rotation; I m = 1; orientation R of j; j -> m; observe { R } }";
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        let equations = pipeline::derive(&source.graphs[0]).expect("equations").equations;
+        let mut states = vec![0.0; equations.states.len()];
+        let first = equations.states.iter().position(|state| state.name == "R_11").expect("an orientation");
+        states[first..first + 9].copy_from_slice(matrix.as_flattened());
+        let (places, ids): (Vec<usize>, Vec<Id>) = equations.projections.iter().copied().unzip();
+        assert_eq!(places, (first..first + 9).collect::<Vec<_>>());
+        assert!(!equations.pool.symbols(&ids).contains(&Symbol::Time));
+        let values = evaluate(&equations.pool, &ids, &Environment { states: &states, ..Environment::default() });
+        std::array::from_fn(|i| std::array::from_fn(|j| values[3 * i + j]))
+    }
+
+    /// A rotation far from the identity, so that what is done on the left of a matrix and on its right are different things.
+    fn rotation() -> Matrix {
+        let ((s, c), (t, d)) = (0.9_f64.sin_cos(), 0.6_f64.sin_cos());
+        product(&[[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], &[[1.0, 0.0, 0.0], [0.0, d, -t], [0.0, t, d]])
+    }
+
+    /// Nearest to Q (1 + E) with symmetric E is Q (polar factor); one step leaves 3/2 Q E^2 of it.
+    #[test]
+    fn a_projection_is_a_step_to_the_nearest_orientation() {
+        let rotation = rotation();
+        let stretch = |size: f64| {
+            let strain: Matrix = [[0.9, -0.4, 0.3], [-0.4, -0.7, 0.5], [0.3, 0.5, 0.2]];
+            std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j)) + size * strain[i][j]))
+        };
+        for size in [1e-2, 1e-4] {
+            let result = projected(&product(&rotation, &stretch(size)));
+            let far = distance(&result, &rotation) / (size * size);
+            assert!(far > 0.5 && far < 3.0, "{size:e}: {far}");
+        }
+        assert!(distance(&projected(&rotation), &rotation) < 4e-16);
+    }
+
+    /// R (3 - R^T R) / 2, far from an orientation.
+    #[test]
+    fn a_projection_is_that_of_newton_and_schulz() {
+        let matrix: Matrix = [[1.1, 0.3, -0.2], [-0.4, 0.8, 0.5], [0.7, -0.1, 1.3]];
+        let square = product(&transpose(&matrix), &matrix);
+        let factor =
+            std::array::from_fn(|i| std::array::from_fn(|j| 1.5 * f64::from(u8::from(i == j)) - 0.5 * square[i][j]));
+        assert!(distance(&projected(&matrix), &product(&matrix, &factor)) < 1e-15);
+        // The other product makes something else of it.
+        assert!(distance(&square, &product(&matrix, &transpose(&matrix))) > 0.1);
     }
 }

@@ -41,12 +41,12 @@ impl Signals<'_> {
                 self.call(*builtin, &arguments)
             }
             TermKind::Vector(parts) => Value(parts.iter().flat_map(|part| self.evaluate(part, variable).0).collect()),
-            TermKind::If(comparison, parts) => {
+            TermKind::If(comparison, condition, parts) => {
                 let [left, right, then, otherwise] = &**parts;
                 let [left, right] = [left, right].map(|part| self.evaluate(part, variable).0[0]);
                 let then = self.evaluate(then, variable);
                 let otherwise = self.evaluate(otherwise, variable);
-                self.choose(*comparison, (left, right), &then, &otherwise)
+                self.choose((*comparison, condition), (left, right), &then, &otherwise)
             }
             TermKind::Guess(index) => Value::scalar(self.numbered(*index, Symbol::Unknown)),
             TermKind::Integral(index) => Value::scalar(self.state_symbol(self.first_integral + index)),
@@ -90,7 +90,10 @@ impl Signals<'_> {
             return value.clone();
         }
         let graph = self.graph;
-        let value = self.evaluate(&graph.lets[index].value, None);
+        let definition = &graph.lets[index];
+        let owner = std::mem::replace(&mut self.owner, definition.name.text.clone());
+        let value = self.evaluate(&definition.value, None);
+        self.owner = owner;
         self.memo.lets[index] = Some(value.clone());
         value
     }
@@ -162,7 +165,13 @@ impl Signals<'_> {
     }
 
     /// One of two values by a comparison; equal guards share one switch, up to their sign.
-    fn choose(&mut self, comparison: Comparison, (left, right): (Id, Id), then: &Value, otherwise: &Value) -> Value {
+    fn choose(
+        &mut self,
+        (comparison, condition): (Comparison, &str),
+        (left, right): (Id, Id),
+        then: &Value,
+        otherwise: &Value,
+    ) -> Value {
         let guard = match comparison {
             Comparison::Less | Comparison::LessOrEqual => self.pool.sub(left, right),
             Comparison::Greater | Comparison::GreaterOrEqual => self.pool.sub(right, left),
@@ -176,7 +185,7 @@ impl Signals<'_> {
         } else if let Some(known) = self.switches.iter().position(|switch| switch.guard == opposite) {
             (known, true)
         } else {
-            self.switches.push(Switch { element: self.owner.clone(), guard });
+            self.switches.push(Switch { element: self.owner.clone(), condition: condition.to_owned(), guard });
             (self.switches.len() - 1, false)
         };
         let (negative, positive) = if swapped { (otherwise, then) } else { (then, otherwise) };

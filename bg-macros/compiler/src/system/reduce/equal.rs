@@ -302,4 +302,16 @@ mod tests {
         assert_eq!(faster.left(), ["x.p", "y.p", "u.p", "v.p"]);
         faster.agrees();
     }
+
+    /// Equal starts and equal rates: (R_11, R_21) turns as (x, y) does. Only `project` makes R an orientation and leaves x as it is.
+    #[test]
+    fn a_projection_tells_states_apart() {
+        let graph = "param s: 1 = 1.1; 1 j[3]: rotation; Sf spin = [0, 0, 2]; spin -> j;
+            orientation R of j start [[s, 0, 0], [0, 1, 0], [0, 0, 1]];
+            1 a: translation; 1 b: translation; I x = 1 start 1 * s; I y = 1; MSe e = -2 * y.p; MSe f = 2 * x.p;
+            e -> a; f -> b; a -> x; b -> y; observe { r = R; x: m/s = a.flow; y: m/s = b.flow; }";
+        let scene = scene(graph, "tune { s }");
+        assert_eq!(scene.words(&["x.p", "y.p"]), ["integrated", "integrated"], "{}", scene.report);
+        scene.agrees();
+    }
 }

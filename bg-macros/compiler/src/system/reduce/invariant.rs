@@ -192,4 +192,37 @@ mod tests {
         // Untuned, the parameter is the number zero.
         assert_eq!(scene(&graph("[aside, 0, 1]"), "tune {}").reduced.states.len(), 7);
     }
+
+    /// At rest nothing has a rate, yet `project` moves what is no orientation towards one.
+    #[test]
+    fn what_a_projection_moves_is_not_constant() {
+        let graph = "param s: 1 = 1.1; 1 j[3]: rotation; I m = 2; j -> m;
+            orientation R of j start [[s, 0, 0], [0, 1, 0], [0, 0, 1]]; observe { r = R; }";
+        let moved = scene(graph, "tune { s }");
+        assert_eq!(
+            moved.words(&["m.p_x", "R_11", "R_12", "R_22"]),
+            ["constant 0", "integrated", "constant 0", "constant 1"]
+        );
+        moved.agrees();
+        let starts = graph.replace("1.1", "1");
+        assert!(scene(&starts, "tune {}").left().is_empty());
+    }
+
+    /// The flow is zero for ever, but the gap is open, so the reaction closes it.
+    #[test]
+    fn a_reaction_with_an_open_gap_is_not_idle() {
+        let graph = |height: &str| {
+            format!(
+                "param height: m = 0.1; 1 j[3]: translation; I m = 2; position x of j start [0, 0, {height}]; j -> m;
+                 1 up: translation; TF lift(v) = v.z; rSe hold = 0 at x.z; j -> lift -> up -> hold;
+                 observe {{ z: m = x.z; force: N = hold.effort; }}"
+            )
+        };
+        let open = scene(&graph("height"), "tune { height }");
+        assert_eq!(open.words(&["x_x", "x_z", "m.p_z"]), ["constant 0", "integrated", "integrated"]);
+        open.agrees();
+        let closed = scene(&graph("0"), "tune { height }");
+        assert!(closed.left().is_empty(), "{}", closed.report);
+        closed.agrees();
+    }
 }

@@ -6,7 +6,7 @@
 
 use super::report::{Fate, Report};
 use super::{index, keep_switches, state_of};
-use crate::expr::{Branch, Id, Node, Symbol};
+use crate::expr::{Branch, Id, Node, Pool, Symbol};
 use crate::system::equations::{Kind, StateEquations};
 
 /// Drops states and switches that no output needs.
@@ -30,6 +30,9 @@ pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report
         })
         .collect();
     forget_energies(equations, &live, &switches);
+    let mut fallible = std::mem::take(&mut equations.fallible);
+    fallible.retain(|law| is_known(&equations.pool, law.value, &live, &switches));
+    equations.fallible = fallible;
     keep_states(equations, report, &live);
     keep_switches(equations, &branches);
 }
@@ -79,16 +82,19 @@ fn quadratures(equations: &StateEquations) -> Vec<usize> {
 fn forget_energies(equations: &mut StateEquations, live: &[bool], switches: &[bool]) {
     let unknown = equations.pool.number(f64::NAN);
     for quantity in [&mut equations.stored, &mut equations.supplied, &mut equations.dissipated] {
-        let pool = &equations.pool;
-        let goes = |id: Id| match pool.node(id) {
-            Node::Symbol(symbol) => state_of(*symbol).is_some_and(|state| !live[state]),
-            Node::Select { switch, .. } => !switches[*switch as usize],
-            _ => false,
-        };
-        if pool.reachable(&[*quantity]).into_iter().any(goes) {
+        if !is_known(&equations.pool, *quantity, live, switches) {
             *quantity = unknown;
         }
     }
+}
+
+/// Whether an expression needs no state and no switch that goes.
+fn is_known(pool: &Pool, id: Id, live: &[bool], switches: &[bool]) -> bool {
+    pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
+        Node::Symbol(symbol) => state_of(*symbol).is_none_or(|state| live[state]),
+        Node::Select { switch, .. } => switches[*switch as usize],
+        _ => true,
+    })
 }
 
 /// Takes away the states without `kept`, to which nothing refers any more, and numbers the others anew.
@@ -197,5 +203,31 @@ mod tests {
         assert_eq!(scene.left(), ["m.p_x", "m.p_y", "m.p_z"], "{}", scene.report);
         assert_eq!(scene.words(&["x_y"]), ["unwatched"]);
         scene.agrees();
+    }
+
+    /// The rates of one column of an orientation need this column only, its projection needs all three.
+    #[test]
+    fn what_a_projection_reads_is_watched() {
+        let graph = "param a: rad = 0.4; param b: rad = 0.7; param s: 1 = 1.05;
+            1 j[3]: rotation; Sf spin = [1, 2, 3]; spin -> j;
+            orientation R of j start s * rotation_x(a) * rotation_y(b);
+            observe { r = R; }";
+        let scene = scene(graph, "observe { x = dot([1, 0, 0], R * [1, 0, 0]); }");
+        assert_eq!(scene.left().len(), 9, "{}", scene.report);
+        scene.agrees();
+    }
+
+    /// What is gone cannot be asked for its values; what stays keeps its element.
+    #[test]
+    fn laws_that_can_fail_go_with_the_states_they_read() {
+        let graph = "1 a: translation; I am = 2 start 1; R ar(v) = 1 * sqrt(v / 1); a -> am; a -> ar;
+            1 b: translation; I bm = 3 start 2; R br(v) = 1 / v; b -> bm; b -> br; observe { a: m/s = a.flow; b: m/s = b.flow; }";
+        let elements = |observed: &str| {
+            let reduced = scene(graph, &format!("observe {{ {observed} }}")).reduced;
+            reduced.fallible.into_iter().map(|law| law.element).collect::<Vec<_>>()
+        };
+        assert_eq!(elements("a = a.flow"), ["ar"]);
+        assert_eq!(elements("b = b.flow"), ["br"]);
+        assert_eq!(elements("a = a.flow; b = b.flow"), ["ar", "br"]);
     }
 }

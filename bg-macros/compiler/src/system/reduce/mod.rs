@@ -189,6 +189,12 @@ impl StateEquations {
         for (root, id) in self.roots().into_iter().zip(after) {
             *root = id;
         }
+        // By themselves, after the others: so they have no influence on the order of terms.
+        let values: Vec<Id> = self.fallible.iter().map(|law| law.value).collect();
+        let after = substitute_switched(&mut pool, &values, replace, branch);
+        for (law, value) in self.fallible.iter_mut().zip(after) {
+            law.value = value;
+        }
         self.pool = pool;
     }
 }

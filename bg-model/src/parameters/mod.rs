@@ -1,6 +1,10 @@
 //! Parameters by name: what a command line or a file needs beside the generated struct's fields.
 
+mod serialized;
+
 use thiserror::Error;
+
+pub use serialized::{deserialize, serialize};
 
 use crate::description::{ParameterInfo, Range};
 
