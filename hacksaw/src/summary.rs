@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use bg_model::integrator::Change;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::checks::Check;
 use crate::run::{RunSettings, Simulation};
@@ -71,7 +71,13 @@ pub struct Summary {
     /// The paper's statements; none where the scene lacks the columns they are about.
     pub checks: Vec<Check>,
     /// The files written.
+    #[serde(serialize_with = "as_text")]
     pub files: Vec<PathBuf>,
+}
+
+/// Paths as JSON can hold them: bytes that are no text are shown as U+FFFD.
+fn as_text<S: Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(paths.iter().map(|path| path.display().to_string()))
 }
 
 /// The crank's speed is averaged from here on, s: then the paper's case has settled.
