@@ -32,18 +32,17 @@ fn line(output: &Output) -> &str {
     line
 }
 
-/// Names and contents of the results in a folder; what begins with a dot is none.
-fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let named = paths.map(|path| (path.file_name().unwrap().to_str().unwrap().to_owned(), path));
-    let mut files: Vec<_> =
-        named.filter(|(name, _)| !name.starts_with('.')).map(|(name, path)| (name, fs::read(path).unwrap())).collect();
-    files.sort();
-    files
+/// The names of the results in a folder; what begins with a dot is none.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().to_str().unwrap().to_owned());
+    let mut names: Vec<_> = entries.filter(|name| !name.starts_with('.')).collect();
+    names.sort();
+    names
 }
 
-fn names(folder: &Path) -> Vec<String> {
-    results(folder).into_iter().map(|(name, _)| name).collect()
+/// The results in a folder with their contents.
+fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    names(folder).into_iter().map(|name| (name.clone(), fs::read(folder.join(name)).unwrap())).collect()
 }
 
 /// A run that has begun to write what `growing` finds.
@@ -149,7 +148,7 @@ fn a_csv_file_that_the_user_names_is_left_by_later_runs() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn an_output_that_fails_is_said_and_keeps_no_other_back() {
+fn standard_output_that_fails_is_said_and_keeps_no_file_back() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();
     let full = || Stdio::from(fs::OpenOptions::new().write(true).open("/dev/full").unwrap());
@@ -167,13 +166,41 @@ fn an_output_that_fails_is_said_and_keeps_no_other_back() {
         assert!(line(&output).starts_with("error: cannot write to standard output: No space left"), "{arguments:?}");
     }
     assert_eq!(names(&path.join("out")).len(), 20);
+}
 
-    let output = run(path, &[&SHORT[..], &["--csv", "/dev/full", "--out", "other"]].concat());
+/// A run for which no file becomes larger than a megabyte, as on a full disk.
+#[cfg(target_os = "linux")]
+fn limited(directory: &Path, arguments: &[&str]) -> Output {
+    // Units of 512 or 1024 bytes, as the shell has it. Without the signal the system refuses to write.
+    let script = "trap '' XFSZ; ulimit -f 2048; exec \"$0\" \"$@\"";
+    let mut command = Command::new("sh");
+    command.args(["-c", script, env!("CARGO_BIN_EXE_hacksaw")]).args(arguments).current_dir(directory);
+    command.output().unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_fails_is_said_and_keeps_no_other_back() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    // 2001 rows are three megabytes, and no figure has one.
+    let many = ["--t-end", "0.02", "--step", "1e-5"];
+    fs::write(path.join("run.csv"), "before").unwrap();
+    let output = limited(path, &[&many[..], &["--csv", "run.csv"]].concat());
     assert_eq!(output.status.code(), Some(1));
-    assert!(line(&output).starts_with("error: cannot write /dev/full: No space left"));
+    assert!(line(&output).starts_with("error: cannot write run.csv: File too large"));
     let summary = String::from_utf8(output.stdout).unwrap();
-    assert!(summary.ends_with("written: 19 files in other; open index.html there\n"), "{summary}");
-    assert_eq!(names(&path.join("other")).len(), 19);
+    assert!(summary.ends_with("written: 19 files in out; open index.html there\n"), "{summary}");
+    assert_eq!(fs::read_to_string(path.join("run.csv")).unwrap(), "before");
+    assert_eq!(names(path), ["out", "run.csv"]);
+
+    let before = results(&path.join("out"));
+    assert_eq!(before.len(), 19);
+    let output = limited(path, &many);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(line(&output).starts_with("error: cannot write out/trajectory.csv: File too large"));
+    assert!(String::from_utf8(output.stdout).unwrap().ends_with("\nwritten: nothing\n"));
+    assert!(results(&path.join("out")) == before);
 }
 
 #[cfg(unix)]

@@ -273,20 +273,31 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_was_killed_while_it_published_is_cleared_by_the_next() {
+    fn what_a_run_had_placed_when_it_ended_on_the_way_is_cleared_by_the_next() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
         run(path, &["a", "b"]).unwrap();
-        // Killed after it has listed old and new, removed the old and placed one of the new.
         let mut claimed = RunFolder::claim(path, &names(&["c", "d"])).unwrap();
         claimed.write_text("c", "c").unwrap();
-        claimed.list(&["a", "b", "c", "d"].map(str::to_owned).into()).unwrap();
-        fs::remove_file(path.join("a")).unwrap();
-        fs::remove_file(path.join("b")).unwrap();
-        fs::rename(claimed.stage().join("c"), path.join("c")).unwrap();
-        drop(claimed);
+        claimed.write_text("d", "d").unwrap();
+        // As much of it is done as if it were killed after the first of the new files.
+        fs::remove_file(claimed.stage().join("d")).unwrap();
+        assert!(claimed.publish().is_err());
+        assert_eq!(visible(path), ["c"]);
         run(path, &["e"]).unwrap();
         assert_eq!(visible(path), ["e"]);
+    }
+
+    #[test]
+    fn a_name_that_is_free_again_is_the_user_s() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        run(path, &["a", "b"]).unwrap();
+        run(path, &["b"]).unwrap();
+        fs::write(path.join("a"), "mine").unwrap();
+        run(path, &["b"]).unwrap();
+        assert_eq!(fs::read_to_string(path.join("a")).unwrap(), "mine");
+        assert!(matches!(run(path, &["a"]), Err(FileError::Foreign(_))));
     }
 
     #[test]
