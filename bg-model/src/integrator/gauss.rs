@@ -37,7 +37,7 @@ impl<const N: usize> Gauss6<N> {
     }
 
     fn with(control: StepControl) -> Self {
-        let own = Scale::from(&Tolerances::default());
+        let own = Scale::from(&Tolerances::new(1e-8, 1e-10));
         Self { core: Collocation::new(&GAUSS6, true), control, own }
     }
 
