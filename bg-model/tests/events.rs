@@ -259,10 +259,11 @@ fn a_guard_that_was_large_before_is_located_as_exactly_as_any() {
     fn large_before(t: f64) -> f64 {
         1e12 * libm::exp(-40.0 * t) + 1.0
     }
-    let guards: [(Guard, &[f64]); 4] = [
+    let guards: [(Guard, &[f64]); 5] = [
         (|t, x| large_before(t) * (x[0] - 1.0), &[1.0]),
         // An event while it is large leaves a remainder that is large as well.
         (|t, x| large_before(t) * (x[0] - 0.01) * (x[0] - 1.0), &[0.01, 1.0]),
+        (|t, x| large_before(t) * (x[0] - 0.0123) * (x[0] - 1.0) * (x[0] - 1.0005), &[0.0123, 1.0, 1.0005]),
         // A dip by 1e-6 between its zeros.
         (|t, x| large_before(t) * (x[0] - 1.0) * (x[0] - 1.002), &[1.0, 1.002]),
         // Large once in a while.

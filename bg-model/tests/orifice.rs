@@ -26,6 +26,23 @@ bond_graph! {
         observe { level: m^3 = water.q }
     }
 
+    /// Two empty tanks with an orifice between them, the first one with a pump.
+    graph Tanks {
+        /// Floor area over specific weight.
+        param capacity: m^3/Pa = 1, above 0;
+        0 first: hydraulic;
+        0 second: hydraulic;
+        1 pipe: hydraulic;
+        Sf pump = 1;
+        C water = capacity;
+        C other = capacity;
+        R orifice(effort p) = 0.5 * sqrt(p);
+        pump -> first -> water;
+        first -> pipe -> second -> other;
+        pipe -> orifice;
+        observe { level: m^3 = water.q }
+    }
+
     /// A tank that an orifice fills from another one that is never empty, until both are at rest.
     graph Levelling {
         /// Floor area over specific weight.
@@ -43,7 +60,7 @@ bond_graph! {
     }
 }
 
-fn methods() -> [AnyMethod<1>; 8] {
+fn methods<const N: usize>() -> [AnyMethod<N>; 8] {
     [
         Radau5::new().into(),
         Radau9::new().into(),
@@ -60,22 +77,22 @@ fn fixed_steps() -> [AnyMethod<1>; 2] {
     [Gauss6::new(0.01).into(), Ros2::new(0.01).into()]
 }
 
-fn name(method: &AnyMethod<1>) -> String {
+fn name<const N: usize>(method: &AnyMethod<N>) -> String {
     let shown = format!("{method:?}");
     shown.split('(').next().unwrap_or_default().to_owned()
 }
 
 /// A run from 0 to `t_end` (s) with ten samples a second, from an empty tank.
-fn run<Sys: System<f64, 1, G>, const G: usize>(
+fn run<Sys: System<f64, N, G>, const N: usize, const G: usize>(
     system: &Sys,
-    mut method: AnyMethod<1>,
+    mut method: AnyMethod<N>,
     t_end: f64,
     tolerance: f64,
-) -> (Record<1, G>, Statistics) {
+) -> (Record<N, G>, Statistics) {
     let settings = Settings { samples: Samples::Every(0.1), step_limit: 200_000, ..settings(tolerance) };
     let mut record = Record::default();
     let span = Span { t0: 0.0, t_end };
-    let outcome = integrate(system, &mut method, &SVector::from([0.0]), span, &settings, &mut record);
+    let outcome = integrate(system, &mut method, &SVector::zeros(), span, &settings, &mut record);
     let finish = outcome.unwrap_or_else(|failure| panic!("{} at {tolerance:e}: {failure}", name(&method)));
     (record, finish.statistics)
 }
@@ -133,6 +150,25 @@ fn two_tanks_come_to_rest() {
             let (record, _) = run(&model, method, 6.0, tolerance);
             let error = record.samples.iter().map(|(t, x, _)| (x[0] - level(*t)).abs()).fold(0.0, f64::max);
             assert!(error < 30.0 * tolerance, "{name} at {tolerance:e}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn a_tank_fills_another_one() {
+    // The states' own rates differ at the start: that of the second tank is zero. With w = V1 - V2, w' = 1 - sqrt w, and
+    // V1 + V2 = t.
+    let model: Tanks = Tanks::new(TanksParameters::default()).expect("in range");
+    for tolerance in [1e-4, 1e-6, 1e-9] {
+        for method in methods() {
+            let name = name(&method);
+            let (record, statistics) = run(&model, method, 3.0, tolerance);
+            let deviation = |(t, x, _): &(f64, SVector<f64, 2>, _)| {
+                (x[0] - x[1] - filled(*t, 1.0, 1.0)).abs().max((x[0] + x[1] - t).abs())
+            };
+            let error = record.samples.iter().map(deviation).fold(0.0, f64::max);
+            assert!(error < 60.0 * tolerance, "{name} at {tolerance:e}: {error:e}");
+            assert!(statistics.steps + statistics.rejected < 2000, "{name} at {tolerance:e}: {statistics}");
         }
     }
 }

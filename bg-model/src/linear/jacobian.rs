@@ -1,9 +1,8 @@
 //! The Jacobian for a step, also where a law has an infinite derivative.
 //!
 //! In: a flow and a step from a point. Out: its derivatives there, in the order of its sparsity. Where one of them is no
-//! number, as that of a square root at zero, those half a step ahead stand in for all of them; where the flow rests there,
-//! so that nothing is ahead, differences over what the tolerances allow stand in for the faulty ones. An implicit method only
-//! needs a Jacobian that makes its iteration converge; of a Rosenbrock method the error estimate shows what is amiss.
+//! number, as that of a square root at zero, a difference over the step stands in for it. An implicit method only needs a
+//! Jacobian that makes its iteration converge; of a Rosenbrock method the error estimate shows what is amiss.
 
 use nalgebra::SVector;
 
@@ -29,11 +28,6 @@ impl<const N: usize> Jacobian<N> {
         self.entries.resize(flow.sparsity().len(N), 0.0);
         flow.jacobian(start.t, &start.x, &mut self.entries, &mut self.slope);
         if !self.is_finite() {
-            let ahead = start.x + start.rate * (0.5 * h);
-            flow.jacobian(start.t + 0.5 * h, &ahead, &mut self.entries, &mut self.slope);
-        }
-        if !self.is_finite() {
-            flow.jacobian(start.t, &start.x, &mut self.entries, &mut self.slope);
             self.replace_faulty(flow, start, h, scale);
         }
     }
