@@ -40,12 +40,12 @@ pub struct OpenGap {
 
 impl std::fmt::Display for OpenGap {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "`{}` by {:e} {}{}", self.gap.joint, self.size, self.gap.unit, self.gap.direction())
+        write!(f, "`{}` by {:.2e} {}{}", self.gap.joint, self.size, self.gap.unit, self.gap.direction())
     }
 }
 
 /// A mechanism that cannot be put together near the guess.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum AssemblyError {
     /// Some joints stay open by more than [`CLOSED`].
     #[error("the mechanism does not close: joint {largest} (allowed: {CLOSED:e}){}", also_open(.others))]
@@ -64,6 +64,8 @@ pub enum AssemblyError {
         value: f64,
     },
 }
+
+debug_is_display!(AssemblyError);
 
 fn also_open(others: &[OpenGap]) -> String {
     if others.is_empty() {
@@ -272,7 +274,7 @@ mod tests {
         let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
         assert_eq!((largest.gap, largest.size), (GAPS[2], -5e-3));
         assert_eq!(others.as_slice(), &[OpenGap { gap: GAPS[0], size: 1e-3 }]);
-        assert!(error.to_string().ends_with("also open: `a` by 1e-3 m in x"), "{error}");
+        assert!(error.to_string().ends_with("also open: `a` by 1.00e-3 m in x"), "{error}");
     }
 
     #[test]

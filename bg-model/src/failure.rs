@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 use crate::simulation::Finish;
 
 /// A run that stopped before its end.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[error("{cause}")]
 pub struct Failure<const N: usize, const G: usize> {
     /// Why.
@@ -17,8 +17,10 @@ pub struct Failure<const N: usize, const G: usize> {
     pub last: Box<Finish<N, G>>,
 }
 
+debug_is_display!(Failure<const N: usize, const G: usize>);
+
 /// Why a run stopped.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum Cause {
     /// A number was not finite, however small the step.
     #[error("{}", not_finite(.origin.as_ref(), *.quantity, .name, *.index, *.value, *.t, *.h))]
@@ -97,6 +99,8 @@ pub enum Cause {
     BadInput(#[from] BadInput),
 }
 
+debug_is_display!(Cause);
+
 /// A quantity that can fail to be finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
@@ -149,7 +153,7 @@ impl Origin {
 }
 
 /// Something a run was asked for that cannot be.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum BadInput {
     /// The relative tolerance is not a number, or below what rounding allows.
     #[error("the relative tolerance is {value:?}; it must be a finite number, at least {smallest:.2e}")]
@@ -224,6 +228,8 @@ pub enum BadInput {
         value: f64,
     },
 }
+
+debug_is_display!(BadInput);
 
 /// What is not finite, and where.
 fn not_finite(

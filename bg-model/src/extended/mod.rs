@@ -58,7 +58,7 @@ pub struct Finish<S, const N: usize, const G: usize> {
 }
 
 /// Why a run stopped.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum Fault {
     /// The instants, the span or the accuracy cannot be.
     #[error("{0}")]
@@ -82,6 +82,8 @@ pub enum Fault {
         t: f64,
     },
 }
+
+debug_is_display!(Fault);
 
 /// Parts of the span: the first step, the step from which on nothing is looked at more closely, the smallest step.
 const FIRST: f64 = 1e-6;

@@ -48,7 +48,7 @@ pub trait Parameters: Clone + Default {
 }
 
 /// A parameter that cannot be.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum ParameterError {
     /// No parameter has this name.
     #[error("there is no parameter `{name}`")]
@@ -69,6 +69,8 @@ pub enum ParameterError {
         range: String,
     },
 }
+
+debug_is_display!(ParameterError);
 
 fn check(parameter: &ParameterInfo, value: f64) -> Result<(), ParameterError> {
     if parameter.range.contains(value) {

@@ -104,15 +104,13 @@ where
         self.watch.begin_by_sign(&mut self.stepper);
         self.stepper.evaluate_start();
         self.check_start()?;
-        // In an empty span a step of a run that goes on shows the branches.
-        let length = if self.span.t_end > self.span.t0 { self.span.t_end - self.span.t0 } else { 1.0 };
-        let longest = length.min(settings.largest_step);
+        let longest = self.span.length().min(settings.largest_step);
         if let (Some(order), None) = (control.order(), settings.first_step) {
             let (_, mut flow, start, _, scale) = self.stepper.split();
             let first = pace::first_step(&mut flow, start, scale, order, longest);
             self.pace.begin(first);
         }
-        self.watch.begin_by_probe(&mut self.stepper, self.pace.step());
+        self.watch.begin_by_probe(&mut self.stepper, self.pace.reach());
         self.stepper.end = self.stepper.start;
         self.check_start()
     }
@@ -271,7 +269,7 @@ where
     fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
         let t = self.stepper.start.t;
         let before = self.stepper.negative;
-        self.watch.settle(&mut self.stepper, switches, self.pace.step());
+        self.watch.settle(&mut self.stepper, switches, self.pace.reach());
         self.check_start()?;
         for (switch, before) in before.into_iter().enumerate() {
             if self.stepper.negative[switch] != before {

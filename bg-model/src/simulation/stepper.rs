@@ -150,7 +150,7 @@ where
         let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], SVector::zeros());
         self.system.jacobian(self.start.t, &self.start.x, &self.negative, &mut entries, &mut slope);
         let is_faulty = |(_, value): &(usize, f64)| !value.is_finite();
-        let entry = entries.into_iter().enumerate().find(is_faulty).map(|(k, value)| (sparsity.row(k, N), value));
+        let entry = entries.into_iter().enumerate().find(is_faulty).map(|(k, value)| (sparsity.place(k, N).0, value));
         entry.or_else(|| first_not_finite(&slope))
     }
 
