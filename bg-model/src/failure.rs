@@ -4,6 +4,7 @@
 
 use thiserror::Error;
 
+use crate::holding::Redundancy;
 use crate::simulation::Finish;
 
 /// A run that stopped before its end.
@@ -84,6 +85,17 @@ pub enum Cause {
         /// The index of the switch.
         switch: usize,
         /// Time, s.
+        t: f64,
+    },
+    /// Rigid joints have come to hold the same motion: the mechanism is in a singular pose, or passes through one.
+    #[error(
+        "near t = {t:?} s {redundancy}: the mechanism is in a singular pose there; make one of these joints compliant, or \
+         end the run before"
+    )]
+    Redundant {
+        /// Which joints.
+        redundancy: Redundancy,
+        /// When, s.
         t: f64,
     },
     /// The run was not started.

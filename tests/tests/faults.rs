@@ -135,7 +135,7 @@ const EQUATIONS: [(&str, &str); 5] = [
 ];
 
 /// A mass on a spring, with a place for scenes.
-const SCENES: [(&str, &str); 7] = [
+const SCENES: [(&str, &str); 8] = [
     (
         "BG0601",
         "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene A { observe { m.p } } scene ▸A { observe { j.flow } }",
@@ -154,6 +154,7 @@ const SCENES: [(&str, &str); 7] = [
          scene A { rigid { ▸pon } }",
     ),
     ("BG0607", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene ▸S { observe { m.p } }"),
+    ("BG0608", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; start ▸impulse;"),
 ];
 
 /// All stages but the last, which has no faults.

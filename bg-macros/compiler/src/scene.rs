@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::ast::{Expectation, Graph, Item, Name, Rigid, Scene};
+use crate::ast::{ElementKind, Expectation, Graph, Item, Name, Rigid, Scene};
 use crate::equations::StateEquations;
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::graph::Parameter;
@@ -23,6 +23,7 @@ pub enum SceneFault {
     StateCount { scene: String, expected: usize, states: Vec<String> },
     UnknownJoint { name: String, near: Option<String> },
     Reserved { name: String },
+    NothingRigid,
 }
 
 use SceneFault as F;
@@ -43,6 +44,7 @@ impl Explain for SceneFault {
             F::StateCount { .. } => "BG0605",
             F::UnknownJoint { .. } => "BG0606",
             F::Reserved { .. } => "BG0607",
+            F::NothingRigid => "BG0608",
         }
     }
 
@@ -59,6 +61,7 @@ impl Explain for SceneFault {
             }
             F::Reserved { name } => format!("`{name}` is a name of the generated code's own"),
             F::UnknownJoint { name, .. } => format!("there is no joint `{name}` to make rigid"),
+            F::NothingRigid => "`start impulse` has nothing to act through: no joint is rigid, in no scene".to_owned(),
         }
     }
 
@@ -76,6 +79,7 @@ impl Explain for SceneFault {
             }
             F::StateCount { .. } => "correct the number, or what the scene watches and tunes".to_owned(),
             F::UnknownJoint { .. } => "name a joint of the graph, or write `rigid joints;`".to_owned(),
+            F::NothingRigid => "remove it, or make a joint rigid".to_owned(),
         }
     }
 }
@@ -130,6 +134,7 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     for name in scenes.chain([&source.name]).filter(|name| OWN.contains(&name.text.as_str())) {
         faults.push(Fault::new(name.span, &F::Reserved { name: name.text.clone() }));
     }
+    faults.extend(idle_impulse(source));
     for item in &source.items {
         let Item::Scene(scene) = item else { continue };
         if !names.insert(scene.name.text.clone()) {
@@ -141,6 +146,18 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
         variants.push(Variant { graph: watched(&literal, items, scene), scene: Some(scene.clone()) });
     }
     if faults.is_empty() { Ok(variants) } else { Err(faults) }
+}
+
+/// The fault of a `start impulse` in a graph that has no rigid joint, neither itself nor in a scene.
+fn idle_impulse(source: &Graph) -> Option<Fault> {
+    let is_rigid = |item: &Item| match item {
+        Item::Joint(joint) => joint.rigid,
+        Item::Element(element) => element.kind == ElementKind::RSe,
+        Item::Scene(scene) => !matches!(scene.rigid, Rigid::None),
+        _ => false,
+    };
+    let span = source.items.iter().find_map(|item| if let Item::Impulse(span) = item { Some(*span) } else { None })?;
+    (!source.items.iter().any(is_rigid)).then(|| Fault::new(span, &F::NothingRigid))
 }
 
 /// The scene's graph: its observations in place of the graph's, if it has any.

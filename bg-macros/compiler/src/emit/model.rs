@@ -3,6 +3,8 @@
 //! In: equations and their programs. Out: a type that implements `bg_model::System` and `bg_model::Model`, generic over
 //! the scalar; flat single assignments over fixed-size vectors.
 
+mod start;
+
 use std::collections::BTreeSet;
 
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -430,7 +432,7 @@ impl Emission<'_> {
         let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
         let inline = self.programs.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
-        let (second, series) = (self.second(&inline), self.series());
+        let (second, series, holding) = (self.second(&inline), self.series(), self.holding());
         let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
         quote! {
             #parts
@@ -458,6 +460,7 @@ impl Emission<'_> {
                 #linear
                 #second
                 #series
+                #holding
             }
         }
     }
@@ -559,25 +562,15 @@ impl Emission<'_> {
         let (energy, stored) = self.function(4);
         let (power, powers) = self.function(5);
         let (supplied, dissipated) = (&powers[0], &powers[1]);
-        let gaps = self.equations.gaps.iter().map(|gap| {
-            let (joint, component, unit) = (&gap.joint, gap.component, &gap.unit);
-            quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
-        });
+        let (start, started) = self.start();
         quote! {
+            #started
             #[allow(unused_variables)]
             impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for #name<S> {
                 fn description(&self) -> &'static ::bg_model::description::Description {
                     &DESCRIPTION
                 }
-                fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
-                    static GAPS: &[::bg_model::assembly::Gap] = &[#(#gaps),*];
-                    let guess = #name::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
-                    let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
-                        gaps.copy_from_slice(&#name::<f64>::gaps(&self.parameters, unknowns));
-                    })?;
-                    let unknowns = unknowns.map(S::from_f64);
-                    Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
-                }
+                #start
                 fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], y: &mut SVector<S, M>) {
                     #output
                     y.data.0 = [[#(#outputs),*]];

@@ -23,6 +23,8 @@ pub(super) struct Programs {
     pub jacobian: Program,
     /// What there is for states of second order, with a constant table of its own.
     pub second: Option<SecondOrder>,
+    /// What joints hold, with a constant table of its own.
+    pub holding: Option<Program>,
     /// First guesses, gaps and start state: functions of parameters and unknowns, each with its own constants.
     pub starting: [Program; 3],
 }
@@ -78,9 +80,12 @@ impl Programs {
             let paired = program.routines.get(1).and_then(pair);
             SecondOrder { program, paired }
         });
+        let entries = equations.holding.entries();
+        let holding = (!equations.holding.is_empty())
+            .then(|| schedule(&mut equations.pool.clone(), &[Request { name: "hold", roots: &entries }]));
         let mut alone = |name, roots: &[Id]| schedule(&mut equations.pool, &[Request { name, roots }]);
         let starting = [alone("guesses", &guesses), alone("gaps", &gaps), alone("start_state", &starts)];
-        Self { dynamic, paired, jacobian, second, starting }
+        Self { dynamic, paired, jacobian, second, holding, starting }
     }
 
     /// Whether rates are inlined into an integrator's step, and so take the vectors that it takes.
@@ -98,6 +103,9 @@ impl Programs {
         tables.extend(self.second.as_ref().map(|SecondOrder { program, paired }| {
             table("second_constant", " What depends on parameters only, of forces.", program, paired.as_ref())
         }));
+        let held =
+            |program| table("holding_constant", " What depends on parameters only, of held motions.", program, None);
+        tables.extend(self.holding.as_ref().map(held));
         tables
     }
 

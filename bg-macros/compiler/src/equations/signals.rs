@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::value::Value;
-use super::{EquationFault, Gap, Output, State, StateEquations, Switch, storage, text};
+use super::{EquationFault, Gap, Holding, Output, State, StateEquations, Switch, storage, text};
 use crate::ast::{ElementKind, TrackKind};
 use crate::causality::{CausalGraph, End};
 use crate::expr::{Id, Pool, Symbol, substitute};
@@ -99,7 +99,8 @@ impl<'a> Signals<'a> {
         let outputs = self.outputs();
         self.integral_rates();
         self.starts();
-        let (guesses, gaps) = (self.guesses(), self.gaps());
+        let (guesses, speeds, gaps) = (self.guesses(), self.speeds(), self.gaps());
+        let holding = Holding { compliant: self.compliant_slips(&speeds), ..Holding::default() };
         let projections = self.projections();
         let reactions = self.reactions();
         let texts = text::equations(&self);
@@ -112,6 +113,7 @@ impl<'a> Signals<'a> {
             inputs: self.graph.inputs.clone(),
             states: self.states,
             guesses,
+            speeds,
             gaps,
             switches: self.switches,
             outputs,
@@ -120,6 +122,8 @@ impl<'a> Signals<'a> {
             dissipated,
             projections,
             reactions,
+            holding,
+            impulse: self.graph.impulse,
             bonds,
             texts,
         })
@@ -322,14 +326,18 @@ impl<'a> Signals<'a> {
             Symbol::State(index) => starts.get(index as usize).copied(),
             _ => None,
         };
-        let mut gaps = Vec::new();
+        let mut closed = Vec::new();
         for close in &graph.closes {
-            let value = self.evaluate(&close.gap, None);
-            let values = substitute(&mut self.pool, &value.0, &at_start);
             let unit = if close.dimension == crate::units::Dimension::NONE { "rad" } else { "m" };
+            closed.push((close.joint.text.clone(), unit.to_owned(), self.evaluate(&close.gap, None).0));
+        }
+        closed.extend(self.gaps_of_sinks());
+        let mut gaps = Vec::new();
+        for (joint, unit, values) in closed {
+            let values = substitute(&mut self.pool, &values, &at_start);
             let components = if values.len() == 1 { &[""][..] } else { &["x", "y", "z"] };
             for (component, value) in components.iter().zip(values) {
-                gaps.push(Gap { joint: close.joint.text.clone(), component, unit: unit.to_owned(), value });
+                gaps.push(Gap { joint: joint.clone(), component, unit: unit.clone(), value });
             }
         }
         gaps

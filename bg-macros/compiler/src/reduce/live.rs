@@ -30,6 +30,7 @@ pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report
         })
         .collect();
     forget_energies(equations, &live, &switches);
+    equations.holding.prune(&equations.pool, &live, &switches);
     keep_states(equations, report, &live);
     keep_switches(equations, &branches);
 }
@@ -108,6 +109,7 @@ pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, k
     for (state, _) in &mut equations.projections {
         *state = numbers[*state];
     }
+    equations.holding.renumber(&|state| is_kept(state).then(|| numbers[state]));
     equations.bonds.clear();
     let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::State(index(number)))).collect();
     equations.replace(&|symbol| state_of(symbol).map(|state| symbols[state]));

@@ -48,6 +48,7 @@ pub(super) const GRAPH: Place = Place {
         "observe",
         "ground",
         "gravity",
+        "start",
         "joint",
         "spring",
         "drive",
