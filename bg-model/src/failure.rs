@@ -4,6 +4,7 @@
 
 use thiserror::Error;
 
+use crate::holding::Redundancy;
 use crate::scalar::Scalar;
 use crate::simulation::Finish;
 
@@ -92,6 +93,17 @@ pub enum Cause {
         /// Its name, such as ``if v < 0` of `valve``; empty where it has none.
         name: &'static str,
         /// Time, s.
+        t: f64,
+    },
+    /// Rigid joints have come to hold the same motion: the mechanism is in a singular pose, or passes through one.
+    #[error(
+        "near t = {t:?} s {redundancy}: the mechanism is in a singular pose there; make one of these joints compliant, or \
+         end the run before"
+    )]
+    Redundant {
+        /// Which joints.
+        redundancy: Redundancy,
+        /// When, s.
         t: f64,
     },
     /// The run was not started.

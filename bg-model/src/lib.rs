@@ -87,6 +87,7 @@ pub mod description;
 mod event;
 pub mod extended;
 pub mod failure;
+pub mod holding;
 pub mod input;
 pub mod integrator;
 pub mod linear;

@@ -136,7 +136,7 @@ const EQUATIONS: [(&str, &str); 5] = [
 ];
 
 /// A mass on a spring, with a place for scenes.
-const SCENES: [(&str, &str); 6] = [
+const SCENES: [(&str, &str); 7] = [
     (
         "BG0601",
         "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene A { observe { m.p } } scene ▸A { observe { j.flow } }",
@@ -154,6 +154,7 @@ const SCENES: [(&str, &str); 6] = [
         "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> rod) { stiffness 1; }\n\
          scene A { rigid { ▸pon } }",
     ),
+    ("BG0608", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; start ▸impulse;"),
 ];
 
 /// All stages that have faults.

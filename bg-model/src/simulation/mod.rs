@@ -18,6 +18,7 @@ pub(crate) use stepper::Stepper;
 
 use crate::event::Watch;
 use crate::failure::{Cause, Failure, Quantity};
+use crate::holding::Independence;
 use crate::integrator::{Method, Point, Scale, StepControl, first_not_finite, is_finite};
 use crate::statistics::Statistics;
 use crate::system::System;
@@ -69,6 +70,7 @@ where
         attempts: 0,
         limit: settings.step_limit,
         faulty_guard: None,
+        independence: Independence::new(system.held()),
     };
     let outcome = settings::check(system, control, start, span, settings)
         .and_then(|()| settings::check_series(system, needs_series))
@@ -92,6 +94,8 @@ struct Run<'a, Sys, M, const N: usize, const G: usize> {
     limit: u64,
     /// The guard that was not finite at the end of a longer step from the present start, and its value.
     faulty_guard: Option<(usize, f64)>,
+    /// Of the rigid joints, where there are any.
+    independence: Option<Independence>,
 }
 
 impl<Sys, M, const N: usize, const G: usize> Run<'_, Sys, M, N, G>
@@ -112,7 +116,20 @@ where
         }
         self.watch.begin_by_probe(&mut self.stepper, self.pace.reach());
         self.stepper.end = self.stepper.start;
-        self.check_start()
+        self.check_start()?;
+        let Some(independence) = &mut self.independence else { return Ok(()) };
+        let Stepper { system, start, negative, .. } = &self.stepper;
+        let found = independence.begin(*system, (start.t, &start.x), negative);
+        found.map_or(Ok(()), |redundancy| Err(Cause::Redundant { redundancy, t: start.t }))
+    }
+
+    /// Sees to it that the rigid joints hold each a motion of its own over the whole step.
+    fn check_joints(&mut self) -> Result<(), Cause> {
+        let Some(independence) = &mut self.independence else { return Ok(()) };
+        let Stepper { system, start, h, end, negative, .. } = self.stepper;
+        let inside = |part: f64| (start.t + part * h, self.stepper.dense(part));
+        let found = independence.check(system, (end.t, &end.x), &negative, inside);
+        found.map_or(Ok(()), |(t, redundancy)| Err(Cause::Redundant { redundancy, t }))
     }
 
     fn check_start(&self) -> Result<(), Cause> {
@@ -129,12 +146,12 @@ where
             match self.watch.inspect(&mut self.stepper) {
                 Err(fault) => self.retreat(fault)?,
                 Ok(None) => {
-                    self.accept(observer);
+                    self.accept(observer)?;
                     self.watch.advance();
                 }
                 Ok(Some(crossing)) => {
                     if !crossing.is_at_start {
-                        self.accept(observer);
+                        self.accept(observer)?;
                     }
                     let before = self.stepper.negative;
                     let h = self.stepper.h;
@@ -241,7 +258,8 @@ where
     }
 
     /// Takes the step over: gives its samples and makes its end the start of the next one.
-    fn accept(&mut self, observer: &mut impl Observer<N, G>) {
+    fn accept(&mut self, observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
+        self.check_joints()?;
         self.faulty_guard = None;
         self.stepper.statistics.record(self.stepper.h);
         self.sampling.next_step();
@@ -249,6 +267,7 @@ where
         self.sample(observer, t);
         self.stepper.advance();
         observer.step(t, self.span.t_end, &self.stepper.statistics);
+        Ok(())
     }
 
     /// Gives the samples up to the end of the step at `t`.

@@ -3,6 +3,8 @@
 //! In: equations and their programs. Out: a type that implements `bg_model::System` and `bg_model::Model`, generic over
 //! the scalar; flat single assignments over fixed-size vectors.
 
+mod start;
+
 use std::collections::BTreeSet;
 
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -221,15 +223,17 @@ impl Emission<'_> {
 
     /// The tables of the running model.
     fn constant_tables(&self) -> Vec<Table<'_>> {
-        let Programs { running, jacobian, second_order, .. } = &self.model.programs;
+        let Programs { running, jacobian, second_order, holding, .. } = &self.model.programs;
         let table = |prefix, doc, constants, paired| Table { prefix, doc, constants, paired };
         let of_rates = " What depends on parameters only.";
         let of_jacobian = " What depends on parameters only, of the Jacobian.";
         let of_forces = " What depends on parameters only, of forces.";
+        let of_holding = " What depends on parameters only, of held motions.";
         let mut tables = vec![
             table("constant", of_rates, &running.constants, running.paired_rate.as_ref()),
             table("slope_constant", of_jacobian, &jacobian.constants, None),
         ];
+        tables.extend(holding.as_ref().map(|program| table("holding_constant", of_holding, &program.constants, None)));
         tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, paired_forces, .. }| {
             table("second_constant", of_forces, constants, paired_forces.as_ref())
         }));
@@ -427,7 +431,7 @@ impl Emission<'_> {
         let indices = self.model.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
         let inline = running.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
-        let (second, series) = (self.second(&inline), self.series());
+        let (second, series, holding) = (self.second(&inline), self.series(), self.holding());
         let (switch_name, not_finite) = (self.switch_name(), self.not_finite());
         let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
@@ -457,6 +461,7 @@ impl Emission<'_> {
                 #linear
                 #second
                 #series
+                #holding
             }
         }
     }
@@ -604,24 +609,14 @@ impl Emission<'_> {
         let (energy, stored) = self.function(&running.stored_energy);
         let (power, powers) = self.function(&running.powers);
         let (supplied, dissipated) = (&powers[0], &powers[1]);
-        let gaps = self.model.equations.gaps.iter().map(|gap| {
-            let (joint, component, unit) = (&gap.joint, gap.component, &gap.unit);
-            quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
-        });
+        let (start, started) = self.start();
         quote! {
+            #started
             impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for Model<S> {
                 fn description(&self) -> &'static ::bg_model::description::Description {
                     &DESCRIPTION
                 }
-                fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
-                    static GAPS: &[::bg_model::assembly::Gap] = &[#(#gaps),*];
-                    let guess = Model::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
-                    let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
-                        gaps.copy_from_slice(&Model::<f64>::gaps(&self.parameters, unknowns));
-                    })?;
-                    let unknowns = unknowns.map(S::from_f64);
-                    Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
-                }
+                #start
                 fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], y: &mut SVector<S, M>) {
                     #output
                     y.data.0 = [[#(#outputs),*]];

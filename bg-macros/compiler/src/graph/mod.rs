@@ -44,6 +44,8 @@ pub struct BondGraph {
     pub storages: Vec<Storage>,
     /// Gaps for the assembly of the start.
     pub closes: Vec<Close>,
+    /// Whether impulses make start velocities fit rigid joints.
+    pub impulse: bool,
     /// Observed outputs.
     pub observations: Vec<Observation>,
     /// The guesses in start expressions, each one unknown of the assembly.

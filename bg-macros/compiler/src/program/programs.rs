@@ -22,6 +22,8 @@ pub struct Programs {
     pub jacobian: Program<1>,
     /// What there is for states of second order, with a constant table of its own.
     pub second_order: Option<SecondOrderPrograms>,
+    /// What joints hold, with a constant table of its own.
+    pub holding: Option<Program<1>>,
     /// Functions of parameters and unknowns, from which the start is made.
     pub starting: Starting,
     /// What the laws give that can make numbers which are not finite, with its own constants.
@@ -80,10 +82,11 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let derivatives = jacobian.roots();
     let jacobian = schedule(&mut jacobian.pool, [Request { name: "jacobian", roots: &derivatives }]);
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
+    let holding = holding(equations);
     let starting = starting(equations);
     let fallible = roots(&equations.fallible, |law| law.value);
     let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
-    Programs { running, jacobian, second_order, starting, not_finite }
+    Programs { running, jacobian, second_order, holding, starting, not_finite }
 }
 
 /// The operations of the rate function as it would be generated from the equations.
@@ -135,6 +138,12 @@ fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondO
     SecondOrderPrograms { constants, second_derivatives, forces: Some(forces), paired_forces }
 }
 
+/// In a pool of its own, so that it has no say in the order of the other functions' operations.
+fn holding(equations: &StateEquations) -> Option<Program<1>> {
+    let entries = equations.holding.entries();
+    (!equations.holding.is_empty()).then(|| alone(&mut equations.pool.clone(), "hold", &entries))
+}
+
 fn starting(equations: &mut StateEquations) -> Starting {
     let gaps = roots(&equations.gaps, |gap| gap.value);
     let starts = roots(&equations.states, |state| state.start);
@@ -180,7 +189,8 @@ impl Programs {
     pub fn costs(&self) -> impl Iterator<Item = (&str, Counts)> {
         let running = self.running.routines().into_iter();
         let second_order = self.second_order.iter().flat_map(SecondOrderPrograms::routines);
-        let routines = running.chain(&self.jacobian.routines).chain(second_order);
+        let holding = self.holding.iter().flat_map(|program| &program.routines);
+        let routines = running.chain(&self.jacobian.routines).chain(second_order).chain(holding);
         routines.map(|routine| (routine.name.as_str(), routine.counts))
     }
 }

@@ -61,6 +61,8 @@ pub enum Item {
     Ground(Ground),
     /// `gravity E;`
     Gravity(Gravity),
+    /// `start impulse;` with the word's span: impulses of the rigid joints make start velocities fit.
+    Impulse(Span),
     /// `body NAME { ... }`
     Body(Body),
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`

@@ -133,6 +133,7 @@ impl Display for Item {
             Self::Scene(scene) => scene.fmt(f),
             Self::Ground(ground) => ground.fmt(f),
             Self::Gravity(Gravity { acceleration, .. }) => write!(f, "gravity {acceleration};"),
+            Self::Impulse(_) => f.write_str("start impulse;"),
             Self::Body(body) => body.fmt(f),
             Self::Joint(joint) => joint.fmt(f),
             Self::Spring(spring) => spring.fmt(f),

@@ -4,7 +4,7 @@
 //! with what it watches. No longer occurs: `Item::Scene`.
 
 use crate::fault::{Explain, Fault, Staged, near_miss};
-use crate::source::ast::{Graph, Item, Name, Rigid, Scene};
+use crate::source::ast::{ElementKind, Graph, Item, Name, Rigid, Scene};
 
 /// A fault of a scene.
 #[derive(Clone, Debug)]
@@ -12,6 +12,7 @@ use crate::source::ast::{Graph, Item, Name, Rigid, Scene};
 pub enum SceneFault {
     UnknownPart { name: String, near: Option<String> },
     UnknownJoint { name: String, near: Option<String> },
+    NothingRigid,
 }
 
 use SceneFault as F;
@@ -21,6 +22,7 @@ impl Explain for SceneFault {
         match self {
             F::UnknownPart { .. } => "BG0602",
             F::UnknownJoint { .. } => "BG0606",
+            F::NothingRigid => "BG0608",
         }
     }
 
@@ -28,6 +30,7 @@ impl Explain for SceneFault {
         match self {
             F::UnknownPart { name, .. } => format!("the mechanism has no part `{name}` to leave out"),
             F::UnknownJoint { name, .. } => format!("there is no joint `{name}` to make rigid"),
+            F::NothingRigid => "`start impulse` has nothing to act through: no joint is rigid, in no scene".to_owned(),
         }
     }
 
@@ -38,6 +41,7 @@ impl Explain for SceneFault {
             }
             F::UnknownPart { .. } => "name a joint, contact, spring, drive or element".to_owned(),
             F::UnknownJoint { .. } => "name a joint of the graph, or write `rigid joints;`".to_owned(),
+            F::NothingRigid => "remove it, or make a joint rigid".to_owned(),
         }
     }
 }
@@ -60,6 +64,7 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     let items: Vec<Item> = source.items.iter().filter(|item| !matches!(item, Item::Scene(_))).cloned().collect();
     let literal = Graph { items, ..source.clone() };
     let mut variants = vec![Variant { graph: literal.clone(), scene: None }];
+    faults.extend(idle_impulse(source));
     for item in &source.items {
         let Item::Scene(scene) = item else { continue };
         let mut items = left(&literal.items, &scene.without, &mut faults);
@@ -67,6 +72,18 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
         variants.push(Variant { graph: watched(&literal, items, scene), scene: Some(scene.clone()) });
     }
     if faults.is_empty() { Ok(variants) } else { Err(faults) }
+}
+
+/// The fault of a `start impulse` in a graph that has no rigid joint, neither itself nor in a scene.
+fn idle_impulse(source: &Graph) -> Option<Fault> {
+    let is_rigid = |item: &Item| match item {
+        Item::Joint(joint) => joint.rigid,
+        Item::Element(element) => element.kind == ElementKind::RSe,
+        Item::Scene(scene) => !matches!(scene.rigid, Rigid::None),
+        _ => false,
+    };
+    let span = source.items.iter().find_map(|item| if let Item::Impulse(span) = item { Some(*span) } else { None })?;
+    (!source.items.iter().any(is_rigid)).then(|| Fault::new(span, &F::NothingRigid))
 }
 
 /// The scene's graph: its observations in place of the graph's, if it has any.

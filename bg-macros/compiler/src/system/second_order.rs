@@ -49,6 +49,7 @@ pub fn arrange(equations: &mut StateEquations) {
     for (state, _) in &mut equations.projections {
         *state = to[*state] as usize;
     }
+    equations.holding.renumber(&|state| Some(to[state] as usize));
     equations.pool.renumber_states(&to);
 }
 

@@ -93,6 +93,7 @@ impl Resolver {
             tracks: Vec::new(),
             storages: Vec::new(),
             closes: Vec::new(),
+            impulse: false,
             observations: Vec::new(),
             guesses: Vec::new(),
             integrals: Vec::new(),
@@ -240,6 +241,7 @@ impl Resolver {
                     let (shape, dimension) = (Shape::Scalar, Dimension::NONE);
                     self.graph.closes.push(Close { joint: close.joint.clone(), gap, shape, dimension });
                 }
+                Item::Impulse(_) => self.graph.impulse = true,
                 Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
                 _ => {}
             }

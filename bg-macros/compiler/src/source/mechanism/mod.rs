@@ -74,6 +74,7 @@ impl<'a> Expansion<'a> {
             faults: Vec::new(),
         };
         let mut names: BTreeSet<&str> = BTreeSet::new();
+        let mut has_impulse = false;
         for item in &source.items {
             if let Some(name) = part_name(item)
                 && !names.insert(&name.text)
@@ -94,6 +95,10 @@ impl<'a> Expansion<'a> {
                 Item::Gravity(gravity) => {
                     let twice = std::mem::replace(&mut expansion.has_gravity, true);
                     expansion.only_once(twice, gravity.span, "gravity");
+                }
+                Item::Impulse(span) => {
+                    let twice = std::mem::replace(&mut has_impulse, true);
+                    expansion.only_once(twice, *span, "start impulse");
                 }
                 _ => {}
             }

@@ -8,7 +8,7 @@ use super::{
     cursor::{Cursor, Parsed, Place},
     statement::OPERATOR,
 };
-use crate::source::ast::{Axis, Body, Expression, Part, Shape};
+use crate::source::ast::{Axis, Body, Expression, ExpressionKind, Name, Part, Shape};
 
 /// The block of a body.
 const BODY: Place = Place {
@@ -73,7 +73,7 @@ impl Cursor<'_> {
         Ok(())
     }
 
-    /// `start at E;`, `start POINT at E;`, `start turned E;`, `start velocity E;`, `start spin E;`
+    /// `start at E;`, `start POINT at E;`, `start turned E;`, `start velocity E;`, `start spin E;`, of the last two `guess;`
     fn start(&mut self, body: &mut Body) -> Parsed<()> {
         let span = self.advance();
         if self.word().is_some() && self.word() != Some("at") && self.word_ahead(1) == Some("at") {
@@ -91,12 +91,25 @@ impl Cursor<'_> {
                 Some("spin") => ("start spin", &mut body.start_spin),
                 _ => return Err(self.unexpected("`at`, `POINT at`, `turned`, `velocity` or `spin`")),
             };
+            let is_motion = words != "start turned";
             self.advance();
-            let value = self.expression()?;
+            let value = if is_motion { self.motion()? } else { self.expression()? };
             self.fill(slot, value, words, span);
         }
         self.end_statement(OPERATOR);
         Ok(())
+    }
+
+    /// A velocity or spin; `guess` alone stands for `[guess(0), guess(0), guess(0)]`.
+    fn motion(&mut self) -> Parsed<Expression> {
+        if self.word() != Some("guess") || !self.symbol_ahead(1, ";") {
+            return self.expression();
+        }
+        let span = self.advance();
+        let zero = Expression { kind: ExpressionKind::Number(0.0), span };
+        let guess = ExpressionKind::Call(Name { text: "guess".to_owned(), span }, vec![zero]);
+        let component = Expression { kind: guess, span };
+        Ok(Expression { kind: ExpressionKind::Vector(vec![component; 3]), span })
     }
 
     /// `cuboid [..] at [..] turned E density E;`

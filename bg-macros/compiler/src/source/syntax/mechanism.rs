@@ -55,6 +55,7 @@ impl Cursor<'_> {
         match word {
             "ground" => self.ground().map(Item::Ground),
             "gravity" => self.gravity().map(Item::Gravity),
+            "start" => self.impulse().map(Item::Impulse),
             "body" => self.body().map(Item::Body),
             "joint" => self.joint().map(Item::Joint),
             "spring" => self.spring().map(Item::Spring),
@@ -95,6 +96,14 @@ impl Cursor<'_> {
         let acceleration = self.expression()?;
         self.end_statement(OPERATOR);
         Ok(Gravity { span, acceleration })
+    }
+
+    /// `start impulse;`
+    fn impulse(&mut self) -> Parsed<Span> {
+        self.advance();
+        let span = self.expect_word("impulse")?;
+        self.end_statement("");
+        Ok(span)
     }
 
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`

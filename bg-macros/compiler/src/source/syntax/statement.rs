@@ -46,6 +46,7 @@ pub(super) const GRAPH: Place = Place {
         "observe",
         "ground",
         "gravity",
+        "start",
         "joint",
         "spring",
         "drive",

@@ -6,6 +6,7 @@
 
 mod fallible;
 mod fault;
+mod holding;
 mod kinematics;
 mod laws;
 mod origin;
@@ -23,6 +24,7 @@ use crate::graph::{Input, Parameter};
 
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
+pub use holding::{Holding, Slip};
 pub use origin::{Kind, Origin};
 pub use value::Value;
 
@@ -39,6 +41,8 @@ pub struct StateEquations {
     pub states: Vec<State>,
     /// First guess of each unknown of the assembly, from parameters; `Symbol::Unknown` counts them.
     pub guesses: Vec<Id>,
+    /// The unknowns that are velocities, ascending; the others are of the pose.
+    pub speeds: Vec<usize>,
     /// Gaps of the assembly, from parameters and unknowns.
     pub gaps: Vec<Gap>,
     /// Switches.
@@ -57,6 +61,10 @@ pub struct StateEquations {
     pub fallible: Vec<FallibleLaw>,
     /// Reactions of rigid joints that are not solved for yet.
     pub reactions: Vec<Reaction>,
+    /// What joints hold.
+    pub holding: Holding,
+    /// Whether impulses of the rigid joints make the start velocities fit.
+    pub impulse: bool,
     /// Effort and flow of every bond, component by component.
     pub bonds: Vec<(Vec<Id>, Vec<Id>)>,
     /// The equations of the causal graph as text, one line each.
@@ -81,12 +89,10 @@ pub struct State {
 /// The reaction of a residual sink: the effort that keeps a flow at zero.
 #[derive(Clone, Debug)]
 pub struct Reaction {
-    /// The sink.
-    pub element: String,
+    /// What it holds: the flow to be kept at zero.
+    pub slip: Slip,
     /// The effort, an atom.
     pub multiplier: Symbol,
-    /// The flow to be kept at zero.
-    pub flow: Id,
     /// Its integral as the poses have it, where they do.
     pub gap: Option<Id>,
 }

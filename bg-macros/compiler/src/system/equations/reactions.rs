@@ -3,9 +3,9 @@
 //! In: residual sinks. Out: [`Reaction`]s over atoms, to be solved for where the rates are known.
 //! Source: the residual sink of Borutzky, Bond Graph Methodology (2010), section 4.
 
-use super::Reaction;
 use super::signals::Signals;
 use super::value::Value;
+use super::{Reaction, Slip};
 use crate::expr::{Id, Symbol};
 use crate::graph::NodeId;
 
@@ -40,8 +40,10 @@ impl Signals<'_> {
             let gap: Option<Vec<Id>> = element.displacement.as_ref().map(|gap| self.evaluate(gap, None).0);
             let multipliers = self.multipliers(node, excess.0.len());
             for (k, (multiplier, &flow)) in multipliers.zip(&excess.0).enumerate() {
-                let (element, gap) = (graph.node(node).name.text.clone(), gap.as_ref().map(|gap| gap[k]));
-                reactions.push(Reaction { element, multiplier, flow, gap });
+                let joint = self.joint_of(node).to_owned();
+                let (direction, unit) = (self.direction_of(node, k), graph.bond(bond).flow_unit());
+                let gap = gap.as_ref().map(|gap| gap[k]);
+                reactions.push(Reaction { slip: Slip { joint, direction, unit, flow }, multiplier, gap });
             }
         }
         reactions

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::fallible::Nature;
 use super::value::Value;
-use super::{EquationFault, FallibleLaw, Gap, Origin, Output, State, StateEquations, Switch, storage, text};
+use super::{EquationFault, FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::causality::{CausalGraph, End};
@@ -106,7 +106,8 @@ impl<'a> Signals<'a> {
         let outputs = self.outputs();
         self.integral_rates();
         self.starts();
-        let (guesses, gaps) = (self.guesses(), self.gaps());
+        let (guesses, speeds, gaps) = (self.guesses(), self.speeds(), self.gaps());
+        let holding = Holding { compliant: self.compliant_slips(&speeds), ..Holding::default() };
         let projections = self.projections();
         let reactions = self.reactions();
         let texts = text::equations(&self);
@@ -119,6 +120,7 @@ impl<'a> Signals<'a> {
             inputs: self.graph.inputs.clone(),
             states: self.states,
             guesses,
+            speeds,
             gaps,
             switches: self.switches,
             outputs,
@@ -128,6 +130,8 @@ impl<'a> Signals<'a> {
             projections,
             fallible: self.fallible,
             reactions,
+            holding,
+            impulse: self.graph.impulse,
             bonds,
             texts,
         })
@@ -341,14 +345,18 @@ impl<'a> Signals<'a> {
             Symbol::State(index) => starts.get(index as usize).copied(),
             _ => None,
         };
-        let mut gaps = Vec::new();
+        let mut closed = Vec::new();
         for close in &graph.closes {
-            let value = self.evaluate(&close.gap, None);
-            let values = substitute(&mut self.pool, &value.0, &at_start);
             let unit = if close.dimension == crate::graph::units::Dimension::NONE { "rad" } else { "m" };
+            closed.push((close.joint.text.clone(), unit.to_owned(), self.evaluate(&close.gap, None).0));
+        }
+        closed.extend(self.gaps_of_sinks());
+        let mut gaps = Vec::new();
+        for (joint, unit, values) in closed {
+            let values = substitute(&mut self.pool, &values, &at_start);
             let components = if values.len() == 1 { &[""][..] } else { &["x", "y", "z"] };
             for (component, value) in components.iter().zip(values) {
-                gaps.push(Gap { joint: close.joint.text.clone(), component, unit: unit.to_owned(), value });
+                gaps.push(Gap { joint: joint.clone(), component, unit: unit.clone(), value });
             }
         }
         gaps

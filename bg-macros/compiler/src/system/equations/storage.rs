@@ -294,7 +294,7 @@ impl Signals<'_> {
     }
 
     /// The rates of time and of all states but `held`.
-    fn rate_seeds(&mut self, held: &[Id]) -> BTreeMap<Symbol, Id> {
+    pub(super) fn rate_seeds(&mut self, held: &[Id]) -> BTreeMap<Symbol, Id> {
         let mut seeds = BTreeMap::from([(Symbol::Time, self.pool.one())]);
         for index in 0..self.states.len() {
             let symbol = self.state_symbol(index);

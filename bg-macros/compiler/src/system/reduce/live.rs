@@ -33,6 +33,7 @@ pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report
     let mut fallible = std::mem::take(&mut equations.fallible);
     fallible.retain(|law| is_known(&equations.pool, law.value, &live, &switches));
     equations.fallible = fallible;
+    equations.holding.prune(&equations.pool, &live, &switches);
     keep_states(equations, report, &live);
     keep_switches(equations, &branches);
 }
@@ -114,6 +115,7 @@ pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, k
     for (state, _) in &mut equations.projections {
         *state = numbers[*state];
     }
+    equations.holding.renumber(&|state| is_kept(state).then(|| numbers[state]));
     equations.bonds.clear();
     let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::State(index(number)))).collect();
     equations.replace(&|symbol| state_of(symbol).map(|state| symbols[state]));

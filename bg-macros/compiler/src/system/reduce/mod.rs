@@ -165,7 +165,7 @@ impl StateEquations {
         roots.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
         roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
         for reaction in &mut self.reactions {
-            roots.push(&mut reaction.flow);
+            roots.push(&mut reaction.slip.flow);
             roots.extend(&mut reaction.gap);
         }
         roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
@@ -195,6 +195,8 @@ impl StateEquations {
         for (law, value) in self.fallible.iter_mut().zip(after) {
             law.value = value;
         }
+        // What is held comes after, so that it has no say in the order of the rates' nodes.
+        self.holding.replace(&mut pool, replace, branch);
         self.pool = pool;
     }
 }

@@ -47,11 +47,19 @@ fn canonical_statements_print_as_they_are_written() {
         "close pin = a - b;",
         "observe { a.h; b: m/s = c; d = 1 }",
         "gravity [0, -9.81, 0];",
+        "start impulse;",
         "joint cross: universal x y (ground.O -> rod.B);",
         "drive push on frame.B force = [1, 0, 0];",
     ] {
         assert_eq!(statement(text), text);
     }
+}
+
+#[test]
+fn a_bare_guess_of_a_motion_is_one_for_each_component() {
+    let body = |motion: &str| statement(&format!("body b {{ mass 1; start velocity {motion}; start spin {motion}; }}"));
+    assert_eq!(body("guess"), body("[guess(0), guess(0), guess(0)]"));
+    assert_eq!(body("guess * 2").matches("[").count(), 0);
 }
 
 #[test]
