@@ -55,10 +55,19 @@ impl Explain for CausalFault {
             }
             F::Underdetermined { junction, variable: "effort" } => format!("bond a C or an R to `{junction}`"),
             F::Underdetermined { junction, .. } => format!("bond an I or an R to `{junction}`"),
-            F::Derivative { symbol: "I", name, .. } => format!(
-                "let a C and an R (a compliant coupling) sit between them, `1 -> 0 -> C` in front of `{name}`, or merge \
-                 the two inertias into one I"
-            ),
+            F::Derivative { symbol: "I", name, by } => {
+                let compliant = format!(
+                    "let a C and an R (a compliant coupling) sit between them, `1 -> 0 -> C` in front of `{name}`"
+                );
+                if by.starts_with("I ") {
+                    format!(
+                        "{compliant}, or hold them together exactly with a residual sink, `rSe rigid = 0` at the 0-junction of \
+                         `.. -> 0 -> 1 -> {name}`, or merge the two inertias into one I"
+                    )
+                } else {
+                    compliant
+                }
+            }
             F::Derivative { name, .. } => format!("let an R sit in series with `{name}`, or merge the two C into one"),
             F::OneWay { name, .. } => format!("write the law of `{name}` as an expression of the other variable"),
         }

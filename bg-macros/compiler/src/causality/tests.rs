@@ -120,19 +120,3 @@ fn residual_sinks_come_before_storages() {
         ["BG0403 C `c` would be in derivative causality: its state is already determined by rSe `tie`"]
     );
 }
-
-#[test]
-fn a_junction_with_many_bonds_takes_no_more_than_its_bonds_do() {
-    // With a queue of n^2 / 2 entries this would take 3 GB.
-    let bonds: usize = 20_000;
-    let resistors: String = (0..bonds).map(|k| format!("R r{k} = 1; j -> r{k};")).collect();
-    let causal = assigned(&format!("1 j: translation; I m = 1; j -> m; {resistors}")).expect("valid");
-    assert_eq!(
-        causal.strokes,
-        vec![End::To; bonds + 1]
-            .iter()
-            .enumerate()
-            .map(|(k, _)| if k == 0 { End::To } else { End::From })
-            .collect::<Vec<_>>()
-    );
-}

@@ -7,10 +7,13 @@
 mod fault;
 mod kinematics;
 mod laws;
+mod loops;
 mod reactions;
 mod signals;
 mod storage;
 mod terms;
+#[cfg(test)]
+mod tests;
 mod text;
 mod value;
 
