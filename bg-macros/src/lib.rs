@@ -565,10 +565,14 @@ use proc_macro::TokenStream;
 ///
 /// Strokes are assigned by the sequential procedure (SCAP): sources, residual sinks among them, then laws that work one
 /// way only (laws of a variable), then I and C in integral causality, in the order of declaration, then what is left;
-/// each assignment is propagated before the next. Only integral causality is accepted:
+/// each assignment is propagated before the next. What is left is a choice, bond by bond in their order: the stroke is
+/// where the half arrow starts, unless the rest could then not be completed. So a graph that has a valid assignment
+/// gets one. Only integral causality is accepted:
 ///
 /// - two causes for one effort or flow: BG0401, none: BG0402;
-/// - an I or C whose state others already determine: BG0403. Put a C with an R in between, or merge the two;
+/// - an I or C whose state others already determine: BG0403. Put a C with an R in between, or merge the two. A residual
+///   sink holds two inertias together exactly, a rigid shaft or gear: `0 tie; 1 hub; rSe rigid = 0;`
+///   `shaft -> gear -> tie -> hub -> wheel; rigid -> tie;` keeps the difference of the two flows at the 0-junction at zero;
 /// - a law of a variable that would have to run backwards: BG0404;
 /// - a variable that needs itself, through resistors or modulation: BG0501, with the members of the loop.
 ///
@@ -644,8 +648,10 @@ use proc_macro::TokenStream;
 ///
 /// # Faults
 ///
-/// All faults of a stage are reported at once; a later stage looks at a graph that the earlier ones accepted. With a
-/// fault, the promised items are still there as stubs, so that rustc adds no errors about missing types.
+/// All faults of a stage are reported at once, each that is left when those before it have given way; a later stage looks
+/// at a graph that the earlier ones accepted. The stages are the parts of the table; the third has three in turn: names, then
+/// ports and cardinalities, then shapes and units. An algebraic loop is one fault, however many circles its variables
+/// make. With a fault, the promised items are still there as stubs, so that rustc adds no errors about missing types.
 ///
 /// | code | meaning |
 /// |---|---|

@@ -25,7 +25,7 @@ pub enum GraphFault {
     Units { what: String, left: Dimension, right: Dimension },
     NotDimensionless { what: String, found: Dimension },
     NoRoot { found: Dimension },
-    UnknownUnits { from: String, to: String },
+    UnknownUnits { from: String, to: String, declaration: Option<String> },
     LawUnit { symbol: &'static str, name: String, found: Dimension, expected: Vec<Dimension> },
     NumberForC { name: String },
     Modulated { symbol: &'static str, name: String, by: String },
@@ -107,7 +107,7 @@ impl Explain for GraphFault {
             F::Units { what, left, right } => format!("{what}: the units {left} and {right} disagree"),
             F::NotDimensionless { what, found } => format!("{what} must be a pure number; this has unit {found}"),
             F::NoRoot { found } => format!("the square root of a quantity in {found} has no unit"),
-            F::UnknownUnits { from, to } => {
+            F::UnknownUnits { from, to, .. } => {
                 format!("nothing fixes the units of effort and flow on the bond `{from}` -> `{to}`")
             }
             F::LawUnit { symbol, name, found, expected } => format!(
@@ -172,7 +172,12 @@ impl Explain for GraphFault {
             F::Units { .. } => "change one of the two so that they agree".to_owned(),
             F::NotDimensionless { .. } => "divide by a reference quantity of the same unit".to_owned(),
             F::NoRoot { .. } => "take the root of a square".to_owned(),
-            F::UnknownUnits { from, .. } => format!("give a junction on it its domain, such as `1 {from}: rotation;`"),
+            F::UnknownUnits { declaration: Some(declaration), .. } => {
+                format!("where the junction is declared, name its domain, such as `{declaration}: rotation`")
+            }
+            F::UnknownUnits { from, to, .. } => format!(
+                "put a junction with a domain between them, such as `1 between: rotation; {from} -> between -> {to};`"
+            ),
             F::LawUnit { expected, .. } => {
                 format!("give a value in {}", expected.first().map_or_else(String::new, ToString::to_string))
             }

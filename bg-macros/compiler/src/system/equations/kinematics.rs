@@ -26,7 +26,6 @@ impl Signals<'_> {
         if nodes.is_empty() {
             return;
         }
-        let memo = self.memo.clone();
         let mut next = FLOW_ATOMS;
         for track in &graph.tracks {
             if !self.given_flows.contains_key(&track.junction) {
@@ -40,7 +39,7 @@ impl Signals<'_> {
             self.prove(node, &seeds);
         }
         self.given_flows.clear();
-        self.memo = memo;
+        self.forget();
     }
 
     /// The rates of all poses in terms of the atoms.
@@ -66,7 +65,7 @@ impl Signals<'_> {
         let flow = flow.scale(&mut self.pool, graph.sign(bond, node));
         let rates = derivative(&mut self.pool, &displacement.0, seeds);
         let proved = rates.iter().zip(&flow.0).all(|(&rate, &flow)| same_polynomial(&mut self.pool, rate, flow));
-        if !proved && self.faults.is_empty() {
+        if !proved && !self.is_in_a_loop(&flow) {
             let name = graph.node(node).name.text.clone();
             self.faults.push(Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name }));
         }

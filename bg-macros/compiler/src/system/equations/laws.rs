@@ -174,7 +174,7 @@ impl Signals<'_> {
         if !(constant && at_zero.iter().all(|&id| self.pool.is_zero(id))) {
             let definition = self.graph.node(node);
             let (symbol, name) = (element.kind.symbol(), definition.name.text.clone());
-            self.faults.push(Fault::new(term.span, &EquationFault::NotLinear { symbol, name }));
+            self.fault_once(Fault::new(term.span, &EquationFault::NotLinear { symbol, name }));
         }
         columns
     }

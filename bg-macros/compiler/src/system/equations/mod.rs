@@ -9,11 +9,14 @@ mod fault;
 mod holding;
 mod kinematics;
 mod laws;
+mod loops;
 mod origin;
 mod reactions;
 mod signals;
 mod storage;
 mod terms;
+#[cfg(test)]
+mod tests;
 mod text;
 mod value;
 

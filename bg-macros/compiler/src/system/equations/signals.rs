@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::fallible::Nature;
+use super::loops::Loops;
 use super::value::Value;
 use super::{EquationFault, FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
@@ -13,6 +14,9 @@ use crate::fault::{Fault, Staged};
 use crate::graph::causality::{CausalGraph, End};
 use crate::graph::{BondGraph, BondId, NodeId, NodeKind, Shape, Storage};
 use crate::source::ast::{ElementKind, TrackKind};
+
+/// Stands for a variable of an algebraic loop, so that what else is wrong can be found.
+const LOOP: Symbol = Symbol::Atom(u32::MAX);
 
 /// A memo of bond variables and lets.
 #[derive(Clone, Debug)]
@@ -65,6 +69,7 @@ pub(super) struct Signals<'a> {
     /// What is known of the lets.
     pub(super) natures: Vec<Option<Nature>>,
     path: Vec<(Variable, BondId)>,
+    loops: Loops,
     pub(super) faults: Vec<Fault>,
 }
 
@@ -85,6 +90,7 @@ impl<'a> Signals<'a> {
             fallible: Vec::new(),
             natures: vec![None; causal.graph.lets.len()],
             path: Vec::new(),
+            loops: Loops::new(2 * causal.graph.bonds.len()),
             faults: Vec::new(),
         };
         signals.lay_out();
@@ -97,12 +103,12 @@ impl<'a> Signals<'a> {
         self.fallible.clear();
         let bonds: Vec<(Vec<Id>, Vec<Id>)> =
             (0..self.graph.bonds.len()).map(|k| (self.effort(BondId(k)).0, self.flow(BondId(k)).0)).collect();
-        if !self.faults.is_empty() {
-            return Err(self.faults);
-        }
         self.rates();
         let stored = self.stored_energy();
         let (supplied, dissipated) = (self.supplied_power(), self.dissipated_power());
+        if !self.faults.is_empty() {
+            return Err(self.faults);
+        }
         let outputs = self.outputs();
         self.integral_rates();
         self.starts();
@@ -203,17 +209,25 @@ impl<'a> Signals<'a> {
     }
 
     fn variable(&mut self, variable: Variable, bond: BondId) -> Value {
-        match self.entry(variable, bond) {
-            Entry::Done(value) => return value.clone(),
+        let number = |(variable, bond): (Variable, BondId)| 2 * bond.0 + usize::from(variable == Variable::Flow);
+        let own = number((variable, bond));
+        let by = self.path.last().copied().map(number);
+        match self.entry(variable, bond).clone() {
+            Entry::Done(value) => {
+                self.loops.need(own, by);
+                return value;
+            }
             Entry::Entered => {
-                self.report_loop(variable, bond);
-                let components = self.graph.bond(bond).cardinality;
-                return Value::zero(&mut self.pool, components);
+                self.loops.need(own, by);
+                self.loops.circle(own, self.circle(variable, bond));
+                let unknown = self.pool.symbol(LOOP);
+                return Value(vec![unknown; self.graph.bond(bond).cardinality]);
             }
             Entry::Open => {}
         }
         *self.entry(variable, bond) = Entry::Entered;
         self.path.push((variable, bond));
+        self.loops.enter(own);
         let ends = self.graph.bond(bond);
         let (stroke_node, other) = match self.causal.strokes[bond.0] {
             End::From => (ends.from, ends.to),
@@ -226,11 +240,13 @@ impl<'a> Signals<'a> {
         };
         self.owner = owner;
         self.path.pop();
+        self.faults.extend(self.loops.leave(own, by));
         *self.entry(variable, bond) = Entry::Done(value.clone());
         value
     }
 
-    fn report_loop(&mut self, variable: Variable, bond: BondId) {
+    /// The loop that ends where it began: at this variable.
+    fn circle(&self, variable: Variable, bond: BondId) -> Fault {
         let start = self.path.iter().position(|&step| step == (variable, bond)).unwrap_or(0);
         let members: Vec<String> = self.path[start..]
             .iter()
@@ -246,10 +262,19 @@ impl<'a> Signals<'a> {
                 }
                 members
             });
-        let fault = Fault::new(self.graph.bond(bond).span, &EquationFault::AlgebraicLoop { members });
-        if self.faults.is_empty() {
-            self.faults.push(fault);
-        }
+        Fault::new(self.graph.bond(bond).span, &EquationFault::AlgebraicLoop { members })
+    }
+
+    /// Whether a value needs one of an algebraic loop, which is not known.
+    pub(super) fn is_in_a_loop(&self, value: &Value) -> bool {
+        self.pool.symbols(&value.0).contains(&LOOP)
+    }
+
+    /// Forgets what bonds carry, and the loops found in that: they are found again.
+    pub(super) fn forget(&mut self) {
+        self.memo = Memo::new(self.graph);
+        self.loops = Loops::new(2 * self.graph.bonds.len());
+        self.faults.retain(|fault| fault.code != "BG0501");
     }
 
     /// The effort that a node gives on one of its bonds.

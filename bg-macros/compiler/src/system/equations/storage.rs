@@ -192,7 +192,8 @@ impl Signals<'_> {
         }
     }
 
-    fn fault_once(&mut self, fault: Fault) {
+    /// Reports a fault unless it is known.
+    pub(super) fn fault_once(&mut self, fault: Fault) {
         if self.faults.iter().all(|known| known.message != fault.message) {
             self.faults.push(fault);
         }
