@@ -44,7 +44,7 @@ use proc_macro::TokenStream;
 /// call      = { graph }
 /// graph     = [visibility] "graph" NAME "{" { statement } "}"
 /// statement = param | input | let | junction | element | chain | position | orientation | close | observe
-///           | ground | gravity | body | joint | spring | drive | contact | scene
+///           | ground | gravity | body | joint | spring | drive | contact | start | scene
 /// ```
 ///
 /// Order is free: a name may be used before it is declared. Outputs keep the order of declaration; so do states of one
@@ -52,9 +52,11 @@ use proc_macro::TokenStream;
 /// `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in front of `graph`, `scene`,
 /// `param` and `input` and become the documentation of the generated items.
 ///
-/// Names are Rust identifiers, Rust's keywords excluded. Names of `let`s, junctions, elements, tracks and outputs may
-/// have dots (`pin.slip`); those of graphs, scenes, parameters, inputs, bodies, points, joints, springs, drives and
-/// contacts have none. All of a graph's names are different, its outputs' among themselves; `t` is the time.
+/// Names are Rust identifiers, Rust's keywords excluded; `gen`, a keyword of the edition 2024 only, makes a field `r#gen`.
+/// A graph, a scene or a parameter may be called `Option`, `f64` or whatever else: generated code means something else by
+/// none of them. Names of `let`s, junctions, elements, tracks and outputs may have dots (`pin.slip`); those of graphs,
+/// scenes, parameters, inputs, bodies, points, joints, springs, drives and contacts have none. All of a graph's names are
+/// different, its outputs' among themselves; `t` is the time.
 ///
 /// ## `param`, `input`, `let`
 ///
@@ -219,7 +221,7 @@ use proc_macro::TokenStream;
 /// | `transpose(A)`, `inverse(A)` | of a matrix | the same; its reciprocal |
 /// | `identity()` | the unit matrix | any |
 /// | `rotation_x(a)`, `rotation_y(a)`, `rotation_z(a)` | the rotation matrix about an axis, rad | of a pure number; a pure number |
-/// | `guess(a)` | an unknown of the assembly, first guessed as a; only in starts | the same |
+/// | `guess(a)` | an unknown of the assembly, pose or velocity, first guessed as a; only in starts | the same |
 /// | `integral(a)` | the time integral of a scalar since t = 0, a state of its own; only in `observe` | times s |
 ///
 /// ## The square root at zero
@@ -281,16 +283,17 @@ use proc_macro::TokenStream;
 ///         { "at" E | "turned" E | "density" E } ";"
 /// setting = "density" E ";" | "mass" E ";" | "center" E ";" | "inertia" E ";"
 /// point = "point" NAME "=" E ";"
-/// start = "start" [POINT] "at" E ";" | "start" "turned" E ";" | "start" "velocity" E ";" | "start" "spin" E ";"
+/// start = "start" [POINT] "at" E ";" | "start" "turned" E ";" | "start" ("velocity" | "spin") (E | "guess") ";"
 /// ```
 ///
 /// A rigid body. Its mass, centre of mass and inertia tensor are the sums over its **parts** (`at`: the part's centre;
 /// `turned`: its orientation; both in the body's axes), or **given**: `mass` (kg), `center` (m, the origin when left
 /// out) and `inertia` about the centre (kg\*m^2: three principal moments or a matrix). The start pose is that of the
 /// origin or of a point (m, inertial axes) and a rotation matrix; `velocity` (m/s) is that of the centre of mass,
-/// `spin` (rad/s) the angular velocity, both in inertial axes. What is left out is zero, or unturned. Clauses but those of
-/// the start depend on parameters and numbers only, the start on guesses, too. What a body cannot have is
-/// [refused](#values-that-cannot-be).
+/// `spin` (rad/s) the angular velocity, both in inertial axes. What is left out is zero, or unturned. A velocity that
+/// the joints determine is a guess: `start velocity [guess(0), guess(0), 0];`, or `start velocity guess;` for all three
+/// components ([start velocities](#start-velocities)). Clauses but those of the start depend on parameters and numbers only, the
+/// start on guesses, too. What a body cannot have is [refused](#values-that-cannot-be).
 ///
 /// It stands for two multibond 1-junctions, `NAME.translation` (velocity of the centre of mass) and `NAME.rotation`
 /// (angular velocity), both in inertial axes, with `I NAME.linear`, and `I NAME.angular` whose tensor turns with the
@@ -353,13 +356,17 @@ use proc_macro::TokenStream;
 /// The reactions l are solved for at compile time. That the second derivative of each held gap vanishes is linear in
 /// them, A l + b = 0, with A symmetric; A is factored as L D L^T in symbols, without pivots, and the solution is part
 /// of the flat rate function. What truncation leaves of a gap q and its rate v decays by Baumgarte's terms,
-/// `v' = -2 a v - a^2 q` with a = 50 1/s. The start pose closes the gaps as for compliant joints; start velocities
-/// should fit the joints, since what does not fit is not made to at the start but decays in the same way.
+/// `v' = -2 a v - a^2 q` with a = 50 1/s: a start that fits is left to no such terms, since gaps and
+/// [velocities](#start-velocities) that do not fit are errors.
 ///
 /// Redundancy: a constraint whose flow and gap vanish identically while the constants of the reduction hold, such as
 /// one out of the plane in planar motion, needs no reaction and gets zero, in scenes only. Any other constraint that
-/// follows from the rest leaves a pivot of D zero, and the rate is not finite: with two rigid hinges of one door it is
-/// not a number from the start. Keep one of the two compliant, or hold less with it.
+/// follows from the rest leaves a pivot of D zero, and the reactions have no unique values: two rigid hinges of one door
+/// hold five directions twice. Each pivot is compared with the diagonal entry of A it came from; below a part of 1e-10
+/// `Model::start` gives an error, `AssemblyError::Redundant`, with the joint, its directions and the joints that hold
+/// them already. Make one of them compliant, or let it hold less. A run looks again after every accepted step. It ends
+/// with `Cause::Redundant` where the mechanism comes to a singular pose or passes over one inside a step, as a
+/// parallelogram does that comes to lie flat: there the joints leave open how it goes on.
 ///
 /// ## `spring`, `contact`
 ///
@@ -433,7 +440,7 @@ use proc_macro::TokenStream;
 /// ```text
 /// scene  = "scene" NAME "{" { clause } "}"
 /// clause = observe | "tune" NAMES | "without" NAMES | "rigid" ( "joints" ";" | "{" NAME { "," NAME } "}" )
-///        | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
+///        | "angles" ";" | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
 /// NAMES  = "{" [NAME { "," NAME }] "}" | NAME { "," NAME } ";"
 /// ```
 ///
@@ -543,10 +550,56 @@ use proc_macro::TokenStream;
 ///
 /// # Start poses
 ///
-/// Start values are expressions of parameters. `guess(E)` in a body's start is an unknown: before a run the assembly
+/// Start values are expressions of parameters. `guess(E)` in a body's start pose is an unknown: before a run the assembly
 /// moves all of them from their guesses until every joint's gap is closed to 1e-10 m or rad (`Model::start`). It names
 /// the joint and its gap where that fails. Without guesses the gaps are only checked. The method is Gauss-Newton with
 /// the least step, damped where needed.
+///
+/// A residual sink with `at GAP` that belongs to no joint is closed, or checked, in the same way.
+///
+/// # Start velocities
+///
+/// ```text
+/// start = "start" "impulse" ";"
+/// ```
+///
+/// When the pose is closed, the relative flows of the motions that joints hold are to be zero; of an `rSe` with a FLOW
+/// their difference to it at t = 0:
+///
+/// - A **guess** in a start velocity or spin, or in the momentum of an I, is an unknown. All of them together move by
+///   the least step from their guesses to where the flows of all rigid joints vanish, and those of the compliant joints
+///   that a guessed velocity moves. Given velocities stay. Example: the crank's spin is given, all that it drives is
+///   guessed.
+/// - A **misfit** of more than 1e-9 m/s or rad/s is an error, `AssemblyError::Torn`: *joint `pin` is torn apart at
+///   -0.5 m/s in y*. Rigid joints are always looked at. A compliant one only where a guess moves it: without a guess a
+///   spring may be in motion at the start.
+/// - With the statement **`start impulse;`** in the graph, impulses of the rigid joints make the velocities fit, as in a
+///   perfectly plastic impact: momenta change by J^T l, where A l + v = 0 for the misfit v. `Model::impulse_energy` is the
+///   kinetic energy that this takes, l . v / 2 up to the sign; energies of a run count from after it. A graph without a rigid
+///   joint, in none of its scenes either, cannot have it (BG0608).
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A bar that spins freely at 10 rad/s when a pin catches its end.
+///     graph Caught {
+///         ground { point O = [0, 0, 0]; }
+///         body bar {
+///             mass 2; inertia [0.05, 0.05, 0.05]; point end = [-0.05, 0, 0];
+///             start end at [0, 0, 0]; start spin [0, 0, 10];
+///         }
+///         joint pin: revolute z (ground.O -> bar.end) { rigid; }
+///         start impulse;
+///         observe { speed: rad/s = pin.speed }
+///     }
+/// }
+/// use bg_model::system::Model;
+///
+/// let model = Caught::new(CaughtParameters::default())?;
+/// // 2.5 J before; the moment of momentum about the pin leaves 10 / 1.1 rad/s.
+/// assert!((model.impulse_energy()? - 2.5 / 11.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Values that cannot be
 ///
@@ -572,10 +625,14 @@ use proc_macro::TokenStream;
 ///
 /// Strokes are assigned by the sequential procedure (SCAP): sources, residual sinks among them, then laws that work one
 /// way only (laws of a variable), then I and C in integral causality, in the order of declaration, then what is left;
-/// each assignment is propagated before the next. Only integral causality is accepted:
+/// each assignment is propagated before the next. What is left is a choice, bond by bond in their order: the stroke is
+/// where the half arrow starts, unless the rest could then not be completed. So a graph that has a valid assignment
+/// gets one. Only integral causality is accepted:
 ///
 /// - two causes for one effort or flow: BG0401, none: BG0402;
-/// - an I or C whose state others already determine: BG0403. Put a C with an R in between, or merge the two;
+/// - an I or C whose state others already determine: BG0403. Put a C with an R in between, or merge the two. A residual
+///   sink holds two inertias together exactly, a rigid shaft or gear: `0 tie; 1 hub; rSe rigid = 0;`
+///   `shaft -> gear -> tie -> hub -> wheel; rigid -> tie;` keeps the difference of the two flows at the 0-junction at zero;
 /// - a law of a variable that would have to run backwards: BG0404;
 /// - a variable that needs itself, through resistors or modulation: BG0501, with the members of the loop.
 ///
@@ -600,9 +657,10 @@ use proc_macro::TokenStream;
 /// observe = "observe" "{" [NAME [":" UNIT] "="] EXPRESSION { (";" | ",") ... } "}"
 /// ```
 ///
-/// What the model's `outputs` gives, in the order of declaration. A unit is worth writing: an angle reads as `1`
-/// without it, and so does what has lost its unit in a product with bare numbers, such as a `travel` along an axis of
-/// the ground. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
+/// What the model's `outputs` gives, in the order of declaration. A name alone has the unit that it was declared with, such
+/// as rad for `pin.angle` and m for `slide.travel`. In an expression a unit is worth writing: an angle reads as `1`
+/// without it, and so does what has lost its unit in a product with a bare number, such as
+/// `2 * slide.travel`. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
 /// name the output is called like its expression.
 ///
 /// ```
@@ -643,15 +701,17 @@ use proc_macro::TokenStream;
 /// | `Motor<S = f64>` | the model, generic over the scalar; its documentation has the tables of states and of operation counts |
 /// | `Motor::STATES`, `SWITCHES`, `OUTPUTS` | the sizes |
 /// | `Motor::new(parameters)`, `Motor::new(parameters, inputs)` | checks the ranges and [what cannot be](#values-that-cannot-be), and calculates what depends on parameters only; `in_scalar` is the same for any `S: Scalar` |
-/// | `impl System` | `rate`, `guards`, `project`, `state_name`; nothing is allocated |
-/// | `impl Model` | `start`, `outputs`, `stored_energy`, `powers`, `description` with the tables, the expanded graph and, of a scene, the report |
+/// | `impl System` | `rate`, `guards`, `project`, `state_name`, `switch_name`, `not_finite`, what joints hold and more; nothing is allocated |
+/// | `impl Model` | `start`, `impulse_energy`, `outputs`, `stored_energy`, `powers`, `description` with the tables, the expanded graph and, of a scene, the report |
 ///
 /// Generated code names `::bg_model` only: a crate that uses the macro needs that one dependency.
 ///
 /// # Faults
 ///
-/// All faults of a stage are reported at once; a later stage looks at a graph that the earlier ones accepted. With a
-/// fault, the promised items are still there as stubs, so that rustc adds no errors about missing types.
+/// All faults of a stage are reported at once, each that is left when those before it have given way; a later stage looks
+/// at a graph that the earlier ones accepted. The stages are the parts of the table; the third has three in turn: names, then
+/// ports and cardinalities, then shapes and units. An algebraic loop is one fault, however many circles its variables
+/// make. With a fault, the promised items are still there as stubs, so that rustc adds no errors about missing types.
 ///
 /// | code | meaning |
 /// |---|---|
@@ -740,13 +800,13 @@ use proc_macro::TokenStream;
 /// | BG0506 | a given energy that jumps where the law switches |
 /// | BG0507 | a given energy that could not be compared with the law |
 /// | **scenes** | |
-/// | BG0601 | two models of one name |
+/// | BG0601 | two models of one name, or a model with the name of another one's parameter or input struct |
 /// | BG0602 | no such part to leave out |
 /// | BG0603 | no such parameter to tune |
 /// | BG0604 | a scene that is not planar as expected |
 /// | BG0605 | a scene with another number of states than expected |
 /// | BG0606 | no such joint to make rigid |
-/// | BG0607 | a graph or scene with a name of the generated code's own (`S`, `Scalar`, `SVector`) |
+/// | BG0608 | `start impulse` where no joint is rigid |
 /// | **values** | |
 /// | BG0701 | a number that no physics allows, such as a mass of 0 |
 /// | BG0702 | a matrix that no physics allows |

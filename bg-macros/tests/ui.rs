@@ -1,6 +1,6 @@
 //! What a user sees: the messages of the compiler at their tokens, and nothing of rustc's besides.
 //!
-//! Each file of `ui/` has one faulty graph and uses the items that it promises; `pass.rs` is the same without a fault.
+//! Each file of `ui/` has one faulty graph and uses the items that it promises; `pass*.rs` are the same without a fault.
 //! `README.md` says how the expected messages are renewed.
 
 use std::path::Path;
@@ -8,8 +8,8 @@ use std::path::Path;
 #[test]
 fn messages() {
     let cases = trybuild::TestCases::new();
-    cases.pass("tests/ui/pass.rs");
-    for stage in ["syntax", "mechanism", "graph", "causality", "equations", "values"] {
+    cases.pass("tests/ui/pass*.rs");
+    for stage in ["syntax", "mechanism", "graph", "causality", "equations", "scene", "values"] {
         cases.compile_fail(format!("tests/ui/{stage}_*.rs"));
     }
 }
@@ -32,10 +32,14 @@ fn no_error_follows() {
         assert!(!heads.is_empty(), "{name}");
         assert!(heads.iter().all(|head| head.starts_with("error: [BG0")), "{name}:\n{text}");
         assert_eq!(text.matches("help: ").count(), heads.len(), "{name}:\n{text}");
-        let expected = if name == "graph_several.stderr" { 3 } else { 1 };
+        let expected = match name.as_str() {
+            "graph_several.stderr" => 3,
+            "scene_same_names.stderr" => 2,
+            _ => 1,
+        };
         assert_eq!(heads.len(), expected, "{name}:\n{text}");
         // A fault is at its token, not at the whole call.
         assert!(!text.contains("bond_graph! {"), "{name}:\n{text}");
     }
-    assert_eq!(files, 21);
+    assert_eq!(files, 22);
 }

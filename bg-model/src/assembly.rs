@@ -8,6 +8,7 @@
 use nalgebra::{DMatrix, DVector, SVector};
 use thiserror::Error;
 
+use crate::holding::{FITTING, Redundancy, Slipping};
 use crate::requirement::Impossible;
 
 /// The largest gap of a closed joint, in the gap's unit (m or rad).
@@ -42,12 +43,12 @@ pub struct OpenGap {
 
 impl std::fmt::Display for OpenGap {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "`{}` by {:e} {}{}", self.gap.joint, self.size, self.gap.unit, self.gap.direction())
+        write!(f, "`{}` by {:.2e} {}{}", self.gap.joint, self.size, self.gap.unit, self.gap.direction())
     }
 }
 
 /// A mechanism that cannot be put together near the guess.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum AssemblyError {
     /// Some joints stay open by more than [`CLOSED`].
     #[error("the mechanism does not close: joint {largest} (allowed: {CLOSED:e}){}", also_open(.others))]
@@ -68,7 +69,36 @@ pub enum AssemblyError {
     /// A start value cannot be, such as an orientation that is no rotation.
     #[error(transparent)]
     Impossible(#[from] Impossible),
+    /// Some joints are torn apart by the start velocities, faster than [`FITTING`].
+    #[error(
+        "the start velocities do not fit: joint {largest} (allowed: {FITTING:e}){}; correct them, give `guess(..)` to \
+         those that may change{}",
+        also_torn(.others), or_impulse(.largest)
+    )]
+    Torn {
+        /// The fastest.
+        largest: Slipping,
+        /// The other joints that are torn apart, each with its fastest motion.
+        others: Vec<Slipping>,
+    },
+    /// Rigid joints hold the same motion at the start, so their reactions have no unique values.
+    #[error("{0}; make one of them compliant, or of a kind that holds less")]
+    Redundant(Redundancy),
 }
+
+fn also_torn(others: &[Slipping]) -> String {
+    if others.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> = others.iter().map(Slipping::to_string).collect();
+    format!("; also {}", names.join(", "))
+}
+
+fn or_impulse(of: &Slipping) -> &'static str {
+    if of.is_rigid { ", or write `start impulse;`" } else { "" }
+}
+
+debug_is_display!(AssemblyError);
 
 fn also_open(others: &[OpenGap]) -> String {
     if others.is_empty() {
@@ -91,26 +121,45 @@ pub fn close<const U: usize>(
     gaps: &'static [Gap],
     residual: impl Fn(&[f64; U], &mut [f64]),
 ) -> Result<[f64; U], AssemblyError> {
+    // Half a radian, or half the size of the coordinates, so that the pose is not thrown over into another one that
+    // closes as well.
+    let longest = |coordinates: &SVector<f64, U>| 0.5 * coordinates.amax().max(1.0);
+    let (coordinates, sizes) = nearest(guess, gaps.len(), longest, residual, |sizes| check_finite(gaps, sizes))?;
+    check_closed(gaps, &sizes)?;
+    Ok(coordinates)
+}
+
+/// The coordinates nearest to `guess`, to first order, at which the norm of the `rows` residuals falls no further, and
+/// the residuals there. `longest` limits a step; `check` sees the residuals and their derivatives.
+///
+/// # Errors
+/// Those of `check`.
+pub(crate) fn nearest<const U: usize>(
+    guess: [f64; U],
+    rows: usize,
+    longest: impl Fn(&SVector<f64, U>) -> f64,
+    residual: impl Fn(&[f64; U], &mut [f64]),
+    check: impl Fn(&DVector<f64>) -> Result<(), AssemblyError>,
+) -> Result<([f64; U], DVector<f64>), AssemblyError> {
     // Quadratic convergence needs some ten iterations; more only for far guesses, whose steps are limited.
     const ITERATIONS: usize = 200;
-    let gaps_at = |coordinates: &SVector<f64, U>| {
-        let mut sizes = DVector::zeros(gaps.len());
+    let sizes_at = |coordinates: &SVector<f64, U>| {
+        let mut sizes = DVector::zeros(rows);
         residual(&coordinates.data.0[0], sizes.as_mut_slice());
         sizes
     };
     let mut coordinates = SVector::from(guess);
-    let mut sizes = gaps_at(&coordinates);
-    check_finite(gaps, &sizes)?;
+    let mut sizes = sizes_at(&coordinates);
+    check(&sizes)?;
     if U > 0 {
         for _ in 0..ITERATIONS {
-            let jacobian = jacobian(&coordinates, gaps.len(), gaps_at);
-            check_finite_matrix(gaps, &jacobian)?;
-            let Some((nearer, smaller)) = shrink(&coordinates, &sizes, jacobian, gaps_at) else { break };
+            let jacobian = jacobian(&coordinates, rows, sizes_at);
+            (0..jacobian.ncols()).try_for_each(|column| check(&jacobian.column(column).into_owned()))?;
+            let Some((nearer, smaller)) = shrink(&coordinates, &sizes, jacobian, &longest, sizes_at) else { break };
             (coordinates, sizes) = (nearer, smaller);
         }
     }
-    check_closed(gaps, &sizes)?;
-    Ok(coordinates.data.0[0])
+    Ok((coordinates.data.0[0], sizes))
 }
 
 /// The derivatives of the gaps by five-point central differences; their error is of the order 1e-13 for mechanisms of
@@ -142,6 +191,7 @@ fn shrink<const U: usize>(
     coordinates: &SVector<f64, U>,
     sizes: &DVector<f64>,
     jacobian: DMatrix<f64>,
+    longest: impl Fn(&SVector<f64, U>) -> f64,
     gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
 ) -> Option<(SVector<f64, U>, DVector<f64>)> {
     // Singular values below this part of the largest one are rounding errors of the differences.
@@ -161,17 +211,15 @@ fn shrink<const U: usize>(
             let sigma = svd.singular_values[i];
             if sigma <= RANK * largest { 0.0 } else { -projected[i] * sigma / (sigma * sigma + lambda * lambda) }
         });
-        let step = limited(v_t.tr_mul(&weights), coordinates);
+        let step = limited(v_t.tr_mul(&weights), longest(coordinates));
         let nearer = SVector::from_fn(|i, _| coordinates[i] + step[i]);
         let smaller = gaps_at(&nearer);
         (smaller.norm() < norm).then_some((nearer, smaller))
     })
 }
 
-/// Shortens a long step, so that the pose is not thrown over into another one that closes as well.
-fn limited<const U: usize>(step: DVector<f64>, coordinates: &SVector<f64, U>) -> DVector<f64> {
-    // Half a radian, or half the size of the coordinates.
-    let longest = 0.5 * coordinates.amax().max(1.0);
+/// Shortens a step that is longer than `longest`.
+fn limited(step: DVector<f64>, longest: f64) -> DVector<f64> {
     let length = step.amax();
     if length > longest { step * (longest / length) } else { step }
 }
@@ -181,10 +229,6 @@ fn check_finite(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError>
         Some((gap, value)) => Err(AssemblyError::NonFinite { gap: *gap, value: *value }),
         None => Ok(()),
     }
-}
-
-fn check_finite_matrix(gaps: &[Gap], jacobian: &DMatrix<f64>) -> Result<(), AssemblyError> {
-    (0..jacobian.ncols()).try_for_each(|column| check_finite(gaps, &jacobian.column(column).into_owned()))
 }
 
 fn check_closed(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError> {
@@ -277,7 +321,7 @@ mod tests {
         let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
         assert_eq!((largest.gap, largest.size), (GAPS[2], -5e-3));
         assert_eq!(others.as_slice(), &[OpenGap { gap: GAPS[0], size: 1e-3 }]);
-        assert!(error.to_string().ends_with("also open: `a` by 1e-3 m in x"), "{error}");
+        assert!(error.to_string().ends_with("also open: `a` by 1.00e-3 m in x"), "{error}");
     }
 
     #[test]

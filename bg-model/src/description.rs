@@ -77,10 +77,42 @@ pub struct StateInfo {
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// What stores it: `I`, `C`, `position`, `orientation` or `integral`.
-    pub storage: &'static str,
+    /// What it is.
+    pub kind: StateKind,
     /// Its causality: `integral`; a graph with a storage in derivative causality does not compile.
     pub causality: &'static str,
+}
+
+/// What a state is; of a vector or a matrix, which component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StateKind {
+    /// The momentum of an I: component 0, 1 or 2; 0 of a scalar one.
+    Momentum(usize),
+    /// The displacement of a C: component 0, 1 or 2; 0 of a scalar one.
+    Displacement(usize),
+    /// A coordinate of a position, m: axis 0, 1 or 2.
+    Position(usize),
+    /// A component of an orientation matrix: row and column, each 0, 1 or 2.
+    Orientation(usize, usize),
+    /// The angle of a body that turns about one axis, rad.
+    Angle,
+    /// The integral that an output asks for.
+    Integral,
+}
+
+impl StateKind {
+    /// What stores it, as tables show it: `I`, `C`, `position`, `orientation`, `angle` or `integral`.
+    #[must_use]
+    pub const fn storage(self) -> &'static str {
+        match self {
+            Self::Momentum(_) => "I",
+            Self::Displacement(_) => "C",
+            Self::Position(_) => "position",
+            Self::Orientation(..) => "orientation",
+            Self::Angle => "angle",
+            Self::Integral => "integral",
+        }
+    }
 }
 
 /// A scalar output.
@@ -95,7 +127,9 @@ pub struct OutputInfo {
 /// A switch of a law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SwitchInfo {
-    /// The element whose law switches.
+    /// The comparison as written and where, such as ``if v < 0` of `valve``.
+    pub name: &'static str,
+    /// The element whose law switches, or the `let` or output that does.
     pub element: &'static str,
     /// The guard as text; below zero the law's first branch holds.
     pub guard: &'static str,

@@ -4,10 +4,12 @@
 
 use thiserror::Error;
 
+use crate::holding::Redundancy;
+use crate::scalar::Scalar;
 use crate::simulation::Finish;
 
 /// A run that stopped before its end.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[error("{cause}")]
 pub struct Failure<const N: usize, const G: usize> {
     /// Why.
@@ -16,15 +18,19 @@ pub struct Failure<const N: usize, const G: usize> {
     pub last: Box<Finish<N, G>>,
 }
 
+debug_is_display!(Failure<const N: usize, const G: usize>);
+
 /// Why a run stopped.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum Cause {
     /// A number was not finite, however small the step.
-    #[error("{}", not_finite(*.quantity, .name, *.index, *.value, *.t, *.h))]
+    #[error("{}", not_finite(.origin.as_ref(), *.quantity, .name, *.index, *.value, *.t, *.h))]
     NonFinite {
+        /// The input or element that it comes from, where that is known.
+        origin: Option<Origin>,
         /// What it is.
         quantity: Quantity,
-        /// The name of the state; of a guard `switch`.
+        /// The name of the state, or of the switch; of a switch without a name empty.
         name: &'static str,
         /// The index of the state or switch.
         index: usize,
@@ -78,18 +84,34 @@ pub enum Cause {
     },
     /// A switch changes its branch again and again at one instant.
     #[error(
-        "switch {switch} changes its branch without end at t = {t:?} s: in neither branch does its guard keep its sign"
+        "{} changes its branch without end at t = {t:?} s: in neither branch does its guard keep its sign",
+        switch_text(.name, *.switch)
     )]
     EventsAccumulate {
         /// The index of the switch.
         switch: usize,
+        /// Its name, such as ``if v < 0` of `valve``; empty where it has none.
+        name: &'static str,
         /// Time, s.
+        t: f64,
+    },
+    /// Rigid joints have come to hold the same motion: the mechanism is in a singular pose, or passes through one.
+    #[error(
+        "near t = {t:?} s {redundancy}: the mechanism is in a singular pose there; make one of these joints compliant, or \
+         end the run before"
+    )]
+    Redundant {
+        /// Which joints.
+        redundancy: Redundancy,
+        /// When, s.
         t: f64,
     },
     /// The run was not started.
     #[error(transparent)]
     BadInput(#[from] BadInput),
 }
+
+debug_is_display!(Cause);
 
 /// A quantity that can fail to be finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,8 +137,35 @@ impl std::fmt::Display for Quantity {
     }
 }
 
+/// An input or an element whose value is not finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Origin {
+    /// `input`, or the element's kind.
+    pub kind: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+impl Origin {
+    /// The first of these kinds and names whose value is not finite.
+    pub fn first<S: Scalar>(values: &[(&'static str, &'static str, S)]) -> Option<Self> {
+        let values = values.iter().map(|&(kind, name, value)| Self { kind, name, value: value.to_f64() });
+        values.into_iter().find(|origin| !origin.value.is_finite())
+    }
+
+    /// What to do about it.
+    fn action(&self) -> &'static str {
+        match self.kind {
+            "input" => "give it finite numbers there",
+            _ => "keep what its law divides by, or takes a root, power or logarithm of, in range",
+        }
+    }
+}
+
 /// Something a run was asked for that cannot be.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum BadInput {
     /// The relative tolerance is not a number, or below what rounding allows.
     #[error("the relative tolerance is {value:?}; it must be a finite number, at least {smallest:.2e}")]
@@ -192,11 +241,35 @@ pub enum BadInput {
     },
 }
 
+debug_is_display!(BadInput);
+
 /// What is not finite, and where.
-fn not_finite(quantity: Quantity, name: &str, index: usize, value: f64, t: f64, h: f64) -> String {
-    let whose = if quantity == Quantity::Guard { format!("switch {index}") } else { format!("`{name}`") };
+fn not_finite(
+    origin: Option<&Origin>,
+    quantity: Quantity,
+    name: &str,
+    index: usize,
+    value: f64,
+    t: f64,
+    h: f64,
+) -> String {
+    let whose = if quantity == Quantity::Guard { switch_text(name, index) } else { format!("`{name}`") };
     let place = if h == 0.0 { format!("at t = {t:?} s") } else { format!("in a step of {h:.2e} s from t = {t:?} s") };
-    format!("{quantity} of {whose} is {value:?} {place}")
+    match origin {
+        None => format!("{quantity} of {whose} is {value:?} {place}"),
+        Some(origin) => format!(
+            "{} `{}` gives {:?} {place}, and so {quantity} of {whose} is {value:?}; {}",
+            origin.kind,
+            origin.name,
+            origin.value,
+            origin.action()
+        ),
+    }
+}
+
+/// A switch by its name, or its number where it has none.
+pub(crate) fn switch_text(name: &str, index: usize) -> String {
+    if name.is_empty() { format!("switch {index}") } else { name.to_owned() }
 }
 
 /// Why a span cannot be.

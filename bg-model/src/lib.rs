@@ -79,11 +79,15 @@
 //! `negative[k]` says that switch `k` is in it. Nothing is allocated inside a step. Sums have a fixed order and elementary
 //! functions come from `libm`, so debug and release builds give the same bytes.
 
+#[macro_use]
+mod sentence;
+
 pub mod assembly;
 pub mod description;
 mod event;
 pub mod extended;
 pub mod failure;
+pub mod holding;
 pub mod input;
 pub mod integrator;
 pub mod linear;

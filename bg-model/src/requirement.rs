@@ -21,7 +21,7 @@ pub struct Requirement {
 }
 
 /// A value that cannot be.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[derive(Clone, Copy, PartialEq, Error)]
 #[error("{}{}{}", .requirement.subject, .requirement.said_of(*.value), .requirement.depends())]
 pub struct Impossible {
     /// What does not hold.
@@ -30,12 +30,13 @@ pub struct Impossible {
     pub value: f64,
 }
 
+debug_is_display!(Impossible);
+
 impl Requirement {
     /// What is wrong with the value.
     fn said_of(&self, value: f64) -> String {
         match self.unit {
-            Some("") => format!(" is {value}; it {}", self.wanted),
-            Some(unit) => format!(" is {value} {unit}; it {}", self.wanted),
+            Some(unit) => format!(" is {}; it {}", format!("{value} {unit}").trim_end(), self.wanted),
             None => format!(" {}", self.wanted),
         }
     }

@@ -8,6 +8,8 @@ use nalgebra::SVector;
 
 use crate::assembly::AssemblyError;
 use crate::description::Description;
+use crate::failure::Origin;
+use crate::holding::Held;
 use crate::linear::{Field, Sparsity, differences};
 use crate::scalar::Scalar;
 
@@ -31,6 +33,17 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// The name of state `index`, for messages.
     fn state_name(&self, _index: usize) -> &'static str {
         "state"
+    }
+
+    /// The comparison of switch `index` and whose it is, such as ``if v < 0` of `valve``, for messages; by default none.
+    fn switch_name(&self, _index: usize) -> Option<&'static str> {
+        None
+    }
+
+    /// The first input or element, in the order of evaluation, whose value at time `t` (s) and state `x` is not finite; asked for
+    /// where a run stops. By default none is known.
+    fn not_finite(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G]) -> Option<Origin> {
+        None
     }
 
     /// Where the Jacobian df/dx can differ from zero; everywhere by default.
@@ -73,6 +86,15 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         self.second_derivatives(x, dx);
     }
 
+    /// What joints hold; nothing by default.
+    fn held(&self) -> Held {
+        Held::NOTHING
+    }
+
+    /// Writes the relative flows of the motions that joints hold, and what the reactions of rigid joints change, into
+    /// `entries`: in the order and of the length of [`Held`]. Only called where something is held.
+    fn hold(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _entries: &mut [S]) {}
+
     /// How many numbers each order of the Taylor series of the states needs as work space; none where there is no series:
     /// of a system written by hand, by default, and where an input changes with time.
     fn series_width(&self) -> Option<usize> {
@@ -103,11 +125,21 @@ pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: Syst
     /// Elements, bonds, strokes, states, outputs and equations, as text and tables.
     fn description(&self) -> &'static Description;
 
-    /// The start state at t = 0, loops closed.
+    /// The start state at t = 0: loops closed, guessed velocities such that they fit the joints.
     ///
     /// # Errors
-    /// [`AssemblyError`] names the joint that stays open and its gap.
+    /// [`AssemblyError`] names the joint that stays open and its gap, that is torn apart and its speed, or that holds
+    /// what others hold already.
     fn start(&self) -> Result<SVector<S, N>, AssemblyError>;
+
+    /// The kinetic energy that the impulses of the rigid joints take at the start, J, not negative: 0 without
+    /// `start impulse;`, and where the start velocities fit. The energies of a run count from after the impulses.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    fn impulse_energy(&self) -> Result<S, AssemblyError> {
+        Ok(S::from_f64(0.0))
+    }
 
     /// Writes the observed outputs, in the order of `description().outputs`.
     fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], y: &mut SVector<S, M>);

@@ -95,6 +95,43 @@ fn the_largest_step_is_kept() {
     assert!(finish.statistics.largest_step <= 0.02 * (1.0 + 1e-9) && finish.statistics.steps >= 100);
 }
 
+#[test]
+fn the_largest_step_holds_for_the_last_step_too() {
+    // After ten steps a rest is left that is shorter than a hundredth of a step.
+    let system = smooth(|_, _: &SVector<f64, 1>, _: &[bool; 0]| [1.0]);
+    let settings = Settings { first_step: Some(0.1), largest_step: 0.1, ..settings(1e-6) };
+    let (finish, _) = run(&system, Dop853::new(), [0.0], 1.0005, &settings);
+    assert!(finish.statistics.largest_step <= 0.1 * (1.0 + 1e-9), "{}", finish.statistics);
+    assert_eq!((finish.t, finish.statistics.steps), (1.0005, 11));
+}
+
+#[test]
+fn an_infinite_sample_interval_gives_the_start_and_the_end() {
+    for interval in [f64::INFINITY, f64::MAX] {
+        let settings = Settings { samples: Samples::Every(interval), ..settings(1e-6) };
+        let (finish, record) = run(&kepler(), Dop853::new(), kepler_start(), 2.0, &settings);
+        assert_eq!(record.samples, [(0.0, kepler_start(), []), (2.0, finish.x, [])], "{interval}");
+    }
+}
+
+/// The guard x starts at zero and falls; or it passes zero at 0.5 s, to where both branches push it.
+#[test]
+fn a_step_that_is_longer_than_the_run_is_no_measure_for_a_guard_at_zero() {
+    let falling = switched([|_, x| x[0]], |_, x: &SVector<f64, 1>, _: &[bool; 1]| [-(1.0 - x[0] * x[0])]);
+    let span = Span { t0: 0.0, t_end: 1.0 };
+    for start in [0.0, 0.25] {
+        let start = SVector::from([start]);
+        for first in [1e9, f64::INFINITY] {
+            let settings = Settings { first_step: Some(first), ..settings(1e-6) };
+            let finish = integrate(&falling, &mut Dop853::new(), &start, span, &settings, &mut ()).unwrap();
+            assert!(finish.negative == [true] && finish.x[0] < -0.4, "{first}: {finish:?}");
+        }
+        let settings = Settings { tolerances: Tolerances::new(1e-6, 1e-6), ..Settings::default() };
+        let finish = integrate(&falling, &mut Rk4::new(1e9), &start, span, &settings, &mut ()).unwrap();
+        assert!(finish.negative == [true] && finish.x[0] < -0.4, "{finish:?}");
+    }
+}
+
 fn failure<const N: usize>(
     rate: impl Fn(f64, &SVector<f64, N>, &[bool; 0]) -> [f64; N],
     start: [f64; N],
@@ -110,7 +147,7 @@ fn failure<const N: usize>(
 fn a_rate_that_stops_being_a_number_names_its_state_and_keeps_the_last() {
     let rate = |t: f64, x: &SVector<f64, 2>, _: &[bool; 0]| [-x[0], if t > 0.5 { f64::NAN } else { 1.0 }];
     let failure = failure(rate, [1.0, 0.0], [0.0, 1.0], &settings(1e-9));
-    let Cause::NonFinite { quantity: Quantity::Rate, name: "rod.p", index: 1, value, t, h } = failure.cause else {
+    let Cause::NonFinite { quantity: Quantity::Rate, name: "rod.p", index: 1, value, t, h, .. } = failure.cause else {
         panic!("{failure}")
     };
     assert!(value.is_nan() && t <= 0.5 && 0.5 - t < 1e-13 && h > 0.0, "{failure}");
@@ -178,7 +215,7 @@ fn input_that_cannot_be_is_refused_by_name() {
         assert!(matches!(bad, BadInput::RelativeTolerance { smallest, .. } if smallest == 10.0 * f64::EPSILON));
         assert!(bad.to_string().contains("2.2"), "{bad}");
     }
-    for absolute in [0.0, -1.0, f64::NAN] {
+    for absolute in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let absolute = Absolute::PerState(SVector::from([1e-9, absolute]));
         let settings = Settings { tolerances: Tolerances { relative: 1e-9, absolute }, ..good.clone() };
         assert!(matches!(refused([1.0, 0.0], unit, &settings), BadInput::AbsoluteTolerance { state: "rod.p", .. }));
@@ -191,7 +228,9 @@ fn input_that_cannot_be_is_refused_by_name() {
         let settings = Settings { samples: Samples::Every(step), ..good.clone() };
         assert!(matches!(refused([1.0, 0.0], unit, &settings), BadInput::SampleInterval { .. }));
     }
-    for (instants, index) in [(vec![0.5, 0.4], 1), (vec![-0.1], 0), (vec![0.2, 1.1], 1), (vec![f64::NAN], 0)] {
+    for (instants, index) in
+        [(vec![0.5, 0.4], 1), (vec![-0.1], 0), (vec![0.2, 1.1], 1), (vec![f64::NAN], 0), (vec![0.0, f64::INFINITY], 1)]
+    {
         let settings = Settings { samples: Samples::At(instants), ..good.clone() };
         let bad = refused([1.0, 0.0], unit, &settings);
         assert!(matches!(bad, BadInput::SampleInstant { index: found, .. } if found == index), "{bad}");

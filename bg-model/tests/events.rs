@@ -174,7 +174,7 @@ fn chatter_ends_with_the_switch_and_the_time() {
         integrate(&system, &mut Dop853::new(), &start, span, &settings(1e-8), &mut ()).unwrap_err(),
         integrate(&system, &mut Rk4::new(0.01), &start, span, &settings(1e-8), &mut ()).unwrap_err(),
     ] {
-        let Cause::EventsAccumulate { switch, t } = failure.cause else { panic!("{failure}") };
+        let Cause::EventsAccumulate { switch, t, .. } = failure.cause else { panic!("{failure}") };
         assert_eq!(switch, 1);
         assert!((t - 1.25).abs() < 1e-12 && failure.last.t == t && failure.last.x[0].abs() < 1e-15, "{failure}");
         assert!(failure.to_string().contains("switch 1"), "{failure}");
@@ -250,4 +250,51 @@ fn a_guard_that_is_no_number_ends_the_run_with_its_switch() {
         integrate(&system, &mut Rk4::new(0.125), &SVector::from([0.0]), span, &settings(1e-8), &mut ()).unwrap_err();
     let is_guard = matches!(failure.cause, Cause::NonFinite { quantity: Quantity::Guard, index: 1, .. });
     assert!(is_guard && failure.last.t <= 0.5, "{failure}");
+}
+
+/// Events at the zeros of guards that were a million million times as large before.
+#[test]
+fn a_guard_that_was_large_before_is_located_as_exactly_as_any() {
+    type Guard = fn(f64, &[f64]) -> f64;
+    fn large_before(t: f64) -> f64 {
+        1e12 * libm::exp(-40.0 * t) + 1.0
+    }
+    let guards: [(Guard, &[f64]); 5] = [
+        (|t, x| large_before(t) * (x[0] - 1.0), &[1.0]),
+        // An event while it is large leaves a remainder that is large as well.
+        (|t, x| large_before(t) * (x[0] - 0.01) * (x[0] - 1.0), &[0.01, 1.0]),
+        (|t, x| large_before(t) * (x[0] - 0.0123) * (x[0] - 1.0) * (x[0] - 1.0005), &[0.0123, 1.0, 1.0005]),
+        // A dip by 1e-6 between its zeros.
+        (|t, x| large_before(t) * (x[0] - 1.0) * (x[0] - 1.002), &[1.0, 1.002]),
+        // Large once in a while.
+        (|t, x| (1e12 * libm::exp(-1e4 * (t - 0.5) * (t - 0.5)) + 1.0) * (x[0] - 1.25), &[1.25]),
+    ];
+    for (index, (guard, expected)) in guards.into_iter().enumerate() {
+        let system = switched([guard], |_, _: &SVector<f64, 1>, _: &[bool; 1]| [1.0]);
+        for (first_step, largest_step) in [(None, f64::INFINITY), (None, 0.02), (Some(0.3), 0.3)] {
+            let settings = Settings { first_step, largest_step, ..settings(1e-8) };
+            let (_, record) = run(&system, Dop853::new(), [0.0], 2.0, &settings);
+            let times = record.event_times();
+            assert_eq!(times.len(), expected.len(), "guard {index}, {largest_step}: {times:?}");
+            for (t, exact) in times.iter().zip(expected) {
+                assert!((t - exact).abs() < 2.0 * ROUNDING, "guard {index}, {largest_step}: {t} for {exact}");
+            }
+        }
+    }
+}
+
+/// What a large guard leaves in the way of the branches after it: nothing.
+#[test]
+fn the_branch_after_a_guard_was_large_is_right_at_once() {
+    // A mass between two springs, the guard's factor falls by twelve decades.
+    let system =
+        switched([|t, x| (1e12 * libm::exp(-3.0 * t) + 1.0) * x[0]], |_, x: &SVector<f64, 2>, negative: &[bool; 1]| {
+            [x[1], if negative[0] { -4.0 * x[0] } else { -x[0] }]
+        });
+    let (_, record) = run(&system, Dop853::new(), [1.0, 0.0], 30.0, &settings(1e-12));
+    let (_, plain) = run(&bilinear(), Dop853::new(), [1.0, 0.0], 30.0, &settings(1e-12));
+    assert_eq!(record.events.len(), plain.events.len());
+    for ((t, x, ..), (exact, ..)) in record.events.iter().zip(&plain.events) {
+        assert!((t - exact).abs() < 1e-11 && x[0].abs() < 1e-14, "{t} for {exact}, {x}");
+    }
 }

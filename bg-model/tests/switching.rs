@@ -83,7 +83,7 @@ fn branches_agree_with_guards_at_every_instant() {
             match integrate(&system, &mut Dop853::new(), &start, span, &settings, &mut observer) {
                 Ok(finish) => counts[0] += finish.statistics.events,
                 Err(failure) => {
-                    let Cause::EventsAccumulate { switch, t } = failure.cause else { panic!("{case}: {failure}") };
+                    let Cause::EventsAccumulate { switch, t, .. } = failure.cause else { panic!("{case}: {failure}") };
                     let last = &failure.last;
                     assert!(system.is_chatter(t, &last.x, last.negative, switch), "{case}: {failure}");
                     counts[1] += 1;

@@ -9,7 +9,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use bg_model::assembly::AssemblyError;
-use bg_model::description::Description;
+use bg_model::description::{Description, StateKind};
 use bg_model::integrator::{Absolute, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::{ParameterError, Parameters};
@@ -136,7 +136,8 @@ impl Job<'_> {
             Steps::Equal(step) | Steps::Rk4(step) => (1.0, NEVER, step),
         };
         let states = model.description().states;
-        let absolute = SVector::from_fn(|index, _| if states[index].storage == "integral" { NEVER } else { absolute });
+        let absolute =
+            SVector::from_fn(|index, _| if states[index].kind == StateKind::Integral { NEVER } else { absolute });
         let settings = Settings {
             tolerances: Tolerances { relative, absolute: Absolute::PerState(absolute) },
             first_step: step.is_finite().then_some(step),

@@ -1,10 +1,11 @@
 //! The command line: what a user asks for, and what it comes to.
 //!
 //! In: arguments. Out: a run with its files and the summary on stdout, or one line `error: ...` on stderr.
-//! Exit codes: 0 done; 1 the run failed, what it had is written; 2 the input cannot be used, nothing was run.
+//! Exit codes: 0 done; 1 the run or an output failed, what could be written is; 2 the input cannot be used, nothing was run.
 
 use std::ffi::OsString;
-use std::io::{IsTerminal, Write, stderr, stdout};
+use std::fmt::Display;
+use std::io::{IsTerminal, stderr};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -15,9 +16,10 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use thiserror::Error;
 
 use crate::checks;
+use crate::files::{FileError, RunFolder, console};
 use crate::mechanism::HacksawParameters;
 use crate::methods::Integrator;
-use crate::output::{OutputError, Places};
+use crate::output::{Claimed, OutputError, Places};
 use crate::parameters::{self, Chosen, SettingError};
 use crate::precision::case::Case;
 use crate::precision::measure::{Entry, MeasureError, Setting, measure};
@@ -26,6 +28,7 @@ use crate::report::{self, Part};
 use crate::run::{self, RTOL_OVER_ATOL, RunSettings, Simulation};
 use crate::scenes::{Fixed, Scene, Visitor};
 use crate::summary::Summary;
+use crate::trajectory::TrajectoryError;
 
 /// Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says about them.
 #[derive(Debug, Parser)]
@@ -81,7 +84,7 @@ struct RunArguments {
     params: Option<PathBuf>,
 
     /// End of the run, s
-    #[arg(long, value_name = "SECONDS", default_value = "5", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = real, allow_negative_numbers = true)]
     t_end: f64,
 
     /// The integrator; auto says in the summary what it chose
@@ -89,26 +92,27 @@ struct RunArguments {
     method: Integrator,
 
     /// Step of an integrator with a fixed step, s
-    #[arg(long, value_name = "SECONDS", default_value = "1e-4", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "1e-4", value_parser = real, allow_negative_numbers = true)]
     fixed_step: f64,
 
     /// Relative tolerance of each step
-    #[arg(long, value_name = "NUMBER", default_value = "1e-8", allow_negative_numbers = true)]
+    #[arg(long, value_name = "NUMBER", default_value = "1e-8", value_parser = real, allow_negative_numbers = true)]
     rtol: f64,
 
-    /// Absolute tolerance of each step, in SI units [default: 1e-4 of --rtol]
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    /// Absolute tolerance of each step, in SI units [default: 0.1 of --rtol]
+    #[arg(long, value_name = "NUMBER", value_parser = real, allow_negative_numbers = true)]
     atol: Option<f64>,
 
     /// Output interval of the CSV file, s. Figures and checks always use 0.002 s or finer
-    #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "0.01", value_parser = real, allow_negative_numbers = true)]
     step: f64,
 
-    /// Write the trajectory here instead of trajectory.csv in --out
+    /// Write the trajectory here instead of trajectory.csv in --out. Replaces a file that is there; later runs leave it
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 
-    /// Directory for figures, index.html, summary.txt, summary.json and trajectory.csv; made if it is not there
+    /// Folder for figures, index.html, summary.txt, summary.json and trajectory.csv; made if it is not there. They replace
+    /// the files of the run before as soon as all are written; other files stay
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
 
@@ -132,23 +136,24 @@ struct PrecisionArguments {
         long,
         value_name = "NUMBER",
         value_delimiter = ',',
+        value_parser = real,
         default_values = ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10", "1e-11", "1e-12"]
     )]
     rtol: Vec<f64>,
 
     /// Absolute tolerances, in SI units, over the relative ones
-    #[arg(long, value_name = "NUMBER", default_value_t = 0.1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0 / RTOL_OVER_ATOL, value_parser = real)]
     atol_ratio: f64,
 
     /// Steps of integrators with a fixed step, s
-    #[arg(long, value_name = "SECONDS", value_delimiter = ',', default_values = ["2e-4", "1e-4", "5e-5", "2e-5"])]
+    #[arg(long, value_name = "SECONDS", value_delimiter = ',', value_parser = real, default_values = ["2e-4", "1e-4", "5e-5", "2e-5"])]
     fixed_step: Vec<f64>,
 
     /// Runs of each point, within two seconds; the least and the median of their times count
     #[arg(long, value_name = "COUNT", default_value_t = 5)]
     repeats: usize,
 
-    /// Directory for precision.txt, precision.json and the diagrams; made if it is not there
+    /// Folder for precision.txt, precision.json and the diagrams, which replace those of the run before
     #[arg(long, value_name = "DIR", default_value = "out/precision")]
     out: PathBuf,
 }
@@ -161,9 +166,9 @@ const MOST_ROWS: f64 = 500_000.0;
 enum InputError {
     #[error(transparent)]
     Setting(#[from] SettingError),
-    #[error("{name} {value}: must be {range}")]
+    #[error("{name} {}: must be {range}", parameters::number(*value))]
     Range { name: &'static str, value: f64, range: String },
-    #[error("--step {step}: gives more than {MOST_ROWS} rows until {t_end} s; choose a longer one")]
+    #[error("--step {}: gives more than {MOST_ROWS} rows until {t_end} s; choose a longer one", parameters::number(*step))]
     Rows { step: f64, t_end: f64 },
     #[error("{place}: {fault}")]
     Fixed { place: String, fault: Fixed },
@@ -174,6 +179,8 @@ enum InputError {
     #[error(transparent)]
     Output(#[from] OutputError),
     #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
     Measure(#[from] MeasureError),
 }
 
@@ -182,37 +189,32 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = command().try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
     let outcome = match cli {
         Err(fault) if fault.use_stderr() => return refuse(&one_line(&fault)),
-        // Help and version; a reader that has gone away is no fault.
-        Err(help) => {
-            let _ = help.print();
-            return ExitCode::SUCCESS;
-        }
+        // Help and version.
+        Err(help) => Ok(ended(console::printed(help.print()).err())),
         Ok(Cli { command: Some(Command::Scene { scene }), .. }) => {
-            print(&scene.map_or_else(report::scenes, report::scene));
-            return ExitCode::SUCCESS;
+            Ok(say(&scene.map_or_else(report::scenes, report::scene)))
         }
-        Ok(Cli { command: Some(Command::Graph { scene, part }), .. }) => {
-            print(&report::graph(scene, part));
-            return ExitCode::SUCCESS;
-        }
+        Ok(Cli { command: Some(Command::Graph { scene, part }), .. }) => Ok(say(&report::graph(scene, part))),
         Ok(Cli { command: Some(Command::Parameters { toml }), .. }) => {
             let defaults = HacksawParameters::default();
-            print(&if toml { parameters::to_toml(&defaults) } else { parameters::table::<HacksawParameters>() });
-            return ExitCode::SUCCESS;
+            Ok(say(&if toml { parameters::to_toml(&defaults) } else { parameters::table::<HacksawParameters>() }))
         }
         Ok(Cli { command: Some(Command::Precision(arguments)), .. }) => measure_precision(&arguments),
         Ok(Cli { command: Some(Command::Run(arguments)), .. } | Cli { command: None, run: arguments }) => {
             simulate(&arguments)
         }
     };
-    outcome.unwrap_or_else(|fault| refuse(&fault.to_string()))
+    outcome.unwrap_or_else(|fault| refuse(&fault))
 }
 
 /// The command line with the parameters in its help.
 fn command() -> clap::Command {
     let help = format!(
         "Parameters (name, default, unit, meaning); defaults < --params < --set:\n{}\n\
-         Exit code: 0 done, 1 the run failed (what it had is written), 2 the input cannot be used.",
+         Files: a folder has the files of one run. They are written aside and take their place at the end, those of the run \
+         before go. A run that is stopped leaves the earlier one's. What no run wrote is left alone: a run that would \
+         replace it is refused, and so is a second one into the same folder at once. `.run` in the folder keeps the list.\n\n\
+         Exit code: 0 done, 1 the run or an output failed (what could be written is), 2 the input cannot be used.",
         parameters::table::<HacksawParameters>()
     );
     Cli::command().after_help(help.clone()).mut_subcommand("run", |run| run.after_help(help))
@@ -225,15 +227,13 @@ fn simulate(arguments: &RunArguments) -> Result<ExitCode, InputError> {
     // Figures are drawn from the reference columns.
     let figures = !arguments.no_figures && scene.has_reference_columns();
     let places = Places::new(&arguments.out, arguments.csv.as_deref(), figures);
-    let simulation = scene.visit(Run { scene, chosen: &chosen, settings: &settings, places: &places })?;
-    match report(scene, &simulation, &settings, &places, changed(&chosen.values)) {
-        Ok(()) => {}
-        Err(fault) => return Ok(fail(&fault.to_string())),
-    }
-    Ok(match &simulation.failure {
-        Some(failure) => fail(&format!("the run failed: {failure}")),
-        None => ExitCode::SUCCESS,
-    })
+    let (simulation, claimed) = scene.visit(Run { scene, chosen: &chosen, settings: &settings, places: &places })?;
+    let failure = simulation.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
+    let faults = match report(scene, &simulation, &settings, claimed, changed(&chosen.values)) {
+        Ok(faults) => faults.iter().map(ToString::to_string).collect(),
+        Err(fault) => vec![fault.to_string()],
+    };
+    Ok(ended(faults.into_iter().chain(failure)))
 }
 
 /// Measures every case with every integrator.
@@ -259,6 +259,7 @@ fn measure_precision(arguments: &PrecisionArguments) -> Result<ExitCode, InputEr
                 .collect()
         }
     };
+    let folder = RunFolder::claim(&arguments.out, &precision::names(&arguments.cases))?;
     let points: usize = methods.iter().map(|method| settings(*method).len()).sum();
     let bar = bar((points * arguments.cases.len()) as u64, "measuring {bar:40} {pos} of {len} {msg}");
     let mut entries: Vec<Entry> = Vec::new();
@@ -273,12 +274,15 @@ fn measure_precision(arguments: &PrecisionArguments) -> Result<ExitCode, InputEr
         }
     }
     bar.finish_and_clear();
-    let files = precision::write(&arguments.out, &entries)?;
-    print(&format!("{}\nwritten: {} files in {}\n", precision::table(&entries), files.len(), arguments.out.display()));
-    Ok(ExitCode::SUCCESS)
+    let (written, fault) = match precision::write(folder, &entries) {
+        Ok(count) => (format!("{count} files in {}", arguments.out.display()), None),
+        Err(fault) => ("nothing".to_owned(), Some(fault)),
+    };
+    let printed = console::print(&format!("{}\nwritten: {written}\n", precision::table(&entries)));
+    Ok(ended(fault.into_iter().chain(printed.err().map(OutputError::from))))
 }
 
-/// Makes a scene's model and runs it, with the places tried before.
+/// Makes a scene's model and runs it, with the places claimed before.
 struct Run<'a> {
     scene: Scene,
     chosen: &'a Chosen<HacksawParameters>,
@@ -287,7 +291,7 @@ struct Run<'a> {
 }
 
 impl Visitor for Run<'_> {
-    type Output = Result<Simulation, InputError>;
+    type Output = Result<(Simulation, Claimed), InputError>;
 
     fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
         self,
@@ -300,39 +304,33 @@ impl Visitor for Run<'_> {
         let own = self.scene.parameters(&self.chosen.values);
         let own = own.map_err(|fault| InputError::Fixed { place: self.chosen.places[fault.index].clone(), fault })?;
         let model = new(own)?;
-        self.places.prepare()?;
+        // What cannot be assembled is refused before anything is claimed.
+        model.start()?;
+        let claimed = self.places.claim()?;
         let bar = progress_bar(self.settings.t_end);
         let simulation = run::run(&model, self.settings, |t| bar.set_position(ticks(t)))?;
         bar.finish_and_clear();
-        Ok(simulation)
+        Ok((simulation, claimed))
     }
 }
 
-/// Writes the files and prints the summary.
+/// Writes the files and prints the summary; gives what failed.
 fn report(
     scene: Scene,
     simulation: &Simulation,
     settings: &RunSettings,
-    places: &Places,
+    claimed: Claimed,
     changed_parameters: Vec<String>,
-) -> Result<(), Box<dyn std::error::Error>> {
+) -> Result<Vec<OutputError>, TrajectoryError> {
     let trajectory = &simulation.trajectory;
     let checks = if trajectory.has_reference_columns() { checks::check(trajectory)? } else { Vec::new() };
     let mut summary = Summary::new(&scene.name(), simulation, settings, checks)?;
     summary.changed_parameters = changed_parameters;
-    places.write(&trajectory.at(&settings.output_times()), trajectory, &mut summary)?;
-    let written: String = match (&places.directory, summary.files.len()) {
-        (Some(directory), count) if places.csv.starts_with(directory) => {
-            format!("{count} files in {}", directory.display())
-        }
-        (Some(directory), count) => {
-            format!("{} and {} files in {}", places.csv.display(), count - 1, directory.display())
-        }
-        (None, _) => places.csv.display().to_string(),
-    };
-    let page = if places.figures { "; open index.html there" } else { "" };
-    print(&format!("{summary}\nwritten: {written}{page}\n"));
-    Ok(())
+    let mut written = claimed.write(&trajectory.at(&settings.output_times()), trajectory, &mut summary);
+    let page = if written.page { "; open index.html there" } else { "" };
+    let printed = console::print(&format!("{summary}\nwritten: {written}{page}\n"));
+    written.faults.extend(printed.err().map(OutputError::from));
+    Ok(written.faults)
 }
 
 fn settings(arguments: &RunArguments) -> Result<RunSettings, InputError> {
@@ -391,24 +389,26 @@ fn bar(length: u64, template: &str) -> ProgressBar {
     bar
 }
 
-/// Prints to stdout. A reader that has gone away is no fault: the files are written all the same.
-fn print(text: &str) {
-    let mut stdout = stdout().lock();
-    let _ = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+/// Prints `text`, which is all there is to do.
+fn say(text: &str) -> ExitCode {
+    ended(console::print(text).err())
 }
 
-fn complain(message: &str) {
-    let _ = writeln!(stderr(), "error: {message}");
-}
-
-fn refuse(message: &str) -> ExitCode {
-    complain(message);
+/// Input that cannot be used.
+fn refuse(fault: &impl Display) -> ExitCode {
+    console::complain(fault);
     ExitCode::from(2)
 }
 
-fn fail(message: &str) -> ExitCode {
-    complain(message);
-    ExitCode::FAILURE
+/// What is done is done; `faults` are what failed of it.
+fn ended(faults: impl IntoIterator<Item = impl Display>) -> ExitCode {
+    let failed = faults.into_iter().inspect(console::complain).count() > 0;
+    if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
+/// A number on the command line.
+fn real(text: &str) -> Result<f64, &'static str> {
+    text.parse().map_err(|_| "not a number")
 }
 
 /// What clap says in several lines, in one.
@@ -418,5 +418,5 @@ fn one_line(fault: &clap::Error) -> String {
         text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let told: Vec<&str> = told.filter(|line| !line.is_empty()).collect();
     let line = told.join("; ");
-    line.strip_prefix("error: ").unwrap_or(&line).to_owned()
+    format!("{}; --help says more", line.strip_prefix("error: ").unwrap_or(&line))
 }

@@ -15,13 +15,15 @@
 //! | [`figures`] | what the paper's figures 4 to 19 look like |
 //! | [`summary`] | what the run comes to in numbers |
 //! | [`overview`] | all of it on one page |
-//! | [`output`] | where the files go |
+//! | [`output`] | which files a run writes, and where |
+//! | [`files`] | how results reach disk and terminal: whole, or not at all |
 //! | [`command`] | what the user asks for |
 
 pub mod agreement;
 pub mod checks;
 pub mod command;
 pub mod figures;
+pub mod files;
 pub mod mechanism;
 pub mod methods;
 pub mod output;

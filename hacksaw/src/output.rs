@@ -1,49 +1,45 @@
-//! The files of a run: where they go, whether they can be written, and writing them.
+//! The files of a run: which there are, where they go, and writing them.
 //!
-//! In: the command line's choice of places. Out: files. All places are tried before the run, so a long run is not lost to a
-//! directory that cannot be written.
+//! In: the command line's choice of places. Out: files. All places are claimed before the run, so a long run is not lost to a
+//! directory that cannot be written. What goes wrong with one output does not keep the others back.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::figures::{FIGURES, FigureError};
+use crate::figures::{FIGURES, Figure, FigureError};
+use crate::files::{FileError, RunFolder, whole};
 use crate::overview;
 use crate::summary::Summary;
-use crate::trajectory::{Trajectory, TrajectoryError};
+use crate::trajectory::Trajectory;
+
+/// The names of the files beside the figures.
+const CSV: &str = "trajectory.csv";
+const TEXT: &str = "summary.txt";
+const JSON: &str = "summary.json";
+const PAGE: &str = "index.html";
 
 /// Where the files of a run go.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Places {
-    /// The CSV file.
-    pub csv: PathBuf,
-    /// The directory of figures, overview page and summary; `None` where only the CSV file is wanted.
-    pub directory: Option<PathBuf>,
+    /// The CSV file, where it is not one of the folder's.
+    pub csv: Option<PathBuf>,
+    /// The folder of figures, overview page and summary; `None` where only the CSV file is wanted.
+    pub folder: Option<PathBuf>,
     /// Whether figures and the overview page are wanted.
     pub figures: bool,
 }
 
-/// A file that cannot be written.
+/// An output that fails.
 #[derive(Debug, Error)]
 pub enum OutputError {
-    /// The file system refuses.
-    #[error("cannot write {}: {source}", path.display())]
-    File {
-        /// The file or directory.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// The trajectory cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Trajectory {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: TrajectoryError,
-    },
+    /// It does not reach its place.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The CSV file has the name of another file of the run.
+    #[error("--csv {}: the run writes another file of this name; choose another", .0.display())]
+    Clash(PathBuf),
     /// A work-precision diagram cannot be drawn.
     #[error("diagram of {name}: {source}")]
     Diagram {
@@ -63,99 +59,148 @@ pub enum OutputError {
 }
 
 impl Places {
-    /// The places that the command line chooses: without `csv` the trajectory goes into `directory`; without figures and
+    /// The places that the command line chooses: without `csv` the trajectory goes into `folder`; without figures and
     /// with `csv` nothing goes there.
     #[must_use]
-    pub fn new(directory: &Path, csv: Option<&Path>, figures: bool) -> Self {
+    pub fn new(folder: &Path, csv: Option<&Path>, figures: bool) -> Self {
         Self {
-            csv: csv.map_or_else(|| directory.join("trajectory.csv"), Path::to_owned),
-            directory: (figures || csv.is_none()).then(|| directory.to_owned()),
+            csv: csv.filter(|csv| *csv != folder.join(CSV)).map(Path::to_owned),
+            folder: (figures || csv.is_none()).then(|| folder.to_owned()),
             figures,
         }
     }
 
-    fn page(directory: &Path) -> PathBuf {
-        directory.join("index.html")
-    }
-
-    /// All files that will be written.
+    /// The names of the files that may go into the folder.
     #[must_use]
-    pub fn files(&self) -> Vec<PathBuf> {
-        let mut files = vec![self.csv.clone()];
-        if let Some(directory) = &self.directory {
-            files.extend(["summary.txt", "summary.json"].map(|name| directory.join(name)));
-            if self.figures {
-                files.push(Self::page(directory));
-                files.extend(FIGURES.iter().map(|figure| directory.join(figure.file_name())));
-            }
-        }
-        files
+    pub fn names(&self) -> Vec<String> {
+        let csv = self.csv.is_none().then_some(CSV);
+        let figures = FIGURES.iter().filter(|_| self.figures).map(|figure| figure.file_name());
+        let page = self.figures.then_some(PAGE);
+        csv.into_iter().chain([TEXT, JSON]).chain(page).map(str::to_owned).chain(figures).collect()
     }
 
-    /// Makes the directory and tries every file without changing one that is there.
+    /// Claims the folder and tries the CSV file, without changing what is there.
     ///
     /// # Errors
     /// The first place that cannot be written.
-    pub fn prepare(&self) -> Result<(), OutputError> {
-        if let Some(directory) = &self.directory {
-            fs::create_dir_all(directory).map_err(|source| OutputError::File { path: directory.clone(), source })?;
-        }
-        self.files()
-            .into_iter()
-            .try_for_each(|path| try_writing(&path).map_err(|source| OutputError::File { path, source }))
-    }
-
-    /// Writes the CSV file from `output` and everything else from `trajectory` and `summary`, whose list of files it fills.
-    ///
-    /// # Errors
-    /// The first file that cannot be written.
-    pub fn write(
-        &self,
-        output: &Trajectory,
-        trajectory: &Trajectory,
-        summary: &mut Summary,
-    ) -> Result<(), OutputError> {
-        summary.files = self.files();
-        write_csv(&self.csv, output)?;
-        let Some(directory) = &self.directory else { return Ok(()) };
-        if self.figures {
-            let mut drawn = Vec::new();
-            // A run that failed before its first sample has nothing to draw.
-            for figure in FIGURES.into_iter().filter(|_| !trajectory.times.is_empty()) {
-                let svg = figure.draw(trajectory);
-                let svg = svg.map_err(|source| OutputError::Figure { number: figure.number, source })?;
-                write_text(&directory.join(figure.file_name()), &svg)?;
-                drawn.push(figure);
+    pub fn claim(&self) -> Result<Claimed, OutputError> {
+        let own = |path: &Path| self.folder.as_ref().is_some_and(|folder| path.starts_with(folder));
+        if let Some(csv) = &self.csv {
+            let names = self.names();
+            let clash = |folder: &PathBuf| names.iter().any(|name| folder.join(name) == *csv);
+            if self.folder.as_ref().is_some_and(clash) {
+                return Err(OutputError::Clash(csv.clone()));
             }
-            let data = self.csv.strip_prefix(directory).ok().map(|path| path.display().to_string());
-            write_text(&Self::page(directory), &overview::page(summary, &drawn, data.as_deref()))?;
         }
-        write_text(&directory.join("summary.txt"), &summary.to_string())?;
-        let json = serde_json::to_string_pretty(summary).expect("a summary has text keys only");
-        write_text(&directory.join("summary.json"), &(json + "\n"))
+        // A file below the folder can be tried when the folder is there, any other before it is made.
+        let (below, elsewhere): (Vec<_>, Vec<_>) = self.csv.iter().partition(|csv| own(csv));
+        elsewhere.into_iter().try_for_each(|csv| whole::probe(csv))?;
+        let folder = self.folder.as_ref().map(|folder| RunFolder::claim(folder, &self.names())).transpose()?;
+        below.into_iter().try_for_each(|csv| whole::probe(csv))?;
+        Ok(Claimed { places: self.clone(), folder })
     }
 }
 
-/// Opens a file for writing as the run will, and removes it if it was not there.
-fn try_writing(path: &Path) -> io::Result<()> {
-    match OpenOptions::new().write(true).create_new(true).open(path) {
-        Ok(_) => fs::remove_file(path),
-        Err(fault) if fault.kind() == io::ErrorKind::AlreadyExists => {
-            OpenOptions::new().write(true).open(path).map(|_| ())
+/// Places that are this run's until it has written.
+#[derive(Debug)]
+pub struct Claimed {
+    places: Places,
+    folder: Option<RunFolder>,
+}
+
+/// What was written.
+#[derive(Debug, Default)]
+pub struct Written {
+    /// The CSV file, where it is not in the folder.
+    pub csv: Option<PathBuf>,
+    /// The folder and the number of the run's files in it.
+    pub folder: Option<(PathBuf, usize)>,
+    /// Whether the overview page is in it.
+    pub page: bool,
+    /// What failed.
+    pub faults: Vec<OutputError>,
+}
+
+impl Claimed {
+    /// Writes the CSV file from `output` and everything else from `trajectory` and `summary`, whose list of files it fills.
+    pub fn write(self, output: &Trajectory, trajectory: &Trajectory, summary: &mut Summary) -> Written {
+        let mut written = Written::default();
+        if let Some(csv) = &self.places.csv {
+            match whole::write(csv, |file| Ok(output.write_csv(file)?)) {
+                Ok(()) => written.csv = Some(csv.clone()),
+                Err(fault) => written.faults.push(fault.into()),
+            }
         }
-        Err(fault) => Err(fault),
+        let (Some(folder), Some(path)) = (self.folder, self.places.folder) else { return written };
+        let own = self.places.csv.is_none().then_some(output);
+        let data = match &written.csv {
+            Some(csv) => csv.strip_prefix(&path).ok().map(Path::to_owned),
+            None => own.map(|_| PathBuf::from(CSV)),
+        };
+        let mut figures = Vec::new();
+        // A run that failed before its first sample has nothing to draw.
+        for figure in FIGURES.into_iter().filter(|_| self.places.figures && !trajectory.times.is_empty()) {
+            match figure.draw(trajectory) {
+                Ok(svg) => figures.push((figure, svg)),
+                Err(source) => written.faults.push(OutputError::Figure { number: figure.number, source }),
+            }
+        }
+        let page = self.places.figures.then_some(Page { figures, data });
+        summary.files = written.csv.iter().cloned().collect();
+        match fill(folder, &path, own, page.as_ref(), summary) {
+            Ok(count) => (written.folder, written.page) = (Some((path, count)), page.is_some()),
+            Err(fault) => written.faults.push(fault.into()),
+        }
+        written
     }
 }
 
-fn write_csv(path: &Path, trajectory: &Trajectory) -> Result<(), OutputError> {
-    let fault = |source| OutputError::File { path: path.to_owned(), source };
-    let mut file = BufWriter::new(File::create(path).map_err(fault)?);
-    trajectory.write_csv(&mut file).map_err(|source| OutputError::Trajectory { path: path.to_owned(), source })?;
-    file.flush().map_err(fault)
+/// What is on the overview page.
+struct Page {
+    /// The figures, drawn.
+    figures: Vec<(Figure, String)>,
+    /// The CSV file as seen from the page, where it is below it.
+    data: Option<PathBuf>,
 }
 
-fn write_text(path: &Path, text: &str) -> Result<(), OutputError> {
-    fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
+/// Writes the files of the folder at `path` and gives their number: the CSV file where there is an `output` to write, the
+/// page and its figures where there is one, and the summary.
+fn fill(
+    mut folder: RunFolder,
+    path: &Path,
+    output: Option<&Trajectory>,
+    page: Option<&Page>,
+    summary: &mut Summary,
+) -> Result<usize, FileError> {
+    let figures = page.map_or(&[][..], |page| &page.figures);
+    let names = output.map(|_| CSV).into_iter().chain([TEXT, JSON]).chain(page.map(|_| PAGE)).map(str::to_owned);
+    let names = names.chain(figures.iter().map(|(figure, _)| figure.file_name()));
+    summary.files.extend(names.map(|name| path.join(name)));
+
+    if let Some(output) = output {
+        folder.write(CSV, |file| Ok(output.write_csv(file)?))?;
+    }
+    for (figure, svg) in figures {
+        folder.write_text(&figure.file_name(), svg)?;
+    }
+    folder.write_text(TEXT, &summary.to_string())?;
+    let json = serde_json::to_string_pretty(summary).expect("a summary has text keys only");
+    folder.write_text(JSON, &(json + "\n"))?;
+    if let Some(Page { figures, data }) = page {
+        let drawn: Vec<Figure> = figures.iter().map(|(figure, _)| *figure).collect();
+        folder.write_text(PAGE, &overview::page(summary, &drawn, data.as_deref()))?;
+    }
+    Ok(folder.publish()?.len())
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let csv = self.csv.as_ref().map(|csv| csv.display().to_string());
+        let folder = self.folder.as_ref().map(|(folder, count)| format!("{count} files in {}", folder.display()));
+        let both: Vec<String> = csv.into_iter().chain(folder).collect();
+        f.write_str(if both.is_empty() { "nothing" } else { "" })?;
+        f.write_str(&both.join(" and "))
+    }
 }
 
 #[cfg(test)]
@@ -165,30 +210,45 @@ mod tests {
     #[test]
     fn places_follow_the_command_line() {
         let (out, csv) = (Path::new("out"), Path::new("run.csv"));
-        assert_eq!(Places::new(out, None, true).files().len(), 20);
-        assert_eq!(Places::new(out, None, true).csv, Path::new("out/trajectory.csv"));
-        assert_eq!(Places::new(out, Some(csv), true).files()[0], csv);
-        assert_eq!(Places::new(out, Some(csv), false).files(), [csv]);
-        assert_eq!(Places::new(out, None, false).files().len(), 3);
+        assert_eq!(Places::new(out, None, true).names().len(), 20);
+        let both = Places::new(out, Some(csv), true);
+        assert_eq!((both.csv.as_deref(), both.names().len()), (Some(csv), 19));
+        let alone = Places::new(out, Some(csv), false);
+        assert_eq!((alone.csv.as_deref(), alone.folder), (Some(csv), None));
+        assert_eq!(Places::new(out, None, false).names(), [CSV, TEXT, JSON]);
+        // The place that the trajectory has anyway.
+        let usual = out.join(CSV);
+        assert_eq!(Places::new(out, Some(&usual), true), Places::new(out, None, true));
     }
 
     #[test]
-    fn preparing_changes_nothing_that_is_there() {
+    fn claiming_changes_nothing_that_can_be_seen() {
         let directory = tempfile::tempdir().unwrap();
-        let places = Places::new(&directory.path().join("a/b"), None, true);
-        places.prepare().unwrap();
-        assert!(!places.csv.exists());
-        fs::write(&places.csv, "before").unwrap();
-        places.prepare().unwrap();
-        assert_eq!(fs::read_to_string(&places.csv).unwrap(), "before");
+        let places = Places::new(&directory.path().join("a/b"), Some(&directory.path().join("run.csv")), true);
+        drop(places.claim().unwrap());
+        let visible = std::fs::read_dir(directory.path().join("a/b"))
+            .unwrap()
+            .filter(|entry| !entry.as_ref().unwrap().file_name().to_string_lossy().starts_with('.'));
+        assert_eq!(visible.count(), 0);
+        assert!(!directory.path().join("run.csv").exists());
     }
 
     #[test]
-    fn a_place_that_cannot_be_written_is_named() {
+    fn a_csv_file_does_not_take_the_name_of_another() {
         let directory = tempfile::tempdir().unwrap();
-        let file = directory.path().join("file");
-        fs::write(&file, "").unwrap();
-        let fault = Places::new(&file, None, true).prepare().unwrap_err().to_string();
-        assert!(fault.starts_with(&format!("cannot write {}: ", file.display())), "{fault}");
+        let fault = Places::new(directory.path(), Some(&directory.path().join(JSON)), true).claim().unwrap_err();
+        assert!(matches!(fault, OutputError::Clash(_)));
+    }
+
+    #[test]
+    fn what_was_written_is_said() {
+        let written = |csv: Option<&str>, folder: Option<usize>| {
+            let folder = folder.map(|count| (PathBuf::from("out"), count));
+            Written { csv: csv.map(PathBuf::from), folder, ..Written::default() }.to_string()
+        };
+        assert_eq!(written(None, Some(20)), "20 files in out");
+        assert_eq!(written(Some("run.csv"), Some(19)), "run.csv and 19 files in out");
+        assert_eq!(written(Some("run.csv"), None), "run.csv");
+        assert_eq!(written(None, None), "nothing");
     }
 }

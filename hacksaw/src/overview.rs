@@ -4,6 +4,7 @@
 //! follows the reader's light or dark colour scheme, and needs nothing from elsewhere.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use crate::figures::{Assignment, Figure};
 use crate::summary::Summary;
@@ -35,7 +36,7 @@ a { color: inherit; }
 
 /// The page. `figures` are those that were drawn; `data` is where the CSV file is, as seen from the page.
 #[must_use]
-pub fn page(summary: &Summary, figures: &[Figure], data: Option<&str>) -> String {
+pub fn page(summary: &Summary, figures: &[Figure], data: Option<&Path>) -> String {
     let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Power hacksaw</title>\n";
     write_into(&mut page, format_args!("<style>{STYLE}</style>\n</head>\n<body>\n<h1>Power hacksaw</h1>\n"));
@@ -51,8 +52,8 @@ pub fn page(summary: &Summary, figures: &[Figure], data: Option<&str>) -> String
         write_into(&mut page, format_args!("<dt>{name}</dt><dd>{}</dd>\n", escaped(&text)));
     }
     if let Some(data) = data {
-        let data = escaped(data);
-        write_into(&mut page, format_args!("<dt>trajectory</dt><dd><a href=\"{data}\">{data}</a></dd>\n"));
+        let (link, name) = (address(data), escaped(&data.display().to_string()));
+        write_into(&mut page, format_args!("<dt>trajectory</dt><dd><a href=\"{link}\">{name}</a></dd>\n"));
     }
     page += "</dl>\n";
     checks(&mut page, summary);
@@ -105,6 +106,28 @@ fn write_into(page: &mut String, text: std::fmt::Arguments) {
     page.write_fmt(text).expect("writing to a string cannot fail");
 }
 
+/// A relative path as the address of a link: every byte that is not plain as `%XX`, whatever the file's name is made of.
+fn address(path: &Path) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte);
+    let bytes = path.as_os_str().as_encoded_bytes().iter();
+    bytes.map(|&byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
+}
+
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_leads_to_the_file_whatever_its_name() {
+        assert_eq!(address(Path::new("runs/a b#1?.csv")), "runs/a%20b%231%3F.csv");
+        #[cfg(unix)]
+        {
+            let name: &std::ffi::OsStr = std::os::unix::ffi::OsStrExt::from_bytes(b"o\xff.csv");
+            assert_eq!(address(Path::new(name)), "o%FF.csv");
+        }
+    }
 }

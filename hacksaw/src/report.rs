@@ -128,7 +128,7 @@ fn bonds(description: &Description) -> String {
 fn states(states: &[StateInfo]) -> String {
     let head = ["", "state", "unit", "storage", "causality"].map(str::to_owned);
     let rows = states.iter().enumerate().map(|(index, state)| {
-        [index.to_string(), state.name.into(), state.unit.into(), state.storage.into(), state.causality.into()]
+        [index.to_string(), state.name.into(), state.unit.into(), state.kind.storage().into(), state.causality.into()]
     });
     table(&std::iter::once(head).chain(rows).collect::<Vec<_>>())
 }

@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use bg_model::integrator::Change;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::checks::Check;
 use crate::run::{RunSettings, Simulation};
@@ -71,7 +71,13 @@ pub struct Summary {
     /// The paper's statements; none where the scene lacks the columns they are about.
     pub checks: Vec<Check>,
     /// The files written.
+    #[serde(serialize_with = "as_text")]
     pub files: Vec<PathBuf>,
+}
+
+/// Paths as JSON can hold them: bytes that are no text are shown as U+FFFD.
+fn as_text<S: Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(paths.iter().map(|path| path.display().to_string()))
 }
 
 /// The crank's speed is averaged from here on, s: then the paper's case has settled.
@@ -149,7 +155,9 @@ impl Summary {
         lines.push(("integrator", self.integrators.join(", ")));
         lines.push(match self.fixed_step_s {
             Some(step) => ("fixed step", format!("{step:e} s")),
-            None => ("tolerances", format!("relative {:e}, absolute {:e} (SI)", self.rtol, self.atol)),
+            None => {
+                ("tolerances", format!("relative {}, absolute {} (SI)", tolerance(self.rtol), tolerance(self.atol)))
+            }
         });
         lines.push(("states", self.states.to_string()));
         lines.push(("steps", format!("{} accepted, {} rejected", self.steps, self.rejected)));
@@ -207,6 +215,12 @@ impl fmt::Display for Summary {
         }
         Ok(())
     }
+}
+
+/// A tolerance to twelve digits: a tenth of 1e-10 reads 1e-11, not 1.0000000000000001e-11.
+fn tolerance(value: f64) -> String {
+    let rounded = format!("{value:.11e}").parse().unwrap_or(value);
+    format!("{rounded:e}")
 }
 
 /// The energy balance of a run.
@@ -295,6 +309,11 @@ mod tests {
         assert_eq!(summary.energy_residual, Some(0.05));
         assert_eq!(summary.largest_gap, Some(("pin B".to_owned(), 3e-4)));
         assert_eq!(summary.crank_speed_rad_per_s, Some([50.0, 40.0, 60.0]));
+    }
+
+    #[test]
+    fn a_tolerance_reads_as_it_was_meant() {
+        assert_eq!([1e-10 / 10.0, 1e-8 / 10.0, 2.5e-7, 1.0].map(tolerance), ["1e-11", "1e-9", "2.5e-7", "1e0"]);
     }
 
     #[test]

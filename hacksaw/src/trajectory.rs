@@ -50,6 +50,16 @@ pub enum TrajectoryError {
     Csv(#[from] csv::Error),
 }
 
+impl From<TrajectoryError> for std::io::Error {
+    /// Keeps the kind of a failure to write.
+    fn from(fault: TrajectoryError) -> Self {
+        match fault {
+            TrajectoryError::Csv(fault) => fault.into(),
+            fault => Self::other(fault),
+        }
+    }
+}
+
 /// The links that move: crank, rod, frame and guide.
 pub const LINKS: [u8; 4] = [2, 3, 4, 5];
 

@@ -11,6 +11,12 @@ fn hacksaw(directory: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// The names in a folder of results. What begins with a dot is not a result.
+fn results(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| !name.starts_with('.')).collect()
+}
+
 /// A short run, so that the suite stays quick in debug.
 const SHORT: [&str; 2] = ["--t-end", "0.05"];
 
@@ -42,8 +48,7 @@ fn a_bare_run_writes_everything_into_out() {
         assert!(summary.contains(name), "{name} is not in the summary");
     }
     let out = directory.path().join("out");
-    let names: Vec<String> =
-        fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let names = results(&out);
     assert_eq!(names.len(), 20);
     assert_eq!(names.iter().filter(|name| name.starts_with("figure_") && name.ends_with(".svg")).count(), 16);
     let page = fs::read_to_string(out.join("index.html")).unwrap();
@@ -139,7 +144,7 @@ fn scenes_without_the_reference_columns_write_their_own_and_no_figures() {
         }
         assert_eq!(summary.contains("crank speed"), scene == "free-run");
         let out = directory.path().join(scene);
-        assert_eq!(fs::read_dir(&out).unwrap().count(), 3);
+        assert_eq!(results(&out).len(), 3);
         let csv = fs::read_to_string(out.join("trajectory.csv")).unwrap();
         assert_eq!(csv.lines().next(), Some(header));
         let json: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
@@ -196,7 +201,7 @@ fn bad_input_is_one_line_and_exit_code_2() {
     fs::write(path.join("unknown.toml"), "torqe = 1\n").unwrap();
     fs::write(path.join("file"), "").unwrap();
     fs::write(path.join("bytes.toml"), [0xff, 0xfe]).unwrap();
-    let cases: [(&[&str], &str); 22] = [
+    let cases: [(&[&str], &str); 26] = [
         (&["--set", "torqe=1"], "did you mean `torque`?"),
         (&["run", "--set", "torqe=1"], "did you mean `torque`?"),
         (&["--set", "k_23=-1"], "k_23"),
@@ -207,18 +212,22 @@ fn bad_input_is_one_line_and_exit_code_2() {
         (&["--params", "unknown.toml"], "did you mean `torque`?"),
         (&["--params", "absent.toml"], "cannot read absent.toml"),
         (&["--params", "bytes.toml"], "cannot read bytes.toml"),
-        (&["--out", "file"], "cannot write file"),
+        (&["--out", "file"], "cannot write into file: file is a file; choose a folder with --out"),
+        (&["--out", "file/below"], "cannot write into file/below: file is a file"),
         (&["--csv", "absent/run.csv", "--no-figures"], "cannot write absent/run.csv"),
         (&["--csv", ".", "--no-figures"], "cannot write ."),
         (&["--t-end", "-1"], "--t-end -1: must be a finite number above 0"),
         (&["--t-end", "nan"], "--t-end NaN"),
-        (&["--t-end", "five"], "--t-end"),
+        (&["--t-end", "five"], "invalid value 'five' for '--t-end <SECONDS>': not a number"),
         (&["--rtol", "0"], "--rtol 0"),
-        (&["--rtol", "1e-30"], "--rtol"),
+        (&["--rtol", "1e-30"], "--rtol 1e-30: must be at least"),
         (&["--atol=-1e-3"], "--atol -0.001"),
         (&["--step", "0"], "--step 0"),
         (&["--step", "1e-9"], "choose a longer one"),
         (&["--tend", "1"], "--t-end"),
+        (&["--nonsense"], "--help says more"),
+        (&["--csv", "out/summary.txt"], "the run writes another file of this name"),
+        (&["precision", "--rtol", "x"], "not a number"),
     ];
     for (arguments, part) in cases {
         let line = refused(path, arguments);

@@ -4,6 +4,7 @@ pub mod examples;
 pub mod fuzz;
 pub mod hard_hacksaw;
 pub mod hardcases;
+pub mod linear;
 pub mod long_term;
 pub mod power;
 pub mod record;

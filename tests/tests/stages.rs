@@ -5,10 +5,10 @@
 
 use std::path::Path;
 
-use bg_compiler::ast::Source;
 use bg_compiler::fault::Fault;
+use bg_compiler::source::ast::Source;
+use bg_compiler::source::syntax;
 use bg_compiler::stages::{Stage, stages};
-use bg_compiler::syntax;
 use proc_macro2::TokenStream;
 
 /// Every stage.
@@ -149,7 +149,7 @@ fn the_order_of_the_chains_changes_no_stroke() {
         let before = compiled(&source.to_string());
         let items = &mut source.graphs[0].items;
         let (mut chains, others): (Vec<_>, Vec<_>) =
-            items.drain(..).partition(|item| matches!(item, bg_compiler::ast::Item::Chain(_)));
+            items.drain(..).partition(|item| matches!(item, bg_compiler::source::ast::Item::Chain(_)));
         chains.reverse();
         items.extend(others);
         items.extend(chains);

@@ -42,6 +42,27 @@ impl std::fmt::Display for Fault {
     }
 }
 
+/// Two things of one name, as the stages that declare names find it.
+#[derive(Clone, Debug)]
+pub struct DeclaredTwice {
+    /// The name.
+    pub name: String,
+}
+
+impl Explain for DeclaredTwice {
+    fn code(&self) -> &'static str {
+        "BG0302"
+    }
+
+    fn message(&self) -> String {
+        format!("`{}` is declared twice", self.name)
+    }
+
+    fn help(&self) -> String {
+        "give one of them another name".to_owned()
+    }
+}
+
 /// The faults of one stage, in the order of their discovery; not empty.
 pub type Faults = Vec<Fault>;
 

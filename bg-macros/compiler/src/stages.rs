@@ -6,19 +6,19 @@ use std::fmt::Write;
 
 use proc_macro2::TokenStream;
 
-use crate::ast::TrackKind;
-use crate::causality::{CausalGraph, End};
-use crate::elimination::Elimination;
-use crate::equations::StateEquations;
-use crate::expr::{Id, Pool, Symbol, text};
+use crate::expr::{Id, Symbol};
 use crate::fault::Staged;
+use crate::graph::causality::{CausalGraph, End};
 use crate::graph::{BondGraph, NodeKind, Storage};
-use crate::jacobian::Jacobian;
-use crate::pairs::{Half, Paired, Step, Value};
-use crate::program::{Assignment, Counts, Operand, Operation, Program, Request, Routine, schedule};
-use crate::scene::Variant;
-use crate::second::Second;
-use crate::{causality, elimination, equations, graph, jacobian, mechanism, pairs, scene, second, syntax};
+use crate::pipeline::{self, Compiled};
+use crate::program::elimination::Elimination;
+use crate::program::pairs::{Half, Paired, Step, Value};
+use crate::program::{Assignment, Counts, Operand, Operation, Routine, Running};
+use crate::source::ast::TrackKind;
+use crate::source::syntax;
+use crate::system::equations::StateEquations;
+use crate::system::jacobian::Jacobian;
+use crate::system::second_order::SecondOrder;
 
 /// One stage of one graph.
 #[derive(Clone, Debug)]
@@ -32,50 +32,36 @@ pub struct Stage {
     pub text: String,
 }
 
-/// The stages of every graph in a macro call.
+/// The stages of every model of a macro call.
 ///
 /// # Errors
-/// The faults of the first graph that has any.
+/// The faults of all graphs.
 pub fn stages(tokens: TokenStream) -> Staged<Vec<Stage>> {
-    let source = syntax::parse(tokens)?;
-    let mut stages = Vec::new();
-    for graph in &source.graphs {
-        for variant in scene::variants(graph)? {
-            of_variant(&variant, &mut stages)?;
-        }
-    }
-    Ok(stages)
+    let models = pipeline::models(&syntax::parse(tokens)?)?;
+    Ok(models.iter().flat_map(of_model).collect())
 }
 
-fn of_variant(variant: &Variant, stages: &mut Vec<Stage>) -> Staged<()> {
-    let name = &variant.graph.name.text;
-    let mut push = |stage, text| stages.push(Stage { graph: name.clone(), name: stage, text });
-    push("source", variant.graph.to_string());
-    let expanded = mechanism::expand(&variant.graph)?;
-    push("expanded", expanded.to_string());
-    let resolved = graph::resolve(&expanded)?;
-    push("resolved", resolved_text(&resolved));
-    let causal = causality::assign(resolved)?;
-    push("causal", causal_text(&causal));
-    let equations = equations::derive(&causal)?;
-    push("equations", equations_text(&equations));
-    let (mut equations, report) = variant.reduce(equations)?;
-    if let Some(report) = report {
+fn of_model(model: &Compiled) -> Vec<Stage> {
+    let Compiled { source, derived, reduction, equations, jacobian, second_order, elimination, programs } = model;
+    let mut stages = Vec::new();
+    let mut push = |name, text| stages.push(Stage { graph: source.name.text.clone(), name, text });
+    push("source", source.to_string());
+    push("expanded", derived.expanded.to_string());
+    push("resolved", resolved_text(&derived.causal.graph));
+    push("causal", causal_text(&derived.causal));
+    push("equations", equations_text(&derived.equations));
+    if let Some(report) = reduction {
         push("reduction", report.to_string());
-        push("reduced", equations_text(&equations));
+        push("reduced", equations_text(equations));
     }
-    let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
-    let program = schedule(&mut equations.pool, &[Request { name: "rate", roots: &rates }]);
-    push("program", program_text(&equations, &program));
-    if let Some(paired) = pairs::pair(&program.routines[0]) {
-        push("pairs", paired_text(&equations, &paired));
+    push("program", program_text(equations, &programs.running));
+    if let Some(paired) = &programs.running.paired_rate {
+        push("pairs", paired_text(equations, paired));
     }
-    let jacobian = jacobian::differentiate(&equations);
-    push("jacobian", jacobian_text(&equations, &jacobian));
-    push("second", second_text(&equations, &second::differentiate(&equations)));
-    let elimination = elimination::plan(equations.states.len(), &jacobian.places());
-    push("elimination", elimination_text(&equations, &elimination));
-    Ok(())
+    push("jacobian", jacobian_text(equations, jacobian));
+    push("second", second_text(equations, second_order));
+    push("elimination", elimination_text(equations, elimination));
+    stages
 }
 
 /// Nodes, bonds with cardinality and units, states.
@@ -132,7 +118,7 @@ fn equations_text(equations: &StateEquations) -> String {
     let show = |id: Id| equations.shown(&equations.pool, id);
     out.push('\n');
     for state in &equations.states {
-        let (name, unit, storage) = (&state.name, &state.unit, state.storage);
+        let (name, unit, storage) = (&state.name, &state.unit, state.origin.kind().storage());
         let _ = writeln!(out, "{name} [{unit}] of {storage}, start {}", show(state.start));
         let _ = writeln!(out, "    {name}' = {}", show(state.rate));
     }
@@ -167,7 +153,7 @@ fn jacobian_text(equations: &StateEquations, jacobian: &Jacobian) -> String {
 }
 
 /// The states of second order with their second derivatives.
-fn second_text(equations: &StateEquations, second: &Second) -> String {
+fn second_text(equations: &StateEquations, second: &SecondOrder) -> String {
     let mut out = format!("{} states\n", second.states.len());
     for (index, &derivative) in second.states.clone().zip(&second.derivatives) {
         let _ = writeln!(out, "    {}'' = {}", equations.states[index].name, equations.shown(&second.pool, derivative));
@@ -192,11 +178,11 @@ fn elimination_text(equations: &StateEquations, elimination: &Elimination) -> St
     )
 }
 
-/// The flat single assignment of the rate function.
-fn program_text(equations: &StateEquations, program: &Program) -> String {
+/// The flat single assignments of the running model.
+fn program_text(equations: &StateEquations, running: &Running) -> String {
     let mut out = String::new();
-    routine_text(equations, &program.constants, &mut out);
-    for routine in &program.routines {
+    routine_text(equations, &running.constants, &mut out);
+    for routine in running.routines() {
         routine_text(equations, routine, &mut out);
     }
     out
@@ -280,26 +266,4 @@ fn paired_text(equations: &StateEquations, paired: &Paired) -> String {
     let results: Vec<String> = paired.results.iter().map(half).collect();
     let _ = writeln!(out, "    -> {}", results.join(", "));
     out
-}
-
-impl StateEquations {
-    /// An expression of a pool as text.
-    fn shown(&self, pool: &Pool, id: Id) -> String {
-        text(pool, id, &|symbol| self.symbol_name(symbol), &|switch| format!("guard_{switch}"))
-    }
-
-    /// A symbol's name in texts.
-    #[must_use]
-    pub fn symbol_name(&self, symbol: Symbol) -> String {
-        match symbol {
-            Symbol::Time => "t".to_owned(),
-            Symbol::State(index) => self.states[index as usize].name.clone(),
-            Symbol::Parameter(index) => self.parameters[index as usize].name.text.clone(),
-            Symbol::Input(index) => self.inputs[index as usize].name.text.clone(),
-            Symbol::Unknown(index) => format!("unknown_{}", index + 1),
-            Symbol::Atom(index) => format!("atom_{index}"),
-            Symbol::Slope(index) => format!("{}'", self.inputs[index as usize].name.text),
-            Symbol::Rate(index) => format!("{}'", self.states[index as usize].name),
-        }
-    }
 }

@@ -3,16 +3,14 @@
 //! A guard is followed for a small step of the method under a branch; the branch is right if the guard then has its
 //! sign. Where the other branch is right in this sense and this one is not, the other one is taken.
 
-use super::{Watch, check_finite, clearance};
-use crate::integrator::Method;
+use super::{CERTAIN, Watch, check_finite, clearance};
+use crate::integrator::{Method, is_finite};
 use crate::simulation::Stepper;
 use crate::system::System;
 
 /// Small steps, as parts of the next step: the first shows the guard's derivative, the others a guard whose derivative
 /// vanishes.
 const PROBES: [f64; 3] = [1e-7, 1e-5, 1e-3];
-/// A guard's sign is taken for certain above this multiple of its rounding error.
-const CERTAIN: f64 = 16.0;
 
 impl<const G: usize> Watch<G> {
     /// Chooses the branches at the start of the run by the signs of the guards; a guard that is zero counts as positive.
@@ -67,7 +65,9 @@ impl<const G: usize> Watch<G> {
         for _ in 0..G {
             self.read_start(stepper, step);
             let value = self.start.value;
-            let is_pushed = |k: &usize| !switches[*k] && clearance(value[*k], stepper.negative[*k]) < -self.noise(*k);
+            let start = stepper.start;
+            let noise = self.noise(stepper, start.t, &start.x, &value);
+            let is_pushed = |k: &usize| !switches[*k] && clearance(value[*k], stepper.negative[*k]) < -noise[*k];
             let Some(pushed) = (0..G).find(is_pushed).filter(|_| check_finite(&value).is_ok()) else { return };
             switches[pushed] = true;
             stepper.negative[pushed] = value[pushed] < 0.0;
@@ -96,15 +96,32 @@ impl<const G: usize> Watch<G> {
         stepper.evaluate_start();
         // Twice: the second time a branch that disagrees as well goes back to the candidate.
         for _ in 0..2 {
-            let signs = self.probe(stepper, switches, step);
-            let disagrees = |k: usize| switches[k] && signs[k].is_some_and(|negative| negative != stepper.negative[k]);
-            let wrong: [bool; G] = std::array::from_fn(disagrees);
+            let wrong = self.wrong_branches(stepper, switches, step);
             if !wrong.contains(&true) {
                 return;
             }
             stepper.negative = std::array::from_fn(|k| stepper.negative[k] != wrong[k]);
             stepper.evaluate_start();
         }
+    }
+
+    /// Which of `switches` are in a branch that disagrees with its guard a little later. Where the rate is no number, as that
+    /// of a root on the wrong side of its zero by rounding, all of them are.
+    fn wrong_branches<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        switches: &[bool; G],
+        step: f64,
+    ) -> [bool; G]
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if !is_finite(&stepper.start.rate) {
+            return *switches;
+        }
+        let signs = self.probe(stepper, switches, step);
+        std::array::from_fn(|k| switches[k] && signs[k].is_some_and(|negative| negative != stepper.negative[k]))
     }
 
     /// Whether the guards of `switches` are negative a little later under the present branches; nothing where they stay
@@ -127,8 +144,9 @@ impl<const G: usize> Watch<G> {
             stepper.project();
             let end = stepper.end;
             let value = stepper.guards(end.t, &end.x);
+            let noise = self.noise(stepper, end.t, &end.x, &value);
             for k in 0..G {
-                if signs[k].is_none() && value[k].abs() > CERTAIN * self.noise(k) {
+                if signs[k].is_none() && value[k].abs() > CERTAIN * noise[k] {
                     signs[k] = Some(value[k] < 0.0);
                 }
             }

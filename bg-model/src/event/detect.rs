@@ -7,6 +7,7 @@
 use nalgebra::SVector;
 
 use super::minimum::minimum;
+use super::noise::larger;
 use super::{Crossing, Reading, Watch, check_finite, clearance, read};
 use crate::integrator::{Method, hermite};
 use crate::simulation::Stepper;
@@ -57,16 +58,18 @@ impl<const G: usize> Watch<G> {
         let (end, h) = (stepper.end, stepper.h);
         self.end = read(stepper, end.t, &end.x, &end.rate, h);
         check_finite(&self.end.value)?;
-        let value = self.end.value;
-        self.enlarge(&value);
         let mut x = SVector::zeros();
         hermite(&stepper.start, h, &end, 0.5, &mut x);
         let middle = stepper.guards(stepper.start.t + 0.5 * h, &x);
-        let is_suspect = |k: usize| {
-            let negative = stepper.negative[k];
-            clearance(self.end.value[k], negative) < -self.noise(k) || self.is_near(k, negative, middle[k], h)
-        };
-        let suspects: [bool; G] = std::array::from_fn(is_suspect);
+        // Without the noise there are only more suspects.
+        if !self.suspects(stepper.negative, &middle, h).contains(&true) {
+            return Ok(None);
+        }
+        let (start, value) = (stepper.start, self.start.value);
+        self.start.noise = self.noise(stepper, start.t, &start.x, &value);
+        let value = self.end.value;
+        self.end.noise = self.noise(stepper, end.t, &end.x, &value);
+        let suspects = self.suspects(stepper.negative, &middle, h);
         if !suspects.contains(&true) {
             return Ok(None);
         }
@@ -74,18 +77,25 @@ impl<const G: usize> Watch<G> {
         Ok(self.first_crossing(stepper, &courses))
     }
 
+    /// The guards that are on the wrong side at the end of the step or may have been in it.
+    fn suspects(&self, negative: [bool; G], middle: &SVector<f64, G>, h: f64) -> [bool; G] {
+        std::array::from_fn(|k| {
+            let is_wrong = clearance(self.end.value[k], negative[k]) < -self.end.noise[k];
+            is_wrong || self.is_near(k, negative[k], middle[k], h)
+        })
+    }
+
     /// Whether guard `k` comes so near to zero in the step that it may dip to the wrong side and come back.
     fn is_near(&self, k: usize, negative: bool, middle: f64, h: f64) -> bool {
         const SAMPLES: usize = 16;
-        let noise = self.noise(k);
+        let noise = larger(self.start.noise[k], self.end.noise[k]);
         let side = |value: f64| clearance(value, negative);
-        let from = if self.start.value[k].abs() <= noise { 0.0 } else { side(self.start.value[k]) };
+        let from = if self.start.value[k].abs() <= self.start.noise[k] { 0.0 } else { side(self.start.value[k]) };
         let (middle, to) = (side(middle), side(self.end.value[k]));
         let (leaving, arriving) = (h * side(self.start.slope[k]), h * side(self.end.slope[k]));
         let bulge = 16.0 * (middle - 0.5 * (from + to) - 0.125 * (leaving - arriving));
         // Comparisons, not `f64::min`: its optimised form was seen to drop an end.
         let smaller = |a: f64, b: f64| if b < a { b } else { a };
-        let larger = |a: f64, b: f64| if b > a { b } else { a };
         // Bernstein's coefficients enclose the quartic: far from zero that settles it.
         let (leave, arrive) = (from + 0.25 * leaving, to - 0.25 * arriving);
         let bend = (16.0 * middle - from - to - 4.0 * (leave + arrive)) / 6.0;
@@ -136,10 +146,9 @@ impl<const G: usize> Watch<G> {
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
-        let noise = self.noise(k);
         let clearances = values.map(|value| clearance(value[k], stepper.negative[k]));
         let at = |part: usize| (part as f64 / PARTS as f64, clearances[part]);
-        let wrong = (1..=PARTS).find(|part| clearances[*part] < -noise);
+        let wrong = (1..=PARTS).map(at).find(|place| self.is_wrong(stepper, k, *place));
         // Every minimum in front of that may reach the wrong side between two parts.
         let negative = stepper.negative[k];
         let falls = |reading: &Reading<G>| clearance(reading.slope[k], negative) < 0.0;
@@ -151,14 +160,69 @@ impl<const G: usize> Watch<G> {
                 inside => is_below(inside - 1) && is_below(inside + 1),
             }
         };
-        let minima = (0..wrong.unwrap_or(PARTS + 1)).filter(is_minimum);
-        let dip = minima.map(|part| self.lowest(stepper, k, at(part).0)).find(|(_, value)| *value < -noise);
-        let Some(wrong) = dip.or(wrong.map(at)) else { return Course::Clear };
-        let right = (0..PARTS).rev().map(at).find(|(part, clearance)| *part < wrong.0 && *clearance > noise);
+        let is_in_front = |part: &usize| wrong.is_none_or(|wrong| at(*part).0 < wrong.0);
+        let mut minima = (0..=PARTS).filter(is_in_front).filter(is_minimum);
+        let dip = minima.find_map(|part| {
+            let lowest = self.lowest(stepper, k, at(part).0);
+            self.is_wrong(stepper, k, lowest).then_some(lowest)
+        });
+        let Some(wrong) = dip.or(wrong) else { return Course::Clear };
+        let mut in_front = (0..PARTS).rev().map(at).filter(|place| place.0 < wrong.0);
+        let right = in_front.find(|place| self.is_right(stepper, k, *place));
         match right {
             Some(right) => Course::Crosses(Bracket { right, wrong }),
             None => self.bracket_near_start(stepper, k, wrong),
         }
+    }
+
+    /// Whether the clearance of guard `k` at this part of the step is negative by more than rounding.
+    fn is_wrong<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        (part, clearance): (f64, f64),
+    ) -> bool
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        clearance < 0.0 && clearance < -self.noise_inside(stepper, k, part)
+    }
+
+    /// Whether it is positive by more than rounding.
+    fn is_right<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        (part, clearance): (f64, f64),
+    ) -> bool
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        clearance > 0.0 && clearance > self.noise_inside(stepper, k, part)
+    }
+
+    /// The rounding error of guard `k` at this part of the step, by the dense output.
+    pub(super) fn noise_inside<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        part: f64,
+    ) -> f64
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if part == 0.0 {
+            return self.start.noise[k];
+        }
+        if part == 1.0 {
+            return self.end.noise[k];
+        }
+        let (t, x) = (stepper.start.t + part * stepper.h, stepper.dense(part));
+        let value = stepper.guards(t, &x);
+        self.noise(stepper, t, &x, &value)[k]
     }
 
     /// The lowest clearance of guard `k` near the part `near` of the step; stops on the wrong side.
@@ -169,7 +233,8 @@ impl<const G: usize> Watch<G> {
     {
         let width = 1.0 / PARTS as f64;
         let (low, high) = ((near - width).max(0.0), (near + width).min(1.0));
-        minimum(low, high, -self.noise(k), |part| clearance(stepper.dense_guards(part)[k], stepper.negative[k]))
+        let enough = -self.noise_inside(stepper, k, near);
+        minimum(low, high, enough, |part| clearance(stepper.dense_guards(part)[k], stepper.negative[k]))
     }
 
     /// The course of guard `k` that starts at zero and is on the wrong side at `wrong`.
@@ -186,7 +251,7 @@ impl<const G: usize> Watch<G> {
         for _ in 0..HALVINGS {
             let part = 0.5 * wrong.0;
             let near = clearance(stepper.dense_guards(part)[k], stepper.negative[k]);
-            if near > self.noise(k) {
+            if self.is_right(stepper, k, (part, near)) {
                 return Course::Crosses(Bracket { right: (part, near), wrong });
             }
             wrong = (part, near);

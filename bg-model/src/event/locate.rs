@@ -6,11 +6,15 @@
 use nalgebra::SVector;
 
 use super::detect::{Bracket, Course};
+use super::noise::larger;
 use super::zero::{Precision, zero};
-use super::{Crossing, REMAINDER, Watch, clearance};
+use super::{Crossing, Watch, clearance};
 use crate::integrator::Method;
 use crate::simulation::Stepper;
 use crate::system::System;
+
+/// The part of a guard's value near a zero up to which what is left of it there is taken for rounding.
+const REMAINDER: f64 = 1e-10;
 
 /// A crossing that the dense output foresees.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +26,7 @@ struct Foreseen {
     /// The step size at the crossing, s, and the slope of the clearance there, per s.
     guess: f64,
     slope: f64,
+    precision: Precision,
 }
 
 impl<const G: usize> Watch<G> {
@@ -69,9 +74,11 @@ impl<const G: usize> Watch<G> {
         let chord = (wrong.1 - right.1) / (wrong.0 - right.0);
         let guess = right.0 - right.1 / chord;
         let mut at = |part: f64| clearance(stepper.dense_guards(part)[k], stepper.negative[k]);
-        let (part, _) = zero(right.0, wrong.0, guess, chord, self.precision(k), &mut at);
+        let size = larger(right.1.abs(), wrong.1.abs());
+        let (part, _) = zero(right.0, wrong.0, guess, chord, precise_to(size, 0.0), &mut at);
         let slope = (at(part + ASIDE) - at(part - ASIDE)) / (2.0 * ASIDE * h);
-        Foreseen { switch: k, right: right.0 * h, wrong: wrong.0 * h, guess: part * h, slope }
+        let precision = precise_to(size, self.noise_inside(stepper, k, part));
+        Foreseen { switch: k, right: right.0 * h, wrong: wrong.0 * h, guess: part * h, slope, precision }
     }
 
     /// Shortens the step until the guard of `foreseen` vanishes, or one that turns out to cross before it; gives the
@@ -85,43 +92,66 @@ impl<const G: usize> Watch<G> {
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
-        let Foreseen { mut switch, mut right, mut wrong, mut guess, mut slope } = foreseen;
+        let Foreseen { mut switch, mut right, mut wrong, mut guess, mut slope, mut precision } = foreseen;
         for _ in 0..G {
-            let (h, _) = zero(right, wrong, guess, slope, self.precision(switch), |h| {
+            let (h, _) = zero(right, wrong, guess, slope, precision, |h| {
                 clearance(guards_after(stepper, h)[switch], stepper.negative[switch])
             });
             let value = guards_after(stepper, h);
-            let is_earlier = |k: &usize| *k != switch && clearance(value[*k], stepper.negative[*k]) < -self.noise(*k);
+            let noise = self.noise_after(stepper, &value);
+            let is_earlier = |k: &usize| *k != switch && clearance(value[*k], stepper.negative[*k]) < -noise[*k];
             let Some(earlier) = (0..G).find(is_earlier) else { return (switch, value) };
             let behind = clearance(value[earlier], stepper.negative[earlier]);
             slope = -(self.start.slope[earlier].abs().max(f64::MIN_POSITIVE));
             (switch, right, wrong, guess) = (earlier, 0.0, h, h - behind / slope);
+            precision = precise_to(larger(self.start.value[earlier].abs(), behind.abs()), noise[earlier]);
         }
         (switch, guards_after(stepper, stepper.h))
+    }
+
+    /// The rounding errors of the guards at the end of the step just tried, where they have this `value`.
+    fn noise_after<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        value: &SVector<f64, G>,
+    ) -> [f64; G]
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let end = stepper.end;
+        self.noise(stepper, end.t, &end.x, value)
     }
 
     /// All switches whose guards are at zero where the step ends now; takes note of the remainders.
     fn concerned<Sys, M, const N: usize>(
         &mut self,
-        stepper: &Stepper<'_, Sys, M, N, G>,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
         courses: &[Course; G],
         first: usize,
         value: &SVector<f64, G>,
-    ) -> [bool; G] {
+    ) -> [bool; G]
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let noise = self.noise_after(stepper, value);
         std::array::from_fn(|k| {
             let is_on_course = matches!(courses[k], Course::Crosses(_));
-            let is_wrong = clearance(value[k], stepper.negative[k]) < -self.noise(k);
-            let is_concerned = k == first || is_wrong || (is_on_course && value[k].abs() <= self.noise(k));
-            if is_concerned && value[k].abs() <= REMAINDER * self.largest[k] {
-                self.remainder[k] = self.remainder[k].max(value[k].abs());
+            let is_wrong = clearance(value[k], stepper.negative[k]) < -noise[k];
+            let is_concerned = k == first || is_wrong || (is_on_course && value[k].abs() <= noise[k]);
+            let size = larger(self.start.value[k].abs(), self.end.value[k].abs());
+            if is_concerned && value[k].abs() <= precise_to(size, noise[k]).rounding {
+                self.leave(k, value[k]);
             }
             is_concerned
         })
     }
+}
 
-    fn precision(&self, k: usize) -> Precision {
-        Precision { zero: f64::EPSILON * self.largest[k], rounding: REMAINDER * self.largest[k] }
-    }
+/// How exactly the zero of a guard is looked for that has values of this size near it, and this noise.
+fn precise_to(size: f64, noise: f64) -> Precision {
+    Precision { zero: larger(f64::EPSILON * size, noise / 16.0), rounding: larger(REMAINDER * size, noise) }
 }
 
 /// The guards at the projected end of a step of size `h` (s).

@@ -3,14 +3,15 @@
 //! In: an accepted step whose branches were frozen. Out: nothing, or the step shortened to the first instant at which
 //! a guard has the sign of the other branch, and the switches concerned; then the branches that hold from there on.
 //!
-//! A guard counts as crossed where it is on the wrong side by more than its rounding errors: a remainder of that size,
-//! which an event leaves behind, does not trigger another one. A branch is decided by the sign of the guard after the
+//! A guard counts as crossed where it is on the wrong side by more than rounding makes of it at that point (`noise`): a
+//! remainder of that size, which an event leaves behind, does not trigger another one. A branch is decided by the sign of the guard after the
 //! event, under that branch, and not by the direction of the crossing.
 
 mod branch;
 mod detect;
 mod locate;
 mod minimum;
+mod noise;
 mod zero;
 
 use nalgebra::SVector;
@@ -22,16 +23,16 @@ use crate::system::System;
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;
 const INSTANT: f64 = 1e-12;
-/// The rounding error of a guard, in units of its largest value so far.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// The part of a guard's largest value up to which a remainder after an event is taken for rounding.
-const REMAINDER: f64 = 1e-10;
+/// A guard's sign is taken for certain above this multiple of its rounding error.
+const CERTAIN: f64 = 16.0;
 
 /// Guards and their derivatives along the flow (per s) at one point.
 #[derive(Clone, Copy, Debug)]
 struct Reading<const G: usize> {
     value: SVector<f64, G>,
     slope: SVector<f64, G>,
+    /// Their rounding errors; known where a step is looked at closely.
+    noise: [f64; G],
 }
 
 /// What is known of the guards.
@@ -39,9 +40,7 @@ struct Reading<const G: usize> {
 pub(crate) struct Watch<const G: usize> {
     start: Reading<G>,
     end: Reading<G>,
-    /// The largest absolute value of each guard so far.
-    largest: [f64; G],
-    /// The largest remainder of each guard at its events so far.
+    /// What its last event has left of each guard that has stayed near zero since.
     remainder: [f64; G],
     /// Events since `crowd_start` (s).
     crowd: u32,
@@ -59,13 +58,13 @@ pub(crate) struct Crossing<const G: usize> {
 
 impl<const G: usize> Watch<G> {
     pub fn new() -> Self {
-        let reading = Reading { value: SVector::zeros(), slope: SVector::zeros() };
-        let nothing = [0.0; G];
-        Self { start: reading, end: reading, largest: nothing, remainder: nothing, crowd: 0, crowd_start: f64::NAN }
+        let reading = Reading { value: SVector::zeros(), slope: SVector::zeros(), noise: [0.0; G] };
+        Self { start: reading, end: reading, remainder: [0.0; G], crowd: 0, crowd_start: f64::NAN }
     }
 
     /// The end of the step becomes the start of the next one; the branches stay.
     pub fn advance(&mut self) {
+        self.forget();
         self.start = self.end;
     }
 
@@ -84,17 +83,6 @@ impl<const G: usize> Watch<G> {
         self.crowd > CROWD
     }
 
-    /// How far guard `k` may be on the wrong side by rounding alone.
-    fn noise(&self, k: usize) -> f64 {
-        (ROUNDING * self.largest[k]).max(4.0 * self.remainder[k])
-    }
-
-    fn enlarge(&mut self, value: &SVector<f64, G>) {
-        for k in 0..G {
-            self.largest[k] = self.largest[k].max(value[k].abs());
-        }
-    }
-
     /// Reads the guards at the start of the step, where the rate is known.
     fn read_start<Sys, M, const N: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, h: f64)
     where
@@ -103,8 +91,6 @@ impl<const G: usize> Watch<G> {
     {
         let start = stepper.start;
         self.start = read(stepper, start.t, &start.x, &start.rate, h);
-        let value = self.start.value;
-        self.enlarge(&value);
     }
 }
 
@@ -135,5 +121,5 @@ where
     let value = stepper.guards(t, x);
     let x_ahead = SVector::from(std::array::from_fn(|i| x.data.0[0][i] + rate.data.0[0][i] * ahead));
     let slope = (stepper.guards(t + ahead, &x_ahead) - value) / ahead;
-    Reading { value, slope }
+    Reading { value, slope, noise: [0.0; G] }
 }

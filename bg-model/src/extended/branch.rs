@@ -100,7 +100,8 @@ where
         let [.., last] = self.events[..] else { return Ok(()) };
         let is_near = |event: &&Event<S>| (last.t - event.t).to_f64() <= CLOSEST * self.length;
         if self.events.iter().rev().take_while(is_near).count() > CROWD * G {
-            return Err(Fault::EventsAccumulate { switch: last.switch, t: last.t.to_f64() });
+            let name = self.system.switch_name(last.switch).unwrap_or_default();
+            return Err(Fault::EventsAccumulate { switch: last.switch, name, t: last.t.to_f64() });
         }
         Ok(())
     }

@@ -58,7 +58,7 @@ pub struct Finish<S, const N: usize, const G: usize> {
 }
 
 /// Why a run stopped.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum Fault {
     /// The instants, the span or the accuracy cannot be.
     #[error("{0}")]
@@ -72,14 +72,18 @@ pub enum Fault {
         h: f64,
     },
     /// A switch changes its branch again and again at one instant.
-    #[error("switch {switch} changes its branch without end at t = {t} s")]
+    #[error("{} changes its branch without end at t = {t} s", crate::failure::switch_text(.name, *.switch))]
     EventsAccumulate {
         /// The switch.
         switch: usize,
+        /// Its name, such as ``if v < 0` of `valve``; empty where it has none.
+        name: &'static str,
         /// Time, s.
         t: f64,
     },
 }
+
+debug_is_display!(Fault);
 
 /// Parts of the span: the first step, the step from which on nothing is looked at more closely, the smallest step.
 const FIRST: f64 = 1e-6;

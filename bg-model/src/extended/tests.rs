@@ -199,6 +199,6 @@ fn faults_say_what_and_when() {
     // The rate at the end of a step is that at the start of the next one, so a step may end a little behind.
     let Fault::StepTooSmall { t, .. } = run(2.0, 4, &[0.5]) else { panic!("a rate that is no number") };
     assert!((t - 0.75).abs() < 1e-6, "{t}");
-    let Fault::EventsAccumulate { switch: 0, t } = run(0.5, 4, &[]) else { panic!("no motion is possible") };
+    let Fault::EventsAccumulate { switch: 0, t, .. } = run(0.5, 4, &[]) else { panic!("no motion is possible") };
     assert!((t - 0.5).abs() < 1e-9, "{t}");
 }

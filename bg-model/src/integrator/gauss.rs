@@ -14,7 +14,8 @@ use super::{Flow, Method, Point, Scale, StepControl, Tolerances};
 /// A disagreement of this part of a state shows that a step's equations were not solved.
 const LOST: f64 = 1e-3;
 
-/// Gauss with three stages, of order 6.
+/// Gauss with three stages, of order 6 at the ends of steps. Samples between them are of order 4 only: to watch an energy take
+/// [`Samples::Steps`](crate::simulation::Samples::Steps), or instants that are ends of steps.
 #[derive(Clone, Debug)]
 pub struct Gauss6<const N: usize> {
     core: Collocation<N, 3, 1>,
@@ -37,7 +38,7 @@ impl<const N: usize> Gauss6<N> {
     }
 
     fn with(control: StepControl) -> Self {
-        let own = Scale::from(&Tolerances::default());
+        let own = Scale::from(&Tolerances::new(1e-8, 1e-10));
         Self { core: Collocation::new(&GAUSS6, true), control, own }
     }
 

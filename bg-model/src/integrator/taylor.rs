@@ -5,13 +5,14 @@
 //! Error estimate: the last two terms, the one before the last raised to the power with which it would fall like the last
 //! (Jorba & Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
 //! Experimental Mathematics 14 (2005), section 3.2); and the defect at the end, which shows what the series cannot know: a
-//! kink, or a jump, inside the step.
+//! kink, or a jump, inside the step. Where there is no series, as at the zero of a square root, BS5 makes the step, which
+//! needs no derivative: its error estimate makes it short.
 
 use nalgebra::SVector;
 
 use super::carry::Carry;
 use super::tolerances::{index_of_largest, largest};
-use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
+use super::{Bs5, Flow, Method, Point, Scale, StepControl, first_not_finite, is_finite};
 
 /// The highest order.
 const HIGHEST: usize = 30;
@@ -31,13 +32,25 @@ pub struct Taylor<const N: usize> {
     is_current: bool,
     /// What rounding has kept from the states.
     carry: Carry<N>,
+    /// The method that makes the step where the series is not of numbers, and whether it does.
+    other: Bs5<N>,
+    is_by_other: bool,
 }
 
 impl<const N: usize> Taylor<N> {
     /// The method, its order chosen by the relative tolerance.
     #[must_use]
     pub fn new() -> Self {
-        Self { asked: None, series: Vec::new(), rows: Vec::new(), unit: 0.0, is_current: false, carry: Carry::new() }
+        Self {
+            asked: None,
+            series: Vec::new(),
+            rows: Vec::new(),
+            unit: 0.0,
+            is_current: false,
+            carry: Carry::new(),
+            other: Bs5::new(),
+            is_by_other: false,
+        }
     }
 
     /// The method of the order `order`, from 2 to 30.
@@ -108,6 +121,9 @@ impl<const N: usize> Method<N> for Taylor<N> {
     }
 
     fn control(&self) -> StepControl {
+        if self.is_by_other {
+            return self.other.control();
+        }
         StepControl::Stabilised { order: if self.series.is_empty() { 16.0 } else { self.order() as f64 } }
     }
 
@@ -129,6 +145,10 @@ impl<const N: usize> Method<N> for Taylor<N> {
             self.series[0] = start.x;
             flow.series(start.t, h, &mut self.rows, &mut self.series);
             self.is_current = true;
+            self.is_by_other = false;
+        }
+        if self.is_by_other {
+            return self.other.attempt(flow, start, h, scale, end);
         }
         let theta = h / self.unit;
         let (change, slope) = self.sums(theta);
@@ -138,6 +158,11 @@ impl<const N: usize> Method<N> for Taylor<N> {
             let to = self.carry.add(i, from, change[i]);
             end.data.0[0][i] = to;
             weights[i] = 1.0 / scale.allowed(i, from, to);
+        }
+        // A coefficient that is no number leaves none at the end, so a step of numbers costs no more than this look.
+        if !is_finite(end) && self.series.iter().any(|coefficients| !is_finite(coefficients)) {
+            self.is_by_other = true;
+            return self.other.attempt(flow, start, h, scale, end);
         }
         let order = self.order();
         let (last, before) = (self.term(order, theta, &weights), self.term(order - 1, theta, &weights));
@@ -162,7 +187,11 @@ impl<const N: usize> Method<N> for Taylor<N> {
 
     fn advance(&mut self) {
         self.is_current = false;
-        self.carry.advance();
+        if self.is_by_other {
+            self.carry.restart();
+        } else {
+            self.carry.advance();
+        }
     }
 
     fn restart(&mut self) {
@@ -171,15 +200,30 @@ impl<const N: usize> Method<N> for Taylor<N> {
     }
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+        if self.is_by_other {
+            return self.other.largest_error(start, scale, end);
+        }
         let last = &self.series[self.order()];
         index_of_largest::<N>(|i| last[i].abs() / scale.allowed(i, start.x[i], end[i]))
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
+        if self.is_by_other {
+            return self.other.faulty_rate();
+        }
         self.series.iter().skip(1).find_map(first_not_finite)
     }
 
-    fn dense(&self, start: &Point<N>, h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+        if self.is_by_other {
+            self.other.prepare_dense(flow, start, h, end);
+        }
+    }
+
+    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        if self.is_by_other {
+            return self.other.dense(start, h, end, theta, x);
+        }
         let (change, _) = self.sums(theta * h / self.unit);
         for (i, x) in x.iter_mut().enumerate() {
             *x = start.x[i] + change[i];

@@ -1,40 +1,11 @@
-//! The Jacobian at a point and the factors of I - c J.
+//! The factors of I - c J.
 //!
-//! In: a flow. Out: entries in the order of its sparsity; factors made by the flow's own elimination where it has one
-//! and no pivot is too small, else by the dense one.
-
-use nalgebra::SVector;
+//! In: a flow and its Jacobian. Out: factors made by the flow's own elimination where it has one and no pivot is too small,
+//! else by the dense one.
 
 use super::dense::Dense;
-use super::{Field, Sparsity};
+use super::{Field, Jacobian, Sparsity};
 use crate::integrator::Flow;
-
-/// The derivatives of a rate at one point.
-#[derive(Clone, Debug)]
-pub(crate) struct Jacobian<const N: usize> {
-    /// df/dx in the order of the flow's sparsity.
-    pub entries: Vec<f64>,
-    /// df/dt, per s.
-    pub slope: SVector<f64, N>,
-}
-
-impl<const N: usize> Jacobian<N> {
-    /// Nothing yet; room is made at the first evaluation.
-    pub fn new() -> Self {
-        Self { entries: Vec::new(), slope: SVector::zeros() }
-    }
-
-    /// Evaluates the derivatives at time `t` (s) and state `x`.
-    pub fn evaluate(&mut self, flow: &mut impl Flow<N>, t: f64, x: &SVector<f64, N>) {
-        self.entries.resize(flow.sparsity().len(N), 0.0);
-        flow.jacobian(t, x, &mut self.entries, &mut self.slope);
-    }
-
-    /// Whether all derivatives are finite.
-    pub fn is_finite(&self) -> bool {
-        self.entries.iter().chain(self.slope.iter()).fold(true, |finite, value| finite & value.is_finite())
-    }
-}
 
 /// Factors of I - c J.
 #[derive(Clone, Debug)]

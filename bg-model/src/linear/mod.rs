@@ -8,12 +8,14 @@ mod dense;
 mod differences;
 mod factors;
 mod field;
+mod jacobian;
 mod pivot;
 pub mod table;
 
 pub(crate) use differences::differences;
-pub(crate) use factors::{Factors, Jacobian};
+pub(crate) use factors::Factors;
 pub use field::Field;
+pub(crate) use jacobian::Jacobian;
 pub use pivot::Pivot;
 
 /// Where a Jacobian can differ from zero.
@@ -40,11 +42,11 @@ impl Sparsity {
         }
     }
 
-    /// The row of entry `k` of an `n` by `n` Jacobian.
-    pub(crate) fn row(&self, k: usize, n: usize) -> usize {
+    /// Row and column of entry `k` of an `n` by `n` Jacobian.
+    pub(crate) fn place(&self, k: usize, n: usize) -> (usize, usize) {
         match self {
-            Self::Full => k % n,
-            Self::Places { entries, .. } => usize::from(entries[k].0),
+            Self::Full => (k % n, k / n),
+            Self::Places { entries, .. } => (usize::from(entries[k].0), usize::from(entries[k].1)),
         }
     }
 }

@@ -18,6 +18,7 @@ pub(crate) use stepper::Stepper;
 
 use crate::event::Watch;
 use crate::failure::{Cause, Failure, Quantity};
+use crate::holding::Independence;
 use crate::integrator::{Method, Point, Scale, StepControl, first_not_finite, is_finite};
 use crate::statistics::Statistics;
 use crate::system::System;
@@ -69,6 +70,7 @@ where
         attempts: 0,
         limit: settings.step_limit,
         faulty_guard: None,
+        independence: Independence::new(system.held()),
     };
     let outcome = settings::check(system, control, start, span, settings)
         .and_then(|()| settings::check_series(system, needs_series))
@@ -92,6 +94,8 @@ struct Run<'a, Sys, M, const N: usize, const G: usize> {
     limit: u64,
     /// The guard that was not finite at the end of a longer step from the present start, and its value.
     faulty_guard: Option<(usize, f64)>,
+    /// Of the rigid joints, where there are any.
+    independence: Option<Independence>,
 }
 
 impl<Sys, M, const N: usize, const G: usize> Run<'_, Sys, M, N, G>
@@ -104,17 +108,28 @@ where
         self.watch.begin_by_sign(&mut self.stepper);
         self.stepper.evaluate_start();
         self.check_start()?;
-        // In an empty span a step of a run that goes on shows the branches.
-        let length = if self.span.t_end > self.span.t0 { self.span.t_end - self.span.t0 } else { 1.0 };
-        let longest = length.min(settings.largest_step);
+        let longest = self.span.length().min(settings.largest_step);
         if let (Some(order), None) = (control.order(), settings.first_step) {
             let (_, mut flow, start, _, scale) = self.stepper.split();
             let first = pace::first_step(&mut flow, start, scale, order, longest);
             self.pace.begin(first);
         }
-        self.watch.begin_by_probe(&mut self.stepper, self.pace.step());
+        self.watch.begin_by_probe(&mut self.stepper, self.pace.reach());
         self.stepper.end = self.stepper.start;
-        self.check_start()
+        self.check_start()?;
+        let Some(independence) = &mut self.independence else { return Ok(()) };
+        let Stepper { system, start, negative, .. } = &self.stepper;
+        let found = independence.begin(*system, (start.t, &start.x), negative);
+        found.map_or(Ok(()), |redundancy| Err(Cause::Redundant { redundancy, t: start.t }))
+    }
+
+    /// Sees to it that the rigid joints hold each a motion of its own over the whole step.
+    fn check_joints(&mut self) -> Result<(), Cause> {
+        let Some(independence) = &mut self.independence else { return Ok(()) };
+        let Stepper { system, start, h, end, negative, .. } = self.stepper;
+        let inside = |part: f64| (start.t + part * h, self.stepper.dense(part));
+        let found = independence.check(system, (end.t, &end.x), &negative, inside);
+        found.map_or(Ok(()), |(t, redundancy)| Err(Cause::Redundant { redundancy, t }))
     }
 
     fn check_start(&self) -> Result<(), Cause> {
@@ -131,12 +146,12 @@ where
             match self.watch.inspect(&mut self.stepper) {
                 Err(fault) => self.retreat(fault)?,
                 Ok(None) => {
-                    self.accept(observer);
+                    self.accept(observer)?;
                     self.watch.advance();
                 }
                 Ok(Some(crossing)) => {
                     if !crossing.is_at_start {
-                        self.accept(observer);
+                        self.accept(observer)?;
                     }
                     let before = self.stepper.negative;
                     let h = self.stepper.h;
@@ -230,15 +245,21 @@ where
     }
 
     fn not_finite(&self, quantity: Quantity, (index, value): (usize, f64), h: f64) -> Cause {
-        let name = match quantity {
-            Quantity::Guard => "switch",
-            Quantity::State | Quantity::Rate | Quantity::Derivative => self.stepper.system.state_name(index),
+        let (name, origin) = match quantity {
+            Quantity::Guard => (self.stepper.system.switch_name(index).unwrap_or_default(), None),
+            Quantity::State | Quantity::Rate | Quantity::Derivative => {
+                (self.stepper.system.state_name(index), self.stepper.origin())
+            }
         };
-        Cause::NonFinite { quantity, name, index, value, t: self.stepper.start.t, h }
+        // A derivative is asked for at the start of the step, what it comes from shows on the way.
+        let is_ahead = quantity == Quantity::Derivative && origin.is_some();
+        let h = if is_ahead { self.stepper.h } else { h };
+        Cause::NonFinite { origin, quantity, name, index, value, t: self.stepper.start.t, h }
     }
 
     /// Takes the step over: gives its samples and makes its end the start of the next one.
-    fn accept(&mut self, observer: &mut impl Observer<N, G>) {
+    fn accept(&mut self, observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
+        self.check_joints()?;
         self.faulty_guard = None;
         self.stepper.statistics.record(self.stepper.h);
         self.sampling.next_step();
@@ -246,6 +267,7 @@ where
         self.sample(observer, t);
         self.stepper.advance();
         observer.step(t, self.span.t_end, &self.stepper.statistics);
+        Ok(())
     }
 
     /// Gives the samples up to the end of the step at `t`.
@@ -266,7 +288,7 @@ where
     fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
         let t = self.stepper.start.t;
         let before = self.stepper.negative;
-        self.watch.settle(&mut self.stepper, switches, self.pace.step());
+        self.watch.settle(&mut self.stepper, switches, self.pace.reach());
         self.check_start()?;
         for (switch, before) in before.into_iter().enumerate() {
             if self.stepper.negative[switch] != before {
@@ -281,7 +303,8 @@ where
     /// The first of `switches` finds no branch.
     fn accumulate(&self, switches: [bool; G]) -> Cause {
         let switch = switches.iter().position(|switch| *switch).unwrap_or(0);
-        Cause::EventsAccumulate { switch, t: self.stepper.start.t }
+        let name = self.stepper.system.switch_name(switch).unwrap_or_default();
+        Cause::EventsAccumulate { switch, name, t: self.stepper.start.t }
     }
 
     fn finish(self) -> Finish<N, G> {

@@ -70,6 +70,11 @@ impl Pace {
         self.step
     }
 
+    /// The same, but not longer than the run, s: a step that was asked for may be, or be infinite.
+    pub fn reach(&self) -> f64 {
+        self.step.min(self.span.length())
+    }
+
     /// Whether steps are chosen by the error.
     pub fn is_adaptive(&self) -> bool {
         self.control.order().is_some()
@@ -196,4 +201,51 @@ pub(super) fn first_step<const N: usize>(
         if steepest <= 1e-15 { (AT_REST * longest).max(guess * 1e-3) } else { libm::pow(0.01 / steepest, 1.0 / order) };
     let step = step.min(100.0 * guess).min(longest);
     if step > 0.0 { step } else { AT_REST * longest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pace of a run of 100 s from a first step of 1 s.
+    fn pace(control: StepControl, largest_step: f64) -> Pace {
+        let settings = Settings::<1> { first_step: Some(1.0), largest_step, ..Settings::default() };
+        Pace::new(control, Span { t0: 0.0, t_end: 100.0 }, &settings)
+    }
+
+    /// `dop853.f` and `radau5.f`: the step after a rejected one is not longer than it.
+    #[test]
+    fn a_step_does_not_grow_after_a_rejection() {
+        let order = 5.0;
+        let controls =
+            [StepControl::Adaptive { order }, StepControl::Stabilised { order }, StepControl::Predictive { order }];
+        for control in controls {
+            let mut pace = pace(control, f64::INFINITY);
+            pace.reject(1.0, 32.0);
+            let h = pace.step();
+            assert!((h - 0.45).abs() < 1e-15, "{control:?}: {h}");
+            pace.accept(h, h, 1e-12);
+            assert_eq!(pace.step(), h, "{control:?}");
+            pace.accept(2.0 * h, h, 1e-12);
+            assert!(pace.step() > 1.5 * h, "{control:?}: {}", pace.step());
+        }
+    }
+
+    /// A rest of up to a hundredth of a step is added to the last one, but not beyond the largest step.
+    #[test]
+    fn the_last_step_is_stretched_up_to_the_largest() {
+        let control = StepControl::Adaptive { order: 5.0 };
+        assert_eq!(pace(control, f64::INFINITY).next_end(98.995), 100.0);
+        assert_eq!(pace(control, 1.0).next_end(98.995), 99.995);
+        assert_eq!(pace(control, 1.0).next_end(99.0), 100.0);
+        assert_eq!(pace(control, 1.01).next_end(98.995), 100.0);
+    }
+
+    #[test]
+    fn a_first_step_beyond_the_end_reaches_as_far_as_the_run() {
+        let settings = Settings::<1> { first_step: Some(f64::INFINITY), ..Settings::default() };
+        let span = Span { t0: 1.0, t_end: 3.0 };
+        let mut pace = Pace::new(StepControl::Adaptive { order: 5.0 }, span, &settings);
+        assert_eq!((pace.reach(), pace.next_end(1.0)), (2.0, 3.0));
+    }
 }

@@ -35,7 +35,9 @@ impl<'a> Sampling<'a> {
             _ if self.ended => None,
             Samples::At(instants) => instants.get(self.given).copied(),
             Samples::Every(interval) => {
-                let instant = self.span.t0 + self.given as f64 * interval;
+                // Not zero times an interval that may be infinite.
+                let after = if self.given == 0 { 0.0 } else { self.given as f64 * interval };
+                let instant = self.span.t0 + after;
                 let is_end = instant >= self.span.t_end - 0.5 * self.span.resolution();
                 Some(if is_end { self.span.t_end } else { instant })
             }
@@ -76,6 +78,8 @@ mod tests {
         let found = instants(&Samples::Every(0.2), span, &[1.0, 1.3]);
         assert_eq!(found, [1.0, 1.2, 1.3]);
         let found = instants(&Samples::Every(9.0), span, &[1.0, 1.3]);
+        assert_eq!(found, [1.0, 1.3]);
+        let found = instants(&Samples::Every(f64::INFINITY), span, &[1.0, 1.15, 1.3]);
         assert_eq!(found, [1.0, 1.3]);
     }
 

@@ -17,6 +17,11 @@ pub struct Span {
 }
 
 impl Span {
+    /// Its length, s; of an empty one 1 s: a step of a run that goes on shows the branches.
+    pub(super) fn length(&self) -> f64 {
+        if self.t_end > self.t0 { self.t_end - self.t0 } else { 1.0 }
+    }
+
     /// The smallest difference of two instants of the span that rounding leaves some digits, s.
     pub(super) fn resolution(&self) -> f64 {
         16.0 * f64::EPSILON * self.t0.abs().max(self.t_end.abs())
@@ -28,7 +33,8 @@ impl Span {
 pub struct Settings<const N: usize> {
     /// The error allowed in a step; without effect on a fixed-step method.
     pub tolerances: Tolerances<N>,
-    /// The first step, s; by default it is estimated. Without effect on a fixed-step method.
+    /// The first step, s; by default it is estimated. One beyond the end of the run is one to the end. Without effect on a
+    /// fixed-step method.
     pub first_step: Option<f64>,
     /// The largest step, s; infinity by default.
     pub largest_step: f64,
@@ -55,7 +61,7 @@ impl<const N: usize> Default for Settings<N> {
 pub enum Samples {
     /// The start and the end of every step.
     Steps,
-    /// The start, the instants t0 + k dt, and the end of the run.
+    /// The start, the instants t0 + k dt, and the end of the run; of an infinite dt (s) the start and the end.
     Every(f64),
     /// These instants only, s: ascending and inside the span.
     At(Vec<f64>),

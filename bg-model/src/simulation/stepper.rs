@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
-use crate::integrator::{Flow, Method, Point, Scale, first_not_finite};
+use crate::failure::Origin;
+use crate::integrator::{Flow, Method, Point, Scale, first_not_finite, is_finite};
 use crate::linear::{Field, Sparsity};
 use crate::statistics::Statistics;
 use crate::system::System;
@@ -149,8 +150,19 @@ where
         let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], SVector::zeros());
         self.system.jacobian(self.start.t, &self.start.x, &self.negative, &mut entries, &mut slope);
         let is_faulty = |(_, value): &(usize, f64)| !value.is_finite();
-        let entry = entries.into_iter().enumerate().find(is_faulty).map(|(k, value)| (sparsity.row(k, N), value));
+        let entry = entries.into_iter().enumerate().find(is_faulty).map(|(k, value)| (sparsity.place(k, N).0, value));
         entry.or_else(|| first_not_finite(&slope))
+    }
+
+    /// The input or element that gives a number that is not finite at the start of the last attempt or on the way to its end, as
+    /// far as the system can tell: the way is that of the rate at the start.
+    pub fn origin(&self) -> Option<Origin> {
+        const PARTS: u32 = 16;
+        let Point { t, x, rate } = self.start;
+        let ahead = (1..=PARTS).map(|part| self.h * f64::from(part) / f64::from(PARTS));
+        let on_the_way = ahead.map(|ahead| (t + ahead, x + rate * ahead));
+        let mut points = std::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
+        points.find_map(|(t, x)| is_finite(&x).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())
     }
 
     /// The end of the step becomes the start of the next one.

@@ -3,11 +3,10 @@
 //! In: entries. Out: text, files. A diagram for each case: error over wall time, and error over evaluations of the rate,
 //! which do not depend on the machine.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
+use super::case::Case;
 use super::measure::{Counts, Entry};
 use crate::figures::{Curve, FigureError, work_precision};
+use crate::files::RunFolder;
 use crate::output::OutputError;
 use crate::report;
 
@@ -67,14 +66,28 @@ pub fn table(entries: &[Entry]) -> String {
     text
 }
 
-/// Writes `precision.txt`, `precision.json` and the diagrams into `directory`, which is made; gives the files.
+const TEXT: &str = "precision.txt";
+const JSON: &str = "precision.json";
+
+fn diagram(case: &str, cost: &str) -> String {
+    format!("precision_{case}_{cost}.svg")
+}
+
+/// The names of all files that measurements of these cases may give.
+#[must_use]
+pub fn names(cases: &[Case]) -> Vec<String> {
+    let diagrams = cases.iter().flat_map(|case| COSTS.map(|(cost, ..)| diagram(&case.name(), cost)));
+    [TEXT, JSON].map(str::to_owned).into_iter().chain(diagrams).collect()
+}
+
+/// Writes `precision.txt`, `precision.json` and the diagrams into `folder`; gives the number of files.
 ///
 /// # Errors
 /// A file that cannot be written, a diagram that cannot be drawn.
-pub fn write(directory: &Path, entries: &[Entry]) -> Result<Vec<PathBuf>, OutputError> {
-    fs::create_dir_all(directory).map_err(|source| OutputError::File { path: directory.to_owned(), source })?;
+pub fn write(mut folder: RunFolder, entries: &[Entry]) -> Result<usize, OutputError> {
     let json = serde_json::to_string_pretty(entries).expect("entries have text keys only");
-    let mut files = vec![("precision.txt".to_owned(), table(entries)), ("precision.json".to_owned(), json + "\n")];
+    folder.write_text(TEXT, &table(entries))?;
+    folder.write_text(JSON, &(json + "\n"))?;
     let mut cases: Vec<&str> = entries.iter().map(|entry| entry.case.as_str()).collect();
     cases.dedup();
     for case in cases {
@@ -82,18 +95,13 @@ pub fn write(directory: &Path, entries: &[Entry]) -> Result<Vec<PathBuf>, Output
         for (name, axis, cost) in COSTS {
             let heading = format!("Work and precision: {case}");
             match work_precision(&heading, "largest pose error, m or rad", axis, &curves(&of_case, cost)) {
-                Ok(svg) => files.push((format!("precision_{case}_{name}.svg"), svg)),
+                Ok(svg) => folder.write_text(&diagram(case, name), &svg)?,
                 Err(FigureError::Empty) => {}
                 Err(source) => return Err(OutputError::Diagram { name: case.to_owned(), source }),
             }
         }
     }
-    let written = files.into_iter().map(|(name, text)| {
-        let path = directory.join(name);
-        fs::write(&path, text).map_err(|source| OutputError::File { path: path.clone(), source })?;
-        Ok(path)
-    });
-    written.collect()
+    Ok(folder.publish()?.len())
 }
 
 type Cost = fn(&Entry) -> f64;

@@ -22,7 +22,7 @@ mod vocabulary;
 use fastrand::Rng;
 
 pub use outcome::{Outcome, Violation, examine};
-pub use shrink::shrink;
+pub use shrink::{fewest, shrink};
 pub use tally::{Count, Tally};
 pub use texts::{corpus, seeds};
 

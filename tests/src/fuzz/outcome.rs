@@ -7,8 +7,9 @@ use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use bg_compiler::fault::Faults;
+use bg_compiler::pipeline;
+use bg_compiler::source::{mechanism, scene, syntax};
 use bg_compiler::stages::stages;
-use bg_compiler::{causality, graph, mechanism, scene, syntax};
 use bg_model::parameters::Parameters;
 use bg_model::system::Model;
 use hacksaw::mechanism::{Hacksaw, HacksawParameters};
@@ -108,8 +109,7 @@ fn expanded_again(tokens: TokenStream) -> Result<(), Violation> {
             let again = shown.parse().map_err(|error| Violation(format!("expanded text is no tokens: {error}")))?;
             let refused = |faults: Faults| Violation(format!("expanded text is refused: {}\n{shown}", faults[0]));
             let source = syntax::parse(again).map_err(refused)?;
-            let graph = mechanism::expand(&source.graphs[0]).map_err(refused)?;
-            causality::assign(graph::resolve(&graph).map_err(refused)?).map_err(refused)?;
+            let graph = pipeline::derive(&source.graphs[0]).map_err(refused)?.expanded;
             if graph.to_string() != shown {
                 return Err(Violation(format!("expanded text reads back as another: {shown}\n{graph}")));
             }

@@ -42,7 +42,7 @@ fn statements(lexemes: Vec<String>) -> Vec<Vec<String>> {
 }
 
 /// The parts without all pieces whose absence keeps `holds` true; the parts as they are where it is not true of any less.
-fn fewest<T: Clone>(mut parts: Vec<T>, holds: &mut dyn FnMut(&[T]) -> bool) -> Vec<T> {
+pub fn fewest<T: Clone>(mut parts: Vec<T>, holds: &mut dyn FnMut(&[T]) -> bool) -> Vec<T> {
     let mut piece = parts.len().div_ceil(2);
     while piece > 0 {
         let mut at = 0;

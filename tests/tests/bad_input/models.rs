@@ -65,7 +65,7 @@ fn starts_that_cannot_close_are_refused_by_joint() {
 
 /// The force is no number from 0.5 s on: of all states only the momentum's rate has it.
 #[test]
-fn an_input_that_stops_being_a_number_is_named_by_its_state() {
+fn an_input_that_stops_being_a_number_is_named_with_the_state_that_it_moves() {
     for integrator in integrators_of_rates() {
         let force = Input::function(|t| if t > 0.5 { f64::NAN } else { 1.0 });
         let model: MassSpringDamper =
@@ -76,8 +76,12 @@ fn an_input_that_stops_being_a_number_is_named_by_its_state() {
         let name = integrator.name();
         let failure =
             integrate(&model, &mut integrator.method(0.01), &start, span, &settings, &mut ()).expect_err(&name);
-        let Cause::NonFinite { quantity, name: state, t, .. } = &failure.cause else { panic!("{name}: {failure}") };
+        let Cause::NonFinite { origin, quantity, name: state, t, .. } = &failure.cause else {
+            panic!("{name}: {failure}")
+        };
         assert!(matches!(quantity, Quantity::Rate | Quantity::Derivative), "{name}: {failure}");
+        let origin = origin.map(|origin| (origin.kind, origin.name));
+        assert_eq!(origin, Some(("input", "force")), "{name}: {failure}");
         assert!(state.starts_with("inertia") && (0.48..=0.5).contains(t), "{name}: {failure}");
         assert_eq!(failure.last.t, *t, "{name}");
     }

@@ -1,27 +1,13 @@
 use bg_compiler::fault::Fault;
-use bg_compiler::{causality, equations, graph, mechanism, reduce, scene, syntax};
+use bg_compiler::pipeline;
+use bg_compiler::source::syntax;
 
 const MARK: char = '▸';
 
 /// All faults of the graph and its scenes, as the macro finds them.
 fn faults(text: &str) -> Vec<Fault> {
     let source = syntax::parse(text.parse().expect("tokens")).expect("syntax");
-    let variants = match scene::variants(&source.graphs[0]) {
-        Ok(variants) => variants,
-        Err(faults) => return faults,
-    };
-    let mut found = Vec::new();
-    for variant in &variants {
-        let reduced = || {
-            let causal = causality::assign(graph::resolve(&mechanism::expand(&variant.graph)?)?)?;
-            let equations = equations::derive(&causal)?;
-            let Some(scene) = &variant.scene else { return Ok(()) };
-            let tuned = scene::tuned(scene, &equations.parameters)?;
-            scene::check(scene, &reduce::for_scene(equations, &tuned, scene.angles).1)
-        };
-        found.extend(reduced().err().unwrap_or_default());
-    }
-    found
+    pipeline::models(&source).err().unwrap_or_default()
 }
 
 /// Line and column of the mark, from 1, and the text without it.
@@ -42,9 +28,13 @@ observe { p: m = bob.position; }
 ";
 
 /// Statements after those of `GRAPH`, in its sixth line and on; then what the one fault says.
-const CASES: [(&str, &str); 10] = [
+const CASES: [(&str, &str); 11] = [
     ("scene A {}\nscene ▸A {}", "[BG0601] there are two models called `A`\nhelp: give one of them another name"),
     ("scene ▸G {}", "[BG0601] there are two models called `G`\nhelp: give one of them another name"),
+    (
+        "scene ▸GParameters {}",
+        "[BG0601] `GParameters` would be a model and the parameters of `G`\nhelp: give one of the two models another name",
+    ),
     (
         "scene A {\n    without { band, ▸pivott }\n}",
         "[BG0602] the mechanism has no part `pivott` to leave out\nhelp: did you mean `pivot`?",
@@ -98,7 +88,7 @@ fn faults_of_a_scene_s_lists_come_at_once() {
         "{GRAPH}scene A {{ without {{ engine }} rigid {{ wheel }} }}\nscene A {{}}\nscene B {{ without {{ engine }} }}\n}}"
     );
     let codes: Vec<_> = faults(&text).iter().map(|fault| fault.code).collect();
-    assert_eq!(codes, ["BG0602", "BG0606", "BG0601", "BG0602"]);
+    assert_eq!(codes, ["BG0601", "BG0602", "BG0606", "BG0602"]);
     let text = format!("{GRAPH}scene A {{ expect planar; expect states = 3; expect states = 4; }}\n}}");
     let codes: Vec<_> = faults(&text).iter().map(|fault| fault.code).collect();
     assert_eq!(codes, ["BG0605", "BG0605"]);

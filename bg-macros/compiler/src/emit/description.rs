@@ -5,13 +5,12 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::causality::{CausalGraph, End};
-use crate::elimination::Elimination;
-use crate::equations::StateEquations;
-use crate::expr::text;
 use crate::graph::NodeKind;
-use crate::jacobian::Jacobian;
+use crate::graph::causality::{CausalGraph, End};
 use crate::program::Counts;
+use crate::program::elimination::Elimination;
+use crate::system::equations::{Origin, StateEquations};
+use crate::system::jacobian::Jacobian;
 
 /// The generated type's documentation: the user's, then the states, the operations and the Jacobian's pattern. `costs` are
 /// the functions with their operations.
@@ -24,7 +23,12 @@ pub(super) fn documentation(
     let mut doc = String::from(docs);
     doc.push_str("\n\n# States\n\n| index | name | unit | storage | causality |\n|---|---|---|---|---|\n");
     for (index, state) in equations.states.iter().enumerate() {
-        doc.push_str(&format!("| {index} | `{}` | {} | {} | integral |\n", state.name, state.unit, state.storage));
+        doc.push_str(&format!(
+            "| {index} | `{}` | {} | {} | integral |\n",
+            state.name,
+            state.unit,
+            state.origin.kind().storage()
+        ));
     }
     doc.push_str("\n# Operations\n\n| function | additions | multiplications | divisions | functions | choices |\n");
     doc.push_str("|---|---|---|---|---|---|\n");
@@ -65,9 +69,9 @@ pub(super) fn description(
         quote!(::bg_model::description::InputInfo { name: #name, unit: #unit, doc: #doc })
     });
     let states = equations.states.iter().map(|state| {
-        let (name, unit, storage) = (&state.name, &state.unit, state.storage);
+        let (name, unit, kind) = (&state.name, &state.unit, state_kind(state.origin));
         quote! {
-            ::bg_model::description::StateInfo { name: #name, unit: #unit, storage: #storage, causality: "integral" }
+            ::bg_model::description::StateInfo { name: #name, unit: #unit, kind: #kind, causality: "integral" }
         }
     });
     let outputs = equations.outputs.iter().map(|output| {
@@ -75,8 +79,10 @@ pub(super) fn description(
         quote!(::bg_model::description::OutputInfo { name: #name, unit: #unit })
     });
     let switches = equations.switches.iter().map(|switch| {
-        let (element, guard) = (&switch.element, guard_text(equations, switch.guard));
-        quote!(::bg_model::description::SwitchInfo { element: #element, guard: #guard })
+        let (element, condition) = (&switch.element, &switch.condition);
+        let (name, guard) =
+            (format!("`if {condition}` of `{element}`"), equations.shown(&equations.pool, switch.guard));
+        quote!(::bg_model::description::SwitchInfo { name: #name, element: #element, guard: #guard })
     });
     let elements = graph.nodes.iter().map(|node| {
         let (kind, name) = (node.kind.symbol(), &node.name.text);
@@ -104,6 +110,18 @@ pub(super) fn description(
     }
 }
 
+fn state_kind(origin: Origin) -> TokenStream {
+    let kind = match origin {
+        Origin::Momentum(_, component) => quote!(Momentum(#component)),
+        Origin::Displacement(_, component) => quote!(Displacement(#component)),
+        Origin::Position(_, axis) => quote!(Position(#axis)),
+        Origin::Orientation(_, row, column) => quote!(Orientation(#row, #column)),
+        Origin::Angle(_) => quote!(Angle),
+        Origin::Integral(_) => quote!(Integral),
+    };
+    quote!(::bg_model::description::StateKind::#kind)
+}
+
 fn bonds(causal: &CausalGraph) -> impl Iterator<Item = TokenStream> {
     let graph = &causal.graph;
     graph.bonds.iter().zip(&causal.strokes).map(|(bond, stroke)| {
@@ -121,9 +139,4 @@ fn bonds(causal: &CausalGraph) -> impl Iterator<Item = TokenStream> {
             }
         }
     })
-}
-
-/// A guard as text.
-fn guard_text(equations: &StateEquations, guard: crate::expr::Id) -> String {
-    text(&equations.pool, guard, &|symbol| equations.symbol_name(symbol), &|switch| format!("guard_{switch}"))
 }

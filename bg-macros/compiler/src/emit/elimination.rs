@@ -6,7 +6,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::elimination::{Elimination, Step, Substep};
+use crate::program::elimination::{Elimination, Step, Substep};
 
 /// The value in a slot.
 fn value(slot: usize) -> Ident {

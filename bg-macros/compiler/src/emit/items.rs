@@ -1,11 +1,12 @@
-//! The parameter and input structs.
+//! The items of a model: its structs and the modules that they are in.
 //!
-//! In: parameters and inputs. Out: structs with units and docs, and their access by name.
+//! In: parameters, inputs, the tokens of the model's own struct. Out: structs with units and docs, and their access by name.
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::graph::{Input, Parameter};
+use crate::source::names::{INPUTS, PARAMETERS};
 
 /// What the generated structs are made from.
 pub(super) struct Given<'a> {
@@ -15,9 +16,10 @@ pub(super) struct Given<'a> {
     pub(super) inputs: &'a [Input],
 }
 
-/// An identifier of the user's.
+/// An identifier of the user's; raw where an edition has made it a keyword that others have not.
 pub(super) fn identifier(name: &str) -> Ident {
-    Ident::new(name, Span::call_site())
+    let make = if name == "gen" { Ident::new_raw } else { Ident::new };
+    make(name, Span::call_site())
 }
 
 /// A literal `f64`; infinities and not-a-number by their names.
@@ -35,60 +37,120 @@ pub(super) fn number(value: f64) -> TokenStream {
 }
 
 impl Given<'_> {
+    /// The items of a model: its structs, `definition` among them, and what is implemented for them, `code`, in modules of their
+    /// own.
+    ///
+    /// Neither module sees names of the user's but those of the structs, and `code` knows these as `Model`, `Parameters` and
+    /// `Inputs` only. So what is called `Option`, `f64` or `S` by the user, as a model or beside one, is no other thing for
+    /// the generated code; and without a prelude of the user's there is still its own.
+    pub(super) fn items(&self, definition: &TokenStream, code: &TokenStream) -> TokenStream {
+        let (visibility, name) = (self.visibility, identifier(self.name));
+        let (outside, inside) = (format_ident!("__bond_graph_{}", self.name), format_ident!("{}_code", self.name));
+        let (parameters, parameter_struct) = (self.parameters_name(), self.parameter_struct());
+        let (inputs, input_struct) = (self.inputs_name(), self.input_struct());
+        let (input, input_alias) = match &input_struct {
+            Some(_) => (Some(quote!(#inputs,)), Some(quote!(#inputs as Inputs,))),
+            None => (None, None),
+        };
+        let parameter_code = self.parameter_code();
+        quote! {
+            #[allow(unused_imports)]
+            #visibility use #outside::{#name, #input #parameters};
+
+            #[allow(non_snake_case, unreachable_pub)]
+            mod #outside {
+                use ::core::prelude::rust_2024::*;
+
+                #parameter_struct
+                #input_struct
+                #definition
+
+                #[allow(missing_docs, unused_imports, unused_variables, clippy::all, clippy::pedantic)]
+                mod #inside {
+                    use ::core::prelude::rust_2024::*;
+                    use super::{#name as Model, #input_alias #parameters as Parameters};
+
+                    #parameter_code
+                    #code
+                }
+            }
+        }
+    }
+
     /// The name of the parameter struct.
-    pub(super) fn parameters_name(&self) -> Ident {
-        format_ident!("{}Parameters", self.name)
+    fn parameters_name(&self) -> Ident {
+        format_ident!("{}{PARAMETERS}", self.name)
     }
 
     /// The name of the input struct.
-    pub(super) fn inputs_name(&self) -> Ident {
-        format_ident!("{}Inputs", self.name)
+    fn inputs_name(&self) -> Ident {
+        format_ident!("{}{INPUTS}", self.name)
     }
 
-    /// Both structs; the inputs' only where there are inputs.
-    pub(super) fn structs(&self) -> TokenStream {
-        let parameters = self.parameter_struct();
-        if self.inputs.is_empty() {
-            return parameters;
-        }
-        let (visibility, name) = (self.visibility, self.inputs_name());
+    /// What the model is generic over in the definition of its struct.
+    pub(super) fn scalar(&self) -> Ident {
+        format_ident!("{}", if self.name == "S" { "T" } else { "S" })
+    }
+
+    /// The fields of the structs' values that the model's struct has.
+    pub(super) fn fields(&self) -> TokenStream {
+        let (parameters, inputs) = (self.parameters_name(), self.inputs_name());
+        let inputs = (!self.inputs.is_empty()).then(|| quote!(inputs: #inputs,));
+        quote!(parameters: #parameters, #inputs)
+    }
+
+    /// The input struct, where there are inputs.
+    fn input_struct(&self) -> Option<TokenStream> {
+        let name = self.inputs_name();
         let doc = format!("Inputs of [`{}`]: functions of time in s.", self.name);
         let fields = self.inputs.iter().map(|input| {
             let (field, doc) = (identifier(&input.name.text), field_doc(&input.docs, &input.unit, None));
             quote! { #[doc = #doc] pub #field: ::bg_model::input::Input, }
         });
-        quote! {
-            #parameters
-            #[doc = #doc]
-            #[derive(Clone, Debug, Default)]
-            #visibility struct #name { #(#fields)* }
-        }
+        (!self.inputs.is_empty()).then(|| {
+            quote! {
+                #[doc = #doc]
+                #[derive(Clone, Debug, Default)]
+                pub struct #name { #(#fields)* }
+            }
+        })
+    }
+
+    fn parameter_names(&self) -> impl Iterator<Item = Ident> {
+        self.parameters.iter().map(|parameter| identifier(&parameter.name.text))
     }
 
     fn parameter_struct(&self) -> TokenStream {
-        let (visibility, name) = (self.visibility, self.parameters_name());
+        let name = self.parameters_name();
         let doc = format!("Parameters of [`{}`], SI units.", self.name);
-        let names: Vec<Ident> = self.parameters.iter().map(|parameter| identifier(&parameter.name.text)).collect();
         let docs = self
             .parameters
             .iter()
             .map(|parameter| field_doc(&parameter.docs, &parameter.unit, Some(parameter.default)));
+        let names = self.parameter_names();
+        quote! {
+            #[doc = #doc]
+            #[derive(Clone, Debug, PartialEq)]
+            pub struct #name { #(#[doc = #docs] pub #names: ::core::primitive::f64,)* }
+        }
+    }
+
+    /// What the parameter struct implements.
+    fn parameter_code(&self) -> TokenStream {
+        let name = self.parameters_name().to_string();
+        let names: Vec<Ident> = self.parameter_names().collect();
+        let texts = self.parameters.iter().map(|parameter| &parameter.name.text);
         let defaults = self.parameters.iter().map(|parameter| number(parameter.default));
         let table = self.parameters.iter().map(parameter_info);
         let index: Vec<Literal> = (0..names.len()).map(Literal::usize_unsuffixed).collect();
         quote! {
-            #[doc = #doc]
-            #[derive(Clone, Debug, PartialEq, ::bg_model::serde::Serialize, ::bg_model::serde::Deserialize)]
-            #[serde(crate = "::bg_model::serde", default, deny_unknown_fields)]
-            #visibility struct #name { #(#[doc = #docs] pub #names: f64,)* }
-
-            impl ::core::default::Default for #name {
+            impl Default for Parameters {
                 fn default() -> Self {
                     Self { #(#names: #defaults,)* }
                 }
             }
 
-            impl ::bg_model::parameters::Parameters for #name {
+            impl ::bg_model::parameters::Parameters for Parameters {
                 fn table() -> &'static [::bg_model::description::ParameterInfo] {
                     const TABLE: &[::bg_model::description::ParameterInfo] = &[#(#table,)*];
                     TABLE
@@ -98,6 +160,18 @@ impl Given<'_> {
                 }
                 fn set_value(&mut self, index: usize, value: f64) {
                     match index { #(#index => self.#names = value,)* _ => {} }
+                }
+            }
+
+            impl ::bg_model::serde::Serialize for Parameters {
+                fn serialize<T: ::bg_model::serde::Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
+                    ::bg_model::parameters::serialize(self, #name, serializer)
+                }
+            }
+
+            impl<'de> ::bg_model::serde::Deserialize<'de> for Parameters {
+                fn deserialize<D: ::bg_model::serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                    ::bg_model::parameters::deserialize(#name, &[#(#texts),*], deserializer)
                 }
             }
         }

@@ -3,63 +3,42 @@
 //! In: equations and their programs. Out: a type that implements `bg_model::System` and `bg_model::Model`, generic over
 //! the scalar; flat single assignments over fixed-size vectors.
 
+mod required;
+mod start;
+
 use std::collections::BTreeSet;
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::items::{Given, identifier};
-use super::programs::{Programs, SecondOrder, Table};
 use super::routine::{Names, assignments, operand, statements};
 use super::{description, elimination, pairs, series};
-use crate::causality::CausalGraph;
-use crate::elimination::Elimination;
-use crate::equations::StateEquations;
 use crate::expr::Symbol;
-use crate::jacobian::Jacobian;
-use crate::pairs::Paired;
-use crate::program::{Assignment, Counts, Operand, Program, Routine};
-use crate::reduce::Report;
-use crate::second::Second;
-
-/// What a model is made from.
-pub struct Parts<'a> {
-    /// The graph in bond-graph words as text.
-    pub expanded: &'a str,
-    /// The graph with its strokes.
-    pub causal: &'a CausalGraph,
-    /// Its equations.
-    pub equations: &'a mut StateEquations,
-    /// What a scene left out of it.
-    pub report: Option<&'a Report>,
-    /// The derivatives of its rates.
-    pub jacobian: &'a mut Jacobian,
-    /// Its states of second order.
-    pub second: &'a mut Second,
-    /// How I - c J is factored and solved.
-    pub elimination: &'a Elimination,
-}
+use crate::pipeline::Compiled;
+use crate::program::pairs::Paired;
+use crate::program::{Assignment, Counts, Operand, Programs, Routine, SecondOrderPrograms};
+use crate::system::equations::StateEquations;
 
 /// The items of one model: parameters, inputs, the type, its functions, its description.
-pub fn model(parts: Parts) -> TokenStream {
-    let Parts { expanded, causal, equations, report, jacobian, second, elimination } = parts;
-    let programs = Programs::new(equations, jacobian, second);
-    let reduction = report.map(ToString::to_string).unwrap_or_default();
-    let (equations, jacobian, second): (&StateEquations, &Jacobian, &Second) = (equations, jacobian, second);
-    let states = state_identifiers(equations);
-    Emission { expanded, causal, equations, reduction, jacobian, second, elimination, programs, states }.items()
+#[must_use]
+pub fn model(model: &Compiled) -> TokenStream {
+    Emission { model, states: state_identifiers(&model.equations) }.items()
 }
 
 struct Emission<'a> {
-    expanded: &'a str,
-    causal: &'a CausalGraph,
-    equations: &'a StateEquations,
-    reduction: String,
-    jacobian: &'a Jacobian,
-    second: &'a Second,
-    elimination: &'a Elimination,
-    programs: Programs,
+    model: &'a Compiled,
     states: Vec<Ident>,
+}
+
+/// A table of what depends on parameters only.
+struct Table<'a> {
+    /// What the names of the table, of its pairs and of their functions begin with.
+    prefix: &'static str,
+    doc: &'static str,
+    constants: &'a Routine,
+    /// The routine that reads pairs of the table.
+    paired: Option<&'a Paired>,
 }
 
 /// What a model has of its tables: fields of its type, their values, the functions that calculate them and the `let`s that call
@@ -70,6 +49,7 @@ struct Tables {
     values: TokenStream,
     functions: TokenStream,
     lets: TokenStream,
+    has_pairs: bool,
 }
 
 /// `let name = value;` for the symbols that some routines use.
@@ -86,146 +66,151 @@ fn bindings(routines: &[&Routine], binding: &dyn Fn(Symbol) -> Option<TokenStrea
 
 impl Emission<'_> {
     fn items(&self) -> TokenStream {
-        let graph = &self.causal.graph;
+        let graph = &self.model.derived.causal.graph;
         let given = Given {
             name: &graph.name.text,
             visibility: &graph.visibility,
-            parameters: &self.equations.parameters,
+            parameters: &self.model.equations.parameters,
             inputs: &graph.inputs,
         };
-        let structs = given.structs();
-        let (name, visibility) = (&identifier(&graph.name.text), &graph.visibility);
-        let (parameters, inputs) = (&given.parameters_name(), &given.inputs_name());
+        let (name, scalar) = (identifier(given.name), given.scalar());
+        let fields = given.fields();
         let costs = self.costs();
-        let pattern = (self.jacobian, self.elimination);
-        let doc = description::documentation(&graph.docs, self.equations, pattern, &costs);
+        let pattern = (&self.model.jacobian, &self.model.elimination);
+        let doc = description::documentation(&graph.docs, &self.model.equations, pattern, &costs);
+        let tables = self.constant_tables();
+        let made = self.tables(&tables, &scalar);
+        let table_fields = &made.fields;
+        let definition = quote! {
+            #[doc = #doc]
+            #[derive(Clone, Debug)]
+            pub struct #name<#scalar: ::bg_model::scalar::Scalar = ::core::primitive::f64> {
+                #fields
+                #table_fields
+            }
+        };
+        given.items(&definition, &self.code(&costs, &made))
+    }
+
+    /// What the model's struct implements.
+    fn code(&self, costs: &[(&str, Counts)], tables: &Tables) -> TokenStream {
+        let expanded = self.model.derived.expanded.to_string();
+        let reduction = self.model.reduction.as_ref().map(ToString::to_string).unwrap_or_default();
         let description = description::description(
-            &description::Texts { expanded: self.expanded, reduction: &self.reduction },
-            self.causal,
-            self.equations,
-            &costs,
+            &description::Texts { expanded: &expanded, reduction: &reduction },
+            &self.model.derived.causal,
+            &self.model.equations,
+            costs,
         );
-        let (states, switches, outputs) =
-            (self.equations.states.len(), self.equations.switches.len(), self.equations.outputs.len());
-        let has_inputs = !graph.inputs.is_empty();
-        let input_field = has_inputs.then(|| quote!(inputs: #inputs,));
-        let input_argument = has_inputs.then(|| quote!(, inputs: #inputs));
+        let (states, switches, outputs) = (
+            self.model.equations.states.len(),
+            self.model.equations.switches.len(),
+            self.model.equations.outputs.len(),
+        );
+        let has_inputs = !self.model.derived.causal.graph.inputs.is_empty();
+        let input_argument = has_inputs.then(|| quote!(, inputs: Inputs));
         let input_value = has_inputs.then(|| quote!(inputs,));
         let input_pass = has_inputs.then(|| quote!(, inputs));
         let starting = self.starting();
-        let unknowns = self.equations.guesses.len();
-        let required = self.required(false, &quote!(&parameters), &quote!(&[0.0; #unknowns]));
+        let required = self.required();
         let system = self.system();
         let model = self.model();
-        let tables = self.programs.tables();
-        let import_pair = tables.iter().any(|table| table.paired.is_some()).then(|| {
+        let Tables { values, functions, lets, has_pairs, .. } = tables;
+        let import_pair = has_pairs.then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
             )
         });
-        let Tables { fields, values, functions, lets } = self.tables(&tables, parameters);
         quote! {
-            #structs
+            use ::bg_model::scalar::Scalar;
+            #import_pair
+            use ::bg_model::nalgebra::SVector;
 
-            #[doc = #doc]
-            #[derive(Clone, Debug)]
-            #visibility struct #name<S: ::bg_model::scalar::Scalar = f64> {
-                parameters: #parameters,
-                #input_field
-                #fields
+            const N: usize = #states;
+            const G: usize = #switches;
+            const M: usize = #outputs;
+            static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
+                ::std::sync::LazyLock::new(|| {
+                    let PARAMETERS = <Parameters as ::bg_model::parameters::Parameters>::table();
+                    #description
+                });
+
+            impl Model {
+                /// Number of states.
+                pub const STATES: usize = N;
+                /// Number of switches.
+                pub const SWITCHES: usize = G;
+                /// Number of scalar outputs.
+                pub const OUTPUTS: usize = M;
+
+                /// The model with these parameters, in `f64`.
+                ///
+                /// # Errors
+                /// A parameter outside its range, a value that parameters give and that cannot be.
+                pub fn new(parameters: Parameters #input_argument)
+                    -> Result<Self, ::bg_model::parameters::ParameterError>
+                {
+                    Self::in_scalar(parameters #input_pass)
+                }
             }
 
-            #[allow(missing_docs, clippy::all, clippy::pedantic)]
-            const _: () = {
-                use ::bg_model::scalar::Scalar;
-                #import_pair
-                use ::bg_model::nalgebra::SVector;
-
-                const N: usize = #states;
-                const G: usize = #switches;
-                const M: usize = #outputs;
-                static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
-                    ::std::sync::LazyLock::new(|| {
-                        let PARAMETERS = <#parameters as ::bg_model::parameters::Parameters>::table();
-                        #description
-                    });
-
-                impl #name {
-                    /// Number of states.
-                    pub const STATES: usize = N;
-                    /// Number of switches.
-                    pub const SWITCHES: usize = G;
-                    /// Number of scalar outputs.
-                    pub const OUTPUTS: usize = M;
-
-                    /// The model with these parameters, in `f64`.
-                    ///
-                    /// # Errors
-                    /// A parameter outside its range, a value that parameters give and that cannot be.
-                    pub fn new(parameters: #parameters #input_argument)
-                        -> Result<Self, ::bg_model::parameters::ParameterError>
-                    {
-                        Self::in_scalar(parameters #input_pass)
-                    }
+            impl<S: Scalar> Model<S> {
+                /// The model with these parameters, calculating in `S`.
+                ///
+                /// # Errors
+                /// A parameter outside its range, a value that parameters give and that cannot be.
+                pub fn in_scalar(parameters: Parameters #input_argument)
+                    -> Result<Self, ::bg_model::parameters::ParameterError>
+                {
+                    ::bg_model::parameters::Parameters::validate(&parameters)?;
+                    #required
+                    #lets
+                    Ok(Self { parameters, #input_value #values })
                 }
 
-                impl<S: Scalar> #name<S> {
-                    /// The model with these parameters, calculating in `S`.
-                    ///
-                    /// # Errors
-                    /// A parameter outside its range, a value that parameters give and that cannot be.
-                    pub fn in_scalar(parameters: #parameters #input_argument)
-                        -> Result<Self, ::bg_model::parameters::ParameterError>
-                    {
-                        ::bg_model::parameters::Parameters::validate(&parameters)?;
-                        #required
-                        #lets
-                        Ok(Self { parameters, #input_value #values })
-                    }
-
-                    /// The parameters.
-                    pub fn parameters(&self) -> &#parameters {
-                        &self.parameters
-                    }
-
-                    #functions
-
-                    #starting
+                /// The parameters.
+                pub fn parameters(&self) -> &Parameters {
+                    &self.parameters
                 }
 
-                #system
-                #model
-            };
+                #functions
+
+                #starting
+            }
+
+            #system
+            #model
         }
     }
 
     /// The functions of the running model with their operations.
     fn costs(&self) -> Vec<(&str, Counts)> {
-        let routines = self.programs.routines().map(|routine| (routine.name.as_str(), routine.counts));
-        let factored = ("eliminate", self.elimination.factorisation_counts());
-        let solved = ("substitute", self.elimination.substitution_counts());
+        let routines = self.model.programs.costs();
+        let factored = ("eliminate", self.model.elimination.factorisation_counts());
+        let solved = ("substitute", self.model.elimination.substitution_counts());
         routines.chain([factored, solved]).collect()
     }
 
-    /// The tables of constants, and of their pairs.
-    fn tables(&self, tables: &[Table], parameters: &Ident) -> Tables {
+    /// The tables of constants, and of their pairs; `scalar` is what the model's struct calls it.
+    fn tables(&self, tables: &[Table], scalar: &Ident) -> Tables {
         let mut made = Tables::default();
-        for &Table { prefix, doc, program, paired } in tables {
+        for &Table { prefix, doc, constants, paired } in tables {
             let name = |suffix: &str| format_ident!("{prefix}{suffix}");
             let (field, table, pair_field) = (name("s"), name("_table"), name("_pairs"));
-            let (count, body) = (program.constants.results.len(), self.constant_table(program));
-            made.fields.extend(quote!(#field: [S; #count],));
+            let (count, body) = (constants.results.len(), self.constant_table(constants));
+            made.fields.extend(quote!(#field: [#scalar; #count],));
             made.lets.extend(quote!(let #field = Self::#table(&parameters);));
             made.functions.extend(quote! {
                 #[doc = #doc]
-                fn #table(parameters: &#parameters) -> [S; #count] {
+                fn #table(parameters: &Parameters) -> [S; #count] {
                     #body
                 }
             });
             if let Some(paired) = paired {
                 let (pairs, body) =
                     (paired.constants.len(), self.with_names(false, |names| pairs::constants(paired, names)));
-                made.fields.extend(quote!(#pair_field: [S::Pair; #pairs],));
+                made.has_pairs = true;
+                made.fields.extend(quote!(#pair_field: [#scalar::Pair; #pairs],));
                 made.values.extend(quote!(#pair_field: Self::#pair_field(&#field),));
                 made.functions.extend(quote! {
                     /// Pairs of them.
@@ -239,8 +224,26 @@ impl Emission<'_> {
         made
     }
 
-    fn constant_table(&self, program: &Program) -> TokenStream {
-        let routine = &program.constants;
+    /// The tables of the running model.
+    fn constant_tables(&self) -> Vec<Table<'_>> {
+        let Programs { running, jacobian, second_order, holding, .. } = &self.model.programs;
+        let table = |prefix, doc, constants, paired| Table { prefix, doc, constants, paired };
+        let of_rates = " What depends on parameters only.";
+        let of_jacobian = " What depends on parameters only, of the Jacobian.";
+        let of_forces = " What depends on parameters only, of forces.";
+        let of_holding = " What depends on parameters only, of held motions.";
+        let mut tables = vec![
+            table("constant", of_rates, &running.constants, running.paired_rate.as_ref()),
+            table("slope_constant", of_jacobian, &jacobian.constants, None),
+        ];
+        tables.extend(holding.as_ref().map(|program| table("holding_constant", of_holding, &program.constants, None)));
+        tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, paired_forces, .. }| {
+            table("second_constant", of_forces, constants, paired_forces.as_ref())
+        }));
+        tables
+    }
+
+    fn constant_table(&self, routine: &Routine) -> TokenStream {
         let parameters = self.parameter_bindings(&[routine]);
         let (statements, results) = self.body(routine);
         quote! { #parameters #statements [#(#results),*] }
@@ -248,11 +251,10 @@ impl Emission<'_> {
 
     /// Guesses, gaps, start state and what is asked of values, each with its constants inside.
     fn starting(&self) -> TokenStream {
-        let name = identifier(&format!("{}Parameters", self.causal.graph.name.text));
-        let unknowns = self.equations.guesses.len();
-        let required = self.programs.required.iter().filter(|program| !program.routines[0].results.is_empty());
-        let functions = self.programs.starting.iter().chain(required).map(|program| {
-            let routine = &program.routines[0];
+        let unknowns = self.model.equations.guesses.len();
+        let Programs { starting, required, .. } = &self.model.programs;
+        let functions = starting.programs().into_iter().chain(required.iter().flatten()).map(|program| {
+            let [routine] = &program.routines;
             let function = identifier(&routine.name);
             let parameters = self.parameter_bindings(&[&program.constants, routine]);
             let (constants, table) = self.body(&program.constants);
@@ -260,7 +262,7 @@ impl Emission<'_> {
             let length = results.len();
             let entries = table.len();
             quote! {
-                fn #function(parameters: &#name, u: &[S; #unknowns]) -> [S; #length] {
+                fn #function(parameters: &Parameters, u: &[S; #unknowns]) -> [S; #length] {
                     #parameters
                     let c: [S; #entries] = { #constants [#(#table),*] };
                     #statements
@@ -271,44 +273,10 @@ impl Emission<'_> {
         quote! { #(#functions)* }
     }
 
-    /// The check of what is asked of values, in `new` or in `start`.
-    fn required(&self, is_of_start: bool, parameters: &TokenStream, unknowns: &TokenStream) -> Option<TokenStream> {
-        let (name, pool) = (identifier(&self.causal.graph.name.text), &self.equations.requirements.pool);
-        let program = &self.programs.required[usize::from(is_of_start)];
-        let function = identifier(&program.routines[0].name);
-        let table: Vec<TokenStream> = self
-            .equations
-            .requirements
-            .of(is_of_start)
-            .map(|requirement| {
-                let (subject, wanted, is_strict) = (&requirement.subject, requirement.wanted, requirement.is_strict);
-                let unit = match &requirement.unit {
-                    Some(unit) => quote!(::core::option::Option::Some(#unit)),
-                    None => quote!(::core::option::Option::None),
-                };
-                let parameters = pool.symbols(&[requirement.value]).into_iter().filter_map(|symbol| match symbol {
-                    Symbol::Parameter(index) => Some(&self.equations.parameters[index as usize].name.text),
-                    _ => None,
-                });
-                quote! {
-                    ::bg_model::requirement::Requirement {
-                        subject: #subject, wanted: #wanted, unit: #unit, is_strict: #is_strict, parameters: &[#(#parameters),*],
-                    }
-                }
-            })
-            .collect();
-        (!table.is_empty()).then(|| {
-            quote! {
-                static REQUIREMENTS: &[::bg_model::requirement::Requirement] = &[#(#table),*];
-                ::bg_model::requirement::require(REQUIREMENTS, &#name::<f64>::#function(#parameters, #unknowns))?;
-            }
-        })
-    }
-
     fn parameter_bindings(&self, routines: &[&Routine]) -> TokenStream {
         bindings(routines, &|symbol| match symbol {
             Symbol::Parameter(index) => {
-                let field = identifier(&self.equations.parameters[index as usize].name.text);
+                let field = identifier(&self.model.equations.parameters[index as usize].name.text);
                 let name = self.symbol_name(symbol);
                 Some(quote!(let #name = S::from_f64(parameters.#field);))
             }
@@ -330,11 +298,11 @@ impl Emission<'_> {
                 Some(quote!(let #name = x[#index];))
             }
             Symbol::Input(index) => {
-                let field = identifier(&self.equations.inputs[index as usize].name.text);
+                let field = identifier(&self.model.equations.inputs[index as usize].name.text);
                 Some(quote!(let #name = self.inputs.#field.value(t);))
             }
             Symbol::Slope(index) => {
-                let field = identifier(&self.equations.inputs[index as usize].name.text);
+                let field = identifier(&self.model.equations.inputs[index as usize].name.text);
                 Some(quote!(let #name = self.inputs.#field.slope(t);))
             }
             _ => None,
@@ -346,15 +314,15 @@ impl Emission<'_> {
             Symbol::Time => format_ident!("t"),
             Symbol::State(index) => self.states[index as usize].clone(),
             Symbol::Parameter(index) => {
-                format_ident!("p_{}", self.equations.parameters[index as usize].name.text)
+                format_ident!("p_{}", self.model.equations.parameters[index as usize].name.text)
             }
-            Symbol::Input(index) => format_ident!("u_{}", self.equations.inputs[index as usize].name.text),
+            Symbol::Input(index) => format_ident!("u_{}", self.model.equations.inputs[index as usize].name.text),
             Symbol::Unknown(index) => {
                 let index = Literal::usize_unsuffixed(index as usize);
                 return quote!(u[#index]);
             }
             Symbol::Atom(index) => format_ident!("atom_{index}"),
-            Symbol::Slope(index) => format_ident!("slope_{}", self.equations.inputs[index as usize].name.text),
+            Symbol::Slope(index) => format_ident!("slope_{}", self.model.equations.inputs[index as usize].name.text),
             Symbol::Rate(index) => {
                 let index = Literal::usize_unsuffixed(index as usize);
                 return quote!(r[#index]);
@@ -425,8 +393,8 @@ impl Emission<'_> {
     }
 
     /// The statements of a function of the running model, and its results.
-    fn function(&self, index: usize) -> (TokenStream, Vec<TokenStream>) {
-        self.running(&self.programs.dynamic.routines[index], &format_ident!("constants"))
+    fn function(&self, routine: &Routine) -> (TokenStream, Vec<TokenStream>) {
+        self.running(routine, &format_ident!("constants"))
     }
 
     /// The statements of a routine that reads states and this table of constants, and its results.
@@ -460,20 +428,19 @@ impl Emission<'_> {
     }
 
     fn system(&self) -> TokenStream {
-        let name = identifier(&self.causal.graph.name.text);
-        let (rate, rates) =
-            self.with_pairs(&self.programs.dynamic.routines[0], self.programs.paired.as_ref(), "constant");
-        let (guard, guards) = self.function(1);
-        let (project, projected) = self.function(3);
-        let indices = self.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
-        let inline = self.programs.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
+        let running = &self.model.programs.running;
+        let (rate, rates) = self.with_pairs(&running.rate, running.paired_rate.as_ref(), "constant");
+        let (guard, guards) = self.function(&running.guards);
+        let (project, projected) = self.function(&running.project);
+        let indices = self.model.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        let inline = running.is_inlined().then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
         let (parts, linear) = self.linear();
-        let (second, series) = (self.second(&inline), self.series());
-        let parts = (!parts.is_empty()).then(|| quote!(#[allow(unused_variables)] impl<S: Scalar> #name<S> { #parts }));
+        let (second, series, holding) = (self.second(&inline), self.series(), self.holding());
+        let (switch_name, not_finite) = (self.switch_name(), self.not_finite());
+        let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
             #parts
-            #[allow(unused_variables)]
-            impl<S: Scalar> ::bg_model::system::System<S, N, G> for #name<S> {
+            impl<S: Scalar> ::bg_model::system::System<S, N, G> for Model<S> {
                 #inline
                 fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
                     #rate
@@ -493,22 +460,71 @@ impl Emission<'_> {
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
+                #switch_name
+                #not_finite
                 #linear
                 #second
                 #series
+                #holding
             }
         }
     }
 
+    /// What switches are called.
+    fn switch_name(&self) -> Option<TokenStream> {
+        (!self.model.equations.switches.is_empty()).then(|| {
+            quote! {
+                fn switch_name(&self, index: usize) -> Option<&'static str> {
+                    DESCRIPTION.switches.get(index).map(|switch| switch.name)
+                }
+            }
+        })
+    }
+
+    /// Which input or law is the first whose value is not finite; nothing where none can be.
+    fn not_finite(&self) -> Option<TokenStream> {
+        let program = &self.model.programs.not_finite;
+        let [routine] = &program.routines;
+        let (fallible, inputs) = (&self.model.equations.fallible, &self.model.equations.inputs);
+        if fallible.is_empty() && inputs.is_empty() {
+            return None;
+        }
+        let inputs = inputs.iter().map(|input| {
+            let (field, name) = (identifier(&input.name.text), &input.name.text);
+            quote!(("input", #name, self.inputs.#field.value(t)))
+        });
+        let parameters = self.parameter_bindings(&[&program.constants, routine]);
+        let (constants, table) = self.body(&program.constants);
+        let bindings = self.dynamic_bindings(routine);
+        let (statements, values) = self.body(routine);
+        let entries = table.len();
+        let laws = fallible.iter().zip(values).map(|(law, value)| {
+            let (kind, element) = (law.kind, &law.element);
+            quote!((#kind, #element, #value))
+        });
+        Some(quote! {
+            #[cold]
+            fn not_finite(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> Option<::bg_model::failure::Origin> {
+                let parameters = &self.parameters;
+                #parameters
+                let c: [S; #entries] = { #constants [#(#table),*] };
+                let [x] = &x.data.0;
+                #bindings
+                #statements
+                ::bg_model::failure::Origin::first(&[#(#inputs,)* #(#laws,)*])
+            }
+        })
+    }
+
     /// The states of second order and their second derivatives.
     fn second(&self, inline: &Option<TokenStream>) -> TokenStream {
-        let Some(SecondOrder { program, paired }) = &self.programs.second else { return TokenStream::new() };
-        let (body, derivatives) = self.running(&program.routines[0], &format_ident!("second_constants"));
-        let states = &self.second.states;
+        let Some(programs) = &self.model.programs.second_order else { return TokenStream::new() };
+        let (body, derivatives) = self.running(&programs.second_derivatives, &format_ident!("second_constants"));
+        let states = &self.model.second_order.states;
         let [first, behind] = [states.start, states.end].map(Literal::usize_unsuffixed);
         let indices = states.clone().map(Literal::usize_unsuffixed);
-        let forces = program.routines.get(1).map(|routine| {
-            let (body, forces) = self.with_pairs(routine, paired.as_ref(), "second_constant");
+        let forces = programs.forces.as_ref().map(|routine| {
+            let (body, forces) = self.with_pairs(routine, programs.paired_forces.as_ref(), "second_constant");
             quote! {
                 #inline
                 fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
@@ -534,24 +550,24 @@ impl Emission<'_> {
 
     /// The Taylor series of the states.
     fn series(&self) -> TokenStream {
-        let routine = &self.programs.dynamic.routines[0];
+        let routine = &self.model.programs.running.rate;
         let reading = |is_state: bool| {
             let reads = |symbol: Symbol| matches!(symbol, Symbol::State(_)) == is_state;
             bindings(&[routine], &|symbol| if reads(symbol) { self.dynamic_binding(symbol) } else { None })
         };
-        let fields: Vec<_> = self.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
+        let fields: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         let reads = series::Reads { inputs: &fields, values: reading(false), states: reading(true) };
         self.with_names(routine.is_long(), |names| series::functions(routine, names, &reads))
     }
 
     /// The Jacobian with its sparsity, and the elimination along it; before them the parts of a long Jacobian.
     fn linear(&self) -> (TokenStream, TokenStream) {
-        let places = self.jacobian.entries.iter().map(|entry| {
+        let places = self.model.jacobian.entries.iter().map(|entry| {
             let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
             quote!((#row, #column))
         });
-        let (count, slots) = (self.jacobian.entries.len(), self.elimination.slots);
-        let routine = &self.programs.jacobian.routines[0];
+        let (count, slots) = (self.model.jacobian.entries.len(), self.model.elimination.slots);
+        let [routine] = &self.model.programs.jacobian.routines;
         let constants = format_ident!("slope_constants");
         let (parts, derivative, derivatives) = if routine.is_long() {
             self.in_parts(routine, &constants)
@@ -561,7 +577,7 @@ impl Emission<'_> {
         };
         let (entries, slopes) = derivatives.split_at(count);
         let (factorisation, substitution) =
-            (elimination::factorisation(self.elimination), elimination::substitution(self.elimination));
+            (elimination::factorisation(&self.model.elimination), elimination::substitution(&self.model.elimination));
         let functions = quote! {
             fn sparsity(&self) -> ::bg_model::linear::Sparsity {
                 static ENTRIES: [(u16, u16); #count] = [#(#places),*];
@@ -592,32 +608,19 @@ impl Emission<'_> {
     }
 
     fn model(&self) -> TokenStream {
-        let name = identifier(&self.causal.graph.name.text);
-        let (output, outputs) = self.function(2);
-        let (energy, stored) = self.function(4);
-        let (power, powers) = self.function(5);
+        let running = &self.model.programs.running;
+        let (output, outputs) = self.function(&running.outputs);
+        let (energy, stored) = self.function(&running.stored_energy);
+        let (power, powers) = self.function(&running.powers);
         let (supplied, dissipated) = (&powers[0], &powers[1]);
-        let required = self.required(true, &quote!(&self.parameters), &quote!(&unknowns));
-        let gaps = self.equations.gaps.iter().map(|gap| {
-            let (joint, component, unit) = (&gap.joint, gap.component, &gap.unit);
-            quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
-        });
+        let (start, started) = self.start();
         quote! {
-            #[allow(unused_variables)]
-            impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for #name<S> {
+            #started
+            impl<S: Scalar> ::bg_model::system::Model<S, N, G, M> for Model<S> {
                 fn description(&self) -> &'static ::bg_model::description::Description {
                     &DESCRIPTION
                 }
-                fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
-                    static GAPS: &[::bg_model::assembly::Gap] = &[#(#gaps),*];
-                    let guess = #name::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
-                    let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
-                        gaps.copy_from_slice(&#name::<f64>::gaps(&self.parameters, unknowns));
-                    })?;
-                    #required
-                    let unknowns = unknowns.map(S::from_f64);
-                    Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
-                }
+                #start
                 fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], y: &mut SVector<S, M>) {
                     #output
                     y.data.0 = [[#(#outputs),*]];
@@ -637,10 +640,10 @@ impl Emission<'_> {
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 fn state_identifiers(equations: &StateEquations) -> Vec<Ident> {
-    // Words of the functions' bodies; of a series from `k` on.
-    const OWN: &str =
-        "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b";
-    let mut used: BTreeSet<String> = OWN.split(' ').map(str::to_owned).collect();
+    // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b \
+        N G M DESCRIPTION Some None Ok Err";
+    let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));
     }

@@ -8,7 +8,7 @@ use quote::{format_ident, quote};
 
 use super::items::number;
 use super::routine::{self, Names, operand};
-use crate::pairs::{Half, Paired, Step, Value};
+use crate::program::pairs::{Half, Paired, Step, Value};
 
 /// The steps of the routine.
 pub(super) fn statements(paired: &Paired, names: &Names) -> TokenStream {

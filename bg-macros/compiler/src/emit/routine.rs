@@ -145,7 +145,7 @@ mod tests {
         let half = pool.scale(0.5, power);
         let choice = pool.select(0, quotient, half);
         let opposite = pool.neg(x);
-        let program = schedule(&mut pool, &[Request { name: "rate", roots: &[choice, opposite, x] }]);
+        let program = schedule(&mut pool, [Request { name: "rate", roots: &[choice, opposite, x] }]);
         let (text, results) = rendered(&program.routines[0]);
         assert_eq!(
             text,
@@ -161,7 +161,7 @@ mod tests {
         let mut pool = Pool::new();
         let x = pool.symbol(Symbol::State(0));
         let last = (0..2001).fold(x, |value, _| pool.call(crate::expr::Function::Sin, &[value]));
-        let program = schedule(&mut pool, &[Request { name: "rate", roots: &[last] }]);
+        let program = schedule(&mut pool, [Request { name: "rate", roots: &[last] }]);
         let (text, results) = rendered(&program.routines[0]);
         assert!(text.starts_with(
             "let mut v = [S :: from_f64 (0.0) ; 2001usize] ; v [0] = x0 . sin () ; v [1] = v [0] . sin () ;"
@@ -174,7 +174,7 @@ mod tests {
         let mut pool = Pool::new();
         let x = pool.symbol(Symbol::State(0));
         let root = pool.scale(-2.5, x);
-        let program = schedule(&mut pool, &[Request { name: "rate", roots: &[root] }]);
+        let program = schedule(&mut pool, [Request { name: "rate", roots: &[root] }]);
         assert_eq!(rendered(&program.routines[0]).0, "let v0 = x0 * S :: from_f64 (- 2.5f64) ;");
     }
 }

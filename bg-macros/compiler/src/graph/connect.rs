@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 use super::resolve::Entity;
 use super::typing::is_junction;
 use super::{Bond, BondGraph, BondId, GraphFault, Law, Node, NodeId, NodeKind};
-use crate::ast::{ElementKind, Name};
 use crate::fault::{Fault, near_miss};
-use crate::units::Dimension;
+use crate::graph::units::Dimension;
+use crate::source::ast::{ElementKind, Name};
 
 /// The bonds of `chains`; nodes learn theirs.
 pub fn bonds(

@@ -6,35 +6,29 @@
 
 use super::typing::{Quantity, Shape, Typed, Types, is_junction};
 use super::{BondGraph, BondId, Element, GraphFault, Law, Node, NodeId};
-use crate::ast::{ElementKind, Role, TrackKind};
 use crate::fault::Fault;
-use crate::units::{Dimension, Domain};
+use crate::graph::units::{DOMAINS, Dimension, Domain};
+use crate::source::ast::{ElementKind, Role, TrackKind};
 
 /// Gives every bond its units and checks every law. `declared` are the junctions that name their domain.
 pub fn assign(graph: &mut BondGraph, declared: &[(NodeId, Domain)], faults: &mut Vec<Fault>) {
     let classes = classes(graph);
     let mut efforts: Vec<Option<Dimension>> = vec![None; graph.bonds.len()];
-    for (node, domain) in declared {
-        for &bond in &graph.node(*node).bonds {
-            efforts[classes[bond.0]] = Some(domain.effort_dimension());
+    let mut named: Vec<Option<NodeId>> = vec![None; graph.bonds.len()];
+    for &(node, domain) in declared {
+        let Some(bond) = graph.node(node).bonds.first() else { continue };
+        let (class, effort) = (classes[bond.0], domain.effort_dimension());
+        match (efforts[class], named[class]) {
+            (Some(known), Some(first)) if known != effort => {
+                let [name, first] = [node, first].map(|node| &graph.node(node).name);
+                let what = format!("bonds join `{}` to `{}`", first.text, name.text);
+                faults.push(Fault::new(name.span, &GraphFault::Units { what, left: known, right: effort }));
+            }
+            _ => (efforts[class], named[class]) = (Some(effort), Some(node)),
         }
     }
-    loop {
-        let spread = spread(&efforts, &classes);
-        let Some((bond, effort)) = next_anchor(graph, &spread) else {
-            efforts = spread;
-            break;
-        };
-        efforts[classes[bond.0]] = Some(effort);
-    }
-    for (bond, effort) in graph.bonds.iter().zip(&efforts) {
-        if effort.is_none() {
-            let name = |id: NodeId| graph.node(id).name.text.clone();
-            let fault = GraphFault::UnknownUnits { from: name(bond.from), to: name(bond.to) };
-            faults.push(Fault::new(bond.span, &fault));
-            break;
-        }
-    }
+    let efforts = anchored(graph, &classes, efforts);
+    report_unknown(graph, &classes, efforts.clone(), faults);
     check(graph, &efforts, faults);
     for (bond, effort) in graph.bonds.iter_mut().zip(&efforts) {
         bond.effort = effort.unwrap_or(Dimension::NONE);
@@ -54,6 +48,33 @@ fn classes(graph: &BondGraph) -> Vec<usize> {
         if class == before {
             return class;
         }
+    }
+}
+
+/// The efforts of all classes whose unit is fixed, spread over their bonds.
+fn anchored(graph: &BondGraph, classes: &[usize], mut efforts: Vec<Option<Dimension>>) -> Vec<Option<Dimension>> {
+    loop {
+        let spread = spread(&efforts, classes);
+        let Some((bond, effort)) = next_anchor(graph, &spread) else { return spread };
+        efforts[classes[bond.0]] = Some(effort);
+    }
+}
+
+/// A fault for each domain that is missing; what would follow from one that is named has none of its own.
+fn report_unknown(graph: &BondGraph, classes: &[usize], mut efforts: Vec<Option<Dimension>>, faults: &mut Vec<Fault>) {
+    while let Some(unknown) = efforts.iter().position(Option::is_none) {
+        let bond = &graph.bonds[unknown];
+        let name = |id: NodeId| graph.node(id).name.text.clone();
+        let junction = (unknown..classes.len())
+            .filter(|&other| classes[other] == classes[unknown])
+            .flat_map(|other| [graph.bonds[other].from, graph.bonds[other].to])
+            .find(|&node| is_junction(&graph.node(node).kind));
+        let cardinality = if bond.cardinality == 1 { "" } else { "[3]" };
+        let declaration = junction.map(|id| format!("{} {}{cardinality}", graph.node(id).kind.symbol(), name(id)));
+        let fault = GraphFault::UnknownUnits { from: name(bond.from), to: name(bond.to), declaration };
+        faults.push(Fault::new(bond.span, &fault));
+        efforts[classes[unknown]] = Some(DOMAINS[0].effort_dimension());
+        efforts = anchored(graph, classes, efforts);
     }
 }
 

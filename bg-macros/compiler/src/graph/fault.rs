@@ -2,13 +2,12 @@
 
 use super::Shape;
 use crate::fault::Explain;
-use crate::units::Dimension;
+use crate::graph::units::Dimension;
 
 /// A fault of the resolution.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum GraphFault {
-    Duplicate { name: String },
     Reserved { name: String },
     UnknownName { name: String, near: Option<String> },
     UnknownFunction { name: String, near: Option<String> },
@@ -27,7 +26,7 @@ pub enum GraphFault {
     Units { what: String, left: Dimension, right: Dimension },
     NotDimensionless { what: String, found: Dimension },
     NoRoot { found: Dimension },
-    UnknownUnits { from: String, to: String },
+    UnknownUnits { from: String, to: String, declaration: Option<String> },
     LawUnit { symbol: &'static str, name: String, found: Dimension, expected: Vec<Dimension> },
     NumberForC { name: String },
     Modulated { symbol: &'static str, name: String, by: String },
@@ -49,7 +48,6 @@ use GraphFault as F;
 impl Explain for GraphFault {
     fn code(&self) -> &'static str {
         match self {
-            F::Duplicate { .. } => "BG0302",
             F::UnknownName { .. } => "BG0303",
             F::UnknownFunction { .. } => "BG0304",
             F::UnknownDomain { .. } => "BG0305",
@@ -87,7 +85,6 @@ impl Explain for GraphFault {
 
     fn message(&self) -> String {
         match self {
-            F::Duplicate { name } => format!("`{name}` is declared twice"),
             F::Reserved { name } => format!("`{name}` is the time"),
             F::UnknownName { name, .. } => format!("nothing is called `{name}`"),
             F::UnknownFunction { name, .. } => format!("there is no function `{name}`"),
@@ -112,7 +109,7 @@ impl Explain for GraphFault {
             F::Units { what, left, right } => format!("{what}: the units {left} and {right} disagree"),
             F::NotDimensionless { what, found } => format!("{what} must be a pure number; this has unit {found}"),
             F::NoRoot { found } => format!("the square root of a quantity in {found} has no unit"),
-            F::UnknownUnits { from, to } => {
+            F::UnknownUnits { from, to, .. } => {
                 format!("nothing fixes the units of effort and flow on the bond `{from}` -> `{to}`")
             }
             F::LawUnit { symbol, name, found, expected } => format!(
@@ -141,7 +138,6 @@ impl Explain for GraphFault {
 
     fn help(&self) -> String {
         match self {
-            F::Duplicate { .. } => "give one of them another name".to_owned(),
             F::Reserved { .. } => "give it another name".to_owned(),
             F::UnknownName { near: Some(near), .. } | F::UnknownFunction { near: Some(near), .. } => {
                 format!("did you mean `{near}`?")
@@ -152,7 +148,7 @@ impl Explain for GraphFault {
             }
             F::UnknownDomain { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownDomain { .. } => {
-                let names: Vec<_> = crate::units::DOMAINS.iter().map(|domain| domain.name).collect();
+                let names: Vec<_> = crate::graph::units::DOMAINS.iter().map(|domain| domain.name).collect();
                 format!("use one of {}", names.join(" "))
             }
             F::ArgumentCount { expected, .. } => format!("give it {expected}"),
@@ -179,7 +175,12 @@ impl Explain for GraphFault {
             F::Units { .. } => "change one of the two so that they agree".to_owned(),
             F::NotDimensionless { .. } => "divide by a reference quantity of the same unit".to_owned(),
             F::NoRoot { .. } => "take the root of a square".to_owned(),
-            F::UnknownUnits { from, .. } => format!("give a junction on it its domain, such as `1 {from}: rotation;`"),
+            F::UnknownUnits { declaration: Some(declaration), .. } => {
+                format!("where the junction is declared, name its domain, such as `{declaration}: rotation`")
+            }
+            F::UnknownUnits { from, to, .. } => format!(
+                "put a junction with a domain between them, such as `1 between: rotation; {from} -> between -> {to};`"
+            ),
             F::LawUnit { expected, .. } => {
                 format!("give a value in {}", expected.first().map_or_else(String::new, ToString::to_string))
             }

@@ -2,16 +2,18 @@
 //!
 //! In: `ast` of bond-graph words. Out: [`BondGraph`]. No longer occurs: names, missing ports, unknown cardinalities, units.
 
+pub mod causality;
 mod connect;
 mod domains;
 mod fault;
 mod resolve;
 mod term;
 mod typing;
+pub mod units;
 
-use crate::ast::{ElementKind, Name, Role, TrackKind};
-use crate::clause::Clause;
-use crate::units::{Dimension, Domain};
+use crate::graph::units::{Dimension, Domain};
+use crate::source::ast::{ElementKind, Name, Role, TrackKind};
+use crate::source::clause::Clause;
 
 pub use fault::GraphFault;
 pub use resolve::resolve;
@@ -43,6 +45,8 @@ pub struct BondGraph {
     pub storages: Vec<Storage>,
     /// Gaps for the assembly of the start.
     pub closes: Vec<Close>,
+    /// Whether impulses make start velocities fit rigid joints.
+    pub impulse: bool,
     /// Observed outputs.
     pub observations: Vec<Observation>,
     /// The guesses in start expressions, each one unknown of the assembly.

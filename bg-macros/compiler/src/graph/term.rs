@@ -5,7 +5,7 @@
 use proc_macro2::Span;
 
 use super::NodeId;
-use crate::ast::{BinaryOperator, Comparison};
+use crate::source::ast::{BinaryOperator, Comparison};
 
 /// An expression with its place in the source.
 #[derive(Clone, Debug)]
@@ -33,8 +33,8 @@ pub enum TermKind {
     Call(Builtin, Vec<Term>),
     /// A vector, or a matrix by its rows.
     Vector(Vec<Term>),
-    /// `if left < right { then } else { otherwise }`
-    If(Comparison, Box<[Term; 4]>),
+    /// `if left < right { then } else { otherwise }`, with `left < right` as written.
+    If(Comparison, String, Box<[Term; 4]>),
     /// The solution of the assembly for this guess.
     Guess(usize),
     /// A time integral since t = 0.
@@ -178,7 +178,7 @@ impl Term {
                 rest.iter().for_each(|operation| operation.operand.visit(each));
             }
             TermKind::Call(_, parts) | TermKind::Vector(parts) => parts.iter().for_each(|part| part.visit(each)),
-            TermKind::If(_, parts) => parts.iter().for_each(|part| part.visit(each)),
+            TermKind::If(_, _, parts) => parts.iter().for_each(|part| part.visit(each)),
         }
     }
 

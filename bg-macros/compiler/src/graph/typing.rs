@@ -9,9 +9,9 @@ use proc_macro2::Span;
 
 use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::{BondGraph, GraphFault, NodeId, NodeKind};
-use crate::ast::{BinaryOperator, TrackKind};
 use crate::fault::{Explain, Fault};
-use crate::units::Dimension;
+use crate::graph::units::Dimension;
+use crate::source::ast::{BinaryOperator, TrackKind};
 
 /// The shape of a value.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -197,7 +197,7 @@ impl Checker<'_, '_> {
             TermKind::Chain(first, rest) => self.chain(first, rest),
             TermKind::Call(builtin, arguments) => self.call(term, *builtin, arguments),
             TermKind::Vector(parts) => self.vector(term, parts),
-            TermKind::If(_, parts) => {
+            TermKind::If(_, _, parts) => {
                 let [left, right, then, otherwise] = &**parts;
                 self.alike(term, "compare", left, right);
                 self.alike(term, "choose between", then, otherwise)

@@ -9,11 +9,14 @@
 
 mod addends;
 mod build;
+pub mod elimination;
 mod factor;
 mod factors;
 mod flat;
 mod graph;
+pub mod pairs;
 mod plan;
+mod programs;
 mod rebuild;
 mod signs;
 mod statics;
@@ -30,6 +33,8 @@ use statics::Statics;
 
 use crate::expr::{Function, Id, Pool, Symbol};
 
+pub use programs::{Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
+
 /// One routine to schedule.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
@@ -41,11 +46,11 @@ pub struct Request<'a> {
 
 /// Routines that share a table of constants.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Program {
+pub struct Program<const R: usize> {
     /// What is evaluated once: its results are the constant table. It depends on parameters and numbers only.
     pub constants: Routine,
     /// The routines in the order of their requests. They contain no parameters.
-    pub routines: Vec<Routine>,
+    pub routines: [Routine; R],
 }
 
 /// Straight-line code.
@@ -179,11 +184,10 @@ impl Operation {
 const ROUNDS: usize = 2;
 
 /// Routines of the requests with few operations. The pool gains nodes of parameters and numbers.
-pub fn schedule(pool: &mut Pool, requests: &[Request]) -> Program {
+pub fn schedule<const R: usize>(pool: &mut Pool, requests: [Request; R]) -> Program<R> {
     let mut statics = Statics::new(pool);
     let mut table = Constants::default();
-    let mut routines = Vec::with_capacity(requests.len());
-    for request in requests {
+    let routines = requests.map(|request| {
         // In an order of their own: in which order the results are wanted changes nothing in how they are calculated.
         let mut roots = request.roots.to_vec();
         roots.sort_unstable();
@@ -192,8 +196,8 @@ pub fn schedule(pool: &mut Pool, requests: &[Request]) -> Program {
         let mut routine = flat::flatten(&mut statics, &plan, request.name, &mut table);
         let place = |root| roots.binary_search(root).expect("it is among them");
         routine.results = request.roots.iter().map(|root| routine.results[place(root)]).collect();
-        routines.push(routine);
-    }
+        routine
+    });
     let plan = plan(&mut statics, &table.ids, Parameters::Dynamic);
     let constants = flat::flatten(&mut statics, &plan, "constants", &mut Constants::default());
     Program { constants, routines }

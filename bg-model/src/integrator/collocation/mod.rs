@@ -120,7 +120,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         self.h = h;
         let goal = if self.is_exact || self.attempts == Attempts::Satisfied { Goal::Rounding } else { Goal::Tolerance };
         if !self.has_jacobian {
-            self.evaluate_jacobian(flow, start);
+            self.evaluate_jacobian(flow, start, h, scale);
         }
         loop {
             let convergence = if self.factor(flow, h) {
@@ -131,15 +131,15 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
             };
             match convergence {
                 Convergence::Reached => return Ok(()),
-                _ if !self.is_fresh => self.evaluate_jacobian(flow, start),
+                _ if !self.is_fresh => self.evaluate_jacobian(flow, start, h, scale),
                 Convergence::Fails => return Err(f64::INFINITY),
                 Convergence::NotFinite => return Err(f64::NAN),
             }
         }
     }
 
-    fn evaluate_jacobian(&mut self, flow: &mut impl Flow<N>, start: &Point<N>) {
-        self.jacobian.evaluate(flow, start.t, &start.x);
+    fn evaluate_jacobian(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+        self.jacobian.evaluate(flow, start, h, scale);
         (self.has_jacobian, self.is_fresh, self.factored) = (true, true, 0.0);
     }
 

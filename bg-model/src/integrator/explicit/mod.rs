@@ -8,6 +8,8 @@ mod bs5;
 mod cfmr7;
 mod dop853;
 #[cfg(test)]
+mod estimate;
+#[cfg(test)]
 mod order;
 #[cfg(test)]
 mod vectors;

@@ -53,7 +53,7 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        match self.stages.evaluate(&RODAS5P, flow, start, h) {
+        match self.stages.evaluate(&RODAS5P, flow, start, h, scale) {
             None => f64::INFINITY,
             Some(false) => f64::NAN,
             Some(true) => {
@@ -128,10 +128,10 @@ impl<const N: usize> Method<N> for Ros2<N> {
         flow: &mut impl Flow<N>,
         start: &Point<N>,
         h: f64,
-        _scale: &Scale<N>,
+        scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        if self.stages.evaluate(&ROS2, flow, start, h) != Some(true) {
+        if self.stages.evaluate(&ROS2, flow, start, h, scale) != Some(true) {
             return f64::NAN;
         }
         *end = self.stages.end(&ROS2, start);

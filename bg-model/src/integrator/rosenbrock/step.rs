@@ -42,10 +42,11 @@ impl<const S: usize, const N: usize> Stages<S, N> {
         flow: &mut impl Flow<N>,
         start: &Point<N>,
         h: f64,
+        scale: &Scale<N>,
     ) -> Option<bool> {
         self.fault = None;
         if !self.is_current {
-            self.jacobian.evaluate(flow, start.t, &start.x);
+            self.jacobian.evaluate(flow, start, h, scale);
             self.is_current = true;
         }
         if !self.jacobian.is_finite() {

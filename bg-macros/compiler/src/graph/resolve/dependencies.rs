@@ -5,13 +5,13 @@
 use proc_macro2::Span;
 
 use super::Resolver;
-use crate::ast::ElementKind;
-use crate::clause::{Clause, Given};
 use crate::fault::Fault;
 use crate::graph::term::{Reference, Term, TermKind};
 use crate::graph::typing::{Quantity, Shape, Types};
+use crate::graph::units::Dimension;
 use crate::graph::{Bond, GraphFault, Law, Let, NodeId, NodeKind};
-use crate::units::Dimension;
+use crate::source::ast::ElementKind;
+use crate::source::clause::{Clause, Given};
 
 impl Resolver {
     /// The unit of a value as its definition writes it: J and N*m are one dimension but read differently.

@@ -14,9 +14,9 @@ use super::{
     BondGraph, Close, Element, GraphFault, Input, Integral, Law, Let, Node, NodeId, NodeKind, Observation, Parameter,
     Storage, Track, connect, domains,
 };
-use crate::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role};
-use crate::fault::{Fault, Staged, near_miss};
-use crate::units::{self, Dimension, Domain};
+use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
+use crate::graph::units::{self, Dimension, Domain};
+use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role};
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -94,6 +94,7 @@ impl Resolver {
             tracks: Vec::new(),
             storages: Vec::new(),
             closes: Vec::new(),
+            impulse: false,
             observations: Vec::new(),
             guesses: Vec::new(),
             integrals: Vec::new(),
@@ -112,7 +113,7 @@ impl Resolver {
         if self.faults.is_empty() { Ok(()) } else { Err(std::mem::take(&mut self.faults)) }
     }
 
-    fn fault(&mut self, span: Span, fault: &GraphFault) {
+    fn fault(&mut self, span: Span, fault: &impl Explain) {
         self.faults.push(Fault::new(span, fault));
     }
 
@@ -120,7 +121,7 @@ impl Resolver {
         if name.text == "t" {
             self.fault(name.span, &GraphFault::Reserved { name: name.text.clone() });
         } else if self.names.insert(name.text.clone(), entity).is_some() {
-            self.fault(name.span, &GraphFault::Duplicate { name: name.text.clone() });
+            self.fault(name.span, &DeclaredTwice { name: name.text.clone() });
         }
     }
 
@@ -242,6 +243,7 @@ impl Resolver {
                     let (shape, dimension) = (Shape::Scalar, Dimension::NONE);
                     self.graph.closes.push(Close { joint: close.joint.clone(), gap, shape, dimension });
                 }
+                Item::Impulse(_) => self.graph.impulse = true,
                 Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
                 _ => {}
             }
@@ -330,7 +332,7 @@ impl Resolver {
         let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
         let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
         if self.graph.observations.iter().any(|known| known.name == name) {
-            self.fault(observation.value.span, &GraphFault::Duplicate { name: name.clone() });
+            self.fault(observation.value.span, &DeclaredTwice { name: name.clone() });
         }
         self.observed.push(declared);
         self.graph.observations.push(Observation { name, value, shape: Shape::Scalar, unit });
@@ -352,7 +354,8 @@ impl Resolver {
             }
             ExpressionKind::If(choice) => {
                 let parts = [&choice.left, &choice.right, &choice.then, &choice.otherwise];
-                TermKind::If(choice.comparison, Box::new(parts.map(|part| self.term(part, place))))
+                let parts = Box::new(parts.map(|part| self.term(part, place)));
+                TermKind::If(choice.comparison, choice.condition(), parts)
             }
             ExpressionKind::Call(function, arguments) => return self.call(function, arguments, place),
         };

@@ -15,8 +15,8 @@ fn states<const N: usize>(pool: &mut Pool) -> [Id; N] {
 }
 
 /// The program of one routine, checked for form.
-fn single(pool: &mut Pool, roots: &[Id]) -> Program {
-    let program = schedule(pool, &[Request { name: "rate", roots }]);
+fn single(pool: &mut Pool, roots: &[Id]) -> Program<1> {
+    let program = schedule(pool, [Request { name: "rate", roots }]);
     check(&program);
     program
 }
@@ -66,7 +66,7 @@ pub(crate) fn value(operand: &Operand, temporaries: &[f64], constants: &[f64], e
 }
 
 /// Targets count from 0, operands are known, nothing is dead or repeated, parameters only stand in the constants.
-fn check(program: &Program) {
+fn check<const R: usize>(program: &Program<R>) {
     let constants = program.constants.results.len();
     let mut used = vec![false; constants];
     for routine in std::iter::once(&program.constants).chain(&program.routines) {

@@ -112,7 +112,7 @@ fn magnitudes(pool: &Pool, roots: &[Id], environment: &Environment) -> Vec<(f64,
     roots.iter().map(|root| (values[root], errors[root])).collect()
 }
 
-fn assert_equal(pool: &Pool, program: &Program, requests: &[Request], environment: &Environment) {
+fn assert_equal<const R: usize>(pool: &Pool, program: &Program<R>, requests: &[Request; R], environment: &Environment) {
     let constants = run(&program.constants, &[], environment);
     for (routine, request) in program.routines.iter().zip(requests) {
         let values = run(routine, &constants, environment);
@@ -130,11 +130,11 @@ fn random_graphs() {
         let mut pool = Pool::new();
         let count = 20 + source.below(180);
         let found = source.expressions(&mut pool, count);
-        let picks: Vec<Vec<Id>> =
-            (0..3).map(|_| (0..6).map(|_| found[found.len() - 1 - source.below(30.min(count))]).collect()).collect();
+        let mut pick = || found[found.len() - 1 - source.below(30.min(count))];
+        let picks: [[Id; 6]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| pick()));
         let names = ["rate", "outputs", "energy"];
-        let requests: Vec<Request> = picks.iter().zip(names).map(|(roots, name)| Request { name, roots }).collect();
-        let program = schedule(&mut pool, &requests);
+        let requests: [Request; 3] = std::array::from_fn(|k| Request { name: names[k], roots: &picks[k] });
+        let program = schedule(&mut pool, requests);
         check(&program);
         for _ in 0..3 {
             let mut numbers = |count: usize| (0..count).map(|_| source.number()).collect::<Vec<_>>();
@@ -164,7 +164,7 @@ fn parameters_may_be_zero() {
     let [kx, ky, lz] = [pool.mul(k, x), pool.mul(k, y), pool.mul(l, z)];
     let roots = [pool.sum(&[kx, ky, lz]), pool.sum(&[kx, lz]), pool.linear(1.0, &[(kx, 2.0)])];
     let requests = [Request { name: "rate", roots: &roots }];
-    let program = schedule(&mut pool, &requests);
+    let program = schedule(&mut pool, requests);
     let environment = Environment { states: &[1.0, 2.0, 3.0], parameters: &[0.0, 0.0], ..Environment::default() };
     assert_eq!(run(&program.routines[0], &run(&program.constants, &[], &environment), &environment), [0.0, 0.0, 1.0]);
 }
@@ -175,7 +175,7 @@ fn constants_are_shared() {
     let ([x, y], k, m) = (states(&mut pool), parameter(&mut pool, 0), parameter(&mut pool, 1));
     let ratio = pool.div(k, m);
     let (first, second) = ([pool.mul(ratio, x)], [pool.mul(ratio, y), ratio]);
-    let program = schedule(&mut pool, &[Request { name: "a", roots: &first }, Request { name: "b", roots: &second }]);
+    let program = schedule(&mut pool, [Request { name: "a", roots: &first }, Request { name: "b", roots: &second }]);
     check(&program);
     assert_eq!(program.constants.results.len(), 1);
     assert_eq!(program.routines[1].results[1], Operand::Constant(0));
@@ -213,7 +213,7 @@ fn same_program_every_time() {
     let program = || {
         let mut pool = Pool::new();
         let found = Source(7).expressions(&mut pool, 400);
-        schedule(&mut pool, &[Request { name: "rate", roots: &found[380..] }])
+        schedule(&mut pool, [Request { name: "rate", roots: &found[380..] }])
     };
     assert_eq!(program(), program());
 }
@@ -292,7 +292,7 @@ fn large_mechanism_in_time() {
     let requests = [Request { name: "rate", roots: &roots }, Request { name: "outputs", roots: &roots[30..] }];
     let nodes = pool.reachable(&roots).len();
     let start = Instant::now();
-    let program = schedule(&mut pool, &requests);
+    let program = schedule(&mut pool, requests);
     let elapsed = start.elapsed();
     println!("{nodes} nodes in {elapsed:?}: {:?}", program.routines[0].counts);
     check(&program);
@@ -329,9 +329,9 @@ fn states_that_cancel_in_normal_form_are_no_constants() {
 fn the_order_of_the_results_changes_nothing_in_how_they_are_calculated() {
     let mut pool = Pool::new();
     let mut roots = Source(3).expressions(&mut pool, 90).split_off(60);
-    let forwards = single(&mut pool, &roots).routines.remove(0);
+    let [forwards] = single(&mut pool, &roots).routines;
     roots.reverse();
-    let mut backwards = single(&mut pool, &roots).routines.remove(0);
+    let [mut backwards] = single(&mut pool, &roots).routines;
     backwards.results.reverse();
     assert_eq!(forwards, backwards);
 }

@@ -1,0 +1,117 @@
+//! The start of a model: the pose that closes its joints, the velocities that fit them, what they hold.
+//!
+//! In: gaps, unknowns, held motions. Out: `start` and `impulse_energy` of the model, `held` and `hold` of the system.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::Emission;
+use crate::program::Program;
+use crate::system::equations::Slip;
+
+impl Emission<'_> {
+    /// The functions of the trait that give the start, and before them what they share.
+    pub(super) fn start(&self) -> (TokenStream, TokenStream) {
+        let closed = self.closed_pose();
+        if self.model.programs.holding.is_none() {
+            let start = quote! {
+                fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
+                    #closed
+                    let unknowns = unknowns.map(S::from_f64);
+                    Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
+                }
+            };
+            return (start, TokenStream::new());
+        }
+        let speeds = self.model.equations.speeds.iter().map(|&index| Literal::usize_unsuffixed(index));
+        let (count, impulse) = (self.model.equations.guesses.len(), self.model.equations.impulse);
+        let started = quote! {
+            impl<S: Scalar> Model<S> {
+                /// The start state, and what it took to make it fit.
+                fn started(&self)
+                    -> Result<::bg_model::holding::Started<S, N>, ::bg_model::assembly::AssemblyError>
+                {
+                    #closed
+                    let state = |unknowns: &[f64; #count]| {
+                        let unknowns = unknowns.map(S::from_f64);
+                        SVector::from(Self::start_state(&self.parameters, &unknowns))
+                    };
+                    ::bg_model::holding::fit(self, unknowns, [#(#speeds),*], state, #impulse)
+                }
+            }
+        };
+        let start = quote! {
+            fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
+                Ok(self.started()?.x)
+            }
+            fn impulse_energy(&self) -> Result<S, ::bg_model::assembly::AssemblyError> {
+                Ok(self.started()?.lost)
+            }
+        };
+        (start, started)
+    }
+
+    /// `let unknowns`: the guesses, those of the pose moved until the joints are closed.
+    fn closed_pose(&self) -> TokenStream {
+        let gaps = self.model.equations.gaps.iter().map(|gap| {
+            let (joint, component, unit) = (&gap.joint, gap.component, &gap.unit);
+            quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
+        });
+        let guess = quote! {
+            static GAPS: &[::bg_model::assembly::Gap] = &[#(#gaps),*];
+            let guess = Model::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
+        };
+        let (speeds, required) = (&self.model.equations.speeds, self.required_at_start());
+        if speeds.is_empty() {
+            return quote! {
+                #guess
+                let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
+                    gaps.copy_from_slice(&Model::<f64>::gaps(&self.parameters, unknowns));
+                })?;
+                #required
+            };
+        }
+        let poses = (0..self.model.equations.guesses.len()).filter(|index| !speeds.contains(index));
+        let poses: Vec<Literal> = poses.map(Literal::usize_unsuffixed).collect();
+        let (count, places) = (poses.len(), (0..poses.len()).map(Literal::usize_unsuffixed));
+        quote! {
+            #guess
+            let whole = |poses: &[f64; #count]| {
+                let mut unknowns = guess;
+                #(unknowns[#poses] = poses[#places];)*
+                unknowns
+            };
+            let poses = ::bg_model::assembly::close([#(guess[#poses]),*], GAPS, |poses, gaps| {
+                gaps.copy_from_slice(&Model::<f64>::gaps(&self.parameters, &whole(poses)));
+            })?;
+            let unknowns = whole(&poses);
+            #required
+        }
+    }
+
+    /// What the joints hold.
+    pub(super) fn holding(&self) -> TokenStream {
+        let Some(Program { routines: [routine], .. }) = &self.model.programs.holding else { return TokenStream::new() };
+        let holding = &self.model.equations.holding;
+        let (rigid, compliant) = (slips(&holding.rigid), slips(&holding.compliant));
+        let moved = holding.moves.iter().map(|(state, _)| Literal::usize_unsuffixed(*state));
+        let (body, entries) = self.running(routine, &format_ident!("holding_constants"));
+        quote! {
+            fn held(&self) -> ::bg_model::holding::Held {
+                ::bg_model::holding::Held { rigid: &[#rigid], compliant: &[#compliant], moved: &[#(#moved),*] }
+            }
+            #[inline(never)]
+            fn hold(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S]) {
+                #body
+                entries.copy_from_slice(&[#(#entries),*]);
+            }
+        }
+    }
+}
+
+fn slips(of: &[Slip]) -> TokenStream {
+    let each = of.iter().map(|Slip { joint, direction, unit, .. }| {
+        quote!(::bg_model::holding::Slip { joint: #joint, direction: #direction, unit: #unit },)
+    });
+    each.collect()
+}

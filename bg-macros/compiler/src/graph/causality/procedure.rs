@@ -1,0 +1,350 @@
+//! The sequential procedure: requests in their order, each propagated as far as it implies other strokes.
+//!
+//! In: [`BondGraph`]. Out: a stroke for every bond, or the faults. A request that cannot be met is a fault and is taken
+//! back, so that what comes after it is judged as if it had not been made.
+
+use std::collections::VecDeque;
+
+use super::completion::{Lack, complete};
+use super::{CausalFault as F, End, across, end_at, is_junction, strong_end};
+use crate::fault::{Fault, Staged};
+use crate::graph::{BondGraph, BondId, Law, NodeId, NodeKind};
+use crate::source::ast::{ElementKind, Role};
+
+/// Why a bond has its stroke.
+#[derive(Clone, Copy, Debug)]
+enum Reason {
+    /// A node asked for it.
+    Node(NodeId),
+    /// Another bond implied it.
+    Bond(BondId),
+}
+
+/// What a one-port wants of its bond.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wish {
+    /// To give the effort.
+    GiveEffort,
+    /// To receive the effort.
+    ReceiveEffort,
+    /// Either will do.
+    Either,
+}
+
+/// The strokes, and for every junction its strong bond.
+type Strokes = (Vec<End>, Vec<Option<BondId>>);
+
+/// Runs the procedure.
+pub(super) fn run(graph: &BondGraph) -> Staged<Strokes> {
+    let mut procedure = Procedure::new(graph);
+    procedure.ask_all();
+    procedure.choose();
+    if !procedure.faults.is_empty() {
+        return Err(procedure.faults);
+    }
+    let strokes = procedure.strokes.into_iter().map(|stroke| stroke.unwrap_or(End::To)).collect();
+    Ok((strokes, procedure.strong))
+}
+
+struct Procedure<'a> {
+    graph: &'a BondGraph,
+    strokes: Vec<Option<End>>,
+    reasons: Vec<Option<Reason>>,
+    /// For every node how many of its bonds have no stroke.
+    open: Vec<usize>,
+    /// For every junction its strong bond.
+    strong: Vec<Option<BondId>>,
+    /// The bonds in the order in which they got their strokes.
+    trail: Vec<BondId>,
+    faults: Vec<Fault>,
+}
+
+impl<'a> Procedure<'a> {
+    fn new(graph: &'a BondGraph) -> Self {
+        let (bonds, nodes) = (graph.bonds.len(), graph.nodes.len());
+        Self {
+            graph,
+            strokes: vec![None; bonds],
+            reasons: vec![None; bonds],
+            open: graph.nodes.iter().map(|node| node.bonds.len()).collect(),
+            strong: vec![None; nodes],
+            trail: Vec::new(),
+            faults: Vec::new(),
+        }
+    }
+
+    /// Sources, then laws that work one way, then storages.
+    fn ask_all(&mut self) {
+        let nodes = || (0..self.graph.nodes.len()).map(NodeId);
+        let fixed: Vec<NodeId> = nodes().filter(|&node| self.is_source(node)).collect();
+        let one_way: Vec<NodeId> = nodes().filter(|&node| self.is_one_way(node)).collect();
+        let storages: Vec<NodeId> = nodes().filter(|&node| self.is_storage(node)).collect();
+        for node in fixed.into_iter().chain(one_way).chain(storages) {
+            let before = self.trail.len();
+            if let Err(fault) = self.ask(node) {
+                self.undo(before);
+                self.faults.push(fault);
+            }
+        }
+    }
+
+    /// What no one asked for: the stroke where the half arrow starts, unless that leaves no assignment of the rest.
+    fn choose(&mut self) {
+        let before = self.trail.len();
+        if self.first_choices().is_ok() {
+            return;
+        }
+        self.undo(before);
+        let firsts = vec![End::From; self.strokes.len()];
+        let mut witness = match complete(self.graph, &self.strokes, &firsts) {
+            Ok(witness) => witness,
+            Err(lacks) => {
+                let faults: Vec<Fault> = lacks.iter().map(|lack| self.lack(lack)).collect();
+                self.faults.extend(faults);
+                return;
+            }
+        };
+        for bond in (0..self.graph.bonds.len()).map(BondId) {
+            if self.strokes[bond.0].is_none()
+                && let Err(fault) = self.choose_one(bond, &mut witness)
+            {
+                self.faults.push(fault);
+                return;
+            }
+        }
+    }
+
+    fn first_choices(&mut self) -> Result<(), Fault> {
+        for bond in (0..self.graph.bonds.len()).map(BondId) {
+            if self.strokes[bond.0].is_none() {
+                self.set(bond, End::From, Reason::Node(self.graph.bond(bond).from))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The first choice where it can be completed, else that of the valid assignment `witness`.
+    fn choose_one(&mut self, bond: BondId, witness: &mut Vec<End>) -> Result<(), Fault> {
+        let reason = Reason::Node(self.graph.bond(bond).from);
+        if witness[bond.0] != End::From {
+            let before = self.trail.len();
+            if self.set(bond, End::From, reason).is_ok()
+                && let Ok(other) = complete(self.graph, &self.strokes, witness)
+            {
+                *witness = other;
+                return Ok(());
+            }
+            self.undo(before);
+        }
+        self.set(bond, witness[bond.0], reason)
+    }
+
+    fn is_source(&self, node: NodeId) -> bool {
+        use ElementKind as K;
+        self.graph.element(node).is_some_and(|element| matches!(element.kind, K::Se | K::MSe | K::Sf | K::MSf | K::RSe))
+    }
+
+    fn is_storage(&self, node: NodeId) -> bool {
+        self.graph.element(node).is_some_and(|element| matches!(element.kind, ElementKind::I | ElementKind::C))
+    }
+
+    /// Nonlinear resistors and matrix transformers work in one direction only.
+    fn is_one_way(&self, node: NodeId) -> bool {
+        self.graph.element(node).is_some_and(|element| {
+            matches!(element.law, Law::Of { .. }) && !matches!(element.kind, ElementKind::I | ElementKind::C)
+        })
+    }
+
+    fn wish(&self, node: NodeId) -> Wish {
+        use ElementKind as K;
+        let Some(element) = self.graph.element(node) else { return Wish::Either };
+        match (element.kind, &element.law) {
+            (K::Se | K::MSe | K::RSe | K::C, _) => Wish::GiveEffort,
+            (K::Sf | K::MSf | K::I, _) => Wish::ReceiveEffort,
+            (_, Law::Of { role: Role::Flow, .. }) => Wish::GiveEffort,
+            (_, Law::Of { role: Role::Effort, .. }) => Wish::ReceiveEffort,
+            _ => Wish::Either,
+        }
+    }
+
+    /// Gives a node's bonds the strokes it asks for, or says why they cannot have them.
+    fn ask(&mut self, node: NodeId) -> Result<(), Fault> {
+        let Some(&first) = self.graph.node(node).bonds.first() else { return Ok(()) };
+        // A two-port with a flow law receives the flow of its bond in, so it gives that bond's effort.
+        let here = end_at(self.graph, first, node);
+        let stroke = if self.wish(node) == Wish::GiveEffort { here.opposite() } else { here };
+        match self.strokes[first.0] {
+            None => self.set(first, stroke, Reason::Node(node)),
+            Some(present) if present == stroke => Ok(()),
+            Some(_) => Err(self.refusal(node, first)),
+        }
+    }
+
+    /// The bond's stroke is the wrong one for the node: by what, and what that makes it.
+    fn refusal(&self, node: NodeId, bond: BondId) -> Fault {
+        let definition = self.graph.node(node);
+        let (symbol, name) = (definition.kind.symbol(), definition.name.text.clone());
+        let by = self.root(bond);
+        let fault = if self.is_storage(node) {
+            F::Derivative { symbol, name, by }
+        } else if self.is_source(node) {
+            let other = self.graph.bond(bond).other(node);
+            let forcing = if let Some(Reason::Bond(other)) = self.reasons[bond.0] { other } else { bond };
+            F::Conflict {
+                junction: self.graph.node(other).name.text.clone(),
+                variable: if self.wish(node) == Wish::GiveEffort { "effort" } else { "flow" },
+                first: (self.bond_text(forcing), by),
+                second: (self.bond_text(bond), self.label(node)),
+            }
+        } else {
+            let needs = if self.wish(node) == Wish::GiveEffort { "flow" } else { "effort" };
+            F::OneWay { symbol, name, needs, by }
+        };
+        Fault::new(definition.name.span, &fault)
+    }
+
+    /// Sets a stroke and everything it implies. After an error some are set: `undo` them.
+    fn set(&mut self, bond: BondId, stroke: End, reason: Reason) -> Result<(), Fault> {
+        let mut queue = VecDeque::from([(bond, stroke, reason)]);
+        while let Some((bond, stroke, reason)) = queue.pop_front() {
+            match self.strokes[bond.0] {
+                Some(present) if present == stroke => continue,
+                Some(_) => return Err(self.clash(bond, reason)),
+                None => self.put(bond, stroke, reason),
+            }
+            for node in [self.graph.bond(bond).from, self.graph.bond(bond).to] {
+                if is_junction(self.graph, node) {
+                    self.at_junction(node, bond, stroke, &mut queue)?;
+                } else if let Some((other, implied)) = across(self.graph, node, bond, stroke) {
+                    queue.push_back((other, implied, Reason::Bond(bond)));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn put(&mut self, bond: BondId, stroke: End, reason: Reason) {
+        self.strokes[bond.0] = Some(stroke);
+        self.reasons[bond.0] = Some(reason);
+        self.trail.push(bond);
+        let ends = self.graph.bond(bond);
+        self.open[ends.from.0] -= 1;
+        self.open[ends.to.0] -= 1;
+    }
+
+    /// Takes strokes back until the trail is as long as it was.
+    fn undo(&mut self, length: usize) {
+        for bond in self.trail.split_off(length) {
+            self.strokes[bond.0] = None;
+            self.reasons[bond.0] = None;
+            for node in [self.graph.bond(bond).from, self.graph.bond(bond).to] {
+                self.open[node.0] += 1;
+                self.strong[node.0].take_if(|strong| *strong == bond);
+            }
+        }
+    }
+
+    /// What the new stroke of `bond` implies for the other bonds of a junction: the strong bond is the only one.
+    fn at_junction(
+        &mut self,
+        node: NodeId,
+        bond: BondId,
+        stroke: End,
+        queue: &mut VecDeque<(BondId, End, Reason)>,
+    ) -> Result<(), Fault> {
+        let graph = self.graph;
+        let open = |procedure: &Self| {
+            let bonds = graph.node(node).bonds.iter().copied();
+            bonds.filter(|other| procedure.strokes[other.0].is_none()).collect::<Vec<_>>()
+        };
+        if stroke == strong_end(graph, node, bond) {
+            if let Some(known) = self.strong[node.0] {
+                return Err(self.two_strong(node, known, bond));
+            }
+            self.strong[node.0] = Some(bond);
+            for other in open(self) {
+                queue.push_back((other, strong_end(graph, node, other).opposite(), Reason::Bond(bond)));
+            }
+        } else if self.strong[node.0].is_none() {
+            match self.open[node.0] {
+                0 => return Err(self.lack(&Lack::Cause(node))),
+                1 => {
+                    for last in open(self) {
+                        queue.push_back((last, strong_end(graph, node, last), Reason::Bond(bond)));
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn two_strong(&self, node: NodeId, one: BondId, other: BondId) -> Fault {
+        let bonds = &self.graph.node(node).bonds;
+        let mut both = [one, other];
+        both.sort_by_key(|bond| bonds.iter().position(|known| known == bond));
+        let [first, second] = both.map(|bond| (self.bond_text(bond), self.root(bond)));
+        self.conflict(node, first, second)
+    }
+
+    /// Two implications meet on one bond with opposite strokes.
+    fn clash(&self, bond: BondId, reason: Reason) -> Fault {
+        let first = self.root(bond);
+        let second = match reason {
+            Reason::Bond(other) => self.root(other),
+            Reason::Node(node) => self.label(node),
+        };
+        let ends = self.graph.bond(bond);
+        let junction = [ends.from, ends.to].into_iter().find(|&node| is_junction(self.graph, node));
+        let text = self.bond_text(bond);
+        self.conflict(junction.unwrap_or(ends.to), (text.clone(), first), (text, second))
+    }
+
+    fn conflict(&self, node: NodeId, first: (String, String), second: (String, String)) -> Fault {
+        let name = &self.graph.node(node).name;
+        let fault = F::Conflict { junction: name.text.clone(), variable: self.common(node), first, second };
+        Fault::new(name.span, &fault)
+    }
+
+    /// What keeps the choices from an assignment.
+    fn lack(&self, lack: &Lack) -> Fault {
+        match *lack {
+            Lack::Cause(node) => {
+                let name = &self.graph.node(node).name;
+                let fault = F::Underdetermined { junction: name.text.clone(), variable: self.common(node) };
+                Fault::new(name.span, &fault)
+            }
+            Lack::Place { junction, bonds } => {
+                let [first, second] = bonds.map(|(bond, far)| (self.bond_text(bond), self.label(far)));
+                self.conflict(junction, first, second)
+            }
+        }
+    }
+
+    /// What the bonds of a junction have in common.
+    fn common(&self, node: NodeId) -> &'static str {
+        if matches!(self.graph.node(node).kind, NodeKind::Zero) { "effort" } else { "flow" }
+    }
+
+    fn bond_text(&self, bond: BondId) -> String {
+        let ends = self.graph.bond(bond);
+        format!("`{} -> {}`", self.graph.node(ends.from).name.text, self.graph.node(ends.to).name.text)
+    }
+
+    fn label(&self, node: NodeId) -> String {
+        let definition = self.graph.node(node);
+        format!("{} `{}`", definition.kind.symbol(), definition.name.text)
+    }
+
+    /// The node whose request led, step by step, to the stroke of this bond.
+    fn root(&self, bond: BondId) -> String {
+        let mut current = bond;
+        loop {
+            match self.reasons[current.0] {
+                Some(Reason::Bond(previous)) => current = previous,
+                Some(Reason::Node(node)) => return self.label(node),
+                None => return self.bond_text(bond),
+            }
+        }
+    }
+}

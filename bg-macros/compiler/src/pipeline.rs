@@ -1,0 +1,122 @@
+//! The stages in their order, each named once.
+//!
+//! In: the tree of a macro call. Out: a [`Compiled`] for every model: the literal graph and each of its scenes. Code is made of
+//! it by [`crate::emit`], text by [`crate::stages`]; both only read it, so what is printed is what is emitted.
+//!
+//! Every stage raises all its faults at once; a later stage sees only what an earlier one accepted.
+
+use crate::fault::{Faults, Staged};
+use crate::graph;
+use crate::graph::causality::{self, CausalGraph};
+use crate::program::elimination::{self, Elimination};
+use crate::program::{self, Programs};
+use crate::source::ast::{Graph, Source};
+use crate::source::scene::{self, Variant};
+use crate::source::{mechanism, names};
+use crate::system::equations::{self, StateEquations};
+use crate::system::expectation;
+use crate::system::jacobian::{self, Jacobian};
+use crate::system::reduce::{self, Report};
+use crate::system::second_order::{self, SecondOrder};
+
+/// A graph's results as far as its state equations.
+#[derive(Debug)]
+pub struct Derived {
+    /// The graph in bond-graph words.
+    pub expanded: Graph,
+    /// The resolved graph with its causal strokes.
+    pub causal: CausalGraph,
+    /// The state equations of the whole graph.
+    pub equations: StateEquations,
+}
+
+/// Every result of the stages of one model.
+#[derive(Debug)]
+pub struct Compiled {
+    /// The graph as written, with what its scene changes.
+    pub source: Graph,
+    /// Its results as far as the state equations of the whole graph.
+    pub derived: Derived,
+    /// What became of its states; none of a literal graph, which keeps them all.
+    pub reduction: Option<Report>,
+    /// The state equations that the model integrates.
+    pub equations: StateEquations,
+    /// The derivatives of the rates.
+    pub jacobian: Jacobian,
+    /// The states of second order.
+    pub second_order: SecondOrder,
+    /// How I - c J is factored and solved.
+    pub elimination: Elimination,
+    /// What every generated function evaluates, in order.
+    pub programs: Programs,
+}
+
+/// All models of a macro call. A fault of a literal graph is not repeated for its scenes.
+///
+/// # Errors
+/// The faults of all graphs.
+pub fn models(source: &Source) -> Staged<Vec<Compiled>> {
+    let mut models = Vec::new();
+    let mut faults = names::check(source).err().unwrap_or_default();
+    for graph in &source.graphs {
+        match scene::variants(graph) {
+            Ok(variants) => each_variant(&variants, &mut models, &mut faults),
+            Err(found) => faults.extend(found),
+        }
+    }
+    if faults.is_empty() { Ok(models) } else { Err(faults) }
+}
+
+fn each_variant(variants: &[Variant], models: &mut Vec<Compiled>, faults: &mut Faults) {
+    for variant in variants {
+        match compile(variant) {
+            Ok(model) => models.push(model),
+            Err(found) => {
+                faults.extend(found);
+                if variant.scene.is_none() {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// The stages of one graph without scenes, as far as its state equations.
+///
+/// # Errors
+/// The faults of the first stage that has any.
+pub fn derive(graph: &Graph) -> Staged<Derived> {
+    let expanded = mechanism::expand(graph)?;
+    let causal = causality::assign(graph::resolve(&expanded)?)?;
+    let equations = equations::derive(&causal)?;
+    Ok(Derived { expanded, causal, equations })
+}
+
+/// All stages of one model.
+///
+/// # Errors
+/// The faults of the first stage that has any.
+pub fn compile(variant: &Variant) -> Staged<Compiled> {
+    let source = variant.graph.clone();
+    let derived = derive(&source)?;
+    let (mut equations, reduction) = reduced(variant, derived.equations.clone())?;
+    second_order::arrange(&mut equations);
+    let mut jacobian = jacobian::differentiate(&equations);
+    let mut second_order = second_order::differentiate(&equations);
+    let elimination = elimination::plan(equations.states.len(), &jacobian.places());
+    let programs = program::programs(&mut equations, &mut jacobian, &mut second_order);
+    Ok(Compiled { source, derived, reduction, equations, jacobian, second_order, elimination, programs })
+}
+
+/// The equations that the variant's model integrates: those of a scene reduced, with the report of it.
+fn reduced(variant: &Variant, mut equations: StateEquations) -> Staged<(StateEquations, Option<Report>)> {
+    let Some(scene) = &variant.scene else {
+        reduce::solve_reactions(&mut equations);
+        return Ok((equations, None));
+    };
+    let wanted = expectation::wanted(scene, &equations.parameters)?;
+    let (mut equations, report) = reduce::for_scene(equations, &wanted, &mut program::rate_operations);
+    expectation::check(scene, &report)?;
+    equations.requirements.decide(&equations.parameters)?;
+    Ok((equations, Some(report)))
+}

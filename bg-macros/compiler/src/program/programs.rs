@@ -1,0 +1,206 @@
+//! The programs of a model's functions.
+//!
+//! In: equations, the derivatives of the rates and the second derivatives. Out: what every generated function evaluates, in order,
+//! with its table of constants.
+
+use super::pairs::{Paired, pair};
+use super::{Counts, Program, Request, Routine, schedule};
+use crate::expr::{Id, Pool};
+use crate::system::equations::StateEquations;
+use crate::system::jacobian::Jacobian;
+use crate::system::second_order::SecondOrder;
+
+/// Longer rates are not inlined into an integrator's step: they would only fill the cache.
+const INLINED: usize = 400;
+
+/// The programs of all generated functions.
+#[derive(Debug)]
+pub struct Programs {
+    /// Functions of the running model; they share one constant table.
+    pub running: Running,
+    /// The derivatives of the rates, with a constant table of their own.
+    pub jacobian: Program<1>,
+    /// What there is for states of second order, with a constant table of its own.
+    pub second_order: Option<SecondOrderPrograms>,
+    /// What joints hold, with a constant table of its own.
+    pub holding: Option<Program<1>>,
+    /// Functions of parameters and unknowns, from which the start is made.
+    pub starting: Starting,
+    /// The scalars of what is asked of values, in the order of the requirements: in `new`, in `start`. None where nothing is asked.
+    pub required: [Option<Program<1>>; 2],
+    /// What the laws give that can make numbers which are not finite, with its own constants.
+    pub not_finite: Program<1>,
+}
+
+/// The functions of the running model.
+#[derive(Debug)]
+pub struct Running {
+    /// The table of constants that all of them read.
+    pub constants: Routine,
+    /// The rates of all states.
+    pub rate: Routine,
+    /// The rates with operations done two at a time, where that pays.
+    pub paired_rate: Option<Paired>,
+    /// The guards of all switches.
+    pub guards: Routine,
+    /// The scalar outputs.
+    pub outputs: Routine,
+    /// The states that a projection moves.
+    pub project: Routine,
+    /// The stored energy.
+    pub stored_energy: Routine,
+    /// The supplied and the dissipated power.
+    pub powers: Routine,
+}
+
+/// The functions for states of second order.
+#[derive(Debug)]
+pub struct SecondOrderPrograms {
+    /// The table of constants that both read.
+    pub constants: Routine,
+    /// The second derivatives, from states and rates.
+    pub second_derivatives: Routine,
+    /// The rates with second derivatives in their places, where rates are inlined: otherwise rates and second derivatives, one
+    /// after the other, take as long.
+    pub forces: Option<Routine>,
+    /// The forces with operations done two at a time, where that pays.
+    pub paired_forces: Option<Paired>,
+}
+
+/// First guesses, gaps and start state, each with its own constants.
+#[derive(Debug)]
+pub struct Starting {
+    /// The first guess of each unknown.
+    pub guesses: Program<1>,
+    /// The gaps of the assembly.
+    pub gaps: Program<1>,
+    /// The start state.
+    pub start_state: Program<1>,
+}
+
+/// Schedules all functions of a model. The pools gain nodes of parameters and numbers.
+pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_order: &mut SecondOrder) -> Programs {
+    let running = running(equations);
+    let derivatives = jacobian.roots();
+    let jacobian = schedule(&mut jacobian.pool, [Request { name: "jacobian", roots: &derivatives }]);
+    let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
+    let holding = holding(equations);
+    let starting = starting(equations);
+    let fallible = roots(&equations.fallible, |law| law.value);
+    let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
+    let required = ["required", "required_at_start"].map(|name| required(equations, name));
+    Programs { running, jacobian, second_order, holding, starting, required, not_finite }
+}
+
+/// The operations of the rate function as it would be generated from the equations.
+pub fn rate_operations(equations: &mut StateEquations) -> usize {
+    let rates = roots(&equations.states, |state| state.rate);
+    alone(&mut equations.pool, "rate", &rates).routines[0].counts.total()
+}
+
+fn roots<T>(of: &[T], root: impl Fn(&T) -> Id) -> Vec<Id> {
+    of.iter().map(root).collect()
+}
+
+/// The program of one routine with constants of its own.
+fn alone(pool: &mut Pool, name: &str, roots: &[Id]) -> Program<1> {
+    schedule(pool, [Request { name, roots }])
+}
+
+fn running(equations: &mut StateEquations) -> Running {
+    let rates = roots(&equations.states, |state| state.rate);
+    let guards = roots(&equations.switches, |switch| switch.guard);
+    let outputs = roots(&equations.outputs, |output| output.value);
+    let projections = roots(&equations.projections, |&(_, id)| id);
+    let stored = [equations.stored];
+    let powers = [equations.supplied, equations.dissipated];
+    let requests = [
+        Request { name: "rate", roots: &rates },
+        Request { name: "guards", roots: &guards },
+        Request { name: "outputs", roots: &outputs },
+        Request { name: "project", roots: &projections },
+        Request { name: "stored_energy", roots: &stored },
+        Request { name: "powers", roots: &powers },
+    ];
+    let Program { constants, routines } = schedule(&mut equations.pool, requests);
+    let [rate, guards, outputs, project, stored_energy, powers] = routines;
+    let paired_rate = pair(&rate);
+    Running { constants, rate, paired_rate, guards, outputs, project, stored_energy, powers }
+}
+
+fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondOrderPrograms {
+    let SecondOrder { pool, derivatives, forces, .. } = second_order;
+    let second_derivatives = Request { name: "second_derivatives", roots: derivatives };
+    if !with_forces {
+        let Program { constants, routines: [second_derivatives] } = schedule(pool, [second_derivatives]);
+        return SecondOrderPrograms { constants, second_derivatives, forces: None, paired_forces: None };
+    }
+    let forces = Request { name: "forces", roots: forces };
+    let Program { constants, routines: [second_derivatives, forces] } = schedule(pool, [second_derivatives, forces]);
+    let paired_forces = pair(&forces);
+    SecondOrderPrograms { constants, second_derivatives, forces: Some(forces), paired_forces }
+}
+
+/// In a pool of its own, so that it has no say in the order of the other functions' operations.
+fn holding(equations: &StateEquations) -> Option<Program<1>> {
+    let entries = equations.holding.entries();
+    (!equations.holding.is_empty()).then(|| alone(&mut equations.pool.clone(), "hold", &entries))
+}
+
+fn starting(equations: &mut StateEquations) -> Starting {
+    let gaps = roots(&equations.gaps, |gap| gap.value);
+    let starts = roots(&equations.states, |state| state.start);
+    let pool = &mut equations.pool;
+    Starting {
+        guesses: alone(pool, "guesses", &equations.guesses),
+        gaps: alone(pool, "gaps", &gaps),
+        start_state: alone(pool, "start_state", &starts),
+    }
+}
+
+/// In the pool of the requirements.
+fn required(equations: &mut StateEquations, name: &str) -> Option<Program<1>> {
+    let requirements = &mut equations.requirements;
+    let values: Vec<Id> = requirements.of(name == "required_at_start").map(|requirement| requirement.value).collect();
+    (!values.is_empty()).then(|| alone(&mut requirements.pool, name, &values))
+}
+
+impl Running {
+    /// Whether rates are inlined into an integrator's step, and so take the vectors that it takes.
+    #[must_use]
+    pub fn is_inlined(&self) -> bool {
+        self.rate.counts.total() <= INLINED
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn routines(&self) -> [&Routine; 6] {
+        [&self.rate, &self.guards, &self.outputs, &self.project, &self.stored_energy, &self.powers]
+    }
+}
+
+impl SecondOrderPrograms {
+    /// Both, or the one that there is.
+    pub fn routines(&self) -> impl Iterator<Item = &Routine> {
+        [&self.second_derivatives].into_iter().chain(&self.forces)
+    }
+}
+
+impl Starting {
+    /// All of them.
+    #[must_use]
+    pub fn programs(&self) -> [&Program<1>; 3] {
+        [&self.guesses, &self.gaps, &self.start_state]
+    }
+}
+
+impl Programs {
+    /// The functions that are called while the model runs, with their operations.
+    pub fn costs(&self) -> impl Iterator<Item = (&str, Counts)> {
+        let running = self.running.routines().into_iter();
+        let second_order = self.second_order.iter().flat_map(SecondOrderPrograms::routines);
+        let holding = self.holding.iter().flat_map(|program| &program.routines);
+        let routines = running.chain(&self.jacobian.routines).chain(second_order).chain(holding);
+        routines.map(|routine| (routine.name.as_str(), routine.counts))
+    }
+}

@@ -1,0 +1,612 @@
+//! The source as a tree: what a user wrote, with the span of every name, before any name means anything.
+//!
+//! One tree serves both vocabularies; after `mechanism::expand` the items of the second one no longer occur.
+
+use proc_macro2::Span;
+
+use crate::source::clause::Clause;
+
+/// All graphs of one macro call.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The graphs in the order of declaration.
+    pub graphs: Vec<Graph>,
+}
+
+/// One `graph NAME { ... }`.
+#[derive(Clone, Debug)]
+pub struct Graph {
+    /// Documentation comment, lines joined by `\n`, each without its leading blank.
+    pub docs: String,
+    /// Visibility of the generated items.
+    pub visibility: syn::Visibility,
+    /// The generated type's name.
+    pub name: Name,
+    /// The statements in their order.
+    pub items: Vec<Item>,
+}
+
+/// A name, possibly dotted: `shaft`, `pin_b.force`.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// The whole name with its dots.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A statement of a graph.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a graph has few statements, and they are matched everywhere")]
+pub enum Item {
+    /// `param NAME: UNIT = DEFAULT, at least 0;`
+    Parameter(Parameter),
+    /// `input NAME: UNIT;`
+    Input(Input),
+    /// `let NAME: UNIT = EXPRESSION;` a name for an expression (UNIT may be left out).
+    Let(Let),
+    /// `1 NAME;`, `0 NAME[3]: translation;`
+    Junction(Junction),
+    /// `R NAME(w) = LAW;` and its like.
+    Element(Element),
+    /// `a -> b -> c;`
+    Chain(Vec<Name>),
+    /// `position NAME of JUNCTION start E;`, `orientation NAME of JUNCTION start E;`
+    Track(Track),
+    /// `close NAME = E;` a gap of joint NAME that the assembly of the start closes.
+    Close(Close),
+    /// `observe { NAME: UNIT = E; E; ... }`
+    Observe(Vec<Observation>),
+    /// `scene NAME { ... }`
+    Scene(Scene),
+    /// `ground { point P = E; ... }`
+    Ground(Ground),
+    /// `gravity E;`
+    Gravity(Gravity),
+    /// `start impulse;` with the word's span: impulses of the rigid joints make start velocities fit.
+    Impulse(Span),
+    /// `body NAME { ... }`
+    Body(Body),
+    /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`
+    Joint(Joint),
+    /// `spring NAME (a.P -> b.Q) { ... }`
+    Spring(Spring),
+    /// `drive NAME on TARGET torque = E;`
+    Drive(Drive),
+    /// `contact NAME (a.P -> b.Q along x) { ... }`
+    Contact(Contact),
+}
+
+/// A parameter: a number that stays the same during a run.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Documentation comment.
+    pub docs: String,
+    /// Its name (no dots).
+    pub name: Name,
+    /// Its unit.
+    pub unit: Unit,
+    /// Its default: an expression of numbers only.
+    pub default: Expression,
+    /// `, above E` or `, at least E`.
+    pub lower: Option<Bound>,
+    /// `, below E` or `, at most E`.
+    pub upper: Option<Bound>,
+}
+
+/// One end of a parameter's range.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// The end: an expression of numbers only.
+    pub value: Expression,
+    /// Whether the end itself is allowed (`at least`, `at most`).
+    pub included: bool,
+}
+
+/// An input: a function of time given at run time.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// Documentation comment.
+    pub docs: String,
+    /// Its name (no dots).
+    pub name: Name,
+    /// Its unit.
+    pub unit: Unit,
+}
+
+/// A name for an expression.
+#[derive(Clone, Debug)]
+pub struct Let {
+    /// Its name.
+    pub name: Name,
+    /// Its unit, checked against the value's when given.
+    pub unit: Option<Unit>,
+    /// Its value.
+    pub value: Expression,
+    /// The clause of a mechanism word that it stands for, if any.
+    pub clause: Option<Clause>,
+}
+
+/// A unit as written, `kg*m^2/s`: factors with their exponents (negative behind a `/`). `1` has none.
+#[derive(Clone, Debug)]
+pub struct Unit {
+    /// Unit symbol and exponent, in the order written.
+    pub factors: Vec<(Name, i32)>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Which law a junction obeys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JunctionKind {
+    /// Common effort, the flows balance.
+    Zero,
+    /// Common flow, the efforts balance.
+    One,
+}
+
+/// A junction.
+#[derive(Clone, Debug)]
+pub struct Junction {
+    /// 0 or 1.
+    pub kind: JunctionKind,
+    /// Its name.
+    pub name: Name,
+    /// 1, or 3 for a multibond junction.
+    pub cardinality: usize,
+    /// `electrical`, `translation`, `rotation`, `hydraulic`, `thermal`: fixes the units of effort and flow.
+    pub domain: Option<Name>,
+}
+
+/// What an element is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the field's own symbols")]
+pub enum ElementKind {
+    Se,
+    Sf,
+    I,
+    C,
+    R,
+    Tf,
+    Gy,
+    MSe,
+    MSf,
+    RSe,
+    Mtf,
+    Mgy,
+    Mr,
+}
+
+/// An element with its constitutive law.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// What it is.
+    pub kind: ElementKind,
+    /// Its name.
+    pub name: Name,
+    /// `(w)` or `(effort e)`: the law is an expression of this variable. Without it the law is linear in a parameter.
+    pub variable: Option<LawVariable>,
+    /// The law behind `=`; for a transformer or gyrator its modulus.
+    pub law: Expression,
+    /// `in R`: the law's tensor turns with this orientation.
+    pub frame: Option<Expression>,
+    /// `at E`: the displacement of a C is E, which the poses determine, and no state of its own.
+    pub displacement: Option<Expression>,
+    /// `start E`: displacement of a C, momentum of an I at t = 0.
+    pub start: Option<Expression>,
+    /// `energy E`: the stored energy of a nonlinear law.
+    pub energy: Option<Expression>,
+}
+
+/// The variable of a nonlinear law.
+#[derive(Clone, Debug)]
+pub struct LawVariable {
+    /// `effort` or `flow` in front of the name; without it an R's law is of its flow, a C's of its displacement, an I's of
+    /// its momentum.
+    pub role: Option<Role>,
+    /// The variable's name.
+    pub name: Name,
+}
+
+/// Effort or flow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the field's own words")]
+pub enum Role {
+    Effort,
+    Flow,
+}
+
+/// What a track follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrackKind {
+    /// The integral of a translational junction's flow, m.
+    Position,
+    /// The rotation matrix that a rotational junction's flow turns, body to inertial.
+    Orientation,
+}
+
+/// A kinematic state: where a junction has moved to.
+#[derive(Clone, Debug)]
+pub struct Track {
+    /// Position or orientation.
+    pub kind: TrackKind,
+    /// Its name.
+    pub name: Name,
+    /// The 1-junction that it follows.
+    pub junction: Name,
+    /// Its value at t = 0; zero or the identity when left out.
+    pub start: Option<Expression>,
+}
+
+/// A gap to be closed by the assembly of the start pose.
+#[derive(Clone, Debug)]
+pub struct Close {
+    /// The joint's name, for the message.
+    pub joint: Name,
+    /// The gap: scalar or vector, m or rad.
+    pub gap: Expression,
+}
+
+/// An observed output.
+#[derive(Clone, Debug)]
+pub struct Observation {
+    /// Its name; the expression's own text when left out.
+    pub name: Option<Name>,
+    /// Its unit, checked against the value's when given.
+    pub unit: Option<Unit>,
+    /// Its value: scalar, vector or matrix.
+    pub value: Expression,
+}
+
+/// A scene: one use of the mechanism, a type of its own.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Documentation comment.
+    pub docs: String,
+    /// The generated type's name.
+    pub name: Name,
+    /// What is watched.
+    pub observe: Vec<Observation>,
+    /// `tune { a, b }`: parameters that stay adjustable at run time. None: all of them.
+    pub tune: Option<Vec<Name>>,
+    /// `without { cut }`: joints, contacts, springs, drives, elements that are left out.
+    pub without: Vec<Name>,
+    /// `rigid joints;` or `rigid { pin_b }`.
+    pub rigid: Rigid,
+    /// `angles;`: orientations that turn about one axis only are integrated as angles.
+    pub angles: bool,
+    /// `expect planar;`, `expect states = 29;`
+    pub expect: Vec<Expectation>,
+}
+
+/// Which joints of a scene are rigid.
+#[derive(Clone, Debug)]
+pub enum Rigid {
+    /// None.
+    None,
+    /// `rigid joints;` with the word's span.
+    All(Span),
+    /// `rigid { a, b }`
+    Some(Vec<Name>),
+}
+
+/// What a scene asserts of its reduction.
+#[derive(Clone, Debug)]
+pub enum Expectation {
+    /// `expect planar;` with the word's span.
+    Planar(Span),
+    /// `expect states = N;` with the number's span.
+    States(usize, Span),
+}
+
+/// The inertial frame's named points.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    /// The word's span.
+    pub span: Span,
+    /// Points in inertial axes, m.
+    pub points: Vec<Point>,
+}
+
+/// A named point.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its name (no dots).
+    pub name: Name,
+    /// Its place in the body's axes from the body's origin, m.
+    pub place: Expression,
+}
+
+/// The gravity field.
+#[derive(Clone, Debug)]
+pub struct Gravity {
+    /// The word's span.
+    pub span: Span,
+    /// The acceleration, inertial axes, m/s^2.
+    pub acceleration: Expression,
+}
+
+/// A rigid body.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Its name (no dots).
+    pub name: Name,
+    /// Its parts; empty when the mass properties are given.
+    pub parts: Vec<Part>,
+    /// `density E;` of all parts without one of their own, kg/m^3.
+    pub density: Option<Expression>,
+    /// `mass E;`, kg.
+    pub mass: Option<Expression>,
+    /// `center E;` the centre of mass in the body's axes, m.
+    pub center: Option<Expression>,
+    /// `inertia E;` about the centre of mass in the body's axes, kg*m^2: three principal moments or a matrix.
+    pub inertia: Option<Expression>,
+    /// Named points.
+    pub points: Vec<Point>,
+    /// `start at E;` or `start POINT at E;`: the place of the body's origin, or of a point, at t = 0, m.
+    pub start_position: Option<(Option<Name>, Expression)>,
+    /// `start turned E;` the rotation matrix body to inertial at t = 0.
+    pub start_orientation: Option<Expression>,
+    /// `start velocity E;` of the centre of mass, inertial axes, m/s.
+    pub start_velocity: Option<Expression>,
+    /// `start spin E;` the angular velocity, inertial axes, rad/s.
+    pub start_spin: Option<Expression>,
+}
+
+/// A solid of a body.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// What it is.
+    pub shape: Shape,
+    /// `at E`: its centre in the body's axes, m; the origin when left out.
+    pub at: Option<Expression>,
+    /// `turned E`: its orientation in the body's axes; the identity when left out.
+    pub turned: Option<Expression>,
+    /// `density E`, kg/m^3.
+    pub density: Option<Expression>,
+    /// The word's span.
+    pub span: Span,
+}
+
+/// A solid's form.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// `cuboid [x, y, z]`: edges along the part's own axes, m.
+    Cuboid(Expression),
+    /// `cylinder radius E length E along z`, m.
+    Cylinder {
+        /// Radius, m.
+        radius: Expression,
+        /// Length along the axis, m.
+        length: Expression,
+        /// The axis.
+        axis: Axis,
+    },
+    /// `sphere radius E`, m.
+    Sphere(Expression),
+}
+
+/// An axis of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the field's own letters")]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// A joint's freedoms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turns about one axis.
+    Revolute(Axis),
+    /// Slides along one axis.
+    Prismatic(Axis),
+    /// Turns about a point.
+    Spherical,
+    /// Turns about and slides along one axis.
+    Cylindrical(Axis),
+    /// Turns about an axis of the first body and a perpendicular one of the second.
+    Universal(Axis, Axis),
+    /// No freedom.
+    Fixed,
+}
+
+/// The two ends of a joint, spring or contact: `(a.P -> b.Q)`; names with one dot, or a body's name for its origin.
+#[derive(Clone, Debug)]
+pub struct Ends {
+    /// The first end.
+    pub from: Name,
+    /// The second end: forces and relative motions are those of this end.
+    pub to: Name,
+}
+
+/// A compliant joint.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Its name (no dots).
+    pub name: Name,
+    /// Its freedoms.
+    pub kind: JointKind,
+    /// What it joins.
+    pub ends: Ends,
+    /// `stiffness E;` of the held translations, N/m: one number, or one per axis.
+    pub stiffness: Option<Expression>,
+    /// `damping E;`, N*s/m.
+    pub damping: Option<Expression>,
+    /// `tilt stiffness E;` of the held rotations, N*m/rad.
+    pub tilt_stiffness: Option<Expression>,
+    /// `tilt damping E;`, N*m*s/rad.
+    pub tilt_damping: Option<Expression>,
+    /// `frame inertial;`: held rotations are the integrals of the relative angular velocity in inertial axes.
+    pub inertial: bool,
+    /// `rigid;`: an ideal joint, without stiffness and damping; its reactions keep the held motions zero.
+    pub rigid: bool,
+}
+
+/// A spring and damper along the line between two points.
+#[derive(Clone, Debug)]
+pub struct Spring {
+    /// Its name (no dots).
+    pub name: Name,
+    /// What it joins.
+    pub ends: Ends,
+    /// `stiffness E;`, N/m.
+    pub stiffness: Option<Expression>,
+    /// `damping E;`, N*s/m.
+    pub damping: Option<Expression>,
+    /// `length E;` unloaded, m.
+    pub length: Option<Expression>,
+}
+
+/// What a drive prescribes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriveKind {
+    /// `torque = E`, N*m.
+    Torque,
+    /// `force = E`, N.
+    Force,
+    /// `speed = E { stiffness E; damping E; }`, rad/s or m/s.
+    Speed,
+}
+
+/// A source on a joint's free axis, on a body or on a body's point.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    /// Its name (no dots).
+    pub name: Name,
+    /// A joint, a body, or a point of a body.
+    pub target: Name,
+    /// What it prescribes.
+    pub kind: DriveKind,
+    /// Its value.
+    pub value: Expression,
+    /// `stiffness E;` of a speed drive's coupling.
+    pub stiffness: Option<Expression>,
+    /// `damping E;` of a speed drive's coupling.
+    pub damping: Option<Expression>,
+}
+
+/// A sliding contact: a point of the first body slides along a line of the second.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// Its name (no dots).
+    pub name: Name,
+    /// What touches.
+    pub ends: Ends,
+    /// The direction of the line in the second body's axes.
+    pub along: Axis,
+    /// The laws per axis of the second body.
+    pub laws: Vec<AxisLaw>,
+}
+
+/// One law of a contact's axis.
+#[derive(Clone, Debug)]
+pub struct AxisLaw {
+    /// The axis.
+    pub axis: Axis,
+    /// C or R.
+    pub kind: ElementKind,
+    /// The law's variable, for a nonlinear law.
+    pub variable: Option<LawVariable>,
+    /// The law, or the parameter of a linear one.
+    pub law: Expression,
+    /// Where the law starts.
+    pub span: Span,
+}
+
+/// An expression with its place.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    /// What it is.
+    pub kind: ExpressionKind,
+    /// The token to blame.
+    pub span: Span,
+}
+
+/// What an expression is.
+#[derive(Clone, Debug)]
+pub enum ExpressionKind {
+    /// A number; in a unit check it takes the unit that its place asks for.
+    Number(f64),
+    /// A name, possibly dotted, possibly with a component (`.x`) at the end.
+    Name(String),
+    /// `-a`
+    Negate(Box<Expression>),
+    /// `a + b - c` or `a * b / c`: operators that bind alike, from left to right. The first operand is neither, so that a chain
+    /// of any length is one level of the tree.
+    Chain(Box<Expression>, Vec<Operation>),
+    /// `f(a, b)`
+    Call(Name, Vec<Expression>),
+    /// `[a, b, c]`; a matrix is a vector of its rows.
+    Vector(Vec<Expression>),
+    /// `if a < b { c } else { d }`
+    If(Box<Choice>),
+}
+
+/// An `if`.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// The comparison.
+    pub comparison: Comparison,
+    /// Its left side.
+    pub left: Expression,
+    /// Its right side.
+    pub right: Expression,
+    /// The value where it holds.
+    pub then: Expression,
+    /// The value elsewhere.
+    pub otherwise: Expression,
+}
+
+/// What a chain does next.
+#[derive(Clone, Debug)]
+pub struct Operation {
+    /// The operator.
+    pub operator: BinaryOperator,
+    /// Where it stands.
+    pub span: Span,
+    /// Its right side.
+    pub operand: Expression,
+}
+
+impl Expression {
+    /// The value, where it is made of numbers only.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match &self.kind {
+            ExpressionKind::Number(value) => Some(*value),
+            ExpressionKind::Negate(inner) => Some(-inner.number()?),
+            ExpressionKind::Chain(first, rest) => rest.iter().try_fold(first.number()?, |value, operation| {
+                let right = operation.operand.number()?;
+                Some(match operation.operator {
+                    BinaryOperator::Add => value + right,
+                    BinaryOperator::Subtract => value - right,
+                    BinaryOperator::Multiply => value * right,
+                    BinaryOperator::Divide => value / right,
+                })
+            }),
+            _ => None,
+        }
+    }
+}
+
+/// The operator of an `if`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the field's own words")]
+pub enum Comparison {
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+}
+
+/// A binary operator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the field's own words")]
+pub enum BinaryOperator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+}

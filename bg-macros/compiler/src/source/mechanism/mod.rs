@@ -1,0 +1,352 @@
+//! Mechanism words to bond-graph words.
+//!
+//! In: one `ast::Graph`. Out: one `ast::Graph` in which bodies, joints, springs, drives, contacts, ground and gravity no
+//! longer occur. Every word stands for a fragment of the language itself, written below as its template; the user's
+//! expressions enter it as named `let`s, so that a fault in one of them is reported where the user wrote it.
+
+mod attachment;
+mod body;
+mod fault;
+mod joint;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use proc_macro2::{Group, Span, TokenStream, TokenTree};
+
+use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
+use crate::source::ast::{Axis, Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name, Point};
+use crate::source::clause::{Clause, Given};
+use crate::source::syntax;
+
+pub use fault::MechanismFault;
+
+/// Replaces every mechanism word by its fragment of multibond graph.
+///
+/// # Errors
+/// Unknown bodies and points, missing laws and masses: all of them at once.
+pub fn expand(source: &Graph) -> Staged<Graph> {
+    let mut expansion = Expansion::new(source);
+    expansion.run();
+    if expansion.faults.is_empty() {
+        Ok(Graph { items: expansion.items, ..source.clone() })
+    } else {
+        Err(expansion.faults)
+    }
+}
+
+/// The fixed body's name.
+const GROUND: &str = "ground";
+
+/// One end of a joint: expressions as text.
+struct End {
+    body: String,
+    /// The end's position, inertial axes.
+    position: String,
+    /// From the body's centre of mass to the end, inertial axes; none on the ground.
+    arm: Option<String>,
+}
+
+impl End {
+    /// The arm from this end's body to another place; none on the ground.
+    fn arm_to(&self, place: &str) -> Option<String> {
+        self.arm.as_ref().map(|_| format!("({place} - {}.position)", self.body))
+    }
+}
+
+/// The name of a body's origin, and the ground's, beside those of its points.
+const ORIGIN: &str = "origin";
+
+struct Expansion<'a> {
+    source: &'a Graph,
+    items: Vec<Item>,
+    bodies: BTreeMap<&'a str, &'a Body>,
+    joints: BTreeMap<&'a str, &'a Joint>,
+    ground: Option<&'a Ground>,
+    has_gravity: bool,
+    faults: Vec<Fault>,
+}
+
+impl<'a> Expansion<'a> {
+    fn new(source: &'a Graph) -> Self {
+        let mut expansion = Self {
+            source,
+            items: Vec::new(),
+            bodies: BTreeMap::new(),
+            joints: BTreeMap::new(),
+            ground: None,
+            has_gravity: false,
+            faults: Vec::new(),
+        };
+        let mut names: BTreeSet<&str> = BTreeSet::new();
+        let mut has_impulse = false;
+        for item in &source.items {
+            if let Some(name) = part_name(item)
+                && !names.insert(&name.text)
+            {
+                expansion.fault(name.span, &DeclaredTwice { name: name.text.clone() });
+            }
+            match item {
+                Item::Body(body) => {
+                    expansion.bodies.insert(&body.name.text, body);
+                }
+                Item::Joint(joint) => {
+                    expansion.joints.insert(&joint.name.text, joint);
+                }
+                Item::Ground(ground) => {
+                    let twice = expansion.ground.replace(ground).is_some();
+                    expansion.only_once(twice, ground.span, GROUND);
+                }
+                Item::Gravity(gravity) => {
+                    let twice = std::mem::replace(&mut expansion.has_gravity, true);
+                    expansion.only_once(twice, gravity.span, "gravity");
+                }
+                Item::Impulse(span) => {
+                    let twice = std::mem::replace(&mut has_impulse, true);
+                    expansion.only_once(twice, *span, "start impulse");
+                }
+                _ => {}
+            }
+        }
+        expansion
+    }
+
+    fn run(&mut self) {
+        if !self.bodies.is_empty() {
+            self.ground_words();
+        }
+        for item in &self.source.items {
+            match item {
+                Item::Ground(_) => {}
+                Item::Gravity(gravity) => {
+                    let clause = Clause::new("the gravity", 3).given(Given::Source);
+                    self.bind("gravity_field", "m/s^2", &gravity.acceleration, clause);
+                }
+                Item::Body(body) => self.body(body),
+                Item::Joint(joint) => self.joint(joint),
+                Item::Spring(spring) => self.spring(spring),
+                Item::Drive(drive) => self.drive(drive),
+                Item::Contact(contact) => self.contact(contact),
+                other => self.items.push(other.clone()),
+            }
+        }
+    }
+
+    fn only_once(&mut self, twice: bool, span: Span, word: &'static str) {
+        if twice {
+            self.fault(span, &MechanismFault::Twice { word });
+        }
+    }
+
+    fn fault(&mut self, span: Span, fault: &impl Explain) {
+        self.faults.push(Fault::new(span, fault));
+    }
+
+    /// The ground: a body whose flows are held at zero.
+    fn ground_words(&mut self) {
+        let span = self.ground.map_or_else(Span::call_site, |ground| ground.span);
+        self.text(
+            span,
+            "1 ground.translation[3]: translation; 1 ground.rotation[3]: rotation;
+             Sf ground.place = [0, 0, 0]; Sf ground.attitude = [0, 0, 0];
+             ground.place -> ground.translation; ground.attitude -> ground.rotation;
+             let ground.position: m = [0, 0, 0];
+             let ground.angular_velocity: rad/s = [0, 0, 0];
+             let ground.x_axis: 1 = [1, 0, 0]; let ground.y_axis: 1 = [0, 1, 0]; let ground.z_axis: 1 = [0, 0, 1];",
+        );
+        for point in self.ground.map_or(&[][..], |ground| &ground.points[..]) {
+            let name = &point.name.text;
+            let clause = Clause::new(format!("point `{name}` of the ground"), 3);
+            self.bind(&format!("ground.{name}.position"), "m", &point.place, clause);
+        }
+    }
+
+    /// Adds the items of a template, every token at `span`.
+    fn text(&mut self, span: Span, template: &str) {
+        self.items.extend(fragment(span, template));
+    }
+
+    /// `let NAME: UNIT = VALUE;` with the user's expression as the value, and what it must be.
+    fn bind(&mut self, name: &str, unit: &str, value: &Expression, clause: Clause) {
+        for item in fragment(value.span, &format!("let {name}: {unit} = 0;")) {
+            if let Item::Let(definition) = item {
+                let (value, clause) = (value.clone(), Some(clause.clone()));
+                self.items.push(Item::Let(Let { value, clause, ..definition }));
+            }
+        }
+    }
+
+    /// Adds the `let` of a template, with what it must be.
+    fn text_as(&mut self, span: Span, template: &str, clause: &Clause) {
+        for item in fragment(span, template) {
+            self.items.push(match item {
+                Item::Let(definition) => Item::Let(Let { clause: Some(clause.clone()), ..definition }),
+                other => other,
+            });
+        }
+    }
+
+    /// The two ends of a joint, or nothing where one is unknown.
+    fn ends(&mut self, name: &Name, ends: &Ends) -> Option<(End, End)> {
+        let (from, to) = (self.end(&ends.from), self.end(&ends.to));
+        let (from, to) = (from?, to?);
+        if from.body == to.body {
+            self.fault(ends.to.span, &MechanismFault::SameBody { name: name.text.clone(), body: to.body });
+            return None;
+        }
+        Some((from, to))
+    }
+
+    /// `body.POINT`, or `body` or `body.origin` for its origin.
+    fn end(&mut self, name: &Name) -> Option<End> {
+        let (body, point) = match name.text.split_once('.') {
+            Some((body, point)) => (body, Some(point)),
+            None => (name.text.as_str(), None),
+        };
+        let points = if body == GROUND {
+            self.ground.map_or(&[][..], |ground| &ground.points[..])
+        } else if let Some(definition) = self.bodies.get(body) {
+            &definition.points[..]
+        } else {
+            let near = near_miss(body, self.bodies.keys().copied().chain([GROUND])).map(str::to_owned);
+            self.fault(name.span, &MechanismFault::UnknownBody { name: body.to_owned(), near });
+            return None;
+        };
+        let point = point.filter(|&point| point != ORIGIN || is_among(points, point));
+        if let Some(point) = point
+            && !is_among(points, point)
+        {
+            self.fault(name.span, &unknown_point(body, point, points));
+            return None;
+        }
+        let place = match (point, body == GROUND) {
+            (Some(point), _) => format!("{body}.{point}"),
+            (None, true) => {
+                return Some(End { body: body.to_owned(), position: "ground.position".to_owned(), arm: None });
+            }
+            (None, false) => format!("{body}.origin"),
+        };
+        let arm = (body != GROUND).then(|| format!("{place}.arm"));
+        Some(End { body: body.to_owned(), position: format!("{place}.position"), arm })
+    }
+
+    /// The force junction between two bodies with its lever arms: 1 `NAME.slip` has the relative velocity of the second
+    /// end, 0 `NAME.linear` the force on it.
+    fn force_junction(&mut self, span: Span, name: &str, (a, b): (&End, &End), arms: (Option<String>, Option<String>)) {
+        self.text(
+            span,
+            &format!(
+                "0 {name}.linear[3]: translation; 1 {name}.slip[3]: translation;
+                 {name}.slip -> {name}.linear;
+                 {}.translation -> {name}.linear -> {}.translation;
+                 let {name}.force = {name}.linear.effort;",
+                a.body, b.body
+            ),
+        );
+        if let Some(arm) = arms.0 {
+            self.text(
+                span,
+                &format!(
+                    "MTF {name}.arm_a(w) = cross(w, {arm}); {}.rotation -> {name}.arm_a -> {name}.linear;",
+                    a.body
+                ),
+            );
+        }
+        if let Some(arm) = arms.1 {
+            self.text(
+                span,
+                &format!(
+                    "MTF {name}.arm_b(effort f) = cross({arm}, f); {name}.linear -> {name}.arm_b -> {}.rotation;",
+                    b.body
+                ),
+            );
+        }
+    }
+}
+
+/// Whether a point of this name is declared.
+fn is_among(points: &[Point], name: &str) -> bool {
+    points.iter().any(|point| point.name.text == name)
+}
+
+/// A point that the body does not have, with those that it has.
+fn unknown_point(body: &str, point: &str, points: &[Point]) -> MechanismFault {
+    let known: Vec<String> = points.iter().map(|point| point.name.text.clone()).chain([ORIGIN.to_owned()]).collect();
+    let near = near_miss(point, known.iter().map(String::as_str)).map(str::to_owned);
+    MechanismFault::UnknownPoint { body: body.to_owned(), point: point.to_owned(), known, near }
+}
+
+/// The name of a mechanism's part.
+fn part_name(item: &Item) -> Option<&Name> {
+    match item {
+        Item::Body(body) => Some(&body.name),
+        Item::Joint(joint) => Some(&joint.name),
+        Item::Spring(spring) => Some(&spring.name),
+        Item::Drive(drive) => Some(&drive.name),
+        Item::Contact(contact) => Some(&contact.name),
+        _ => None,
+    }
+}
+
+/// Whether an expression is written as three components.
+fn is_vector(expression: &Expression) -> bool {
+    matches!(expression.kind, crate::source::ast::ExpressionKind::Vector(_))
+}
+
+/// All three axes.
+const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+
+impl Axis {
+    /// The axis' letter.
+    #[must_use]
+    pub fn letter(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
+
+    /// The next axis in cyclic order.
+    #[must_use]
+    pub fn next(self) -> Self {
+        match self {
+            Self::X => Self::Y,
+            Self::Y => Self::Z,
+            Self::Z => Self::X,
+        }
+    }
+}
+
+/// The items of a template, every token at `span`.
+fn fragment(span: Span, template: &str) -> Vec<Item> {
+    let tokens: TokenStream = format!("graph Template {{ {template} }}").parse().expect("a template is tokens");
+    let mut source = syntax::parse(at(tokens, span)).unwrap_or_else(|faults| {
+        let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
+        panic!("a template is valid source: {template}\n{}", faults.join("\n"))
+    });
+    source.graphs.pop().map(|graph| graph.items).unwrap_or_default()
+}
+
+/// An expression of a template.
+fn expression(span: Span, template: &str) -> Expression {
+    let items = fragment(span, &format!("let template = {template};"));
+    let value = items.into_iter().find_map(|item| if let Item::Let(found) = item { Some(found.value) } else { None });
+    value.expect("the template is one let")
+}
+
+fn at(tokens: TokenStream, span: Span) -> TokenStream {
+    tokens
+        .into_iter()
+        .map(|token| match token {
+            TokenTree::Group(group) => {
+                let mut group = Group::new(group.delimiter(), at(group.stream(), span));
+                group.set_span(span);
+                TokenTree::Group(group)
+            }
+            mut other => {
+                other.set_span(span);
+                other
+            }
+        })
+        .collect()
+}

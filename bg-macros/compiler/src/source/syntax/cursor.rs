@@ -1,0 +1,354 @@
+//! Walks over the tokens of one block, notes faults, and finds the next statement behind one.
+//!
+//! In: one level of tokens. Out: names, groups and the ends of statements, for the modules that know the grammar. A
+//! reader that fails has noted its fault, once; the statement's driver skips to the end of the statement (panic mode
+//! with `;` and closing braces as synchronizing tokens, Aho, Lam, Sethi, Ullman, Compilers, section 4.1.4).
+
+use std::cell::RefCell;
+
+use proc_macro2::{Delimiter, Span, TokenStream};
+
+use super::{
+    SyntaxFault,
+    token::{Token, TokenKind, joined, tokens},
+};
+use crate::fault::{Fault, Faults};
+use crate::source::ast::Name;
+
+/// The proof that a fault has been noted.
+#[derive(Debug)]
+pub(super) struct Reported(());
+
+/// What a reader gives; when it fails, its fault has been noted.
+pub(super) type Parsed<T> = Result<T, Reported>;
+
+/// A kind of block: what it is called and what stands in it.
+#[derive(Debug)]
+pub(super) struct Place {
+    /// `a graph`, for messages.
+    pub name: &'static str,
+    /// The words that begin a statement.
+    pub words: &'static [&'static str],
+    /// Whether its entries are separated by `,` or `;`, rather than each ended by `;`.
+    pub list: bool,
+}
+
+/// The words of statements that end with their block.
+const BLOCKS: [&str; 12] =
+    ["graph", "observe", "scene", "ground", "body", "joint", "spring", "drive", "contact", "tune", "without", "rigid"];
+
+/// A walk over one level of tokens.
+#[derive(Debug)]
+pub(super) struct Cursor<'f> {
+    tokens: Vec<Token>,
+    at: usize,
+    /// The first token of the present statement.
+    head: usize,
+    /// The closing brace; the last token of the macro call.
+    close: Span,
+    place: &'static Place,
+    /// How deeply the expression at hand is nested.
+    pub depth: usize,
+    faults: &'f RefCell<Faults>,
+}
+
+impl<'f> Cursor<'f> {
+    /// A walk over the whole macro call.
+    pub fn new(stream: TokenStream, place: &'static Place, faults: &'f RefCell<Faults>) -> Self {
+        let tokens = tokens(stream);
+        let close = tokens.last().map_or_else(Span::call_site, |last| last.span);
+        Self { tokens, at: 0, head: 0, close, place, depth: 0, faults }
+    }
+
+    /// The token ahead.
+    pub fn peek(&self) -> Option<&TokenKind> {
+        self.ahead(0)
+    }
+
+    /// The token `distance` tokens ahead.
+    pub fn ahead(&self, distance: usize) -> Option<&TokenKind> {
+        self.tokens.get(self.at + distance).map(|token| &token.kind)
+    }
+
+    /// Whether no token is left.
+    pub fn ended(&self) -> bool {
+        self.at >= self.tokens.len()
+    }
+
+    /// Where the token ahead stands, or the block's end.
+    pub fn span(&self) -> Span {
+        self.tokens.get(self.at).map_or(self.close, |token| token.span)
+    }
+
+    /// Where the token behind stands.
+    pub fn behind(&self) -> Span {
+        self.at.checked_sub(1).and_then(|last| self.tokens.get(last)).map_or(self.close, |token| token.span)
+    }
+
+    /// Steps over the token ahead and gives its place.
+    pub fn advance(&mut self) -> Span {
+        let span = self.span();
+        self.at += 1;
+        span
+    }
+
+    /// The word ahead.
+    pub fn word(&self) -> Option<&str> {
+        self.word_ahead(0)
+    }
+
+    /// The word `distance` tokens ahead.
+    pub fn word_ahead(&self, distance: usize) -> Option<&str> {
+        match self.ahead(distance) {
+            Some(TokenKind::Word(word)) => Some(word),
+            _ => None,
+        }
+    }
+
+    /// Whether the token `distance` tokens ahead is `symbol`.
+    pub fn symbol_ahead(&self, distance: usize, symbol: &str) -> bool {
+        matches!(self.ahead(distance), Some(TokenKind::Symbol(found)) if *found == symbol)
+    }
+
+    /// Whether the token ahead is `symbol`.
+    pub fn is(&self, symbol: &str) -> bool {
+        self.symbol_ahead(0, symbol)
+    }
+
+    /// Steps over `symbol` when it is ahead.
+    pub fn eat(&mut self, symbol: &str) -> Option<Span> {
+        self.is(symbol).then(|| self.advance())
+    }
+
+    /// Steps over `word` when it is ahead.
+    pub fn eat_word(&mut self, word: &str) -> Option<Span> {
+        (self.word() == Some(word)).then(|| self.advance())
+    }
+
+    /// Steps over `symbol`, which must be ahead.
+    pub fn expect(&mut self, symbol: &str) -> Parsed<Span> {
+        self.eat(symbol).ok_or_else(|| self.unexpected(&format!("`{symbol}`")))
+    }
+
+    /// Steps over `word`, which must be ahead.
+    pub fn expect_word(&mut self, word: &str) -> Parsed<Span> {
+        self.eat_word(word).ok_or_else(|| self.unexpected(&format!("`{word}`")))
+    }
+
+    /// The delimiter of the group ahead.
+    pub fn delimiter(&self) -> Option<Delimiter> {
+        match self.peek() {
+            Some(TokenKind::Group(group)) => Some(group.delimiter()),
+            _ => None,
+        }
+    }
+
+    /// Enters the group ahead when it has this delimiter.
+    pub fn enter(&mut self, delimiter: Delimiter, place: &'static Place) -> Option<Self> {
+        let inner = match self.peek() {
+            Some(TokenKind::Group(group)) if group.delimiter() == delimiter => Self {
+                tokens: tokens(group.stream()),
+                at: 0,
+                head: 0,
+                close: group.span_close(),
+                place,
+                depth: self.depth,
+                faults: self.faults,
+            },
+            _ => return None,
+        };
+        self.advance();
+        Some(inner)
+    }
+
+    /// Enters the group that must be ahead; `form` shows it to the user.
+    pub fn group(&mut self, delimiter: Delimiter, form: &str, place: &'static Place) -> Parsed<Self> {
+        self.enter(delimiter, place).ok_or_else(|| self.unexpected(form))
+    }
+
+    /// Sees to it that a group has been read to its end.
+    pub fn finish(&self, expected: &str) -> Parsed<()> {
+        if self.ended() { Ok(()) } else { Err(self.unexpected(expected)) }
+    }
+
+    /// Notes a fault at `span`.
+    pub fn note(&self, span: Span, kind: &SyntaxFault) -> Reported {
+        self.faults.borrow_mut().push(Fault::new(span, kind));
+        Reported(())
+    }
+
+    /// The token ahead as a message names it.
+    pub fn found(&self) -> String {
+        self.peek().map_or_else(|| format!("the end of {}", self.place.name), TokenKind::described)
+    }
+
+    /// Notes that the token ahead is not what it should be.
+    pub fn unexpected(&self, expected: &str) -> Reported {
+        self.note(self.span(), &SyntaxFault::Unexpected { found: self.found(), expected: expected.into() })
+    }
+
+    /// Notes that the token ahead begins no statement of this block.
+    pub fn unknown_statement(&self) -> Reported {
+        let word = match self.peek() {
+            Some(TokenKind::Word(word)) => self.whole_clause(word),
+            Some(TokenKind::Literal(literal)) => literal.to_string(),
+            _ => return self.unexpected(&format!("a statement of {}", self.place.name)),
+        };
+        let fault = SyntaxFault::UnknownStatement { place: self.place.name, word, known: self.place.words };
+        self.note(self.span(), &fault)
+    }
+
+    /// The word ahead, with the next one where the language knows it only in front of another: `tilt stifness`.
+    fn whole_clause(&self, word: &str) -> String {
+        let is_first =
+            self.place.words.iter().any(|known| known.split_once(' ').is_some_and(|(first, _)| first == word));
+        match self.word_ahead(1) {
+            Some(next) if is_first => format!("{word} {next}"),
+            _ => word.to_owned(),
+        }
+    }
+
+    /// Fills an empty slot; notes a clause that stands twice.
+    pub fn fill<T>(&self, slot: &mut Option<T>, value: T, clause: &str, span: Span) {
+        if slot.is_some() {
+            self.note(span, &SyntaxFault::Duplicate { clause: format!("`{clause}`") });
+        } else {
+            *slot = Some(value);
+        }
+    }
+}
+
+/// Names.
+impl Cursor<'_> {
+    /// A name, possibly dotted; `what` says whose.
+    pub fn name(&mut self, what: &str) -> Parsed<Name> {
+        let Some(first) = self.word().map(str::to_owned) else {
+            return Err(self.unexpected(&format!("a name for {what}")));
+        };
+        if is_reserved(&first) {
+            return Err(self.note(self.span(), &SyntaxFault::ReservedName { name: first }));
+        }
+        let start = self.advance();
+        self.dotted(first, start)
+    }
+
+    /// The rest of a name behind its first word.
+    pub fn dotted(&mut self, mut text: String, start: Span) -> Parsed<Name> {
+        let mut end = start;
+        while self.eat(".").is_some() {
+            let Some(segment) = self.word() else {
+                return Err(self.unexpected("a component such as `x`"));
+            };
+            text.push('.');
+            text.push_str(segment);
+            end = self.advance();
+        }
+        Ok(Name { text, span: joined(start, end) })
+    }
+
+    /// A name without dots; `what` says whose.
+    pub fn plain_name(&mut self, what: &'static str) -> Parsed<Name> {
+        let name = self.name(what)?;
+        if !name.text.contains('.') {
+            return Ok(name);
+        }
+        let instead = name.text.replace('.', "_");
+        Err(self.note(name.span, &SyntaxFault::DottedName { what, name: name.text, instead }))
+    }
+
+    /// The names of `{ a, b }`, without those that are none.
+    pub fn names(&mut self, what: &'static str) -> Vec<Name> {
+        let mut names = Vec::new();
+        self.statements(|entry| {
+            names.push(entry.name(what)?);
+            entry.end_statement("`,`");
+            Ok(())
+        });
+        names
+    }
+
+    /// Whether a name and a half arrow are ahead.
+    pub fn starts_chain(&self) -> bool {
+        let mut distance = 0;
+        while self.word_ahead(distance).is_some() {
+            if !self.symbol_ahead(distance + 1, ".") {
+                return self.symbol_ahead(distance + 1, "->");
+            }
+            distance += 2;
+        }
+        false
+    }
+
+    /// Whether `0 NAME` or `1 NAME` is ahead.
+    pub fn starts_junction(&self) -> bool {
+        let number = self.peek().and_then(TokenKind::number);
+        number.is_some_and(|text| text == "0" || text == "1") && self.word_ahead(1).is_some()
+    }
+}
+
+/// Statements.
+impl Cursor<'_> {
+    /// Reads entry for entry to the block's end; behind a faulty one it goes on with the next.
+    pub fn statements(&mut self, mut statement: impl FnMut(&mut Self) -> Parsed<()>) {
+        while !self.ended() {
+            if self.eat_separator() {
+                continue;
+            }
+            self.head = self.at;
+            if statement(self).is_err() {
+                self.skip_statement();
+            }
+            if self.at == self.head {
+                self.advance();
+            }
+        }
+    }
+
+    /// Steps over the statement's end, or notes what stands there; `expected` says what else could.
+    pub fn end_statement(&mut self, expected: &str) {
+        if self.eat_separator() || (self.place.list && self.ended()) {
+            return;
+        }
+        if self.ended() || self.starts_statement() {
+            let last = self.at.checked_sub(1).and_then(|last| self.tokens.get(last));
+            let behind = last.map_or_else(String::new, |token| token.kind.described());
+            self.note(self.behind(), &SyntaxFault::MissingSemicolon { behind });
+            return;
+        }
+        self.unexpected(&if expected.is_empty() { "`;`".to_owned() } else { format!("{expected} or `;`") });
+        self.skip_statement();
+    }
+
+    /// Whether a statement of this block begins here.
+    pub fn starts_statement(&self) -> bool {
+        let begins = |word: &str| self.place.words.iter().any(|known| known.split(' ').next() == Some(word));
+        !self.place.list && (self.word().is_some_and(begins) || self.starts_chain() || self.starts_junction())
+    }
+
+    /// Steps over `;`, in a list also over `,`.
+    fn eat_separator(&mut self) -> bool {
+        self.eat(";").is_some() || (self.place.list && self.eat(",").is_some())
+    }
+
+    /// Skips to the statement's end: behind its `;`, or behind its block.
+    fn skip_statement(&mut self) {
+        let head = match self.tokens.get(self.head).map(|token| &token.kind) {
+            Some(TokenKind::Word(word)) => word.as_str(),
+            _ => "",
+        };
+        let ends_with_block = BLOCKS.contains(&head) || !self.place.words.contains(&head);
+        while !self.ended() && !self.eat_separator() {
+            let block = self.delimiter() == Some(Delimiter::Brace);
+            self.advance();
+            let goes_on = self.word() == Some("else") || ["+", "-", "*", "/"].iter().any(|symbol| self.is(symbol));
+            if block && ends_with_block && !goes_on {
+                return;
+            }
+        }
+    }
+}
+
+/// Whether Rust reserves `word`, so that no item or field can have it as its name.
+pub(super) fn is_reserved(word: &str) -> bool {
+    word.starts_with("r#") || syn::parse_str::<syn::Ident>(word).is_err()
+}

@@ -1,0 +1,336 @@
+//! The mechanism words: ground, gravity, body, joint, spring, drive, contact.
+//!
+//! In: statements of a graph. Out: their [`Item`]s, which `mechanism::expand` turns into bond-graph words.
+
+use proc_macro2::{Delimiter, Span};
+
+use super::{
+    SyntaxFault,
+    cursor::{Cursor, Parsed, Place},
+    statement::OPERATOR,
+    words::{AXES, DRIVES, value_of, word_of},
+};
+use crate::source::ast::{
+    Axis, AxisLaw, Contact, Drive, DriveKind, ElementKind, Ends, Expression, Gravity, Ground, Item, Joint, JointKind,
+    Point, Spring,
+};
+
+/// The block of the ground.
+const GROUND: Place = Place { name: "`ground`", words: &["point"], list: false };
+
+/// The block of a joint.
+const JOINT: Place = Place {
+    name: "a joint",
+    words: &["stiffness", "damping", "tilt stiffness", "tilt damping", "frame inertial"],
+    list: false,
+};
+
+/// The block of a spring.
+const SPRING: Place = Place { name: "a spring", words: &["stiffness", "damping", "length"], list: false };
+
+/// The block of a speed drive.
+const DRIVE: Place = Place { name: "a speed drive", words: &["stiffness", "damping"], list: false };
+
+/// The block of a contact.
+const CONTACT: Place = Place { name: "a contact", words: &["x", "y", "z"], list: false };
+
+/// Inside of `(a.P -> b.Q)`.
+const ENDS: Place = Place { name: "the parentheses", words: &[], list: false };
+
+/// The kinds of joints.
+const JOINTS: &[&str] = &["revolute", "prismatic", "spherical", "cylindrical", "universal", "fixed"];
+
+/// The kinds of drives.
+const DRIVE_WORDS: &[&str] = &["torque", "force", "speed"];
+
+/// The laws of a contact.
+const CONTACT_LAWS: &[&str] = &["C", "R"];
+
+/// A clause's words and the slot of its value.
+type Slot<'s> = (&'static str, &'s mut Option<Expression>);
+
+impl Cursor<'_> {
+    /// The statement that begins with `word`.
+    pub fn mechanism_item(&mut self, word: &str) -> Parsed<Item> {
+        match word {
+            "ground" => self.ground().map(Item::Ground),
+            "gravity" => self.gravity().map(Item::Gravity),
+            "start" => self.impulse().map(Item::Impulse),
+            "body" => self.body().map(Item::Body),
+            "joint" => self.joint().map(Item::Joint),
+            "spring" => self.spring().map(Item::Spring),
+            "drive" => self.drive().map(Item::Drive),
+            "contact" => self.contact().map(Item::Contact),
+            _ => Err(self.unknown_statement()),
+        }
+    }
+
+    /// `ground { point P = E; }`
+    fn ground(&mut self) -> Parsed<Ground> {
+        let span = self.advance();
+        let mut block = self.group(Delimiter::Brace, "`{ ... }`", &GROUND)?;
+        let mut points = Vec::new();
+        block.statements(|entry| {
+            if entry.word() != Some("point") {
+                return Err(entry.unknown_statement());
+            }
+            points.push(entry.point()?);
+            Ok(())
+        });
+        Ok(Ground { span, points })
+    }
+
+    /// `point B = E;`
+    pub fn point(&mut self) -> Parsed<Point> {
+        self.advance();
+        let name = self.plain_name("the point")?;
+        self.expect("=")?;
+        let place = self.expression()?;
+        self.end_statement(OPERATOR);
+        Ok(Point { name, place })
+    }
+
+    /// `gravity E;`
+    fn gravity(&mut self) -> Parsed<Gravity> {
+        let span = self.advance();
+        let acceleration = self.expression()?;
+        self.end_statement(OPERATOR);
+        Ok(Gravity { span, acceleration })
+    }
+
+    /// `start impulse;`
+    fn impulse(&mut self) -> Parsed<Span> {
+        self.advance();
+        let span = self.expect_word("impulse")?;
+        self.end_statement("");
+        Ok(span)
+    }
+
+    /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`
+    fn joint(&mut self) -> Parsed<Joint> {
+        self.advance();
+        let name = self.plain_name("the joint")?;
+        self.expect(":")?;
+        let kind = self.joint_kind()?;
+        let ends = self.ends()?;
+        let mut joint = Joint {
+            name,
+            kind,
+            ends,
+            stiffness: None,
+            damping: None,
+            tilt_stiffness: None,
+            tilt_damping: None,
+            inertial: false,
+            rigid: false,
+        };
+        let (mut inertial, mut rigid) = (None, None);
+        self.block_or_semicolon(&JOINT, |entry| {
+            if entry.word() == Some("frame") {
+                return entry.inertial_frame(&mut inertial);
+            }
+            if entry.word() == Some("rigid") {
+                let span = entry.advance();
+                entry.fill(&mut rigid, (), "rigid", span);
+                entry.end_statement("");
+                return Ok(());
+            }
+            entry.setting(&mut [
+                ("stiffness", &mut joint.stiffness),
+                ("damping", &mut joint.damping),
+                ("tilt stiffness", &mut joint.tilt_stiffness),
+                ("tilt damping", &mut joint.tilt_damping),
+            ])
+        });
+        joint.inertial = inertial.is_some();
+        joint.rigid = rigid.is_some();
+        Ok(joint)
+    }
+
+    /// `frame inertial;`
+    fn inertial_frame(&mut self, slot: &mut Option<()>) -> Parsed<()> {
+        let span = self.advance();
+        self.expect_word("inertial")?;
+        self.fill(slot, (), "frame", span);
+        self.end_statement("");
+        Ok(())
+    }
+
+    /// `revolute z`, `universal x y`, `spherical`
+    fn joint_kind(&mut self) -> Parsed<JointKind> {
+        let Some(word) = self.word().map(str::to_owned) else { return Err(self.unexpected("a joint kind")) };
+        if !JOINTS.contains(&word.as_str()) {
+            let fault = SyntaxFault::UnknownKind { what: "a joint kind", word, known: JOINTS };
+            return Err(self.note(self.span(), &fault));
+        }
+        let span = self.advance();
+        Ok(match word.as_str() {
+            "revolute" => JointKind::Revolute(self.axis(&word, span)?),
+            "prismatic" => JointKind::Prismatic(self.axis(&word, span)?),
+            "cylindrical" => JointKind::Cylindrical(self.axis(&word, span)?),
+            "universal" => {
+                let first = self.axis(&word, span)?;
+                JointKind::Universal(first, self.axis(&format!("{word} {}", word_of(&AXES, &first)), span)?)
+            }
+            "spherical" => JointKind::Spherical,
+            _ => JointKind::Fixed,
+        })
+    }
+
+    /// The axis behind the word `of`, which stands at `span`.
+    pub fn axis(&mut self, of: &str, span: Span) -> Parsed<Axis> {
+        let axis = self.word().and_then(|word| value_of(&AXES, word));
+        let Some(axis) = axis else {
+            let at = if self.word().is_some() { self.span() } else { span };
+            return Err(self.note(at, &SyntaxFault::MissingAxis { of: of.into(), found: self.found() }));
+        };
+        self.advance();
+        Ok(axis)
+    }
+
+    /// `(a.P -> b.Q)`
+    fn ends(&mut self) -> Parsed<Ends> {
+        let mut inner = self.group(Delimiter::Parenthesis, "`(a.P -> b.Q)`", &ENDS)?;
+        let ends = inner.both_ends()?;
+        inner.finish("`)`")?;
+        Ok(ends)
+    }
+
+    /// `a.P -> b.Q`
+    fn both_ends(&mut self) -> Parsed<Ends> {
+        let from = self.name("the first end")?;
+        self.expect("->")?;
+        Ok(Ends { from, to: self.name("the second end")? })
+    }
+
+    /// `{ ... }`, or `;` when there is nothing to say.
+    fn block_or_semicolon(&mut self, place: &'static Place, statement: impl FnMut(&mut Self) -> Parsed<()>) {
+        match self.enter(Delimiter::Brace, place) {
+            Some(mut block) => block.statements(statement),
+            None => self.end_statement("`{ ... }`"),
+        }
+    }
+
+    /// `WORD E;` for one of the slots, whose clauses may have several words.
+    pub fn setting(&mut self, slots: &mut [Slot]) -> Parsed<()> {
+        let ahead = |clause: &str| clause.split(' ').enumerate().all(|(i, word)| self.word_ahead(i) == Some(word));
+        let Some((clause, slot)) = slots.iter_mut().find(|(clause, _)| ahead(clause)) else {
+            return Err(self.unknown_statement());
+        };
+        let span = self.span();
+        for _ in clause.split(' ') {
+            self.advance();
+        }
+        let value = self.expression()?;
+        self.fill(slot, value, clause, span);
+        self.end_statement(OPERATOR);
+        Ok(())
+    }
+
+    /// `spring NAME (a.P -> b.Q) { ... }`
+    fn spring(&mut self) -> Parsed<Spring> {
+        self.advance();
+        let name = self.plain_name("the spring")?;
+        let ends = self.ends()?;
+        let mut spring = Spring { name, ends, stiffness: None, damping: None, length: None };
+        self.block_or_semicolon(&SPRING, |entry| {
+            entry.setting(&mut [
+                ("stiffness", &mut spring.stiffness),
+                ("damping", &mut spring.damping),
+                ("length", &mut spring.length),
+            ])
+        });
+        Ok(spring)
+    }
+
+    /// `drive NAME on TARGET torque = E;`
+    fn drive(&mut self) -> Parsed<Drive> {
+        self.advance();
+        let name = self.plain_name("the drive")?;
+        self.expect_word("on")?;
+        let target = self.name("the drive's target")?;
+        let kind = self.drive_kind()?;
+        self.expect("=")?;
+        let value = self.expression()?;
+        let mut drive = Drive { name, target, kind, value, stiffness: None, damping: None };
+        if kind == DriveKind::Speed {
+            self.coupling(&mut drive);
+        } else if self.delimiter() == Some(Delimiter::Brace) {
+            return Err(self.unexpected("`;`, since only a speed drive has a coupling"));
+        } else {
+            self.end_statement(OPERATOR);
+        }
+        Ok(drive)
+    }
+
+    /// `torque`, `force` or `speed`
+    fn drive_kind(&mut self) -> Parsed<DriveKind> {
+        let Some(word) = self.word().map(str::to_owned) else {
+            return Err(self.unexpected("`torque`, `force` or `speed`"));
+        };
+        let Some(kind) = value_of(&DRIVES, &word) else {
+            let fault = SyntaxFault::UnknownKind { what: "what a drive prescribes", word, known: DRIVE_WORDS };
+            return Err(self.note(self.span(), &fault));
+        };
+        self.advance();
+        Ok(kind)
+    }
+
+    /// `{ stiffness E; damping E; }`, or `;`
+    fn coupling(&mut self, drive: &mut Drive) {
+        self.block_or_semicolon(&DRIVE, |entry| {
+            entry.setting(&mut [("stiffness", &mut drive.stiffness), ("damping", &mut drive.damping)])
+        });
+    }
+
+    /// `contact NAME (a.P -> b.Q along x) { ... }`
+    fn contact(&mut self) -> Parsed<Contact> {
+        self.advance();
+        let name = self.plain_name("the contact")?;
+        let mut inner = self.group(Delimiter::Parenthesis, "`(a.P -> b.Q along x)`", &ENDS)?;
+        let ends = inner.both_ends()?;
+        let word = inner.expect_word("along")?;
+        let along = inner.axis("along", word)?;
+        inner.finish("`)`")?;
+        let mut laws = Vec::new();
+        let mut block = self.group(Delimiter::Brace, "`{ ... }`", &CONTACT)?;
+        block.statements(|entry| entry.axis_laws(&mut laws));
+        Ok(Contact { name, ends, along, laws })
+    }
+
+    /// `y: C = E, R(v) = E;`
+    fn axis_laws(&mut self, laws: &mut Vec<AxisLaw>) -> Parsed<()> {
+        let Some(axis) = self.word().and_then(|word| value_of(&AXES, word)) else {
+            return Err(self.unknown_statement());
+        };
+        self.advance();
+        self.expect(":")?;
+        loop {
+            laws.push(self.axis_law(axis)?);
+            if self.eat(",").is_none() {
+                break;
+            }
+        }
+        self.end_statement("an operator, `,`");
+        Ok(())
+    }
+
+    /// `R(v) = E`
+    fn axis_law(&mut self, axis: Axis) -> Parsed<AxisLaw> {
+        let kind = match self.word() {
+            Some("C") => ElementKind::C,
+            Some("R") => ElementKind::R,
+            Some(word) => {
+                let fault =
+                    SyntaxFault::UnknownKind { what: "a contact's law", word: word.into(), known: CONTACT_LAWS };
+                return Err(self.note(self.span(), &fault));
+            }
+            None => return Err(self.unexpected("`C` or `R`")),
+        };
+        let span = self.advance();
+        let variable = self.law_variable()?;
+        self.expect("=")?;
+        let law = self.expression()?;
+        Ok(AxisLaw { axis, kind, variable, law, span })
+    }
+}

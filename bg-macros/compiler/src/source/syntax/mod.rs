@@ -1,0 +1,77 @@
+//! Reads the tokens of a macro call as the tree of [`crate::source::ast`].
+//!
+//! In: a [`TokenStream`]. Out: a [`Source`], or every fault of syntax at once. Tokens no longer occur behind it.
+//! Method: recursive descent over statements that begin with a word of their own, precedence climbing for expressions;
+//! a faulty statement is noted and skipped.
+
+use std::cell::RefCell;
+
+use proc_macro2::{Delimiter, TokenStream};
+
+use crate::fault::{Fault, Staged};
+use crate::source::ast::{Graph, Source};
+use cursor::{Cursor, Parsed, Place};
+
+mod body;
+mod cursor;
+mod documentation;
+mod expression;
+mod fault;
+mod mechanism;
+mod scene;
+mod statement;
+mod token;
+mod unit;
+pub(crate) mod words;
+
+#[cfg(test)]
+mod tests;
+
+pub use expression::{DEEPEST, MOST_NESTED};
+pub use fault::SyntaxFault;
+
+/// The macro call's outermost level.
+const CALL: Place = Place { name: "the macro call", words: &["graph"], list: false };
+
+/// The graphs of a macro call, or all of its faults of syntax.
+///
+/// # Errors
+/// Every fault of syntax, in the order of the source.
+pub fn parse(tokens: TokenStream) -> Staged<Source> {
+    let (source, faults) = parse_leniently(tokens);
+    if faults.is_empty() { Ok(source) } else { Err(faults) }
+}
+
+/// What could be read of a macro call, and its faults of syntax.
+///
+/// A parameter, input, scene or graph whose name could be read is there, if need be with the unit `1`, the default 0 or
+/// without items.
+#[must_use]
+pub fn parse_leniently(tokens: TokenStream) -> (Source, Vec<Fault>) {
+    let faults = RefCell::new(Vec::new());
+    let mut graphs = Vec::new();
+    let mut call = Cursor::new(tokens, &CALL, &faults);
+    call.statements(|call| graph(call, &mut graphs));
+    if graphs.is_empty() && faults.borrow().is_empty() {
+        call.note(call.span(), &SyntaxFault::NoGraph);
+    }
+    (Source { graphs }, faults.into_inner())
+}
+
+/// `pub graph NAME { ... }`
+fn graph(call: &mut Cursor, graphs: &mut Vec<Graph>) -> Parsed<()> {
+    let docs = call.documentation();
+    let visibility = call.visibility()?;
+    if call.eat_word("graph").is_none() {
+        let is_private = matches!(visibility, syn::Visibility::Inherited);
+        return Err(if is_private { call.unknown_statement() } else { call.unexpected("`graph`") });
+    }
+    let name = call.plain_name("the graph")?;
+    let block = call.group(Delimiter::Brace, "`{ ... }`", &statement::GRAPH);
+    let (items, read) = match block {
+        Ok(block) => (statement::items(block), Ok(())),
+        Err(reported) => (Vec::new(), Err(reported)),
+    };
+    graphs.push(Graph { docs: docs.text, visibility, name, items });
+    read
+}

@@ -1,0 +1,182 @@
+//! Scenes and what they watch.
+//!
+//! In: `observe { ... }` and `scene NAME { ... }`. Out: [`Observation`]s and a [`Scene`].
+
+use proc_macro2::Delimiter;
+
+use super::{
+    SyntaxFault,
+    cursor::{Cursor, Parsed, Place},
+    token::TokenKind,
+};
+use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene};
+
+/// The block of a scene.
+const SCENE: Place =
+    Place { name: "a scene", words: &["observe", "tune", "without", "rigid", "angles", "expect"], list: false };
+
+/// `observe { ... }`
+const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
+
+/// `tune { ... }` and its like.
+const NAMES: Place = Place { name: "the list", words: &[], list: true };
+
+/// What a scene can expect.
+const EXPECTATIONS: &[&str] = &["planar", "states"];
+
+/// A block of names, for messages.
+const LIST: &str = "`{ NAME, NAME }`";
+
+impl Cursor<'_> {
+    /// `observe { NAME: UNIT = E; E }`
+    pub fn observe(&mut self) -> Parsed<Vec<Observation>> {
+        self.advance();
+        let mut block = self.group(Delimiter::Brace, "`{ ... }`", &OBSERVE)?;
+        let mut observations = Vec::new();
+        block.statements(|entry| {
+            observations.push(observation(entry)?);
+            entry.end_statement("an operator, `,`");
+            Ok(())
+        });
+        Ok(observations)
+    }
+
+    /// `scene NAME { ... }`
+    pub fn scene(&mut self, docs: String, items: &mut Vec<Item>) -> Parsed<()> {
+        self.advance();
+        let name = self.plain_name("the scene")?;
+        let mut scene = Scene {
+            docs,
+            name,
+            observe: Vec::new(),
+            tune: None,
+            without: Vec::new(),
+            rigid: Rigid::None,
+            angles: false,
+            expect: Vec::new(),
+        };
+        let block = self.group(Delimiter::Brace, "`{ ... }`", &SCENE);
+        let read = block.map(|mut block| {
+            let mut filled = Filled::default();
+            block.statements(|entry| entry.scene_entry(&mut scene, &mut filled));
+        });
+        items.push(Item::Scene(scene));
+        read
+    }
+
+    /// One statement of a scene.
+    fn scene_entry(&mut self, scene: &mut Scene, filled: &mut Filled) -> Parsed<()> {
+        let span = self.span();
+        match self.word() {
+            Some("observe") => {
+                self.fill(&mut filled.observe, (), "observe", span);
+                let observations = self.observe()?;
+                scene.observe.extend(observations);
+            }
+            Some("tune") => {
+                let names = self.name_list("a parameter")?;
+                self.fill(&mut scene.tune, names, "tune", span);
+            }
+            Some("without") => {
+                let names = self.name_list("what is left out")?;
+                scene.without.extend(names);
+            }
+            Some("rigid") => {
+                self.fill(&mut filled.rigid, (), "rigid", span);
+                scene.rigid = self.rigid()?;
+            }
+            Some("angles") => {
+                self.fill(&mut filled.angles, (), "angles", span);
+                self.advance();
+                self.end_statement("");
+                scene.angles = true;
+            }
+            Some("expect") => {
+                let expectation = self.expectation()?;
+                scene.expect.push(expectation);
+            }
+            _ => return Err(self.unknown_statement()),
+        }
+        Ok(())
+    }
+
+    /// `tune { a, b }` or `tune a, b;`
+    fn name_list(&mut self, what: &'static str) -> Parsed<Vec<Name>> {
+        self.advance();
+        if let Some(mut block) = self.enter(Delimiter::Brace, &NAMES) {
+            return Ok(block.names(what));
+        }
+        if self.word().is_none() {
+            return Err(self.unexpected(LIST));
+        }
+        let mut names = vec![self.name(what)?];
+        while self.eat(",").is_some() {
+            names.push(self.name(what)?);
+        }
+        self.end_statement("`,`");
+        Ok(names)
+    }
+
+    /// `rigid joints;` or `rigid { a, b }`
+    fn rigid(&mut self) -> Parsed<Rigid> {
+        self.advance();
+        if let Some(span) = self.eat_word("joints") {
+            self.end_statement("");
+            return Ok(Rigid::All(span));
+        }
+        let mut block = self.group(Delimiter::Brace, "`joints` or `{ NAME, NAME }`", &NAMES)?;
+        Ok(Rigid::Some(block.names("a joint")))
+    }
+
+    /// `expect planar;` or `expect states = 29;`
+    fn expectation(&mut self) -> Parsed<Expectation> {
+        self.advance();
+        let Some(word) = self.word().map(str::to_owned) else { return Err(self.unexpected("`planar` or `states`")) };
+        let span = self.span();
+        if self.eat_word("planar").is_some() {
+            self.end_statement("");
+            return Ok(Expectation::Planar(span));
+        }
+        if self.eat_word("states").is_none() {
+            let fault = SyntaxFault::UnknownKind { what: "an expectation", word, known: EXPECTATIONS };
+            return Err(self.note(span, &fault));
+        }
+        self.expect("=")?;
+        let states = self.peek().and_then(TokenKind::number).and_then(|digits| digits.parse().ok());
+        let Some(states) = states else { return Err(self.unexpected("a whole number")) };
+        let span = self.advance();
+        self.end_statement("");
+        Ok(Expectation::States(states, span))
+    }
+}
+
+/// Which clauses of a scene have occurred that leave no trace when they are empty.
+#[derive(Default)]
+struct Filled {
+    observe: Option<()>,
+    rigid: Option<()>,
+    angles: Option<()>,
+}
+
+/// `NAME: UNIT = E`, `NAME = E` or `E`
+fn observation(entry: &mut Cursor) -> Parsed<Observation> {
+    if !starts_named(entry) {
+        return Ok(Observation { name: None, unit: None, value: entry.expression()? });
+    }
+    let name = Some(entry.name("the output")?);
+    let unit = if entry.eat(":").is_some() { Some(entry.unit()?) } else { None };
+    entry.expect("=")?;
+    Ok(Observation { name, unit, value: entry.expression()? })
+}
+
+/// Whether a name with `:` or `=` behind it is ahead.
+fn starts_named(entry: &Cursor) -> bool {
+    let mut distance = 0;
+    while entry.word_ahead(distance).is_some() {
+        if !entry.symbol_ahead(distance + 1, ".") {
+            return entry.symbol_ahead(distance + 1, ":") || entry.symbol_ahead(distance + 1, "=");
+        }
+        distance += 2;
+    }
+    false
+}

@@ -1,0 +1,331 @@
+//! The bond-graph words: parameters, inputs, junctions, elements, chains of half arrows, tracks.
+//!
+//! In: the block of a graph. Out: its [`Item`]s; the mechanism words and scenes are read by their own modules.
+
+use proc_macro2::Delimiter;
+
+use super::{
+    SyntaxFault,
+    cursor::{Cursor, Parsed, Place},
+    token::TokenKind,
+    words::{ELEMENTS, ROLES, TRACKS, value_of},
+};
+use crate::fault::near_miss;
+use crate::source::ast::{
+    Bound, Close, Element, ElementKind, Expression, ExpressionKind, Input, Item, Junction, JunctionKind, LawVariable,
+    Let, Name, Parameter, Track, TrackKind, Unit,
+};
+
+/// The block of a graph.
+pub(super) const GRAPH: Place = Place {
+    name: "a graph",
+    words: &[
+        "param",
+        "1",
+        "R",
+        "body",
+        "scene",
+        "input",
+        "let",
+        "0",
+        "Se",
+        "Sf",
+        "I",
+        "C",
+        "TF",
+        "GY",
+        "MSe",
+        "MSf",
+        "rSe",
+        "MTF",
+        "MGY",
+        "MR",
+        "position",
+        "orientation",
+        "close",
+        "observe",
+        "ground",
+        "gravity",
+        "start",
+        "joint",
+        "spring",
+        "drive",
+        "contact",
+    ],
+    list: false,
+};
+
+/// Inside of `[3]` and `(effort u)`.
+const GROUP: Place = Place { name: "the group", words: &[], list: false };
+
+/// What may follow an expression, besides `;`.
+pub(super) const OPERATOR: &str = "an operator";
+
+/// The items of a graph's block.
+pub(super) fn items(mut block: Cursor) -> Vec<Item> {
+    let mut items = Vec::new();
+    block.statements(|cursor| item(cursor, &mut items));
+    items
+}
+
+/// One statement; only a junction statement gives more than one item.
+fn item(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
+    let docs = cursor.documentation();
+    if let Some(span) = docs.span
+        && (cursor.starts_chain() || !matches!(cursor.word(), Some("param" | "input" | "scene")))
+    {
+        cursor.note(span, &SyntaxFault::MisplacedDocumentation);
+    }
+    if cursor.ended() {
+        return Ok(());
+    }
+    if cursor.starts_chain() {
+        return chain(cursor, items);
+    }
+    if matches!(cursor.peek().and_then(TokenKind::number).as_deref(), Some("0" | "1")) {
+        return junctions(cursor, items);
+    }
+    match cursor.word() {
+        Some("param") => parameter(cursor, docs.text, items),
+        Some("input") => input(cursor, docs.text, items),
+        Some("scene") => cursor.scene(docs.text, items),
+        Some(word) if is_broken_chain(cursor, word) => chain(cursor, items),
+        Some(word) => {
+            let word = word.to_owned();
+            let item = bond_graph_item(cursor, &word)?;
+            items.push(item);
+            Ok(())
+        }
+        None => Err(cursor.unknown_statement()),
+    }
+}
+
+/// A statement of one item that begins with `word`.
+fn bond_graph_item(cursor: &mut Cursor, word: &str) -> Parsed<Item> {
+    if let Some(kind) = value_of(&ELEMENTS, word) {
+        return element(cursor, kind).map(Item::Element);
+    }
+    if let Some(kind) = value_of(&TRACKS, word) {
+        return track(cursor, kind).map(Item::Track);
+    }
+    match word {
+        "let" => binding(cursor).map(Item::Let),
+        "close" => close(cursor).map(Item::Close),
+        "observe" => cursor.observe().map(Item::Observe),
+        _ => cursor.mechanism_item(word),
+    }
+}
+
+/// `param NAME: UNIT = DEFAULT, above 0;`
+fn parameter(cursor: &mut Cursor, docs: String, items: &mut Vec<Item>) -> Parsed<()> {
+    cursor.advance();
+    let name = cursor.plain_name("the parameter")?;
+    let span = name.span;
+    let unit = Unit { factors: Vec::new(), span };
+    let default = Expression { kind: ExpressionKind::Number(0.0), span };
+    let mut parameter = Parameter { docs, name, unit, default, lower: None, upper: None };
+    let read = quantity(cursor, &mut parameter);
+    items.push(Item::Parameter(parameter));
+    read?;
+    cursor.end_statement("an operator, `,`");
+    Ok(())
+}
+
+/// A parameter's unit, default and range.
+fn quantity(cursor: &mut Cursor, parameter: &mut Parameter) -> Parsed<()> {
+    parameter.unit = declared_unit(cursor, "parameter", &parameter.name)?;
+    if cursor.eat("=").is_none() {
+        let fault = SyntaxFault::MissingDefault { name: parameter.name.text.clone() };
+        return Err(cursor.note(parameter.unit.span, &fault));
+    }
+    parameter.default = cursor.expression()?;
+    while cursor.eat(",").is_some() {
+        bound(cursor, parameter)?;
+    }
+    Ok(())
+}
+
+/// `above 0`, `at most 1`
+fn bound(cursor: &mut Cursor, parameter: &mut Parameter) -> Parsed<()> {
+    const EXPECTED: &str = "`above`, `at least`, `below` or `at most`";
+    let span = cursor.span();
+    let (is_lower, included) = match (cursor.word(), cursor.word_ahead(1)) {
+        (Some("above"), _) => (true, false),
+        (Some("below"), _) => (false, false),
+        (Some("at"), Some("least")) => (true, true),
+        (Some("at"), Some("most")) => (false, true),
+        _ => return Err(cursor.unexpected(EXPECTED)),
+    };
+    for _ in 0..=usize::from(included) {
+        cursor.advance();
+    }
+    let bound = Bound { value: cursor.expression()?, included };
+    let (slot, end) = if is_lower { (&mut parameter.lower, "lower") } else { (&mut parameter.upper, "upper") };
+    if slot.is_some() {
+        cursor.note(span, &SyntaxFault::Duplicate { clause: format!("{end} bound") });
+    }
+    *slot = Some(bound);
+    Ok(())
+}
+
+/// `input NAME: UNIT;`
+fn input(cursor: &mut Cursor, docs: String, items: &mut Vec<Item>) -> Parsed<()> {
+    cursor.advance();
+    let name = cursor.plain_name("the input")?;
+    let span = name.span;
+    let unit = declared_unit(cursor, "input", &name);
+    let (unit, read) = match unit {
+        Ok(unit) => (unit, Ok(())),
+        Err(reported) => (Unit { factors: Vec::new(), span }, Err(reported)),
+    };
+    items.push(Item::Input(Input { docs, name, unit }));
+    read?;
+    cursor.end_statement("`*`, `/`");
+    Ok(())
+}
+
+/// `: UNIT`, which must be there.
+fn declared_unit(cursor: &mut Cursor, what: &'static str, name: &Name) -> Parsed<Unit> {
+    let colon = cursor.eat(":");
+    let missing = cursor.is("=") || cursor.is(";") || cursor.ended() || colon.is_none() && cursor.starts_statement();
+    if missing {
+        return Err(cursor.note(name.span, &SyntaxFault::MissingUnit { what, name: name.text.clone() }));
+    }
+    if colon.is_none() {
+        return Err(cursor.unexpected("`:`"));
+    }
+    cursor.unit()
+}
+
+/// `let NAME: UNIT = EXPRESSION;`
+fn binding(cursor: &mut Cursor) -> Parsed<Let> {
+    cursor.advance();
+    let name = cursor.name("the value")?;
+    let unit = if cursor.eat(":").is_some() { Some(cursor.unit()?) } else { None };
+    cursor.expect("=")?;
+    let value = cursor.expression()?;
+    cursor.end_statement(OPERATOR);
+    Ok(Let { name, unit, value, clause: None })
+}
+
+/// Whether a name is ahead that is no slip of a statement's word, and behind it a symbol where `->` could be meant.
+fn is_broken_chain(cursor: &Cursor, word: &str) -> bool {
+    let is_symbol = matches!(cursor.ahead(1), Some(TokenKind::Symbol(symbol)) if *symbol != ":");
+    is_symbol
+        && near_miss(word, GRAPH.words.iter().copied().filter(|known| known.len() > 1)).is_none()
+        && value_of(&ELEMENTS, word).is_none()
+}
+
+/// `a -> b -> c;`
+fn chain(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
+    let mut names = vec![cursor.name("a junction or element")?];
+    cursor.expect("->")?;
+    names.push(cursor.name("a junction or element")?);
+    while cursor.eat("->").is_some() {
+        names.push(cursor.name("a junction or element")?);
+    }
+    items.push(Item::Chain(names));
+    cursor.end_statement("`->`");
+    Ok(())
+}
+
+/// `1 NAME, NAME[3]: rotation;`
+fn junctions(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
+    let zero = cursor.peek().and_then(TokenKind::number).is_some_and(|digit| digit == "0");
+    let kind = if zero { JunctionKind::Zero } else { JunctionKind::One };
+    cursor.advance();
+    loop {
+        let name = cursor.name("the junction")?;
+        let cardinality = cardinality(cursor)?;
+        let domain = if cursor.eat(":").is_some() { Some(cursor.name("the domain")?) } else { None };
+        items.push(Item::Junction(Junction { kind, name, cardinality, domain }));
+        if cursor.eat(",").is_none() {
+            break;
+        }
+    }
+    cursor.end_statement("`,`");
+    Ok(())
+}
+
+/// `[3]`, or nothing for a scalar junction.
+fn cardinality(cursor: &mut Cursor) -> Parsed<usize> {
+    let Some(mut inner) = cursor.enter(Delimiter::Bracket, &GROUP) else { return Ok(1) };
+    let cardinality = match inner.peek().and_then(TokenKind::number).as_deref() {
+        Some("1") => 1,
+        Some("3") => 3,
+        _ => return Err(inner.note(inner.span(), &SyntaxFault::Cardinality { found: inner.found() })),
+    };
+    inner.advance();
+    inner.finish("`]`")?;
+    Ok(cardinality)
+}
+
+/// `R NAME(w) = LAW in R start E;`
+fn element(cursor: &mut Cursor, kind: ElementKind) -> Parsed<Element> {
+    if cursor.word_ahead(1).is_none() {
+        cursor.advance();
+        return Err(cursor.unexpected("a name for the element"));
+    }
+    cursor.advance();
+    let name = cursor.name("the element")?;
+    let variable = cursor.law_variable()?;
+    cursor.expect("=")?;
+    let law = cursor.expression()?;
+    let mut element = Element { kind, name, variable, law, frame: None, displacement: None, start: None, energy: None };
+    while clause(cursor, &mut element)? {}
+    cursor.end_statement("an operator, `in`, `at`, `start`, `energy`");
+    Ok(element)
+}
+
+/// One clause behind a law; false when none is ahead.
+fn clause(cursor: &mut Cursor, element: &mut Element) -> Parsed<bool> {
+    let (word, slot) = match cursor.word() {
+        Some("in") => ("in", &mut element.frame),
+        Some("at") => ("at", &mut element.displacement),
+        Some("start") => ("start", &mut element.start),
+        Some("energy") => ("energy", &mut element.energy),
+        _ => return Ok(false),
+    };
+    let span = cursor.advance();
+    let value = cursor.expression()?;
+    cursor.fill(slot, value, word, span);
+    Ok(true)
+}
+
+impl Cursor<'_> {
+    /// `(w)` or `(effort e)`, or nothing for a linear law.
+    pub fn law_variable(&mut self) -> Parsed<Option<LawVariable>> {
+        let Some(mut inner) = self.enter(Delimiter::Parenthesis, &GROUP) else { return Ok(None) };
+        let role = match (inner.word(), inner.word_ahead(1)) {
+            (Some(word), Some(_)) => value_of(&ROLES, word),
+            _ => None,
+        };
+        if role.is_some() {
+            inner.advance();
+        }
+        let name = inner.plain_name("the law's variable")?;
+        inner.finish("`)`")?;
+        Ok(Some(LawVariable { role, name }))
+    }
+}
+
+/// `position NAME of JUNCTION start E;`
+fn track(cursor: &mut Cursor, kind: TrackKind) -> Parsed<Track> {
+    cursor.advance();
+    let name = cursor.name("the track")?;
+    cursor.expect_word("of")?;
+    let junction = cursor.name("the junction")?;
+    let start = if cursor.eat_word("start").is_some() { Some(cursor.expression()?) } else { None };
+    cursor.end_statement(if start.is_some() { OPERATOR } else { "`start`" });
+    Ok(Track { kind, name, junction, start })
+}
+
+/// `close NAME = E;`
+fn close(cursor: &mut Cursor) -> Parsed<Close> {
+    cursor.advance();
+    let joint = cursor.name("the joint")?;
+    cursor.expect("=")?;
+    let gap = cursor.expression()?;
+    cursor.end_statement(OPERATOR);
+    Ok(Close { joint, gap })
+}

@@ -1,0 +1,76 @@
+//! Units: `kg*m^2/s`, `1/s`, `1`.
+//!
+//! In: the tokens behind a `:`. Out: a [`Unit`]; whether its symbols are known is for a later stage.
+
+use super::{
+    SyntaxFault,
+    cursor::{Cursor, Parsed, Reported},
+    token::{TokenKind, joined},
+};
+use crate::source::ast::{Name, Unit};
+
+impl Cursor<'_> {
+    /// A unit; each `/` is for the one factor behind it.
+    pub fn unit(&mut self) -> Parsed<Unit> {
+        let start = self.span();
+        let mut end = start;
+        let mut factors = Vec::new();
+        if self.peek().and_then(TokenKind::number).as_deref() == Some("1") {
+            self.advance();
+        } else {
+            factors.push(self.unit_factor(1)?);
+            end = self.behind();
+        }
+        while let Some(sign) = self.unit_separator() {
+            self.advance();
+            factors.push(self.unit_factor(sign)?);
+            end = self.behind();
+        }
+        self.end_unit()?;
+        Ok(Unit { factors, span: joined(start, end) })
+    }
+
+    /// The sign that the separator ahead gives to the exponent behind it.
+    fn unit_separator(&self) -> Option<i32> {
+        match self.peek() {
+            Some(TokenKind::Symbol("*")) => Some(1),
+            Some(TokenKind::Symbol("/")) => Some(-1),
+            _ => None,
+        }
+    }
+
+    /// `m^2`
+    fn unit_factor(&mut self, sign: i32) -> Parsed<(Name, i32)> {
+        let Some(text) = self.word().map(str::to_owned) else { return Err(self.not_a_unit()) };
+        let span = self.advance();
+        let exponent = if self.eat("^").is_some() { self.unit_exponent()? } else { 1 };
+        Ok((Name { text, span }, sign * exponent))
+    }
+
+    /// `2`, `-1`
+    fn unit_exponent(&mut self) -> Parsed<i32> {
+        let sign = if self.eat("-").is_some() { -1 } else { 1 };
+        let digits = self.peek().and_then(TokenKind::number);
+        let Some(exponent) = digits.and_then(|digits| digits.parse::<u8>().ok()) else {
+            return Err(self.not_a_unit());
+        };
+        self.advance();
+        Ok(sign * i32::from(exponent))
+    }
+
+    /// Refuses what looks like a further factor without a separator.
+    fn end_unit(&self) -> Parsed<()> {
+        match self.peek() {
+            Some(TokenKind::Symbol("." | "^" | "**" | "-" | "+")) => Err(self.not_a_unit()),
+            Some(TokenKind::Word(_) | TokenKind::Literal(_) | TokenKind::Group(_)) if !self.starts_statement() => {
+                Err(self.not_a_unit())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Notes that the token ahead does not belong in a unit.
+    fn not_a_unit(&self) -> Reported {
+        self.note(self.span(), &SyntaxFault::NotAUnit { found: self.found() })
+    }
+}

@@ -1,0 +1,205 @@
+//! What joints hold: the motions that are zero in a state that fits, and what the reactions of rigid joints change.
+//!
+//! In: residual sinks, gaps to be closed, start values. Out: [`Slip`]s, the unknowns that are velocities.
+
+use std::collections::BTreeSet;
+
+use super::Kind;
+use super::signals::Signals;
+use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute, substitute_switched};
+use crate::graph::NodeId;
+use crate::source::ast::ElementKind;
+
+/// A motion that a joint holds.
+#[derive(Clone, Debug)]
+pub struct Slip {
+    /// The joint, or a residual sink that belongs to none.
+    pub joint: String,
+    /// `in x`, `about x` and so on; empty where there is one direction only or none is known.
+    pub direction: String,
+    /// The unit of the flow.
+    pub unit: String,
+    /// The relative flow: zero in a state that fits.
+    pub flow: Id,
+}
+
+/// What joints hold at any state. The parts of rigid joints are known once the reactions are solved for.
+#[derive(Clone, Debug, Default)]
+pub struct Holding {
+    /// The motions that rigid joints hold, each with a reaction.
+    pub rigid: Vec<Slip>,
+    /// Those that compliant joints hold, of the joints whose motion at the start depends on a guessed velocity.
+    pub compliant: Vec<Slip>,
+    /// How much each reaction changes the rate of each rigid flow: symmetric, the lower triangle by rows.
+    pub matrix: Vec<Vec<Id>>,
+    /// The momenta that reactions change: the state, and its rate by one unit of each reaction.
+    pub moves: Vec<(usize, Vec<Id>)>,
+}
+
+impl Holding {
+    /// Every expression: the rigid flows, the compliant ones, the matrix, then for each reaction what it moves.
+    #[must_use]
+    pub fn entries(&self) -> Vec<Id> {
+        let flows = self.rigid.iter().chain(&self.compliant).map(|slip| slip.flow);
+        let moves = (0..self.rigid.len()).flat_map(|k| self.moves.iter().map(move |(_, moves)| moves[k]));
+        flows.chain(self.matrix.iter().flatten().copied()).chain(moves).collect()
+    }
+
+    /// Replaces symbols and decides switches everywhere.
+    pub fn replace(&mut self, pool: &mut Pool, replace: &dyn Fn(Symbol) -> Option<Id>, branch: &dyn Fn(u32) -> Branch) {
+        let flows = self.rigid.iter_mut().chain(&mut self.compliant).map(|slip| &mut slip.flow);
+        let moves = self.moves.iter_mut().flat_map(|(_, moves)| moves);
+        let roots: Vec<&mut Id> = flows.chain(self.matrix.iter_mut().flatten()).chain(moves).collect();
+        let before: Vec<Id> = roots.iter().map(|id| **id).collect();
+        let after = substitute_switched(pool, &before, replace, branch);
+        roots.into_iter().zip(after).for_each(|(root, id)| *root = id);
+    }
+
+    /// Whether there is nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rigid.is_empty() && self.compliant.is_empty()
+    }
+
+    /// Forgets what needs a state or switch that goes: where a reaction acts on something that stays, all that it is
+    /// solved from stays as well.
+    pub fn prune(&mut self, pool: &Pool, states: &[bool], switches: &[bool]) {
+        let stays = |id: Id| {
+            pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
+                Node::Symbol(Symbol::State(state)) => states[*state as usize],
+                Node::Select { switch, .. } => switches[*switch as usize],
+                _ => true,
+            })
+        };
+        let zero = pool.zero();
+        let entry = |i: usize, j: usize| self.matrix[i.max(j)][i.min(j)];
+        let kept: Vec<bool> = (0..self.rigid.len())
+            .map(|i| {
+                stays(self.rigid[i].flow)
+                    && (0..self.rigid.len()).all(|j| stays(entry(i, j)))
+                    && self.moves.iter().all(|(state, moves)| moves[i] == zero || states[*state] && stays(moves[i]))
+            })
+            .collect();
+        let keep = |items: &mut Vec<Id>| filter(items, &kept);
+        filter(&mut self.matrix, &kept);
+        self.matrix.iter_mut().for_each(keep);
+        self.moves.iter_mut().for_each(|(_, moves)| keep(moves));
+        self.moves.retain(|(_, moves)| moves.iter().any(|&id| id != zero));
+        filter(&mut self.rigid, &kept);
+        self.compliant.retain(|slip| stays(slip.flow));
+    }
+
+    /// Gives the states that reactions change their new numbers; those without one are gone.
+    pub fn renumber(&mut self, to: &dyn Fn(usize) -> Option<usize>) {
+        let moves = std::mem::take(&mut self.moves);
+        self.moves = moves.into_iter().filter_map(|(state, moves)| Some((to(state)?, moves))).collect();
+    }
+}
+
+/// The items whose place is kept; a row of a triangle has fewer places.
+fn filter<T>(items: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    items.retain(|_| *kept.next().expect("a mark for each"));
+}
+
+impl Signals<'_> {
+    /// The joint of a residual sink: the one to be closed whose name the sink's begins with, or the sink itself.
+    pub(super) fn joint_of(&self, sink: NodeId) -> &str {
+        let name = &self.graph.node(sink).name.text;
+        let joints = self.graph.closes.iter().map(|close| close.joint.text.as_str());
+        let of_sink =
+            |joint: &&str| name.strip_prefix(*joint).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+        joints.filter(of_sink).max_by_key(|joint| joint.len()).unwrap_or(name)
+    }
+
+    /// Whether a joint to be closed has residual sinks.
+    pub(super) fn is_rigid(&self, joint: &str) -> bool {
+        self.reactions.keys().any(|&sink| self.joint_of(sink) == joint)
+    }
+
+    /// The direction of a component of a residual sink's bond, in words.
+    pub(super) fn direction_of(&self, sink: NodeId, component: usize) -> String {
+        let node = self.graph.node(sink);
+        let bond = self.graph.bond(node.bonds[0]);
+        let axis = if bond.cardinality == 3 { Some(["x", "y", "z"][component]) } else { named_axis(&node.name.text) };
+        in_words(axis.unwrap_or_default(), &bond.flow_unit())
+    }
+
+    /// The motions of the compliant joints that a guessed velocity changes at the start.
+    pub(super) fn compliant_slips(&mut self, speeds: &[usize]) -> Vec<Slip> {
+        let graph = self.graph;
+        let speeds: BTreeSet<usize> = speeds.iter().copied().collect();
+        if speeds.is_empty() {
+            return Vec::new();
+        }
+        let seeds = self.rate_seeds(&[]);
+        let starts: Vec<Id> = self.states.iter().map(|state| state.start).collect();
+        let mut slips = Vec::new();
+        for close in &graph.closes {
+            if self.is_rigid(&close.joint.text) {
+                continue;
+            }
+            let gap = self.evaluate(&close.gap, None);
+            let flows = derivative(&mut self.pool, &gap.0, &seeds);
+            let unit = if close.dimension == crate::graph::units::Dimension::NONE { "rad/s" } else { "m/s" };
+            for (component, flow) in flows.iter().enumerate() {
+                let axis = if flows.len() == 1 { "" } else { ["x", "y", "z"][component] };
+                let (joint, unit) = (close.joint.text.clone(), unit.to_owned());
+                slips.push(Slip { joint, direction: in_words(axis, &unit), unit, flow: *flow });
+            }
+        }
+        let flows: Vec<Id> = slips.iter().map(|slip| slip.flow).collect();
+        let at_start = substitute(&mut self.pool, &flows, &|symbol| match symbol {
+            Symbol::State(index) => starts.get(index as usize).copied(),
+            _ => None,
+        });
+        let is_guessed = |id: Id| {
+            let symbols = self.pool.symbols(&[id]);
+            symbols.into_iter().any(|symbol| matches!(symbol, Symbol::Unknown(k) if speeds.contains(&(k as usize))))
+        };
+        let moved: BTreeSet<String> =
+            slips.iter().zip(at_start).filter(|(_, id)| is_guessed(*id)).map(|(slip, _)| slip.joint.clone()).collect();
+        slips.retain(|slip| moved.contains(&slip.joint));
+        slips
+    }
+
+    /// The unknowns of the start that are velocities: momenta depend on them, displacements and poses do not.
+    pub(super) fn speeds(&self) -> Vec<usize> {
+        let unknowns = |is_momentum: bool| -> BTreeSet<usize> {
+            let starts = self.states.iter().filter(|state| (state.origin.kind() == Kind::Momentum) == is_momentum);
+            let starts: Vec<Id> = starts.map(|state| state.start).collect();
+            let symbols = self.pool.symbols(&starts).into_iter();
+            symbols.filter_map(|symbol| if let Symbol::Unknown(k) = symbol { Some(k as usize) } else { None }).collect()
+        };
+        unknowns(true).difference(&unknowns(false)).copied().collect()
+    }
+
+    /// The gaps of residual sinks that belong to no joint to be closed.
+    pub(super) fn gaps_of_sinks(&mut self) -> Vec<(String, String, Vec<Id>)> {
+        let graph = self.graph;
+        let mut gaps = Vec::new();
+        for sink in self.elements(|kind| kind == ElementKind::RSe) {
+            let joint = self.joint_of(sink).to_owned();
+            let Some(gap) = graph.element(sink).and_then(|element| element.displacement.as_ref()) else { continue };
+            if graph.closes.iter().all(|close| close.joint.text != joint) {
+                let unit = graph.bond(graph.node(sink).bonds[0]).displacement_unit();
+                gaps.push((joint, unit, self.evaluate(gap, None).0));
+            }
+        }
+        gaps
+    }
+}
+
+/// The axis that stands in a scalar sink's name, as in `pin.tilt_x_reaction`.
+fn named_axis(sink: &str) -> Option<&'static str> {
+    let name = sink.strip_suffix("_reaction")?;
+    ["x", "y", "z"].into_iter().find(|axis| name.strip_suffix(axis).is_some_and(|rest| rest.ends_with(['.', '_'])))
+}
+
+fn in_words(axis: &str, unit: &str) -> String {
+    match (axis, unit) {
+        ("", _) => String::new(),
+        (_, "rad/s") => format!("about {axis}"),
+        _ => format!("in {axis}"),
+    }
+}

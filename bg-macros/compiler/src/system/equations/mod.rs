@@ -1,0 +1,172 @@
+//! State equations: what every bond carries, as scalar expressions of states, parameters, inputs and time.
+//!
+//! In: [`CausalGraph`]. Out: [`StateEquations`]. No longer occurs: bonds, ports and junctions; scalars only from here.
+//! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one expression;
+//! storages in integral causality turn theirs into rates.
+
+mod energy;
+mod fallible;
+mod fault;
+mod holding;
+mod kinematics;
+mod laws;
+mod loops;
+mod origin;
+mod reactions;
+mod requirements;
+mod signals;
+mod storage;
+mod terms;
+#[cfg(test)]
+mod tests;
+mod text;
+mod value;
+
+use crate::expr::{Id, Pool, Symbol, text as expression_text};
+use crate::fault::Staged;
+use crate::graph::causality::CausalGraph;
+use crate::graph::{Input, Parameter};
+use crate::system::requirements::Requirements;
+
+pub use fallible::FallibleLaw;
+pub use fault::EquationFault;
+pub use holding::{Holding, Slip};
+pub use origin::{Kind, Origin};
+pub use value::Value;
+
+/// The model as scalar expressions over one pool.
+#[derive(Clone, Debug)]
+pub struct StateEquations {
+    /// The expressions.
+    pub pool: Pool,
+    /// Parameters; `Symbol::Parameter` counts them.
+    pub parameters: Vec<Parameter>,
+    /// Inputs; `Symbol::Input` counts them.
+    pub inputs: Vec<Input>,
+    /// States; `Symbol::State` counts them.
+    pub states: Vec<State>,
+    /// First guess of each unknown of the assembly, from parameters; `Symbol::Unknown` counts them.
+    pub guesses: Vec<Id>,
+    /// The unknowns that are velocities, ascending; the others are of the pose.
+    pub speeds: Vec<usize>,
+    /// Gaps of the assembly, from parameters and unknowns.
+    pub gaps: Vec<Gap>,
+    /// Switches.
+    pub switches: Vec<Switch>,
+    /// Scalar outputs.
+    pub outputs: Vec<Output>,
+    /// Energy in all storages, J.
+    pub stored: Id,
+    /// Power of all sources, W.
+    pub supplied: Id,
+    /// Power of all resistors, W.
+    pub dissipated: Id,
+    /// States with the expression that `project` gives them.
+    pub projections: Vec<(usize, Id)>,
+    /// What laws give that can make numbers which are not finite, in the order of evaluation.
+    pub fallible: Vec<FallibleLaw>,
+    /// Reactions of rigid joints that are not solved for yet.
+    pub reactions: Vec<Reaction>,
+    /// What joints hold.
+    pub holding: Holding,
+    /// Whether impulses of the rigid joints make the start velocities fit.
+    pub impulse: bool,
+    /// Effort and flow of every bond, component by component.
+    pub bonds: Vec<(Vec<Id>, Vec<Id>)>,
+    /// What is asked of the values that parameters give.
+    pub requirements: Requirements,
+    /// The equations of the causal graph as text, one line each.
+    pub texts: Vec<String>,
+}
+
+/// A state.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Its name, such as `rod.linear.p_x`.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// What it is.
+    pub origin: Origin,
+    /// Its value at t = 0, from parameters and unknowns.
+    pub start: Id,
+    /// Its rate.
+    pub rate: Id,
+}
+
+/// The reaction of a residual sink: the effort that keeps a flow at zero.
+#[derive(Clone, Debug)]
+pub struct Reaction {
+    /// What it holds: the flow to be kept at zero.
+    pub slip: Slip,
+    /// The effort, an atom.
+    pub multiplier: Symbol,
+    /// Its integral as the poses have it, where they do.
+    pub gap: Option<Id>,
+}
+
+/// One residual of the assembly.
+#[derive(Clone, Debug)]
+pub struct Gap {
+    /// The joint.
+    pub joint: String,
+    /// `x`, `y`, `z`, or empty for a scalar.
+    pub component: &'static str,
+    /// `m` or `rad`.
+    pub unit: String,
+    /// The gap at t = 0.
+    pub value: Id,
+}
+
+/// A switch of a law.
+#[derive(Clone, Debug)]
+pub struct Switch {
+    /// What switches: an element, a `let` or an output.
+    pub element: String,
+    /// The comparison as written.
+    pub condition: String,
+    /// The guard: below zero the first branch holds.
+    pub guard: Id,
+}
+
+/// A scalar output.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// Its name with its component's suffix.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its value.
+    pub value: Id,
+}
+
+/// Derives the state equations.
+///
+/// # Errors
+/// Algebraic loops, transformers that are not linear, energies that cannot be found, numbers that no physics allows.
+pub fn derive(causal: &CausalGraph) -> Staged<StateEquations> {
+    signals::Signals::new(causal).derive()
+}
+
+impl StateEquations {
+    /// An expression of a pool as text: the equations' own pool or one that grew from it.
+    #[must_use]
+    pub fn shown(&self, pool: &Pool, id: Id) -> String {
+        expression_text(pool, id, &|symbol| self.symbol_name(symbol), &|switch| format!("guard_{switch}"))
+    }
+
+    /// A symbol's name in texts.
+    #[must_use]
+    pub fn symbol_name(&self, symbol: Symbol) -> String {
+        match symbol {
+            Symbol::Time => "t".to_owned(),
+            Symbol::State(index) => self.states[index as usize].name.clone(),
+            Symbol::Parameter(index) => self.parameters[index as usize].name.text.clone(),
+            Symbol::Input(index) => self.inputs[index as usize].name.text.clone(),
+            Symbol::Unknown(index) => format!("unknown_{}", index + 1),
+            Symbol::Atom(index) => format!("atom_{index}"),
+            Symbol::Slope(index) => format!("{}'", self.inputs[index as usize].name.text),
+            Symbol::Rate(index) => format!("{}'", self.states[index as usize].name),
+        }
+    }
+}

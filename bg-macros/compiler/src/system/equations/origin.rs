@@ -1,0 +1,74 @@
+//! Which part of the graph a state belongs to.
+//!
+//! In: nothing. Out: [`Origin`], by which stages tell states apart; names are for people.
+
+use crate::graph::NodeId;
+
+/// What a state is, and of what.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Origin {
+    /// A component of the momentum of an I.
+    Momentum(NodeId, usize),
+    /// A component of the displacement of a C.
+    Displacement(NodeId, usize),
+    /// A coordinate of a position; the track's index and the axis.
+    Position(usize, usize),
+    /// A component of an orientation; the track's index, row and column.
+    Orientation(usize, usize, usize),
+    /// The angle of an orientation that turns about one axis; the track's index.
+    Angle(usize),
+    /// The integral that an output asks for; its index.
+    Integral(usize),
+}
+
+/// The kind of a state.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[expect(missing_docs, reason = "the names are those of the origins")]
+pub enum Kind {
+    Momentum,
+    Displacement,
+    Position,
+    Orientation,
+    Angle,
+    Integral,
+}
+
+impl Origin {
+    /// Its kind.
+    #[must_use]
+    pub fn kind(self) -> Kind {
+        match self {
+            Self::Momentum(..) => Kind::Momentum,
+            Self::Displacement(..) => Kind::Displacement,
+            Self::Position(..) => Kind::Position,
+            Self::Orientation(..) => Kind::Orientation,
+            Self::Angle(_) => Kind::Angle,
+            Self::Integral(_) => Kind::Integral,
+        }
+    }
+
+    /// Whether motion in the x-y plane leaves it constant: z of a position, an axis out of the plane of an orientation.
+    #[must_use]
+    pub fn leaves_plane(self) -> bool {
+        match self {
+            Self::Position(_, axis) => axis == 2,
+            Self::Orientation(_, row, column) => row == 2 || column == 2,
+            _ => false,
+        }
+    }
+}
+
+impl Kind {
+    /// What stores it, in texts: the element's symbol, or a word.
+    #[must_use]
+    pub fn storage(self) -> &'static str {
+        match self {
+            Self::Momentum => "I",
+            Self::Displacement => "C",
+            Self::Position => "position",
+            Self::Orientation => "orientation",
+            Self::Angle => "angle",
+            Self::Integral => "integral",
+        }
+    }
+}

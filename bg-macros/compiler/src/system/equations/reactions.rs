@@ -1,0 +1,51 @@
+//! Reactions of rigid joints: efforts that are not given but keep a flow at zero.
+//!
+//! In: residual sinks. Out: [`Reaction`]s over atoms, to be solved for where the rates are known.
+//! Source: the residual sink of Borutzky, Bond Graph Methodology (2010), section 4.
+
+use super::signals::Signals;
+use super::value::Value;
+use super::{Reaction, Slip};
+use crate::expr::{Id, Symbol};
+use crate::graph::NodeId;
+
+/// Multipliers are the atoms from here on, apart from those of proofs.
+pub(super) const MULTIPLIERS: u32 = 1 << 16;
+
+impl Signals<'_> {
+    /// The unknown effort of a residual sink.
+    pub(super) fn reaction(&mut self, node: NodeId) -> Value {
+        let components = self.graph.bond(self.graph.node(node).bonds[0]).cardinality;
+        let symbols: Vec<Symbol> = self.multipliers(node, components).collect();
+        Value(symbols.into_iter().map(|symbol| self.pool.symbol(symbol)).collect())
+    }
+
+    fn multipliers(&self, node: NodeId, components: usize) -> impl Iterator<Item = Symbol> + use<> {
+        let first = MULTIPLIERS + self.reactions[&node];
+        (first..).take(components).map(Symbol::Atom)
+    }
+
+    /// Every residual sink's multipliers with the flows they keep at zero.
+    pub(super) fn reactions(&mut self) -> Vec<Reaction> {
+        let graph = self.graph;
+        let nodes: Vec<NodeId> = self.reactions.keys().copied().collect();
+        let mut reactions = Vec::new();
+        for node in nodes {
+            let Some(element) = graph.element(node) else { continue };
+            let bond = graph.node(node).bonds[0];
+            let flow = self.flow(bond);
+            let flow = flow.scale(&mut self.pool, graph.sign(bond, node));
+            let wanted = self.evaluate(element.law.term(), None).negate(&mut self.pool);
+            let excess = flow.add(&mut self.pool, &wanted);
+            let gap: Option<Vec<Id>> = element.displacement.as_ref().map(|gap| self.evaluate(gap, None).0);
+            let multipliers = self.multipliers(node, excess.0.len());
+            for (k, (multiplier, &flow)) in multipliers.zip(&excess.0).enumerate() {
+                let joint = self.joint_of(node).to_owned();
+                let (direction, unit) = (self.direction_of(node, k), graph.bond(bond).flow_unit());
+                let gap = gap.as_ref().map(|gap| gap[k]);
+                reactions.push(Reaction { slip: Slip { joint, direction, unit, flow }, multiplier, gap });
+            }
+        }
+        reactions
+    }
+}

@@ -1,0 +1,484 @@
+//! Effort and flow of every bond, each from the end that gives it.
+//!
+//! In: strokes. Out: component expressions, calculated when first asked for; a variable that needs itself is an
+//! algebraic loop.
+
+use std::collections::BTreeMap;
+
+use super::fallible::Nature;
+use super::loops::Loops;
+use super::value::Value;
+use super::{EquationFault, FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
+use crate::expr::{Id, Pool, Symbol, substitute};
+use crate::fault::{Fault, Staged};
+use crate::graph::causality::{CausalGraph, End};
+use crate::graph::{BondGraph, BondId, NodeId, NodeKind, Shape, Storage};
+use crate::source::ast::{ElementKind, TrackKind};
+
+/// Stands for a variable of an algebraic loop, so that what else is wrong can be found.
+const LOOP: Symbol = Symbol::Atom(u32::MAX);
+
+/// A memo of bond variables and lets.
+#[derive(Clone, Debug)]
+pub(super) struct Memo {
+    efforts: Vec<Entry>,
+    flows: Vec<Entry>,
+    pub(super) lets: Vec<Option<Value>>,
+}
+
+/// A bond variable's state in the memo.
+#[derive(Clone, Debug)]
+enum Entry {
+    Open,
+    Entered,
+    Done(Value),
+}
+
+impl Memo {
+    fn new(graph: &BondGraph) -> Self {
+        let open = vec![Entry::Open; graph.bonds.len()];
+        Self { efforts: open.clone(), flows: open, lets: vec![None; graph.lets.len()] }
+    }
+}
+
+/// Which of a bond's two variables.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Variable {
+    Effort,
+    Flow,
+}
+
+/// The derivation in progress.
+pub(super) struct Signals<'a> {
+    pub(super) causal: &'a CausalGraph,
+    pub(super) graph: &'a BondGraph,
+    pub(super) pool: Pool,
+    pub(super) memo: Memo,
+    /// Flows of 1-junctions that stand for themselves (in the kinematic proof).
+    pub(super) given_flows: BTreeMap<NodeId, Value>,
+    pub(super) states: Vec<State>,
+    /// First state and shape of every storage, in their order.
+    pub(super) layout: Vec<(Storage, usize, Shape)>,
+    pub(super) first_integral: usize,
+    /// First multiplier of every residual sink.
+    pub(super) reactions: BTreeMap<NodeId, u32>,
+    pub(super) switches: Vec<Switch>,
+    /// What is being evaluated, for the switches' names.
+    pub(super) owner: String,
+    pub(super) fallible: Vec<FallibleLaw>,
+    /// What is known of the lets.
+    pub(super) natures: Vec<Option<Nature>>,
+    path: Vec<(Variable, BondId)>,
+    loops: Loops,
+    pub(super) faults: Vec<Fault>,
+}
+
+impl<'a> Signals<'a> {
+    pub(super) fn new(causal: &'a CausalGraph) -> Self {
+        let mut signals = Self {
+            causal,
+            graph: &causal.graph,
+            pool: Pool::new(),
+            memo: Memo::new(&causal.graph),
+            given_flows: BTreeMap::new(),
+            states: Vec::new(),
+            layout: Vec::new(),
+            first_integral: 0,
+            reactions: BTreeMap::new(),
+            switches: Vec::new(),
+            owner: String::new(),
+            fallible: Vec::new(),
+            natures: vec![None; causal.graph.lets.len()],
+            path: Vec::new(),
+            loops: Loops::new(2 * causal.graph.bonds.len()),
+            faults: Vec::new(),
+        };
+        signals.lay_out();
+        signals
+    }
+
+    /// Runs the derivation.
+    pub(super) fn derive(mut self) -> Staged<StateEquations> {
+        self.prove_displacements();
+        self.fallible.clear();
+        let bonds: Vec<(Vec<Id>, Vec<Id>)> =
+            (0..self.graph.bonds.len()).map(|k| (self.effort(BondId(k)).0, self.flow(BondId(k)).0)).collect();
+        self.rates();
+        let stored = self.stored_energy();
+        let (supplied, dissipated) = (self.supplied_power(), self.dissipated_power());
+        if !self.faults.is_empty() {
+            return Err(self.faults);
+        }
+        let outputs = self.outputs();
+        self.integral_rates();
+        self.starts();
+        let (guesses, speeds, gaps) = (self.guesses(), self.speeds(), self.gaps());
+        let holding = Holding { compliant: self.compliant_slips(&speeds), ..Holding::default() };
+        let projections = self.projections();
+        let reactions = self.reactions();
+        let texts = text::equations(&self);
+        if !self.faults.is_empty() {
+            return Err(self.faults);
+        }
+        let mut requirements = self.requirements();
+        requirements.decide(&self.graph.parameters)?;
+        Ok(StateEquations {
+            pool: self.pool,
+            parameters: self.graph.parameters.clone(),
+            inputs: self.graph.inputs.clone(),
+            states: self.states,
+            guesses,
+            speeds,
+            gaps,
+            switches: self.switches,
+            outputs,
+            stored,
+            supplied,
+            dissipated,
+            projections,
+            fallible: self.fallible,
+            reactions,
+            holding,
+            impulse: self.graph.impulse,
+            bonds,
+            requirements,
+            texts,
+        })
+    }
+
+    /// Gives every storage its states' indices.
+    fn lay_out(&mut self) {
+        for &storage in &self.graph.storages {
+            let shape = match storage {
+                Storage::Element(node) => {
+                    let bond = self.graph.node(node).bonds[0];
+                    Shape::of_cardinality(self.graph.bond(bond).cardinality)
+                }
+                Storage::Track(index) => match self.graph.tracks[index].kind {
+                    TrackKind::Position => Shape::Vector,
+                    TrackKind::Orientation => Shape::Matrix,
+                },
+            };
+            self.layout.push((storage, self.states.len(), shape));
+            let (name, unit) = storage::describe(self.graph, storage);
+            let zero = self.pool.zero();
+            for (component, suffix) in shape.suffixes().iter().enumerate() {
+                let name = format!("{name}{suffix}");
+                let origin = storage::origin(self.graph, storage, component);
+                self.states.push(State { name, unit: unit.clone(), origin, start: zero, rate: zero });
+            }
+        }
+        let mut multipliers = 0;
+        for node in self.elements(|kind| kind == ElementKind::RSe) {
+            self.reactions.insert(node, multipliers);
+            let bond = self.graph.node(node).bonds[0];
+            multipliers += u32::try_from(self.graph.bond(bond).cardinality).expect("1 or 3");
+        }
+        self.first_integral = self.states.len();
+        let zero = self.pool.zero();
+        for (index, integral) in self.graph.integrals.iter().enumerate() {
+            let unit = integral.dimension.times(crate::graph::units::Dimension::SECOND).to_string();
+            let name = integral.name.clone();
+            self.states.push(State { name, unit, origin: Origin::Integral(index), start: zero, rate: zero });
+        }
+    }
+
+    /// The states of a storage.
+    pub(super) fn state(&mut self, storage: Storage) -> Option<Value> {
+        let &(_, first, shape) = self.layout.iter().find(|(known, ..)| *known == storage)?;
+        Some(Value((first..first + shape.suffixes().len()).map(|k| self.state_symbol(k)).collect()))
+    }
+
+    /// The symbol of a state.
+    pub(super) fn state_symbol(&mut self, index: usize) -> Id {
+        self.pool.symbol(Symbol::State(u32::try_from(index).expect("fewer than 2^32 states")))
+    }
+
+    /// The effort of a bond.
+    pub(super) fn effort(&mut self, bond: BondId) -> Value {
+        self.variable(Variable::Effort, bond)
+    }
+
+    /// The flow of a bond.
+    pub(super) fn flow(&mut self, bond: BondId) -> Value {
+        self.variable(Variable::Flow, bond)
+    }
+
+    fn entry(&mut self, variable: Variable, bond: BondId) -> &mut Entry {
+        match variable {
+            Variable::Effort => &mut self.memo.efforts[bond.0],
+            Variable::Flow => &mut self.memo.flows[bond.0],
+        }
+    }
+
+    fn variable(&mut self, variable: Variable, bond: BondId) -> Value {
+        let number = |(variable, bond): (Variable, BondId)| 2 * bond.0 + usize::from(variable == Variable::Flow);
+        let own = number((variable, bond));
+        let by = self.path.last().copied().map(number);
+        match self.entry(variable, bond).clone() {
+            Entry::Done(value) => {
+                self.loops.need(own, by);
+                return value;
+            }
+            Entry::Entered => {
+                self.loops.need(own, by);
+                self.loops.circle(own, self.circle(variable, bond));
+                let unknown = self.pool.symbol(LOOP);
+                return Value(vec![unknown; self.graph.bond(bond).cardinality]);
+            }
+            Entry::Open => {}
+        }
+        *self.entry(variable, bond) = Entry::Entered;
+        self.path.push((variable, bond));
+        self.loops.enter(own);
+        let ends = self.graph.bond(bond);
+        let (stroke_node, other) = match self.causal.strokes[bond.0] {
+            End::From => (ends.from, ends.to),
+            End::To => (ends.to, ends.from),
+        };
+        let owner = std::mem::take(&mut self.owner);
+        let value = match variable {
+            Variable::Effort => self.given_effort(other, bond),
+            Variable::Flow => self.given_flow(stroke_node, bond),
+        };
+        self.owner = owner;
+        self.path.pop();
+        self.faults.extend(self.loops.leave(own, by));
+        *self.entry(variable, bond) = Entry::Done(value.clone());
+        value
+    }
+
+    /// The loop that ends where it began: at this variable.
+    fn circle(&self, variable: Variable, bond: BondId) -> Fault {
+        let start = self.path.iter().position(|&step| step == (variable, bond)).unwrap_or(0);
+        let members: Vec<String> = self.path[start..]
+            .iter()
+            .flat_map(|(_, bond)| {
+                let ends = self.graph.bond(*bond);
+                [ends.from, ends.to]
+            })
+            .filter(|&node| self.graph.element(node).is_some())
+            .map(|node| format!("`{}`", self.graph.node(node).name.text))
+            .fold(Vec::new(), |mut members, member| {
+                if !members.contains(&member) {
+                    members.push(member);
+                }
+                members
+            });
+        Fault::new(self.graph.bond(bond).span, &EquationFault::AlgebraicLoop { members })
+    }
+
+    /// Whether a value needs one of an algebraic loop, which is not known.
+    pub(super) fn is_in_a_loop(&self, value: &Value) -> bool {
+        self.pool.symbols(&value.0).contains(&LOOP)
+    }
+
+    /// Forgets what bonds carry, and the loops found in that: they are found again.
+    pub(super) fn forget(&mut self) {
+        self.memo = Memo::new(self.graph);
+        self.loops = Loops::new(2 * self.graph.bonds.len());
+        self.faults.retain(|fault| fault.code != "BG0501");
+    }
+
+    /// The effort that a node gives on one of its bonds.
+    fn given_effort(&mut self, node: NodeId, bond: BondId) -> Value {
+        match &self.graph.node(node).kind {
+            NodeKind::Zero => match self.causal.strong_bond(node) {
+                Some(strong) => self.effort(strong),
+                None => Value::zero(&mut self.pool, self.graph.bond(bond).cardinality),
+            },
+            NodeKind::One => self.balance(node, bond, Variable::Effort),
+            NodeKind::Element(element) => {
+                let effort = self.element_effort(node, element, bond);
+                self.note_fallible(node, element, &effort);
+                effort
+            }
+        }
+    }
+
+    /// The flow that a node gives on one of its bonds.
+    fn given_flow(&mut self, node: NodeId, bond: BondId) -> Value {
+        match &self.graph.node(node).kind {
+            NodeKind::One => self.junction_flow(node),
+            NodeKind::Zero => self.balance(node, bond, Variable::Flow),
+            NodeKind::Element(element) => {
+                let flow = self.element_flow(node, element, bond);
+                self.note_fallible(node, element, &flow);
+                flow
+            }
+        }
+    }
+
+    /// The common flow of a 1-junction.
+    pub(super) fn junction_flow(&mut self, node: NodeId) -> Value {
+        if let Some(given) = self.given_flows.get(&node) {
+            return given.clone();
+        }
+        match self.causal.strong_bond(node) {
+            Some(strong) => self.flow(strong),
+            None => Value::zero(&mut self.pool, 3),
+        }
+    }
+
+    /// The variable of a junction's strong bond from the balance of the others.
+    fn balance(&mut self, node: NodeId, bond: BondId, variable: Variable) -> Value {
+        let own = self.graph.sign(bond, node);
+        let others = self.graph.node(node).bonds.iter().copied().filter(|&other| other != bond);
+        let terms: Vec<(Value, f64)> =
+            others.map(|other| (self.variable(variable, other), -own * self.graph.sign(other, node))).collect();
+        let components = self.graph.bond(bond).cardinality;
+        Value(
+            (0..components)
+                .map(|k| {
+                    let parts: Vec<(Id, f64)> = terms.iter().map(|(value, sign)| (value.0[k], *sign)).collect();
+                    self.pool.linear(0.0, &parts)
+                })
+                .collect(),
+        )
+    }
+
+    fn outputs(&mut self) -> Vec<Output> {
+        let graph = self.graph;
+        let mut outputs = Vec::new();
+        for observation in &graph.observations {
+            self.owner.clone_from(&observation.name);
+            let value = self.evaluate(&observation.value, None);
+            for (suffix, id) in value.shape().suffixes().iter().zip(value.0) {
+                let name = format!("{}{suffix}", observation.name);
+                outputs.push(Output { name, unit: observation.unit.clone(), value: id });
+            }
+        }
+        outputs
+    }
+
+    fn integral_rates(&mut self) {
+        let graph = self.graph;
+        for (index, integral) in graph.integrals.iter().enumerate() {
+            self.owner.clone_from(&integral.name);
+            let value = self.evaluate(&integral.value, None);
+            self.states[self.first_integral + index].rate = value.0[0];
+        }
+    }
+
+    fn guesses(&mut self) -> Vec<Id> {
+        let graph = self.graph;
+        graph.guesses.iter().map(|guess| self.evaluate(guess, None).0[0]).collect()
+    }
+
+    /// The gaps at t = 0, over parameters and unknowns.
+    fn gaps(&mut self) -> Vec<Gap> {
+        let graph = self.graph;
+        let starts: Vec<Id> = self.states.iter().map(|state| state.start).collect();
+        let at_start = |symbol| match symbol {
+            Symbol::State(index) => starts.get(index as usize).copied(),
+            _ => None,
+        };
+        let mut closed = Vec::new();
+        for close in &graph.closes {
+            let unit = if close.dimension == crate::graph::units::Dimension::NONE { "rad" } else { "m" };
+            closed.push((close.joint.text.clone(), unit.to_owned(), self.evaluate(&close.gap, None).0));
+        }
+        closed.extend(self.gaps_of_sinks());
+        let mut gaps = Vec::new();
+        for (joint, unit, values) in closed {
+            let values = substitute(&mut self.pool, &values, &at_start);
+            let components = if values.len() == 1 { &[""][..] } else { &["x", "y", "z"] };
+            for (component, value) in components.iter().zip(values) {
+                gaps.push(Gap { joint: joint.clone(), component, unit: unit.clone(), value });
+            }
+        }
+        gaps
+    }
+
+    /// One Newton-Schulz step towards the nearest orthogonal matrix, R (3 - R^T R) / 2 (Higham 2008, eq. 8.20).
+    fn projections(&mut self) -> Vec<(usize, Id)> {
+        let orientations: Vec<(Storage, usize)> = self
+            .layout
+            .iter()
+            .filter(|(_, _, shape)| *shape == Shape::Matrix)
+            .map(|&(storage, first, _)| (storage, first))
+            .collect();
+        let mut projections = Vec::new();
+        for (storage, first) in orientations {
+            let Some(turned) = self.state(storage) else { continue };
+            let pool = &mut self.pool;
+            let three = Value::identity(pool).scale(pool, 3.0);
+            let square = turned.transpose().multiply(pool, &turned).negate(pool);
+            let factor = three.add(pool, &square);
+            let projected = turned.multiply(pool, &factor).scale(pool, 0.5);
+            projections.extend(projected.0.into_iter().enumerate().map(|(k, id)| (first + k, id)));
+        }
+        projections
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::{Environment, Id, Symbol, evaluate};
+    use crate::pipeline;
+    use crate::source::syntax;
+
+    type Matrix = [[f64; 3]; 3];
+
+    fn product(a: &Matrix, b: &Matrix) -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+    }
+
+    fn transpose(a: &Matrix) -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
+    }
+
+    /// The largest difference of two entries.
+    fn distance(a: &Matrix, b: &Matrix) -> f64 {
+        a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// What an orientation's projection makes of a matrix.
+    fn projected(matrix: &Matrix) -> Matrix {
+        let text = "graph G { 1 j[3]: rotation; I m = 1; orientation R of j; j -> m; observe { R } }";
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        let equations = pipeline::derive(&source.graphs[0]).expect("equations").equations;
+        let mut states = vec![0.0; equations.states.len()];
+        let first = equations.states.iter().position(|state| state.name == "R_11").expect("an orientation");
+        states[first..first + 9].copy_from_slice(matrix.as_flattened());
+        let (places, ids): (Vec<usize>, Vec<Id>) = equations.projections.iter().copied().unzip();
+        assert_eq!(places, (first..first + 9).collect::<Vec<_>>());
+        assert!(!equations.pool.symbols(&ids).contains(&Symbol::Time));
+        let values = evaluate(&equations.pool, &ids, &Environment { states: &states, ..Environment::default() });
+        std::array::from_fn(|i| std::array::from_fn(|j| values[3 * i + j]))
+    }
+
+    /// A rotation far from the identity, so that what is done on the left of a matrix and on its right are different things.
+    fn rotation() -> Matrix {
+        let ((s, c), (t, d)) = (0.9_f64.sin_cos(), 0.6_f64.sin_cos());
+        product(&[[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], &[[1.0, 0.0, 0.0], [0.0, d, -t], [0.0, t, d]])
+    }
+
+    /// Nearest to Q (1 + E) with symmetric E is Q (polar factor); one step leaves 3/2 Q E^2 of it.
+    #[test]
+    fn a_projection_is_a_step_to_the_nearest_orientation() {
+        let rotation = rotation();
+        let stretch = |size: f64| {
+            let strain: Matrix = [[0.9, -0.4, 0.3], [-0.4, -0.7, 0.5], [0.3, 0.5, 0.2]];
+            std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j)) + size * strain[i][j]))
+        };
+        for size in [1e-2, 1e-4] {
+            let result = projected(&product(&rotation, &stretch(size)));
+            let far = distance(&result, &rotation) / (size * size);
+            assert!(far > 0.5 && far < 3.0, "{size:e}: {far}");
+        }
+        assert!(distance(&projected(&rotation), &rotation) < 4e-16);
+    }
+
+    /// R (3 - R^T R) / 2, far from an orientation.
+    #[test]
+    fn a_projection_is_that_of_newton_and_schulz() {
+        let matrix: Matrix = [[1.1, 0.3, -0.2], [-0.4, 0.8, 0.5], [0.7, -0.1, 1.3]];
+        let square = product(&transpose(&matrix), &matrix);
+        let factor =
+            std::array::from_fn(|i| std::array::from_fn(|j| 1.5 * f64::from(u8::from(i == j)) - 0.5 * square[i][j]));
+        assert!(distance(&projected(&matrix), &product(&matrix, &factor)) < 1e-15);
+        // The other product makes something else of it.
+        assert!(distance(&square, &product(&matrix, &transpose(&matrix))) > 0.1);
+    }
+}

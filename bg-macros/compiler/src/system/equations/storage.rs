@@ -1,0 +1,243 @@
+//! Storages: their states' names, rates, start values and energies.
+//!
+//! In: laws of C and I, tracks. Out: states with start and rate, the stored energy, the power of modulated storages.
+
+use std::collections::BTreeMap;
+
+use super::EquationFault;
+use super::Origin;
+use super::signals::Signals;
+use super::value::Value;
+use crate::expr::{Id, Node, Symbol, antiderivative, derivative, substitute};
+use crate::fault::Fault;
+use crate::graph::{BondGraph, Element, Law, NodeId, Storage};
+use crate::source::ast::{ElementKind, TrackKind};
+
+/// Atoms that stand for a storage's own state start here, apart from those of linear laws.
+const STATE_ATOMS: u32 = 32;
+
+/// Name and unit of a storage's states.
+pub(super) fn describe(graph: &BondGraph, storage: Storage) -> (String, String) {
+    match storage {
+        Storage::Track(index) => {
+            let track = &graph.tracks[index];
+            let unit = match track.kind {
+                TrackKind::Position => "m",
+                TrackKind::Orientation => "1",
+            };
+            (track.name.text.clone(), unit.to_owned())
+        }
+        Storage::Element(node) => {
+            let definition = graph.node(node);
+            let bond = graph.bond(definition.bonds[0]);
+            let (letter, unit) =
+                if is_compliance(graph, node) { ("q", bond.displacement_unit()) } else { ("p", bond.momentum_unit()) };
+            (format!("{}.{letter}", definition.name.text), unit)
+        }
+    }
+}
+
+/// What a component of a storage's states is.
+pub(super) fn origin(graph: &BondGraph, storage: Storage, component: usize) -> Origin {
+    match storage {
+        Storage::Track(track) => match graph.tracks[track].kind {
+            TrackKind::Position => Origin::Position(track, component),
+            TrackKind::Orientation => Origin::Orientation(track, component / 3, component % 3),
+        },
+        Storage::Element(node) if is_compliance(graph, node) => Origin::Displacement(node, component),
+        Storage::Element(node) => Origin::Momentum(node, component),
+    }
+}
+
+fn is_compliance(graph: &BondGraph, node: NodeId) -> bool {
+    graph.element(node).is_some_and(|element| element.kind == ElementKind::C)
+}
+
+impl Signals<'_> {
+    /// Every state's rate.
+    pub(super) fn rates(&mut self) {
+        for (storage, first, _) in self.layout.clone() {
+            let rate = match storage {
+                Storage::Element(node) => {
+                    let bond = self.graph.node(node).bonds[0];
+                    if is_compliance(self.graph, node) {
+                        let flow = self.flow(bond);
+                        flow.scale(&mut self.pool, self.graph.sign(bond, node))
+                    } else {
+                        self.effort(bond)
+                    }
+                }
+                Storage::Track(index) => {
+                    let track = &self.graph.tracks[index];
+                    let flow = self.junction_flow(track.junction);
+                    self.track_rate(storage, &flow)
+                }
+            };
+            for (k, id) in rate.0.into_iter().enumerate() {
+                self.states[first + k].rate = id;
+            }
+        }
+    }
+
+    /// A position moves with the flow, an orientation turns with it: R' = [w x] R.
+    pub(super) fn track_rate(&mut self, storage: Storage, flow: &Value) -> Value {
+        let Storage::Track(index) = storage else { return flow.clone() };
+        match self.graph.tracks[index].kind {
+            TrackKind::Position => flow.clone(),
+            TrackKind::Orientation => {
+                let orientation = self.state(storage).expect("every track has states");
+                let spin = flow.skew(&mut self.pool);
+                spin.multiply(&mut self.pool, &orientation)
+            }
+        }
+    }
+
+    /// Every state's value at t = 0.
+    pub(super) fn starts(&mut self) {
+        let graph = self.graph;
+        for (storage, first, shape) in self.layout.clone() {
+            let components = shape.suffixes().len();
+            let (term, orientation) = match storage {
+                Storage::Element(node) => (graph.element(node).and_then(|element| element.start.as_ref()), false),
+                Storage::Track(index) => {
+                    let track = &graph.tracks[index];
+                    (track.start.as_ref(), track.kind == TrackKind::Orientation)
+                }
+            };
+            let start = match term {
+                Some(term) => self.evaluate(term, None),
+                None if orientation => Value::identity(&mut self.pool),
+                None => Value::zero(&mut self.pool, components),
+            };
+            for k in 0..components {
+                self.states[first + k].start = start.0[k.min(start.0.len() - 1)];
+            }
+        }
+    }
+
+    /// The energy in all storages.
+    pub(super) fn stored_energy(&mut self) -> Id {
+        let storages = self.elements(|kind| matches!(kind, ElementKind::I | ElementKind::C));
+        let energies: Vec<Id> = storages.into_iter().map(|node| self.energy_of(node)).collect();
+        self.pool.sum(&energies)
+    }
+
+    /// The energy stored in one C or I.
+    pub(super) fn energy_of(&mut self, node: NodeId) -> Id {
+        let graph = self.graph;
+        let Some(element) = graph.element(node) else { return self.pool.zero() };
+        let state = self.element_state(node);
+        match (&element.law, &element.energy) {
+            (Law::Of { .. }, Some(term)) => {
+                self.check_energy(node, element, term);
+                self.evaluate(term, Some(&state)).0[0]
+            }
+            (Law::Of { .. }, None) => self.found_energy(node, element, &state),
+            _ => {
+                let effort = self.storage_law(node, element, &state);
+                let product = effort.dot(&mut self.pool, &state);
+                self.pool.scale(0.5, product)
+            }
+        }
+    }
+
+    /// Atoms in the place of a storage's own state.
+    pub(super) fn state_atoms(&mut self, components: usize) -> (Vec<Symbol>, Value) {
+        let atoms: Vec<Symbol> = (STATE_ATOMS..).take(components).map(Symbol::Atom).collect();
+        let value = Value(atoms.iter().map(|&atom| self.pool.symbol(atom)).collect());
+        (atoms, value)
+    }
+
+    /// The integral of a scalar law over its variable.
+    fn found_energy(&mut self, node: NodeId, element: &Element, state: &Value) -> Id {
+        let switches = self.switches.len();
+        let (atoms, variable) = self.state_atoms(state.0.len());
+        let law = self.storage_law(node, element, &variable);
+        // Switches over atoms are of this calculation only; a law with any has no integral here. The antiderivative would
+        // not see that a value depends on the variable by way of a guard alone.
+        let is_own =
+            |id: &Id| matches!(self.pool.node(*id), Node::Select { switch, .. } if *switch as usize >= switches);
+        let is_free = law.0.len() == 1 && !self.pool.reachable(&law.0).iter().any(is_own);
+        self.switches.truncate(switches);
+        let found = if is_free { antiderivative(&mut self.pool, law.0[0], atoms[0]) } else { None };
+        let Some(found) = found else {
+            let definition = self.graph.node(node);
+            let (symbol, name) = (element.kind.symbol(), definition.name.text.clone());
+            self.fault_once(Fault::new(element.law.term().span, &EquationFault::NoEnergy { symbol, name }));
+            return self.pool.zero();
+        };
+        substitute(&mut self.pool, &[found], &|symbol| (symbol == atoms[0]).then_some(state.0[0]))[0]
+    }
+
+    /// Reports a fault unless it is known.
+    pub(super) fn fault_once(&mut self, fault: Fault) {
+        if self.faults.iter().all(|known| known.message != fault.message) {
+            self.faults.push(fault);
+        }
+    }
+
+    /// The power that enters through storages whose law other quantities modulate: the energy's change at rest of the
+    /// storage's own state. A tensor that turns with its own flow has none: h . (w x w) = 0.
+    pub(super) fn modulation_power(&mut self) -> Id {
+        let graph = self.graph;
+        let mut powers = Vec::new();
+        for node in self.elements(|kind| matches!(kind, ElementKind::I | ElementKind::C)) {
+            if graph.element(node).is_some_and(|element| element.frame.is_none()) {
+                powers.push(self.modulation_of(node));
+            }
+        }
+        self.pool.sum(&powers)
+    }
+
+    fn modulation_of(&mut self, node: NodeId) -> Id {
+        let graph = self.graph;
+        let Some(element) = graph.element(node) else { return self.pool.zero() };
+        if element.displacement.is_some() {
+            return self.modulation_of_displaced(node, element);
+        }
+        // At rest of its own states: their seeds are missing.
+        let own = self.element_state(node).0;
+        let seeds = self.rate_seeds(&own);
+        let energy = self.energy_of(node);
+        derivative(&mut self.pool, &[energy], &seeds)[0]
+    }
+
+    /// Of a C whose displacement the poses determine: the displacement is held as atoms while the rest changes.
+    fn modulation_of_displaced(&mut self, node: NodeId, element: &Element) -> Id {
+        let state = self.element_state(node);
+        let switches = self.switches.len();
+        let (atoms, variable) = self.state_atoms(state.0.len());
+        let law = self.storage_law(node, element, &variable);
+        let is_own = |symbol: &Symbol| atoms.contains(symbol) || matches!(symbol, Symbol::Parameter(_));
+        let is_modulated = !self.pool.symbols(&law.0).iter().all(is_own);
+        let is_linear = !matches!(element.law, Law::Of { .. }) && self.switches.len() == switches;
+        self.switches.truncate(switches);
+        if !is_modulated {
+            return self.pool.zero();
+        }
+        if !is_linear {
+            let (symbol, name) = (element.kind.symbol(), self.graph.node(node).name.text.clone());
+            self.fault_once(Fault::new(element.law.term().span, &EquationFault::NoEnergy { symbol, name }));
+            return self.pool.zero();
+        }
+        let product = law.dot(&mut self.pool, &variable);
+        let energy = self.pool.scale(0.5, product);
+        let seeds = self.rate_seeds(&[]);
+        let change = derivative(&mut self.pool, &[energy], &seeds);
+        let find = |symbol| atoms.iter().position(|&atom| atom == symbol).map(|k| state.0[k]);
+        substitute(&mut self.pool, &change, &find)[0]
+    }
+
+    /// The rates of time and of all states but `held`.
+    pub(super) fn rate_seeds(&mut self, held: &[Id]) -> BTreeMap<Symbol, Id> {
+        let mut seeds = BTreeMap::from([(Symbol::Time, self.pool.one())]);
+        for index in 0..self.states.len() {
+            let symbol = self.state_symbol(index);
+            if !held.contains(&symbol) {
+                let index = u32::try_from(index).expect("fewer than 2^32 states");
+                seeds.insert(Symbol::State(index), self.states[index as usize].rate);
+            }
+        }
+        seeds
+    }
+}

@@ -1,0 +1,121 @@
+//! The equations of the causal graph as text: who gives what to whom.
+//!
+//! In: the derivation's graph. Out: one line for every bond variable, one for every state.
+
+use super::signals::Signals;
+use crate::graph::causality::End;
+use crate::graph::{BondId, Law, NodeId, NodeKind, Storage};
+use crate::source::ast::{ElementKind, TrackKind};
+
+/// All lines: for every bond its effort and its flow, then the rates.
+pub(super) fn equations(signals: &Signals<'_>) -> Vec<String> {
+    let bonds = signals.graph.bonds.len();
+    let mut lines = Vec::new();
+    for bond in (0..bonds).map(BondId) {
+        let ends = signals.graph.bond(bond);
+        let (receives, gives) = match signals.causal.strokes[bond.0] {
+            End::From => (ends.from, ends.to),
+            End::To => (ends.to, ends.from),
+        };
+        lines.push(format!("{} = {}", variable(signals, 'e', bond), given(signals, gives, bond, 'e')));
+        lines.push(format!("{} = {}", variable(signals, 'f', bond), given(signals, receives, bond, 'f')));
+    }
+    lines.extend(signals.layout.iter().map(|&(storage, ..)| rate(signals, storage)));
+    lines
+}
+
+fn name(signals: &Signals<'_>, node: NodeId) -> String {
+    signals.graph.node(node).name.text.clone()
+}
+
+/// `e[a -> b]` or `f[a -> b]`.
+fn variable(signals: &Signals<'_>, letter: char, bond: BondId) -> String {
+    let ends = signals.graph.bond(bond);
+    format!("{letter}[{} -> {}]", name(signals, ends.from), name(signals, ends.to))
+}
+
+fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, letter: char) -> String {
+    let definition = signals.graph.node(node);
+    match &definition.kind {
+        NodeKind::Zero | NodeKind::One => {
+            let common = if matches!(definition.kind, NodeKind::Zero) { 'e' } else { 'f' };
+            if letter == common {
+                return signals
+                    .causal
+                    .strong_bond(node)
+                    .map_or_else(|| "0".to_owned(), |strong| variable(signals, letter, strong));
+            }
+            balance(signals, node, bond, letter)
+        }
+        NodeKind::Element(element) => {
+            let others: Vec<String> = definition
+                .bonds
+                .iter()
+                .filter(|&&other| other != bond)
+                .map(|&other| signals.graph.bond(other))
+                .map(|ends| format!("[{} -> {}]", name(signals, ends.from), name(signals, ends.to)))
+                .collect();
+            let of = match element.kind {
+                ElementKind::Se | ElementKind::MSe | ElementKind::Sf | ElementKind::MSf => String::new(),
+                ElementKind::RSe => " kept by its reaction".to_owned(),
+                ElementKind::C if element.displacement.is_some() => " of its displacement in the poses".to_owned(),
+                ElementKind::C => format!(" of {}.q", definition.name.text),
+                ElementKind::I => format!(" of {}.p", definition.name.text),
+                ElementKind::R | ElementKind::Mr => {
+                    let other = if letter == 'e' { 'f' } else { 'e' };
+                    format!(" of {}", variable(signals, other, bond))
+                }
+                ElementKind::Gy | ElementKind::Mgy => {
+                    let other = if letter == 'e' { 'f' } else { 'e' };
+                    format!(" of {other}{}", others.concat())
+                }
+                ElementKind::Tf | ElementKind::Mtf => format!(" of {letter}{}", others.concat()),
+            };
+            let form = match &element.law {
+                Law::Stiffness(_) => "stiffness ",
+                Law::Compliance(_) => "compliance ",
+                _ => "",
+            };
+            let text = element.text.trim_start_matches("= ");
+            format!("{} `{}`: {form}{text}{of}", element.kind.symbol(), definition.name.text)
+        }
+    }
+}
+
+/// The signed sum of the other bonds' variables.
+fn balance(signals: &Signals<'_>, node: NodeId, bond: BondId, letter: char) -> String {
+    let own = signals.graph.sign(bond, node);
+    let mut text = String::new();
+    for &other in signals.graph.node(node).bonds.iter().filter(|&&other| other != bond) {
+        let positive = -own * signals.graph.sign(other, node) > 0.0;
+        text.push_str(match (text.is_empty(), positive) {
+            (true, true) => "",
+            (true, false) => "-",
+            (false, true) => " + ",
+            (false, false) => " - ",
+        });
+        text.push_str(&variable(signals, letter, other));
+    }
+    if text.is_empty() { "0".to_owned() } else { text }
+}
+
+fn rate(signals: &Signals<'_>, storage: Storage) -> String {
+    match storage {
+        Storage::Element(node) => {
+            let definition = signals.graph.node(node);
+            let bond = definition.bonds[0];
+            let compliance = signals.graph.element(node).is_some_and(|element| element.kind == ElementKind::C);
+            let (state, letter) = if compliance { ("q", 'f') } else { ("p", 'e') };
+            let sign = if compliance && signals.graph.sign(bond, node) < 0.0 { "-" } else { "" };
+            format!("d({}.{state})/dt = {sign}{}", definition.name.text, variable(signals, letter, bond))
+        }
+        Storage::Track(index) => {
+            let track = &signals.graph.tracks[index];
+            let junction = name(signals, track.junction);
+            match track.kind {
+                TrackKind::Position => format!("d({})/dt = f({junction})", track.name.text),
+                TrackKind::Orientation => format!("d({0})/dt = skew(f({junction})) * {0}", track.name.text),
+            }
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! What a scene asks of the equations: which parameters it tunes, and what it expects of the states.
+//!
+//! In: a scene, the parameters, the report of the reduction. Out: what the reduction is to keep, or faults.
+
+use crate::fault::{Explain, Fault, Staged, near_miss};
+use crate::graph::Parameter;
+use crate::source::ast::{Expectation, Scene};
+use crate::system::reduce::{Fate, Report, Wanted};
+
+/// How many states a message lists.
+const LISTED: usize = 40;
+
+/// A fault of what a scene asks.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
+pub enum ExpectationFault {
+    UnknownParameter { name: String, near: Option<String> },
+    NotPlanar { scene: String, states: Vec<String> },
+    StateCount { scene: String, expected: usize, states: Vec<String> },
+}
+
+use ExpectationFault as F;
+
+impl Explain for ExpectationFault {
+    fn code(&self) -> &'static str {
+        match self {
+            F::UnknownParameter { .. } => "BG0603",
+            F::NotPlanar { .. } => "BG0604",
+            F::StateCount { .. } => "BG0605",
+        }
+    }
+
+    fn message(&self) -> String {
+        match self {
+            F::UnknownParameter { name, .. } => format!("there is no parameter `{name}` to tune"),
+            F::NotPlanar { scene, states } => {
+                format!("scene `{scene}` is not planar: these are not proved constant: {}", list(states))
+            }
+            F::StateCount { scene, expected, states } => {
+                format!("scene `{scene}` integrates {} states, not {expected}: {}", states.len(), list(states))
+            }
+        }
+    }
+
+    fn help(&self) -> String {
+        match self {
+            F::UnknownParameter { near: Some(near), .. } => format!("did you mean `{near}`?"),
+            F::UnknownParameter { .. } => "name a parameter of the graph".to_owned(),
+            F::NotPlanar { .. } => {
+                "find what moves them: a tuned parameter out of the plane, a start value, a force".to_owned()
+            }
+            F::StateCount { .. } => "correct the number, or what the scene watches and tunes".to_owned(),
+        }
+    }
+}
+
+fn list(states: &[String]) -> String {
+    let more = states.len().saturating_sub(LISTED);
+    let text = states[..states.len().min(LISTED)].join(", ");
+    if more == 0 { text } else { format!("{text} and {more} more") }
+}
+
+/// What the reduction is to keep for the scene.
+///
+/// # Errors
+/// Names to tune that are no parameters.
+pub fn wanted(scene: &Scene, parameters: &[Parameter]) -> Staged<Wanted> {
+    Ok(Wanted { tuned: tuned(scene, parameters)?, angles: scene.angles })
+}
+
+/// For each parameter whether the scene tunes it.
+fn tuned(scene: &Scene, parameters: &[Parameter]) -> Staged<Vec<bool>> {
+    let Some(tune) = &scene.tune else { return Ok(vec![true; parameters.len()]) };
+    let known = || parameters.iter().map(|parameter| parameter.name.text.as_str());
+    let faults: Vec<Fault> = tune
+        .iter()
+        .filter(|name| known().all(|parameter| parameter != name.text))
+        .map(|name| {
+            let near = near_miss(&name.text, known()).map(str::to_owned);
+            Fault::new(name.span, &F::UnknownParameter { name: name.text.clone(), near })
+        })
+        .collect();
+    if faults.is_empty() {
+        Ok(known().map(|parameter| tune.iter().any(|name| name.text == parameter)).collect())
+    } else {
+        Err(faults)
+    }
+}
+
+/// What the scene asserts of its reduction.
+///
+/// # Errors
+/// An assertion that does not hold, with the states that break it.
+pub fn check(scene: &Scene, report: &Report) -> Staged<()> {
+    let name = &scene.name.text;
+    let mut faults = Vec::new();
+    for expectation in &scene.expect {
+        match expectation {
+            Expectation::Planar(span) => {
+                let states = out_of_plane(report);
+                if !states.is_empty() {
+                    faults.push(Fault::new(*span, &F::NotPlanar { scene: name.clone(), states }));
+                }
+            }
+            Expectation::States(expected, span) => {
+                let states = integrated(report);
+                if states.len() != *expected {
+                    let fault = F::StateCount { scene: name.clone(), expected: *expected, states };
+                    faults.push(Fault::new(*span, &fault));
+                }
+            }
+        }
+    }
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
+}
+
+fn integrated(report: &Report) -> Vec<String> {
+    let fates = report.fates.iter().filter(|(_, fate)| *fate == Fate::Integrated);
+    fates.map(|(state, _)| state.name.clone()).collect()
+}
+
+/// The pose components out of the x-y plane that are not proved constant.
+fn out_of_plane(report: &Report) -> Vec<String> {
+    let moves = |fate: &Fate| !matches!(fate, Fate::Constant(_));
+    let fates = report.fates.iter().filter(|(state, fate)| moves(fate) && state.origin.leaves_plane());
+    fates.map(|(state, _)| state.name.clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline;
+    use crate::source::scene::{Variant, variants};
+    use crate::source::syntax;
+    use crate::system::reduce;
+
+    const GRAPH: &str = "graph G {
+            param m: kg = 2; param k: N/m = 3; param c: N*s/m = 1;
+            1 j: translation; I mass = m start 1; C spring = k; R damper = c;
+            0 between: translation; j -> mass; j -> spring; j -> between -> damper;
+            observe { v: m/s = j.flow; }
+            SCENES
+        }";
+
+    /// The literal graph and the scenes.
+    fn of(scenes: &str) -> Vec<Variant> {
+        let source = syntax::parse(GRAPH.replace("SCENES", scenes).parse().expect("tokens")).expect("a graph");
+        variants(&source.graphs[0]).expect("scenes")
+    }
+
+    fn scene(variant: &Variant) -> &Scene {
+        variant.scene.as_ref().expect("a scene")
+    }
+
+    fn report(variant: &Variant) -> Report {
+        let equations = pipeline::derive(&variant.graph).expect("equations").equations;
+        let wanted = wanted(scene(variant), &equations.parameters).expect("parameters");
+        reduce::for_scene(equations, &wanted, &mut |_| 0).1
+    }
+
+    #[test]
+    fn without_tune_all_parameters_are_tuned_and_with_an_empty_one_none() {
+        let variants = of("scene A {} scene B { tune {} } scene C { tune { c, m } }");
+        let parameters = pipeline::derive(&variants[0].graph).expect("equations").equations.parameters;
+        let tuned: Vec<_> = variants[1..].iter().map(|variant| tuned(scene(variant), &parameters).unwrap()).collect();
+        assert_eq!(tuned, [vec![true; 3], vec![false; 3], vec![true, false, true]]);
+    }
+
+    #[test]
+    fn expectations_that_hold_are_silent_and_the_others_speak_at_their_own_words() {
+        let scenes = "scene A { expect states = 2; expect planar; } scene B { expect states = 3; expect states = 1; }";
+        let variants = of(scenes);
+        let checked = |variant: &Variant| check(scene(variant), &report(variant));
+        assert!(checked(&variants[1]).is_ok());
+        let faults = checked(&variants[2]).unwrap_err();
+        let messages: Vec<_> = faults.iter().map(|fault| fault.message.as_str()).collect();
+        assert_eq!(
+            messages,
+            [
+                "scene `B` integrates 2 states, not 3: mass.p, spring.q",
+                "scene `B` integrates 2 states, not 1: mass.p, spring.q"
+            ]
+        );
+        assert!(faults[0].span.start().column < faults[1].span.start().column);
+    }
+
+    #[test]
+    fn a_long_list_is_cut() {
+        let names: Vec<String> = (0..LISTED + 3).map(|k| format!("s{k}")).collect();
+        assert!(list(&names).ends_with("s38, s39 and 3 more"));
+        assert_eq!(list(&names[..2]), "s0, s1");
+    }
+}

@@ -1,0 +1,235 @@
+//! States that nobody watches.
+//!
+//! In: equations. Out: the same without states and switches that reach no output.
+//! Method: everything that an output depends on is live; so is what the rate, the projection or a switch of something
+//! live depends on.
+
+use super::report::{Fate, Report};
+use super::{index, keep_switches, state_of};
+use crate::expr::{Branch, Id, Node, Pool, Symbol};
+use crate::system::equations::{Kind, StateEquations};
+
+/// Drops states and switches that no output needs.
+pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report) {
+    let outputs: Vec<Id> = equations.outputs.iter().map(|output| output.value).collect();
+    let (live, switches) = live(equations, &outputs);
+    for state in (0..live.len()).filter(|&state| !live[state]) {
+        report.say(state, Fate::Unwatched);
+    }
+    for state in quadratures(equations) {
+        if live[state] {
+            report.say(state, Fate::Quadrature);
+        }
+    }
+    let mut kept = 0;
+    let branches: Vec<Branch> = switches
+        .iter()
+        .map(|&live| {
+            kept += u32::from(live);
+            if live { Branch::Kept(kept - 1) } else { Branch::Positive }
+        })
+        .collect();
+    forget_energies(equations, &live, &switches);
+    let mut fallible = std::mem::take(&mut equations.fallible);
+    fallible.retain(|law| is_known(&equations.pool, law.value, &live, &switches));
+    equations.fallible = fallible;
+    equations.holding.prune(&equations.pool, &live, &switches);
+    keep_states(equations, report, &live);
+    keep_switches(equations, &branches);
+}
+
+/// States and switches that the roots need.
+fn live(equations: &StateEquations, roots: &[Id]) -> (Vec<bool>, Vec<bool>) {
+    let pool = &equations.pool;
+    let mut states = vec![false; equations.states.len()];
+    let mut switches = vec![false; equations.switches.len()];
+    let mut open: Vec<Id> = roots.to_vec();
+    while let Some(root) = open.pop() {
+        for id in pool.reachable(&[root]) {
+            match pool.node(id) {
+                Node::Symbol(Symbol::State(state)) => {
+                    let state = *state as usize;
+                    if !std::mem::replace(&mut states[state], true) {
+                        open.push(equations.states[state].rate);
+                        let projections = equations.projections.iter().filter(|(of, _)| *of == state);
+                        open.extend(projections.map(|(_, id)| *id));
+                    }
+                }
+                Node::Select { switch, .. } => {
+                    let switch = *switch as usize;
+                    if !std::mem::replace(&mut switches[switch], true) {
+                        open.push(equations.switches[switch].guard);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    (states, switches)
+}
+
+/// Integrals that no rate and no guard depends on.
+fn quadratures(equations: &StateEquations) -> Vec<usize> {
+    let rates = equations.states.iter().map(|state| state.rate);
+    let guards = equations.switches.iter().map(|switch| switch.guard);
+    let used = equations.pool.symbols(&rates.chain(guards).collect::<Vec<_>>());
+    let is_used = |state: usize| used.contains(&Symbol::State(index(state)));
+    (0..equations.states.len())
+        .filter(|&state| equations.states[state].origin.kind() == Kind::Integral && !is_used(state))
+        .collect()
+}
+
+/// Energies and powers that need a state or a switch which goes are not known in the scene: they become not-a-number.
+fn forget_energies(equations: &mut StateEquations, live: &[bool], switches: &[bool]) {
+    let unknown = equations.pool.number(f64::NAN);
+    for quantity in [&mut equations.stored, &mut equations.supplied, &mut equations.dissipated] {
+        if !is_known(&equations.pool, *quantity, live, switches) {
+            *quantity = unknown;
+        }
+    }
+}
+
+/// Whether an expression needs no state and no switch that goes.
+fn is_known(pool: &Pool, id: Id, live: &[bool], switches: &[bool]) -> bool {
+    pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
+        Node::Symbol(symbol) => state_of(*symbol).is_none_or(|state| live[state]),
+        Node::Select { switch, .. } => switches[*switch as usize],
+        _ => true,
+    })
+}
+
+/// Takes away the states without `kept`, to which nothing refers any more, and numbers the others anew.
+pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, kept: &[bool]) {
+    let mut next = 0;
+    let numbers: Vec<usize> = kept
+        .iter()
+        .map(|&kept| {
+            next += usize::from(kept);
+            next.saturating_sub(1)
+        })
+        .collect();
+    let is_kept = |state: usize| kept[state];
+    let states = std::mem::take(&mut equations.states);
+    equations.states = states.into_iter().enumerate().filter(|(k, _)| is_kept(*k)).map(|(_, state)| state).collect();
+    equations.projections.retain(|(state, _)| is_kept(*state));
+    for (state, _) in &mut equations.projections {
+        *state = numbers[*state];
+    }
+    equations.holding.renumber(&|state| is_kept(state).then(|| numbers[state]));
+    equations.bonds.clear();
+    let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::State(index(number)))).collect();
+    equations.replace(&|symbol| state_of(symbol).map(|state| symbols[state]));
+    report.keep(kept);
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::system::reduce::tests::{Scene, oscillator, scene};
+
+    /// A motor whose current turns the wheel's torque source one way: the wheel does not act back.
+    const DOWNSTREAM: &str = "param k: N/m = 20; param c: N*s/m = 0.3;
+        1 a: translation; I am = 2 start 1; C ak = k; R ar = c; a -> am; a -> ak; a -> ar;
+        1 b: translation; I bm = 3; R br(v) = if v < 0 { 1 * v } else { 2 * v }; MSe pull = 4 * ak.q; pull -> b -> bm; b -> br;";
+
+    fn watching(observed: &str) -> Scene {
+        scene(&format!("{DOWNSTREAM} observe {{ all: m/s = b.flow; }}"), &format!("observe {{ {observed} }}"))
+    }
+
+    #[test]
+    fn what_acts_back_on_nothing_watched_goes_with_its_switches() {
+        let scene = watching("v: m/s = a.flow");
+        assert_eq!(scene.left(), ["am.p", "ak.q"]);
+        assert_eq!(scene.words(&["bm.p"]), ["unwatched"]);
+        assert!(scene.reduced.switches.is_empty());
+        scene.agrees();
+    }
+
+    #[test]
+    fn what_is_watched_stays_with_all_that_drives_it() {
+        for observed in ["v: m/s = b.flow", "f: N = br.effort", "w: J = integral(br.power)"] {
+            let scene = watching(observed);
+            assert!(["am.p", "ak.q", "bm.p"].iter().all(|name| scene.left().contains(name)), "{}", scene.report);
+            assert_eq!(scene.reduced.switches.len(), 1);
+            scene.agrees();
+        }
+    }
+
+    #[test]
+    fn a_switch_that_is_watched_keeps_what_its_guard_depends_on() {
+        let graph =
+            format!("{DOWNSTREAM} let side = if bm.p < 0 {{ 1 }} else {{ 2 }}; observe {{ all: m/s = b.flow; }}");
+        let scene = scene(&graph, "observe { side = side; }");
+        assert_eq!(scene.left().len(), 3, "{}", scene.report);
+        scene.agrees();
+    }
+
+    #[test]
+    fn energies_that_are_not_known_are_not_a_number() {
+        let number = |scene: &Scene| {
+            let of = &scene.reduced;
+            [of.stored, of.supplied, of.dissipated].map(|id| of.pool.as_number(id).is_some_and(f64::is_nan))
+        };
+        assert_eq!(number(&watching("v: m/s = a.flow")), [true, true, true]);
+        assert_eq!(number(&watching("v: m/s = b.flow")), [false, false, false]);
+    }
+
+    /// The resistor on the imposed speed belongs to no state; its switch goes because no output needs it.
+    #[test]
+    fn the_power_of_a_switch_that_goes_is_not_known() {
+        let graph = "input speed: m/s; Sf drive = speed; 1 j: translation; R r(v) = if v < 0 { 2 * v } else { 3 * v };
+            drive -> j -> r; Se push = 1; 1 k: translation; I m = 2; push -> k -> m; observe { v: m/s = k.flow; }";
+        let scene = scene(graph, "");
+        assert!(scene.reduced.switches.is_empty());
+        let dissipated = scene.reduced.pool.as_number(scene.reduced.dissipated);
+        assert!(dissipated.is_some_and(f64::is_nan), "the power of `r` is that of one branch");
+    }
+
+    #[test]
+    fn an_integral_that_only_an_output_needs_is_told_apart() {
+        let graph = oscillator("a", ["2", "k", ""], ["1", "0"])
+            + "param k: N/m = 20; observe { v: m/s = a.flow; w: J = integral(am.power); }";
+        let watched = scene(&graph, "");
+        assert_eq!(watched.words(&["w"]), ["quadrature"]);
+        assert_eq!(watched.report.integrated(), 2);
+        watched.agrees();
+        let unwatched = scene(&graph, "observe { v: m/s = a.flow; }");
+        assert_eq!(unwatched.left(), ["am.p", "ak.q"]);
+    }
+
+    #[test]
+    fn a_momentum_alone_needs_no_position() {
+        let graph =
+            "param f: N = 2; param c: N*s/m = 0.5; 1 j[3]: translation; position x of j; I m = 2 start [1, 0, 3];
+            R r = c; Se w = [0, f, 0]; w -> j -> m; j -> r; observe { x: m = x; v: m/s = j.flow; }";
+        let scene = scene(graph, "observe { v: m/s = j.flow; }");
+        assert_eq!(scene.left(), ["m.p_x", "m.p_y", "m.p_z"], "{}", scene.report);
+        assert_eq!(scene.words(&["x_y"]), ["unwatched"]);
+        scene.agrees();
+    }
+
+    /// The rates of one column of an orientation need this column only, its projection needs all three.
+    #[test]
+    fn what_a_projection_reads_is_watched() {
+        let graph = "param a: rad = 0.4; param b: rad = 0.7; param s: 1 = 1.05;
+            1 j[3]: rotation; Sf spin = [1, 2, 3]; spin -> j;
+            orientation R of j start s * rotation_x(a) * rotation_y(b);
+            observe { r = R; }";
+        let scene = scene(graph, "observe { x = dot([1, 0, 0], R * [1, 0, 0]); }");
+        assert_eq!(scene.left().len(), 9, "{}", scene.report);
+        scene.agrees();
+    }
+
+    /// What is gone cannot be asked for its values; what stays keeps its element.
+    #[test]
+    fn laws_that_can_fail_go_with_the_states_they_read() {
+        let graph = "1 a: translation; I am = 2 start 1; R ar(v) = 1 * sqrt(v / 1); a -> am; a -> ar;
+            1 b: translation; I bm = 3 start 2; R br(v) = 1 / v; b -> bm; b -> br; observe { a: m/s = a.flow; b: m/s = b.flow; }";
+        let elements = |observed: &str| {
+            let reduced = scene(graph, &format!("observe {{ {observed} }}")).reduced;
+            reduced.fallible.into_iter().map(|law| law.element).collect::<Vec<_>>()
+        };
+        assert_eq!(elements("a = a.flow"), ["ar"]);
+        assert_eq!(elements("b = b.flow"), ["br"]);
+        assert_eq!(elements("a = a.flow; b = b.flow"), ["ar", "br"]);
+    }
+}

@@ -1,0 +1,206 @@
+//! Reductions: only what a scene needs, with a proof for everything left out.
+//!
+//! In: [`StateEquations`] of the literal graph. Out: [`StateEquations`] without the states and parameters that the scene
+//! does not need, and a [`Report`] that says why. Every reduction holds for all values of the tunable parameters; it is
+//! proved on the equations by induction from the start values, never read off numbers.
+
+mod affine;
+mod angle;
+mod equal;
+mod invariant;
+mod live;
+mod reaction;
+mod report;
+
+use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
+use crate::system::equations::StateEquations;
+
+pub use reaction::solve as solve_reactions;
+pub use report::{Count, Fate, Report};
+
+/// What the scene is to keep.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// For each parameter whether it stays adjustable at run time.
+    pub tuned: Vec<bool>,
+    /// Whether orientations that turn about one axis are to be integrated as angles.
+    pub angles: bool,
+}
+
+/// One reduction.
+struct Pass {
+    /// What has been done after it, in the report.
+    name: &'static str,
+    /// Whether there is anything to do.
+    applies: fn(&StateEquations, &Wanted) -> bool,
+    run: fn(&mut StateEquations, &Wanted, &mut Report),
+}
+
+/// The reductions in the order in which they find most.
+const PASSES: [Pass; 7] = [
+    Pass { name: "parameters folded", applies: always, run: |equations, wanted, _| fold_parameters(equations, wanted) },
+    Pass {
+        name: "constant states folded",
+        applies: always,
+        run: |equations, _, report| invariant::fold(equations, report),
+    },
+    Pass { name: "equal states merged", applies: always, run: |equations, _, report| equal::merge(equations, report) },
+    Pass {
+        name: "reactions solved",
+        applies: |equations, _| !equations.reactions.is_empty(),
+        run: |equations, _, _| reaction::solve(equations),
+    },
+    Pass {
+        name: "orientations turned into angles",
+        applies: |_, wanted| wanted.angles,
+        run: |equations, _, report| angle::integrate(equations, report),
+    },
+    Pass {
+        name: "affine states recovered",
+        applies: always,
+        run: |equations, _, report| affine::recover(equations, report),
+    },
+    Pass {
+        name: "unwatched states dropped",
+        applies: always,
+        run: |equations, _, report| live::drop_unwatched(equations, report),
+    },
+];
+
+fn always(_: &StateEquations, _: &Wanted) -> bool {
+    true
+}
+
+/// Reduces the equations to what a scene needs. `operations` says what the rate function of equations costs, for the report.
+#[must_use]
+pub fn for_scene(
+    mut equations: StateEquations,
+    wanted: &Wanted,
+    operations: &mut dyn FnMut(&mut StateEquations) -> usize,
+) -> (StateEquations, Report) {
+    let mut report = Report::new(&equations);
+    report.count("literal", equations.states.len(), operations(&mut equations));
+    for pass in &PASSES {
+        if !(pass.applies)(&equations, wanted) {
+            continue;
+        }
+        (pass.run)(&mut equations, wanted, &mut report);
+        report.count(pass.name, equations.states.len(), operations(&mut equations));
+    }
+    (equations, report)
+}
+
+/// Replaces parameters that no one tunes by their defaults; the others keep their order.
+fn fold_parameters(equations: &mut StateEquations, wanted: &Wanted) {
+    let mut images = Vec::new();
+    let mut kept = Vec::new();
+    for (parameter, &is_tuned) in equations.parameters.iter().zip(&wanted.tuned) {
+        images.push(if is_tuned {
+            kept.push(parameter.clone());
+            equations.pool.symbol(Symbol::Parameter(index(kept.len() - 1)))
+        } else {
+            equations.pool.number(parameter.default)
+        });
+    }
+    equations.requirements.fold(&equations.parameters, &wanted.tuned);
+    equations.parameters = kept;
+    equations.replace(&|symbol| match symbol {
+        Symbol::Parameter(parameter) => images.get(parameter as usize).copied(),
+        _ => None,
+    });
+    settle_switches(equations);
+}
+
+/// Switches whose guard has become a number are decided; their values become those of the branch.
+fn settle_switches(equations: &mut StateEquations) {
+    let mut kept = 0;
+    let branches: Vec<Branch> = equations
+        .switches
+        .iter()
+        .map(|switch| match equations.pool.as_number(switch.guard) {
+            Some(value) if value < 0.0 => Branch::Negative,
+            Some(_) => Branch::Positive,
+            None => {
+                kept += 1;
+                Branch::Kept(kept - 1)
+            }
+        })
+        .collect();
+    keep_switches(equations, &branches);
+}
+
+/// Decides or renumbers every switch.
+fn keep_switches(equations: &mut StateEquations, branches: &[Branch]) {
+    let branch = |switch: u32| branches[switch as usize];
+    equations.replace_switched(&|_| None, &branch);
+    let kept = |switch: usize| matches!(branches[switch], Branch::Kept(_));
+    let switches = std::mem::take(&mut equations.switches);
+    equations.switches = switches.into_iter().enumerate().filter(|(k, _)| kept(*k)).map(|(_, s)| s).collect();
+}
+
+/// An index as symbols carry it.
+fn index(of: usize) -> u32 {
+    u32::try_from(of).expect("fewer than 2^32 symbols")
+}
+
+/// The index of a state symbol.
+fn state_of(symbol: Symbol) -> Option<usize> {
+    if let Symbol::State(state) = symbol { Some(state as usize) } else { None }
+}
+
+/// Whether an expression depends on parameters and numbers only.
+fn is_constant(pool: &Pool, id: Id) -> bool {
+    pool.symbols(&[id]).into_iter().all(|symbol| matches!(symbol, Symbol::Parameter(_)))
+}
+
+impl StateEquations {
+    /// Every expression of the model that depends on states.
+    fn roots(&mut self) -> Vec<&mut Id> {
+        let mut roots: Vec<&mut Id> = Vec::new();
+        for state in &mut self.states {
+            roots.push(&mut state.start);
+            roots.push(&mut state.rate);
+        }
+        roots.extend(&mut self.guesses);
+        roots.extend(self.gaps.iter_mut().map(|gap| &mut gap.value));
+        roots.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
+        roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
+        for reaction in &mut self.reactions {
+            roots.push(&mut reaction.slip.flow);
+            roots.extend(&mut reaction.gap);
+        }
+        roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
+        roots.extend(self.projections.iter_mut().map(|(_, id)| id));
+        for (efforts, flows) in &mut self.bonds {
+            roots.extend(efforts);
+            roots.extend(flows);
+        }
+        roots
+    }
+
+    /// Replaces symbols everywhere.
+    fn replace(&mut self, replace: &dyn Fn(Symbol) -> Option<Id>) {
+        self.replace_switched(replace, &Branch::Kept);
+    }
+
+    fn replace_switched(&mut self, replace: &dyn Fn(Symbol) -> Option<Id>, branch: &dyn Fn(u32) -> Branch) {
+        let mut pool = std::mem::take(&mut self.pool);
+        let before: Vec<Id> = self.roots().into_iter().map(|id| *id).collect();
+        let after = substitute_switched(&mut pool, &before, replace, branch);
+        for (root, id) in self.roots().into_iter().zip(after) {
+            *root = id;
+        }
+        // By themselves, after the others: so they have no influence on the order of terms.
+        let values: Vec<Id> = self.fallible.iter().map(|law| law.value).collect();
+        let after = substitute_switched(&mut pool, &values, replace, branch);
+        for (law, value) in self.fallible.iter_mut().zip(after) {
+            law.value = value;
+        }
+        // What is held comes after, so that it has no say in the order of the rates' nodes.
+        self.holding.replace(&mut pool, replace, branch);
+        self.pool = pool;
+    }
+}
+
+#[cfg(test)]
+mod tests;

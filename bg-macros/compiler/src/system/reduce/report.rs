@@ -1,0 +1,122 @@
+//! What went and why.
+//!
+//! In: what each reduction did. Out: a line a state, and the size of the model after each reduction.
+
+use crate::expr::Id;
+use crate::system::equations::{State, StateEquations};
+
+/// What became of a state.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Fate {
+    /// It is integrated.
+    Integrated,
+    /// It only adds up an output; nothing depends on it.
+    Quadrature,
+    /// Its rate vanishes, so it keeps its start value.
+    Constant(String),
+    /// It stays equal to another one, or to its negative.
+    Equal(String),
+    /// It stays an affine combination of others.
+    Recovered(String),
+    /// It reaches no output.
+    Unwatched,
+}
+
+impl std::fmt::Display for Fate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Integrated => f.write_str("integrated"),
+            Self::Quadrature => f.write_str("integrated, for an output only"),
+            Self::Constant(value) => {
+                write!(f, "constant: its rate is zero while the constants hold, so it stays {value}")
+            }
+            Self::Equal(other) => write!(f, "equal: it starts as {other} and has its rate"),
+            Self::Recovered(value) => write!(f, "recovered: its rate is that of {value}"),
+            Self::Unwatched => f.write_str("unwatched: no output and no other state depends on it"),
+        }
+    }
+}
+
+/// The size of the model after a reduction.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Count {
+    /// The reduction.
+    pub stage: &'static str,
+    /// States left.
+    pub states: usize,
+    /// Operations of the rate function.
+    pub operations: usize,
+}
+
+/// What became of every state of the literal model.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Every state in the literal order with what became of it.
+    pub fates: Vec<(State, Fate)>,
+    /// The model's size after each reduction.
+    pub counts: Vec<Count>,
+    /// For each state still there its index in `fates`.
+    left: Vec<usize>,
+}
+
+impl Report {
+    pub(super) fn new(equations: &StateEquations) -> Self {
+        let fates: Vec<(State, Fate)> =
+            equations.states.iter().map(|state| (state.clone(), Fate::Integrated)).collect();
+        let left = (0..fates.len()).collect();
+        Self { fates, counts: Vec::new(), left }
+    }
+
+    /// Notes the size of the model.
+    pub(super) fn count(&mut self, stage: &'static str, states: usize, operations: usize) {
+        self.counts.push(Count { stage, states, operations });
+    }
+
+    /// Says what became of a state that is still there.
+    pub(super) fn say(&mut self, state: usize, fate: Fate) {
+        self.fates[self.left[state]].1 = fate;
+    }
+
+    /// A state that is still there has become another one.
+    pub(super) fn rename(&mut self, state: usize, as_state: State) {
+        self.fates[self.left[state]].0 = as_state;
+    }
+
+    /// States went: only those with `kept` are still there.
+    pub(super) fn keep(&mut self, kept: &[bool]) {
+        let left = std::mem::take(&mut self.left);
+        self.left = left.into_iter().zip(kept).filter(|(_, kept)| **kept).map(|(state, _)| state).collect();
+    }
+
+    /// The number of states that are integrated, those that only add up an output apart.
+    #[must_use]
+    pub fn integrated(&self) -> usize {
+        self.fates.iter().filter(|(_, fate)| *fate == Fate::Integrated).count()
+    }
+}
+
+impl std::fmt::Display for Report {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let of = |wanted: fn(&Fate) -> bool| self.fates.iter().filter(|(_, fate)| wanted(fate)).count();
+        writeln!(
+            f,
+            "{} states: {} constant; {} equal up to sign; {} recovered; {} unwatched; {} integrated; {} for outputs only",
+            self.fates.len(),
+            of(|fate| matches!(fate, Fate::Constant(_))),
+            of(|fate| matches!(fate, Fate::Equal(_))),
+            of(|fate| matches!(fate, Fate::Recovered(_))),
+            of(|fate| *fate == Fate::Unwatched),
+            self.integrated(),
+            of(|fate| *fate == Fate::Quadrature),
+        )?;
+        for Count { stage, states, operations } in &self.counts {
+            writeln!(f, "  {stage}: {states} states, {operations} operations a rate")?;
+        }
+        self.fates.iter().try_for_each(|(state, fate)| writeln!(f, "  {}: {fate}", state.name))
+    }
+}
+
+/// An expression of the equations as text.
+pub(super) fn show(equations: &StateEquations, id: Id) -> String {
+    equations.shown(&equations.pool, id)
+}

@@ -1,0 +1,302 @@
+//! What joints hold: whether start velocities fit, what impulses change, whether the reactions of rigid joints have
+//! unique values.
+//!
+//! In: a system that says what its joints hold ([`System::held`], [`System::hold`]). Out: a start state that fits, or the
+//! joint that is torn apart; the joints that hold the same motion, at the start and in a run.
+//!
+//! The reactions l of rigid joints are solved from A l + b = 0, where A_ij is how much reaction j changes the rate of the
+//! flow that joint i keeps at zero: J M^-1 J^T up to the sign. An impulse obeys the same equations, with the flow in
+//! place of b: it changes the flows by A l and the momenta by what the reactions move.
+
+mod factors;
+mod independence;
+
+use nalgebra::{DVector, SVector};
+
+use crate::assembly::{AssemblyError, nearest};
+use crate::scalar::Scalar;
+use crate::system::System;
+use factors::Factors;
+pub(crate) use independence::Independence;
+
+/// The largest relative flow of a joint that fits, in the flow's unit (m/s or rad/s).
+pub const FITTING: f64 = 1e-9;
+
+/// A motion that a joint holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slip {
+    /// The joint's name.
+    pub joint: &'static str,
+    /// `in x`, `about x` and so on; empty where there is only one direction.
+    pub direction: &'static str,
+    /// The unit of the relative flow, `m/s` or `rad/s` of a mechanism.
+    pub unit: &'static str,
+}
+
+/// What the joints of a system hold.
+///
+/// [`System::hold`] writes, one behind the other: the flow of each rigid motion, the flow of each compliant one, the
+/// lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it
+/// changes the rate of each moved state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Held {
+    /// The motions that rigid joints hold, each with a reaction.
+    pub rigid: &'static [Slip],
+    /// Those that compliant joints hold, of the joints that a guessed start velocity moves.
+    pub compliant: &'static [Slip],
+    /// The indices of the states that reactions change: momenta.
+    pub moved: &'static [usize],
+}
+
+impl Held {
+    /// No joint holds anything.
+    pub const NOTHING: Self = Self { rigid: &[], compliant: &[], moved: &[] };
+
+    /// How many numbers [`System::hold`] writes.
+    #[must_use]
+    pub const fn entries(&self) -> usize {
+        let reactions = self.rigid.len();
+        reactions + self.compliant.len() + reactions * (reactions + 1) / 2 + reactions * self.moved.len()
+    }
+}
+
+/// A joint that is torn apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slipping {
+    /// What it should hold.
+    pub slip: Slip,
+    /// How fast it moves, in the slip's unit.
+    pub speed: f64,
+    /// Whether it is a rigid joint.
+    pub is_rigid: bool,
+}
+
+impl std::fmt::Display for Slipping {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Slip { joint, direction, unit } = self.slip;
+        let how = match unit {
+            "m/s" => "is torn apart at",
+            "rad/s" => "is twisted at",
+            _ => "misses its flow by",
+        };
+        let space = if direction.is_empty() { "" } else { " " };
+        write!(f, "`{joint}` {how} {} {unit}{space}{direction}", Short(self.speed))
+    }
+}
+
+/// A number to five digits.
+struct Short(f64);
+
+impl std::fmt::Display for Short {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let rounded = format!("{:.4e}", self.0).parse::<f64>().unwrap_or(self.0);
+        write!(f, "{rounded:?}")
+    }
+}
+
+/// Rigid joints that hold the same motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Redundancy {
+    /// The joint that holds nothing more.
+    pub joint: &'static str,
+    /// The directions in which it does so; empty where it has only one.
+    pub directions: Vec<&'static str>,
+    /// The joints that hold these motions already; none where nothing could move anyway.
+    pub others: Vec<&'static str>,
+}
+
+impl std::fmt::Display for Redundancy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { joint, directions, others } = self;
+        let space = if directions.is_empty() { "" } else { " " };
+        let directions = format!("{space}{}", directions.join(", "));
+        if others.is_empty() {
+            return write!(f, "rigid joint `{joint}` holds{directions} what cannot move anyway");
+        }
+        let others: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
+        let (word, verb) = if others.len() == 1 { ("joint", "holds") } else { ("joints", "hold") };
+        let others = others.join(", ");
+        write!(
+            f,
+            "rigid joint `{joint}` holds{directions} what rigid {word} {others} {verb} already, so their reactions have no \
+             unique values"
+        )
+    }
+}
+
+/// A start state whose joints fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Started<S, const N: usize> {
+    /// The state.
+    pub x: SVector<S, N>,
+    /// The kinetic energy that impulses have taken, J.
+    pub lost: S,
+}
+
+/// The numbers of [`System::hold`].
+struct Hold<S> {
+    held: Held,
+    entries: Vec<S>,
+}
+
+impl<S: Scalar> Hold<S> {
+    fn new(held: Held) -> Self {
+        Self { held, entries: vec![S::from_f64(0.0); held.entries()] }
+    }
+
+    fn read<Sys, const N: usize, const G: usize>(&mut self, system: &Sys, t: S, x: &SVector<S, N>, negative: &[bool; G])
+    where
+        Sys: System<S, N, G>,
+    {
+        system.hold(t, x, negative, &mut self.entries);
+    }
+
+    /// The flows of rigid motions, then of compliant ones.
+    fn flows(&self) -> &[S] {
+        &self.entries[..self.held.rigid.len() + self.held.compliant.len()]
+    }
+
+    /// The lower triangle of A by rows.
+    fn matrix(&self) -> &[S] {
+        let (first, reactions) = (self.flows().len(), self.held.rigid.len());
+        &self.entries[first..first + reactions * (reactions + 1) / 2]
+    }
+
+    /// What one unit of a reaction changes, state by state of [`Held::moved`].
+    fn moves(&self, reaction: usize) -> &[S] {
+        let width = self.held.moved.len();
+        let first = self.flows().len() + self.matrix().len() + reaction * width;
+        &self.entries[first..first + width]
+    }
+}
+
+/// The start state of a system with joints: guessed velocities such that the joints fit, then, with `impulse`, the
+/// impulses of the rigid joints. `start` gives the state for unknowns, of which those at `speeds` are velocities.
+/// Allocates.
+///
+/// # Errors
+/// [`AssemblyError::Torn`] where velocities do not fit, [`AssemblyError::Redundant`] where reactions are not unique.
+pub fn fit<Sys, S, const N: usize, const G: usize, const U: usize, const K: usize>(
+    system: &Sys,
+    unknowns: [f64; U],
+    speeds: [usize; K],
+    start: impl Fn(&[f64; U]) -> SVector<S, N>,
+    impulse: bool,
+) -> Result<Started<S, N>, AssemblyError>
+where
+    Sys: System<S, N, G>,
+    S: Scalar,
+{
+    let held = system.held();
+    let state = |values: &[f64; K]| {
+        let mut all = unknowns;
+        speeds.iter().zip(values).for_each(|(&place, &value)| all[place] = value);
+        start(&all)
+    };
+    let read = |x: &SVector<S, N>| {
+        let mut hold = Hold::new(held);
+        hold.read(system, S::from_f64(0.0), x, &branches(system, x));
+        hold
+    };
+    let mut values = speeds.map(|place| unknowns[place]);
+    if K > 0 {
+        let residual = |values: &[f64; K], flows: &mut [f64]| {
+            let hold = read(&state(values));
+            flows.iter_mut().zip(hold.flows()).for_each(|(to, flow)| *to = flow.to_f64());
+        };
+        let rows = held.rigid.len() + held.compliant.len();
+        let check = |flows: &DVector<f64>| match flows.iter().position(|flow| !flow.is_finite()) {
+            Some(k) => Err(AssemblyError::Torn { largest: slipping(&held, k, flows[k]), others: Vec::new() }),
+            None => Ok(()),
+        };
+        // The flows are linear in the velocities, so the first step is the last but for rounding.
+        values = nearest(values, rows, |_| f64::INFINITY, residual, check)?.0;
+    }
+    let x = state(&values);
+    let hold = read(&x);
+    let factors = Factors::of(hold.matrix());
+    if let Some(redundancy) = factors.redundancy(held.rigid) {
+        return Err(AssemblyError::Redundant(redundancy));
+    }
+    check_fit(&hold, |slipping| impulse && slipping.is_rigid)?;
+    let started = if impulse { strike(x, &read) } else { Started { x, lost: S::from_f64(0.0) } };
+    check_fit(&read(&started.x), |slipping| !slipping.is_rigid)?;
+    Ok(started)
+}
+
+/// The branches of the switches at t = 0 and this state.
+fn branches<Sys, S, const N: usize, const G: usize>(system: &Sys, x: &SVector<S, N>) -> [bool; G]
+where
+    Sys: System<S, N, G>,
+    S: Scalar,
+{
+    let zero = S::from_f64(0.0);
+    let (mut negative, mut guards) = ([false; G], SVector::from([zero; G]));
+    // A guard may depend on another switch's branch.
+    for _ in 0..G {
+        system.guards(zero, x, &negative, &mut guards);
+        negative = guards.data.0[0].map(|guard| guard < zero);
+    }
+    negative
+}
+
+/// The state after the impulses that bring the flows of rigid joints to zero, with the energy that they take: half of
+/// impulse times flow before, as in a perfectly plastic impact. One solution is exact where momenta are linear in flows;
+/// elsewhere it is repeated while it helps.
+fn strike<S: Scalar, const N: usize>(mut x: SVector<S, N>, read: &impl Fn(&SVector<S, N>) -> Hold<S>) -> Started<S, N> {
+    let (zero, half) = (S::from_f64(0.0), S::from_f64(0.5));
+    let mut lost = zero;
+    let mut before = read(&x);
+    for _ in 0..20 {
+        let rigid = before.held.rigid.len();
+        let impulses = Factors::of(before.matrix()).solved(&before.flows()[..rigid]);
+        let mut moved = x;
+        for (reaction, &impulse) in impulses.iter().enumerate() {
+            for (&state, &by) in before.held.moved.iter().zip(before.moves(reaction)) {
+                moved[state] = moved[state] - by * impulse;
+            }
+        }
+        let after = read(&moved);
+        if fastest(&after, rigid) >= fastest(&before, rigid) {
+            break;
+        }
+        for ((&impulse, &from), &to) in impulses.iter().zip(before.flows()).zip(after.flows()) {
+            lost = lost - half * impulse * (from + to);
+        }
+        (x, before) = (moved, after);
+    }
+    Started { x, lost }
+}
+
+/// The largest of the first `rigid` flows.
+fn fastest<S: Scalar>(hold: &Hold<S>, rigid: usize) -> f64 {
+    hold.flows()[..rigid].iter().fold(0.0, |fastest, flow| fastest.max(flow.to_f64().abs()))
+}
+
+fn slipping(held: &Held, k: usize, speed: f64) -> Slipping {
+    let is_rigid = k < held.rigid.len();
+    let slip = if is_rigid { held.rigid[k] } else { held.compliant[k - held.rigid.len()] };
+    Slipping { slip, speed, is_rigid }
+}
+
+/// Finds the joints whose flows are above [`FITTING`], those apart that are `excused`.
+fn check_fit<S: Scalar>(hold: &Hold<S>, excused: impl Fn(&Slipping) -> bool) -> Result<(), AssemblyError> {
+    let mut joints: Vec<Slipping> = Vec::new();
+    for (k, flow) in hold.flows().iter().enumerate() {
+        let found = slipping(&hold.held, k, flow.to_f64());
+        if found.speed.abs() <= FITTING || excused(&found) {
+            continue;
+        }
+        match joints.iter_mut().find(|known| known.slip.joint == found.slip.joint) {
+            Some(known) if known.speed.abs() >= found.speed.abs() => {}
+            Some(known) => *known = found,
+            None => joints.push(found),
+        }
+    }
+    joints.sort_by(|a, b| b.speed.abs().total_cmp(&a.speed.abs()));
+    if joints.is_empty() {
+        return Ok(());
+    }
+    let largest = joints.remove(0);
+    Err(AssemblyError::Torn { largest, others: joints })
+}

@@ -1,0 +1,157 @@
+//! Rigid joints that hold the same motion: two hinges of one door, a parallelogram that comes to lie flat.
+
+use bg_model::assembly::AssemblyError;
+use bg_model::bond_graph;
+use bg_model::failure::Cause;
+use bg_model::holding::Redundancy;
+use bg_model::integrator::{Bs5, Dop853, Method, Radau9, Taylor, Tolerances};
+use bg_model::nalgebra::SVector;
+use bg_model::simulation::{Settings, Span, integrate};
+use bg_model::system::Model;
+
+bond_graph! {
+    /// A door of 20 kg on two hinges, one above the other.
+    graph Door {
+        param angle: rad = 0.7;
+        gravity [0, 0, -9.81];
+        ground { point lower = [-0.37, 0.11, -0.93]; point upper = [-0.37, 0.11, 1.07]; }
+        body door {
+            mass 20; inertia [7, 1, 6];
+            point lower = [-0.4, 0, -1]; point upper = [-0.4, 0, 1];
+            start lower at [-0.37, 0.11, -0.93]; start turned rotation_z(angle);
+        }
+        joint bottom: revolute z (ground.lower -> door.lower) { rigid; }
+        joint top: revolute z (ground.upper -> door.upper) { rigid; stiffness 1e6; damping 1e3; tilt stiffness 1e4; }
+        observe { f: N = bottom.force; top.force }
+    }
+
+    /// The same, where the upper hinge holds only sideways, and where it gives a little.
+    graph Hung {
+        param angle: rad = 0.7;
+        gravity [0, 0, -9.81];
+        ground { point lower = [-0.37, 0.11, -0.93]; point upper = [-0.37, 0.11, 1.07]; }
+        body door {
+            mass 20; inertia [7, 1, 6];
+            point lower = [-0.4, 0, -1]; point upper = [-0.4, 0, 1];
+            start lower at [-0.37, 0.11, -0.93]; start turned rotation_z(angle);
+        }
+        joint bottom: spherical (ground.lower -> door.lower) { rigid; }
+        1 top.x: translation; 1 top.y: translation;
+        1 tip[3]: translation; 0 arm[3]: translation;
+        MTF lever(w) = cross(w, door.upper.arm);
+        door.translation -> arm -> tip; door.rotation -> lever -> arm;
+        TF along_x(v) = dot([1, 0, 0], v); TF along_y(v) = dot([0, 1, 0], v);
+        tip -> along_x -> top.x; tip -> along_y -> top.y;
+        rSe top.x_reaction = 0 at door.upper.position.x + 0.37;
+        rSe top.y_reaction = 0 at door.upper.position.y - 0.11;
+        top.x -> top.x_reaction; top.y -> top.y_reaction;
+        observe { bottom.force; angle: rad = door.angle; aside: N = top.x_reaction.effort; across: N = top.y_reaction.effort }
+    }
+
+    /// Two cranks and a coupler, all links 0.3 m or 0.5 m long.
+    graph Parallelogram {
+        param angle: rad = 1;
+        param speed: rad/s = 3;
+        ground { point O = [0, 0, 0]; point P = [0.5, 0, 0]; }
+        body crank {
+            mass 1; inertia [0.01, 0.01, 0.01]; point O = [-0.15, 0, 0]; point A = [0.15, 0, 0];
+            start O at [0, 0, 0]; start turned rotation_z(angle);
+            start spin [0, 0, speed]; start velocity [guess(0), guess(0), 0];
+        }
+        body follower {
+            mass 1; inertia [0.01, 0.01, 0.01]; point O = [-0.15, 0, 0]; point B = [0.15, 0, 0];
+            start O at [0.5, 0, 0]; start turned rotation_z(angle);
+            start spin [0, 0, guess(0)]; start velocity [guess(0), guess(0), 0];
+        }
+        body coupler {
+            mass 1; inertia [0.01, 0.01, 0.02]; point A = [-0.25, 0, 0]; point B = [0.25, 0, 0];
+            start A at [0.3 * cos(angle), 0.3 * sin(angle), 0];
+            start spin [0, 0, guess(0)]; start velocity [guess(0), guess(0), 0];
+        }
+        joint pin_o: revolute z (ground.O -> crank.O) { stiffness 1e6; damping 10; tilt stiffness 1e3; }
+        joint pin_p: revolute z (ground.P -> follower.O) { stiffness 1e6; damping 10; tilt stiffness 1e3; }
+        joint pin_a: revolute z (crank.A -> coupler.A) { stiffness 1e6; damping 10; tilt stiffness 1e3; }
+        joint pin_b: revolute z (follower.B -> coupler.B) { stiffness 1e6; damping 10; tilt stiffness 1e3; }
+        observe { crank: rad = crank.angle; follower: rad = follower.angle; pin_b.force }
+        /// On ideal pins, in the plane.
+        scene RigidParallelogram { rigid joints; expect planar; }
+    }
+}
+
+#[test]
+fn two_rigid_hinges_of_one_door_are_named() {
+    let error = Door::new(DoorParameters::default()).unwrap().start().unwrap_err();
+    let AssemblyError::Redundant(redundancy) = &error else { panic!("{error}") };
+    let expected = Redundancy {
+        joint: "top",
+        directions: vec!["in x", "in y", "in z", "about x", "about y"],
+        others: vec!["bottom"],
+    };
+    assert_eq!(*redundancy, expected);
+    assert_eq!(
+        error.to_string(),
+        "rigid joint `top` holds in x, in y, in z, about x, about y what rigid joint `bottom` holds already, so their \
+         reactions have no unique values; make one of them compliant, or of a kind that holds less"
+    );
+}
+
+#[test]
+fn hinges_that_hold_each_their_own_carry_the_door_s_weight() {
+    let model: Hung = Hung::new(HungParameters::default()).unwrap();
+    let start: SVector<f64, { Hung::STATES }> = model.start().unwrap();
+    let span = Span { t0: 0.0, t_end: 0.2 };
+    let finish = integrate(&model, &mut Taylor::new(), &start, span, &Settings::default(), &mut ()).unwrap();
+    for (t, x) in [(0.0, start), (finish.t, finish.x)] {
+        let mut y = SVector::<f64, { Hung::OUTPUTS }>::zeros();
+        model.outputs(t, &x, &finish.negative, &mut y);
+        // The axis is vertical, so the door stays; its centre is 0.4 m beside the axis, the hinges are 2 m apart.
+        let weight = 20.0 * 9.81;
+        let pull = weight * 0.4 / 2.0;
+        assert!((y[2] - weight).abs() < 1e-6 && (y[3] - 0.7).abs() < 1e-9, "{y}");
+        assert!((y[0].hypot(y[1]) - pull).abs() < 1e-6 && (y[4].hypot(y[5]) - pull).abs() < 1e-6, "{y}");
+    }
+}
+
+/// The cranks turn at a constant speed, so the links lie in one line at a known time.
+fn flattened(method: &mut impl Method<{ RigidParallelogram::STATES }>, rtol: f64) {
+    let model: RigidParallelogram = RigidParallelogram::new(RigidParallelogramParameters::default()).unwrap();
+    let start = model.start().unwrap();
+    let flat = (std::f64::consts::PI - 1.0) / 3.0;
+    let span = |t_end: f64| Span { t0: 0.0, t_end };
+    let settings =
+        Settings { tolerances: Tolerances::new(rtol, 0.1 * rtol), step_limit: 100_000, ..Settings::default() };
+    let name = method.name();
+    integrate(&model, method, &start, span(0.9 * flat), &settings, &mut ()).unwrap_or_else(|failure| {
+        panic!("{name} {rtol:e}: {failure}");
+    });
+    let failure = integrate(&model, method, &start, span(2.0), &settings, &mut ()).expect_err(name);
+    let Cause::Redundant { redundancy, t } = &failure.cause else { panic!("{name} {rtol:e}: {failure}") };
+    println!("{name} {rtol:e}: {failure}, last good at {}", failure.last.t);
+    assert!(failure.last.t < flat + 1e-3 && (t - flat).abs() < 0.01, "{name} {rtol:e}: {failure}");
+    assert_eq!(redundancy.joint, "pin_b");
+    assert_eq!(redundancy.others.len(), 3, "{failure}");
+    assert!(failure.to_string().contains("pin_o") && failure.to_string().contains("singular"), "{failure}");
+}
+
+#[test]
+fn a_parallelogram_that_comes_to_lie_flat_is_an_error_with_its_joints() {
+    for rtol in [1e-4, 1e-6, 1e-9] {
+        flattened(&mut Dop853::new(), rtol);
+        flattened(&mut Bs5::new(), rtol);
+        flattened(&mut Radau9::new(), rtol);
+        flattened(&mut Taylor::new(), rtol);
+    }
+}
+
+/// A link that turns by more than a right angle in a step has constraints that turn around, without a singular pose.
+#[test]
+fn a_parallelogram_that_does_not_come_to_lie_flat_runs() {
+    let model: RigidParallelogram =
+        RigidParallelogram::new(RigidParallelogramParameters { speed: -0.5, ..Default::default() }).unwrap();
+    let start = model.start().unwrap();
+    let span = Span { t0: 0.0, t_end: 1.9 };
+    let finish = integrate(&model, &mut Dop853::new(), &start, span, &Settings::default(), &mut ()).unwrap();
+    let mut y = SVector::<f64, { RigidParallelogram::OUTPUTS }>::zeros();
+    model.outputs(finish.t, &finish.x, &finish.negative, &mut y);
+    assert!((y[0] - 0.05).abs() < 1e-5 && (y[1] - 0.05).abs() < 1e-5, "{y}");
+}

@@ -1,0 +1,58 @@
+//! What a program says: results on standard output, faults as one line each on standard error.
+
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write, stderr, stdout};
+
+use super::FileError;
+
+/// Prints `text` to standard output. A reader that has gone away, as `head` does, is no fault.
+///
+/// # Errors
+/// [`FileError::Standard`], for instance on a full disk.
+pub fn print(text: &str) -> Result<(), FileError> {
+    printed(stdout().write_all(text.as_bytes()))
+}
+
+/// What became of printing: flushes standard output after `outcome`, and judges both as [`print`] does.
+///
+/// # Errors
+/// As [`print`].
+pub fn printed(outcome: io::Result<()>) -> Result<(), FileError> {
+    unless_closed(outcome.and_then(|()| stdout().flush())).map_err(FileError::Standard)
+}
+
+/// Says `fault` on standard error as one line that begins with `error: `.
+pub fn complain(fault: &impl Display) {
+    // There is no place left to report a failure of standard error; the exit code tells.
+    let _ = writeln!(stderr(), "error: {}", one_line(&fault.to_string()));
+}
+
+/// `outcome`, where a reader that has gone away is none of the writer's faults.
+pub(super) fn unless_closed(outcome: io::Result<()>) -> io::Result<()> {
+    match outcome {
+        Err(fault) if fault.kind() == ErrorKind::BrokenPipe => Ok(()),
+        outcome => outcome,
+    }
+}
+
+/// `text` without control characters, which a path may contain.
+fn one_line(text: &str) -> String {
+    let shown = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    text.chars().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_does_not_break_the_line() {
+        assert_eq!(one_line("cannot write a\nb\u{1b}[1m: \u{e9}"), "cannot write a\\nb\\u{1b}[1m: \u{e9}");
+    }
+
+    #[test]
+    fn only_a_closed_pipe_is_no_fault() {
+        assert!(unless_closed(Err(ErrorKind::BrokenPipe.into())).is_ok());
+        assert!(unless_closed(Err(ErrorKind::StorageFull.into())).is_err());
+    }
+}
