@@ -246,6 +246,36 @@ fn steps_follow_the_frequency() {
     }
 }
 
+/// Two blocks of 1 kg, each on a spring; after a second the other one is the stiff one. Positions, then momenta.
+struct Exchange;
+
+impl System<f64, 4, 1> for Exchange {
+    fn rate(&self, _t: f64, x: &SVector<f64, 4>, negative: &[bool; 1], dx: &mut SVector<f64, 4>) {
+        let frequencies = if negative[0] { [1e4, 10.0] } else { [10.0, 1e4] };
+        let force = |i: usize| -frequencies[i] * (frequencies[i] * x[i] + 0.04 * x[2 + i]);
+        *dx = SVector::from([x[2], x[3], force(0), force(1)]);
+    }
+
+    fn guards(&self, t: f64, _x: &SVector<f64, 4>, _: &[bool; 1], guards: &mut SVector<f64, 1>) {
+        guards[0] = t - 1.0;
+    }
+
+    fn second_order(&self) -> Range<usize> {
+        0..2
+    }
+
+    fn second_derivatives(&self, _x: &SVector<f64, 4>, dx: &mut SVector<f64, 4>) {
+        (dx[0], dx[1]) = (dx[2], dx[3]);
+    }
+}
+
+#[test]
+fn steps_follow_another_joint_that_becomes_the_stiffest() {
+    let (finish, _) = run(&Exchange, Nystrom::new(), [1e-12, 1e-12, 0.0, 0.0], 2.0, &settings(1e-6));
+    let turned = 2e4 / finish.statistics.steps as f64;
+    assert!((5.6..6.0).contains(&turned) && finish.statistics.rejected < 10, "{turned} {:?}", finish.statistics);
+}
+
 /// A ball of 1 kg that bounces on a spring and otherwise flies: height and momentum; and a clock.
 struct Ball;
 
