@@ -91,11 +91,22 @@ impl Input {
     }
 }
 
-/// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences at
-/// the times as rounded. The distance balances truncation with rounding where the time scale is 1 s or `t`.
-fn parabola_slope(value: &dyn Fn(f64) -> f64, t: f64) -> f64 {
+/// How far after time `t` (s) a closure is asked for its slope, s.
+pub(crate) fn reach(t: f64) -> f64 {
+    2.0 * distance(t)
+}
+
+/// The distance of the times at which a slope is asked for: it balances truncation with rounding where the time scale is 1 s or
+/// `t`.
+fn distance(t: f64) -> f64 {
     let size = t.abs();
-    let distance = f64::EPSILON.sqrt() * if size > 1.0 { size } else { 1.0 };
+    f64::EPSILON.sqrt() * if size > 1.0 { size } else { 1.0 }
+}
+
+/// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences at
+/// the times as rounded.
+fn parabola_slope(value: &dyn Fn(f64) -> f64, t: f64) -> f64 {
+    let distance = distance(t);
     let times = [t, t + distance, t + 2.0 * distance];
     let values = times.map(value);
     let first = (values[1] - values[0]) / (times[1] - times[0]);

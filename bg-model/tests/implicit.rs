@@ -239,6 +239,23 @@ fn a_stiff_switching_system_is_located_to_rounding() {
     }
 }
 
+/// A mass that is pushed back with a constant force: an event a rounding error before the end of a fixed step leaves a step of
+/// one rounding error, from whose polynomial nothing can be foreseen.
+#[test]
+fn a_sliver_of_a_step_does_not_spoil_the_next_one() {
+    let system = switched([|_, x| x[0]], |_, x: &SVector<f64, 2>, negative: &[bool; 1]| {
+        [x[1], if negative[0] { 1.0 } else { -1.0 }]
+    });
+    for step in [0.1, 0.05, 0.025, 0.0125] {
+        let (finish, record) = run(&system, Gauss6::new(step), [0.5, 0.0], 20.0, &settings(1e-8));
+        let exact = (0..10).map(|k| f64::from(1 + 2 * k));
+        assert_eq!(record.events.len(), 10);
+        for ((t, ..), exact) in record.events.iter().zip(exact) {
+            assert!((t - exact).abs() < 1e-13, "{step}: {t} for {exact}; {}", finish.statistics);
+        }
+    }
+}
+
 #[test]
 fn a_tiny_step_in_front_does_not_end_the_next_iteration_early() {
     // A pendulum on a stiff rod; the rate at which a tiny step converges says nothing about a long one.

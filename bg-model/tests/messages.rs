@@ -58,8 +58,8 @@ fn failed_runs_print_their_sentence() {
 #[test]
 fn parameters_and_gaps_print_their_sentence() {
     let refused = Oscillator::<f64>::new(OscillatorParameters { mass: -1.0, ..Default::default() })
-        .err()
-        .expect("the mass is refused");
+        .map(drop)
+        .expect_err("the mass is refused");
     assert!(printed(refused).starts_with("parameter `mass` = -1 kg is out of range"));
     let unknown = OscillatorParameters::default().set("weight", 1.0).unwrap_err();
     assert_eq!(printed(unknown), "there is no parameter `weight`");

@@ -2,7 +2,7 @@
 
 use bg_model::bond_graph;
 use bg_model::input::Input;
-use bg_model::integrator::{Auto, Dop853, Method, Radau9, Rk4};
+use bg_model::integrator::{Auto, Dop853, Method, Radau9, Rk4, Rodas5p};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Settings, Span, integrate};
 use bg_model::system::{Model, System};
@@ -70,6 +70,12 @@ fn an_input_is_named() {
         assert!(message.starts_with("input `inflow` gives NaN in a step of "), "{message}");
         assert!(message.contains(" s, and so the rate of `air.q` is NaN; give it finite numbers there"), "{message}");
     }
+    // By the slope that this method asks for first.
+    let message = stopped(&tank, &start, &mut Rodas5p::new());
+    assert!(
+        message.starts_with("input `inflow` gives NaN ") && message.contains("derivative of the rate"),
+        "{message}"
+    );
     let at_once = stopped(&self::tank(f64::INFINITY.into()), &start, &mut Dop853::new());
     assert!(at_once.starts_with("input `inflow` gives inf at t = 0.0 s, and so the rate of `air.q`"), "{at_once}");
 }

@@ -211,9 +211,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn command() -> clap::Command {
     let help = format!(
         "Parameters (name, default, unit, meaning); defaults < --params < --set:\n{}\n\
-         Files: a folder has the files of one run. They are written aside and take their place at the end, those of the run \
-         before go. A run that is stopped leaves the earlier one's. What no run wrote is left alone: a run that would \
-         replace it is refused, and so is a second one into the same folder at once. `.run` in the folder keeps the list.\n\n\
+         Files: a folder has the files of one run. They are written aside and take their place at the end, when those of the\n\
+         run before are removed; a run that is stopped leaves the earlier one's. Files that no run wrote are left alone: a run\n\
+         that would replace one is refused, as is a second run into the same folder at once. What a run wrote is listed in\n\
+         `.run` in the folder.\n\n\
          Exit code: 0 done, 1 the run or an output failed (what could be written is), 2 the input cannot be used.",
         parameters::table::<HacksawParameters>()
     );

@@ -356,6 +356,11 @@ fn all_algebraic_loops_come_at_once() {
          Se f = 1; 1 l: translation; R c = 1; 0 m; R d = 2; 1 n; R g = 3; 0 o; R h = 4; f -> l -> c; l -> ▸m -> d;\n\
          m -> n -> g; n -> o -> h;\n1 p: translation; I i = 1; C s(q) = 3 ▸* exp(sin(q / 1)); p -> i; p -> s;\n}";
     check_all(text, &["BG0501", "BG0501", "BG0503"]);
+    // A loop of junctions names these.
+    let faults =
+        compiled("graph G { 0 a: translation; 1 b: translation; 0 c: translation; 1 d; a -> b -> c -> d -> a; }");
+    let message = &faults.expect_err("a loop")[0].message;
+    assert_eq!(message, "algebraic loop: each of these needs the next: `a` -> `b` -> `c` -> `d`");
 }
 
 #[test]

@@ -22,8 +22,8 @@ fn peak(kind: &str, storage: &str, bonds: usize) -> u64 {
 #[test]
 fn a_junction_takes_memory_in_proportion_to_its_bonds() {
     for (kind, storage) in [("1", "I s = 1;"), ("0", "C s(q) = q * 2;")] {
-        let (few, many) = (peak(kind, storage, 500), peak(kind, storage, 2000));
-        println!("{kind}-junction: {few} bytes with 500 bonds, {many} with 2000");
+        let (few, many) = (peak(kind, storage, 250), peak(kind, storage, 1000));
+        println!("{kind}-junction: {few} bytes with 250 bonds, {many} with 1000");
         // Four times the bonds; tables that double leave up to twice that. With the square it would be sixteen.
         assert!(many < 8 * few, "{few} {many}");
     }

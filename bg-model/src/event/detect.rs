@@ -61,7 +61,7 @@ impl<const G: usize> Watch<G> {
         let mut x = SVector::zeros();
         hermite(&stepper.start, h, &end, 0.5, &mut x);
         let middle = stepper.guards(stepper.start.t + 0.5 * h, &x);
-        // Without the noise there are only more suspects.
+        // As long as the noise is not known it counts as none: there are only more suspects.
         if !self.suspects(stepper.negative, &middle, h).contains(&true) {
             return Ok(None);
         }

@@ -16,6 +16,9 @@ use crate::system::System;
 /// The part of a guard's value near a zero up to which what is left of it there is taken for rounding.
 const REMAINDER: f64 = 1e-10;
 
+/// A guard of which more than this part is left at its zero jumps there: what is left is no remainder.
+const JUMP: f64 = 1e-6;
+
 /// A crossing that the dense output foresees.
 #[derive(Clone, Copy, Debug)]
 struct Foreseen {
@@ -69,15 +72,16 @@ impl<const G: usize> Watch<G> {
     {
         // Of the step: enough for the slope, which only speeds up what follows.
         const ASIDE: f64 = 1e-4;
-        let h = stepper.h;
+        let (t, h) = (stepper.end.t, stepper.h);
         let Bracket { right, wrong } = bracket;
         let chord = (wrong.1 - right.1) / (wrong.0 - right.0);
         let guess = right.0 - right.1 / chord;
         let mut at = |part: f64| clearance(stepper.dense_guards(part)[k], stepper.negative[k]);
         let size = larger(right.1.abs(), wrong.1.abs());
-        let (part, _) = zero(right.0, wrong.0, guess, chord, precise_to(size, 0.0), &mut at);
+        let coarse = precise_to(size, 0.0, t * chord / h);
+        let (part, _) = zero(right.0, wrong.0, guess, chord, coarse, &mut at);
         let slope = (at(part + ASIDE) - at(part - ASIDE)) / (2.0 * ASIDE * h);
-        let precision = precise_to(size, self.noise_inside(stepper, k, part));
+        let precision = precise_to(size, self.noise_inside(stepper, k, part), t * slope);
         Foreseen { switch: k, right: right.0 * h, wrong: wrong.0 * h, guess: part * h, slope, precision }
     }
 
@@ -104,7 +108,8 @@ impl<const G: usize> Watch<G> {
             let behind = clearance(value[earlier], stepper.negative[earlier]);
             slope = -(self.start.slope[earlier].abs().max(f64::MIN_POSITIVE));
             (switch, right, wrong, guess) = (earlier, 0.0, h, h - behind / slope);
-            precision = precise_to(larger(self.start.value[earlier].abs(), behind.abs()), noise[earlier]);
+            let size = larger(self.start.value[earlier].abs(), behind.abs());
+            precision = precise_to(size, noise[earlier], stepper.end.t * slope);
         }
         (switch, guards_after(stepper, stepper.h))
     }
@@ -141,7 +146,7 @@ impl<const G: usize> Watch<G> {
             let is_wrong = clearance(value[k], stepper.negative[k]) < -noise[k];
             let is_concerned = k == first || is_wrong || (is_on_course && value[k].abs() <= noise[k]);
             let size = larger(self.start.value[k].abs(), self.end.value[k].abs());
-            if is_concerned && value[k].abs() <= precise_to(size, noise[k]).rounding {
+            if is_concerned && value[k].abs() <= larger(JUMP * size, noise[k]) {
                 self.leave(k, value[k]);
             }
             is_concerned
@@ -149,9 +154,14 @@ impl<const G: usize> Watch<G> {
     }
 }
 
-/// How exactly the zero of a guard is looked for that has values of this size near it, and this noise.
-fn precise_to(size: f64, noise: f64) -> Precision {
-    Precision { zero: larger(f64::EPSILON * size, noise / 16.0), rounding: larger(REMAINDER * size, noise) }
+/// How exactly the zero of a guard is looked for that has values of this size near it, this noise, and in the time that the
+/// run has lasted would change by `drift` at the slope that it has there: an instant is not known better than the time is.
+fn precise_to(size: f64, noise: f64, drift: f64) -> Precision {
+    let drift = f64::EPSILON * drift.abs();
+    Precision {
+        zero: larger(larger(f64::EPSILON * size, noise / 16.0), drift / 16.0),
+        rounding: larger(larger(REMAINDER * size, noise), 4.0 * drift),
+    }
 }
 
 /// The guards at the projected end of a step of size `h` (s).

@@ -18,7 +18,11 @@ pub(crate) use stepper::Stepper;
 
 use crate::event::Watch;
 use crate::failure::{Cause, Failure, Quantity};
+<<<<<<< HEAD
 use crate::holding::Independence;
+=======
+use crate::input;
+>>>>>>> names
 use crate::integrator::{Method, Point, Scale, StepControl, first_not_finite, is_finite};
 use crate::statistics::Statistics;
 use crate::system::System;
@@ -247,13 +251,13 @@ where
     fn not_finite(&self, quantity: Quantity, (index, value): (usize, f64), h: f64) -> Cause {
         let (name, origin) = match quantity {
             Quantity::Guard => (self.stepper.system.switch_name(index).unwrap_or_default(), None),
-            Quantity::State | Quantity::Rate | Quantity::Derivative => {
-                (self.stepper.system.state_name(index), self.stepper.origin())
+            Quantity::State | Quantity::Rate => (self.stepper.system.state_name(index), self.stepper.origin(0.0)),
+            Quantity::Derivative => {
+                // By time an input's derivative may be a difference.
+                let reach = input::reach(self.stepper.start.t);
+                (self.stepper.system.state_name(index), self.stepper.origin(reach))
             }
         };
-        // A derivative is asked for at the start of the step, what it comes from shows on the way.
-        let is_ahead = quantity == Quantity::Derivative && origin.is_some();
-        let h = if is_ahead { self.stepper.h } else { h };
         Cause::NonFinite { origin, quantity, name, index, value, t: self.stepper.start.t, h }
     }
 

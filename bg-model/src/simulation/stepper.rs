@@ -154,12 +154,13 @@ where
         entry.or_else(|| first_not_finite(&slope))
     }
 
-    /// The input or element that gives a number that is not finite at the start of the last attempt or on the way to its end, as
-    /// far as the system can tell: the way is that of the rate at the start.
-    pub fn origin(&self) -> Option<Origin> {
+    /// The input or element that gives a number that is not finite at the start of the last attempt or on the way to its end, or for
+    /// `at_least` (s), as far as the system can tell: the way is that of the rate at the start.
+    pub fn origin(&self, at_least: f64) -> Option<Origin> {
         const PARTS: u32 = 16;
         let Point { t, x, rate } = self.start;
-        let ahead = (1..=PARTS).map(|part| self.h * f64::from(part) / f64::from(PARTS));
+        let way = self.h.max(at_least);
+        let ahead = (1..=PARTS).map(|part| way * f64::from(part) / f64::from(PARTS));
         let on_the_way = ahead.map(|ahead| (t + ahead, x + rate * ahead));
         let mut points = std::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
         points.find_map(|(t, x)| is_finite(&x).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())

@@ -9,6 +9,9 @@ use super::Collocation;
 use super::tableau::Tableau;
 use crate::integrator::Point;
 
+/// The step over the one before up to which the polynomial is extrapolated: error control stays far below it.
+const FARTHEST: f64 = 100.0;
+
 impl<const S: usize, const P: usize> Tableau<S, P> {
     /// The increments' weights at the part `theta` of the step: Lagrange's polynomials over zero and the nodes.
     pub(super) fn weights(&self, theta: f64) -> [f64; S] {
@@ -29,9 +32,10 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         }
     }
 
-    /// Starts the increments of a step of size `h` (s) on the polynomial of the step before, at zero where there is none.
+    /// Starts the increments of a step of size `h` (s) on the polynomial of the step before, at zero where there is none or it
+    /// was so short that nothing of it holds so far ahead.
     pub(super) fn extrapolate(&mut self, h: f64) {
-        if self.step_before == 0.0 {
+        if self.step_before == 0.0 || h > FARTHEST * self.step_before {
             self.z = [SVector::zeros(); S];
             return;
         }

@@ -37,7 +37,8 @@ struct Aligned<const N: usize>(SVector<f64, N>);
 /// The Runge-Kutta-Nystrom method for stiff, lightly damped joints, of order 5, and 6 where no force depends on momenta.
 ///
 /// Nine rates a step, none more for its dense output, and one in four steps for the stiffest joint's frequency. Steps are held
-/// to where that joint is stable, whatever the tolerance.
+/// to where that joint is stable, whatever the tolerance: a loose one has no effect there. Where no joint is stiff, and without states
+/// of second order, the tolerance alone decides.
 #[derive(Clone, Debug)]
 pub struct Nystrom<const N: usize> {
     /// The second derivatives of the states of second order and the rates of the others, at the stages and at the end.

@@ -17,13 +17,15 @@ const FIRST_STEPS: u32 = 8;
 const PAUSE: u32 = 4;
 /// The size of the trial displacement, in parts of the largest position.
 const DISPLACEMENT: f64 = 1e-7;
+/// The fractional part of the golden ratio: its multiples lie evenly, so that no oscillation of equal parts has no share in them.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The fastest oscillation as far as it is known.
 #[derive(Clone, Debug)]
 pub(super) struct Ring<const N: usize> {
     /// Its frequency, rad/s; 0 where it is not known or there is none.
     pub frequency: f64,
-    /// Its direction, of length 1; 0 before the first iteration.
+    /// Its direction, of length 1; 0 where it is not known.
     direction: SVector<f64, N>,
     /// Accepted steps since the restart.
     steps: u32,
@@ -61,8 +63,10 @@ impl<const N: usize> Ring<N> {
         self.is_done = true;
         let masked =
             |x: &SVector<f64, N>| SVector::<f64, N>::from_fn(|i, _| if states.contains(&i) { x[i] } else { 0.0 });
-        if self.direction.amax() == 0.0 {
-            self.direction = masked(&SVector::<f64, N>::repeat(1.0)).normalize();
+        if self.steps == 0 || self.direction.amax() == 0.0 {
+            // What rang before the branch changed, and a share of everything else.
+            let any = SVector::<f64, N>::from_fn(|i, _| 1.0 + (GOLDEN * i as f64).fract());
+            self.direction = (self.direction + masked(&any).normalize()).normalize();
         }
         let size = DISPLACEMENT * masked(&point.x).amax().max(DISPLACEMENT);
         let x = point.x + self.direction * size;
@@ -73,9 +77,9 @@ impl<const N: usize> Ring<N> {
         flow.second_derivatives(&x, &mut moved);
         let change = masked(&(moved - second));
         let stiffness = change.norm() / size;
-        if stiffness > 0.0 && stiffness.is_finite() {
+        if stiffness.is_finite() {
             self.frequency = stiffness.sqrt();
-            self.direction = change.normalize();
+            self.direction = if stiffness > 0.0 { change.normalize() } else { SVector::zeros() };
         }
     }
 }

@@ -251,20 +251,16 @@ impl<'a> Signals<'a> {
     /// The loop that ends where it began: at this variable.
     fn circle(&self, variable: Variable, bond: BondId) -> Fault {
         let start = self.path.iter().position(|&step| step == (variable, bond)).unwrap_or(0);
-        let members: Vec<String> = self.path[start..]
-            .iter()
-            .flat_map(|(_, bond)| {
-                let ends = self.graph.bond(*bond);
-                [ends.from, ends.to]
-            })
-            .filter(|&node| self.graph.element(node).is_some())
-            .map(|node| format!("`{}`", self.graph.node(node).name.text))
-            .fold(Vec::new(), |mut members, member| {
-                if !members.contains(&member) {
-                    members.push(member);
-                }
-                members
-            });
+        let mut nodes: Vec<NodeId> = Vec::new();
+        for &(_, bond) in &self.path[start..] {
+            let ends = self.graph.bond(bond);
+            nodes.extend([ends.from, ends.to].into_iter().filter(|node| !nodes.contains(node)).collect::<Vec<_>>());
+        }
+        // Elements say more; a loop may have none.
+        if nodes.iter().any(|&node| self.graph.element(node).is_some()) {
+            nodes.retain(|&node| self.graph.element(node).is_some());
+        }
+        let members = nodes.into_iter().map(|node| format!("`{}`", self.graph.node(node).name.text)).collect();
         Fault::new(self.graph.bond(bond).span, &EquationFault::AlgebraicLoop { members })
     }
 
