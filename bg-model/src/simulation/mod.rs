@@ -18,11 +18,8 @@ pub(crate) use stepper::Stepper;
 
 use crate::event::Watch;
 use crate::failure::{Cause, Failure, Quantity};
-<<<<<<< HEAD
 use crate::holding::Independence;
-=======
 use crate::input;
->>>>>>> names
 use crate::integrator::{Method, Point, Scale, StepControl, first_not_finite, is_finite};
 use crate::statistics::Statistics;
 use crate::system::System;
