@@ -356,7 +356,7 @@ use proc_macro::TokenStream;
 /// The reactions l are solved for at compile time. That the second derivative of each held gap vanishes is linear in
 /// them, A l + b = 0, with A symmetric; A is factored as L D L^T in symbols, without pivots, and the solution is part
 /// of the flat rate function. What truncation leaves of a gap q and its rate v decays by Baumgarte's terms,
-/// `v' = -2 a v - a^2 q` with a = 50 1/s: a start that fits is left to no such terms, since gaps and
+/// `v' = -2 a v - a^2 q` with a = 50 1/s: at the start they have nothing to do, since gaps and
 /// [velocities](#start-velocities) that do not fit are errors.
 ///
 /// Redundancy: a constraint whose flow and gap vanish identically while the constants of the reduction hold, such as
