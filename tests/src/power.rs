@@ -53,8 +53,8 @@ where
     let states = model.description().states;
     // What stands before the row and the column in an orientation's name.
     let stem = |index: usize| {
-        let StateInfo { name, storage, .. } = &states[index];
-        (*storage == "orientation").then(|| &name[..name.len() - 2])
+        let StateInfo { name, kind, .. } = &states[index];
+        (kind.storage() == "orientation").then(|| &name[..name.len() - 2])
     };
     let mut index = 0;
     while index < N {

@@ -149,7 +149,7 @@ const EQUATIONS: [(&str, &str); 7] = [
 
 /// Values that no physics allows.
 const VALUES: [(&str, &str); 3] = [
-    ("BG0701", "Se f = 1; 1 j: translation; I m = 2; R r = ▸-3; f -> j -> m; j -> r;"),
+    ("BG0701", "Se f = 1; 1 j: translation; I m = 2; R r = -▸3; f -> j -> m; j -> r;"),
     ("BG0702", "body rod { mass 1; inertia ▸[[1, 2, 0], [0, 2, 0], [0, 0, 3]]; }"),
     ("BG0703", "body rod { sphere radius 1; density 1; start turned ▸[[1, 0.2, 0], [0, 1, 0], [0, 0, 1]]; }"),
 ];
@@ -158,7 +158,7 @@ const VALUES: [(&str, &str); 3] = [
 const MORE: [(&str, &str); 16] = [
     ("BG0202", "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> ▸rod.end) { stiffness 1; }"),
     ("BG0202", "body rod { sphere radius 1; density 1; point end = [1, 0, 0]; start ▸top at [0, 0, 0]; }"),
-    ("BG0314", "gravity ▸-9.81;\nbody rod { sphere radius 1; density 1; }"),
+    ("BG0314", "gravity -▸9.81;\nbody rod { sphere radius 1; density 1; }"),
     ("BG0314", "Se f = 1; 1 j: translation; I m = 2; R r = norm(▸[0, 1]); f -> j -> m; j -> r;"),
     ("BG0314", "body rod { sphere radius 1; density 1; point end = ▸[0, 1]; }"),
     ("BG0314", "body rod { mass 1; inertia ▸2; }"),

@@ -13,11 +13,9 @@ use crate::integrator::Method;
 use crate::simulation::Stepper;
 use crate::system::System;
 
-/// The part of a guard's value near a zero up to which what is left of it there is taken for rounding.
-const REMAINDER: f64 = 1e-10;
-
-/// A guard of which more than this part is left at its zero jumps there: what is left is no remainder.
-const JUMP: f64 = 1e-6;
+/// The part of a guard's values around a zero up to which what is left of it there is rounding, of the states that stiff forces
+/// lead to, where it stops falling. A guard of which more is left jumps there.
+const REMAINDER: f64 = 1e-7;
 
 /// A crossing that the dense output foresees.
 #[derive(Clone, Copy, Debug)]
@@ -146,7 +144,7 @@ impl<const G: usize> Watch<G> {
             let is_wrong = clearance(value[k], stepper.negative[k]) < -noise[k];
             let is_concerned = k == first || is_wrong || (is_on_course && value[k].abs() <= noise[k]);
             let size = larger(self.start.value[k].abs(), self.end.value[k].abs());
-            if is_concerned && value[k].abs() <= larger(JUMP * size, noise[k]) {
+            if is_concerned && value[k].abs() <= larger(REMAINDER * size, noise[k]) {
                 self.leave(k, value[k]);
             }
             is_concerned

@@ -16,7 +16,7 @@ pub fn seeds(workspace: &Path) -> io::Result<Vec<String>> {
     for path in files(&workspace.join("tests/tests/stages"), "bond")? {
         texts.push(fs::read_to_string(path)?);
     }
-    texts.push(fs::read_to_string(workspace.join("bg-macros/compiler/src/syntax/tests/example.bond"))?);
+    texts.push(fs::read_to_string(workspace.join("bg-macros/compiler/src/source/syntax/tests/example.bond"))?);
     for path in files(&workspace.join("tests/src/examples"), "rs")? {
         texts.extend(calls(&fs::read_to_string(path)?));
     }

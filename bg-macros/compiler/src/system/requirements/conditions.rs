@@ -6,6 +6,7 @@
 //! Slotine 2018, Linear Matrix Inequalities for Physically-Consistent Inertial Parameter Identification, IEEE Robotics and
 //! Automation Letters 3).
 
+use super::fault::Kind;
 use crate::expr::{Function, Id, Pool};
 use crate::source::clause::Allowed;
 use crate::system::equations::Value;
@@ -41,7 +42,7 @@ pub(super) struct Condition {
     pub component: Option<char>,
     pub wanted: &'static str,
     pub help: &'static str,
-    pub code: &'static str,
+    pub fault: Kind,
 }
 
 /// What is asked of a value.
@@ -98,13 +99,13 @@ fn numbers(value: &Value, allowed: Allowed) -> Vec<Condition> {
         component,
         wanted,
         help,
-        code: "BG0701",
+        fault: Kind::Number,
     })
     .collect()
 }
 
 fn of_matrix(value: Id, wanted: &'static str, help: &'static str) -> Condition {
-    Condition { value, is_strict: true, is_shown: false, component: None, wanted, help, code: "BG0702" }
+    Condition { value, is_strict: true, is_shown: false, component: None, wanted, help, fault: Kind::Matrix }
 }
 
 fn symmetric(pool: &mut Pool, matrix: &Value) -> Condition {
@@ -183,7 +184,7 @@ fn rotation(pool: &mut Pool, matrix: &Value) -> Vec<Condition> {
         (orthogonal, "must be a rotation: its columns are not perpendicular to each other and of length 1"),
         (determinant, "must be a rotation, not a mirror image"),
     ]
-    .map(|(value, wanted)| Condition { code: "BG0703", ..of_matrix(value, wanted, help) })
+    .map(|(value, wanted)| Condition { fault: Kind::Orientation, ..of_matrix(value, wanted, help) })
     .into()
 }
 

@@ -3,7 +3,15 @@
 use super::Requirement;
 use crate::fault::Explain;
 
-/// A number in front of what is asked of it: BG0701 a number, BG0702 a matrix, BG0703 an orientation.
+/// What a value that cannot be is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Kind {
+    Number,
+    Matrix,
+    Orientation,
+}
+
+/// A value that does not hold what is asked of it.
 pub struct RequirementFault<'a> {
     /// What was asked.
     pub requirement: &'a Requirement,
@@ -13,7 +21,11 @@ pub struct RequirementFault<'a> {
 
 impl Explain for RequirementFault<'_> {
     fn code(&self) -> &'static str {
-        self.requirement.code
+        match self.requirement.fault {
+            Kind::Number => "BG0701",
+            Kind::Matrix => "BG0702",
+            Kind::Orientation => "BG0703",
+        }
     }
 
     fn message(&self) -> String {

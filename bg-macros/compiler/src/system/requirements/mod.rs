@@ -45,7 +45,7 @@ pub struct Requirement {
     /// Whether 0 is too little.
     pub is_strict: bool,
     help: &'static str,
-    code: &'static str,
+    fault: fault::Kind,
     span: Span,
     /// Requirements of one subject have the same number: the first that fails is the one to speak of.
     group: usize,
@@ -88,7 +88,7 @@ impl Requirements {
                 value: condition.value,
                 is_strict: condition.is_strict,
                 help: condition.help,
-                code: condition.code,
+                fault: condition.fault,
                 span: subject.span,
                 group,
                 is_total: subject.allowed == Allowed::Total,
