@@ -76,7 +76,7 @@ fn a_run_that_is_killed_while_it_writes_leaves_what_was_there() {
     let before = results(&out);
     assert_eq!(before.len(), 20);
     let child = started(path, &LONG_WRITING, growing);
-    // A second run at once comes to nothing, and the first does not notice.
+    // A second run at once is refused, and the first does not notice.
     let second = run(path, &SHORT);
     assert_eq!(second.status.code(), Some(2));
     assert!(second.stdout.is_empty());

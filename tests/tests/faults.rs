@@ -416,8 +416,8 @@ fn the_advice_on_derivative_causality_leads_to_a_graph_that_compiles() {
         "0 tie; 1 hub; rSe rigid = 0; rigid -> tie;",
         "0 tie; 1 hub; 1 k; C c(q) = 4 * q; R r = 1; tie -> k -> c; k -> r;",
     ] {
-        let mended = compiled(&graph(declared, "shaft -> tie -> hub -> wheel;"));
-        assert!(mended.is_ok(), "{declared}: {}", mended.expect_err("faults")[0]);
+        let fixed = compiled(&graph(declared, "shaft -> tie -> hub -> wheel;"));
+        assert!(fixed.is_ok(), "{declared}: {}", fixed.expect_err("faults")[0]);
     }
     // The exact rigid gear.
     let gear = graph(
