@@ -17,7 +17,7 @@ use super::{description, elimination, pairs, series};
 use crate::expr::Symbol;
 use crate::pipeline::Compiled;
 use crate::program::pairs::Paired;
-use crate::program::{Assignment, Counts, Operand, Programs, Routine, SecondOrderPrograms};
+use crate::program::{Assignment, Counts, Operand, Program, Programs, Routine, SecondOrderPrograms};
 use crate::system::equations::StateEquations;
 
 /// The items of one model: parameters, inputs, the type, its functions, its description.
@@ -256,21 +256,30 @@ impl Emission<'_> {
         let functions = starting.programs().into_iter().chain(required.iter().flatten()).map(|program| {
             let [routine] = &program.routines;
             let function = identifier(&routine.name);
-            let parameters = self.parameter_bindings(&[&program.constants, routine]);
-            let (constants, table) = self.body(&program.constants);
+            let constants = self.own_constants(program);
             let (statements, results) = self.body(routine);
             let length = results.len();
-            let entries = table.len();
             quote! {
                 fn #function(parameters: &Parameters, u: &[S; #unknowns]) -> [S; #length] {
-                    #parameters
-                    let c: [S; #entries] = { #constants [#(#table),*] };
+                    #constants
                     #statements
                     [#(#results),*]
                 }
             }
         });
         quote! { #(#functions)* }
+    }
+
+    /// `let c`: the constants of a program that is evaluated by itself, from `parameters`; before it the parameters it reads.
+    fn own_constants(&self, program: &Program<1>) -> TokenStream {
+        let [routine] = &program.routines;
+        let parameters = self.parameter_bindings(&[&program.constants, routine]);
+        let (constants, table) = self.body(&program.constants);
+        let entries = table.len();
+        quote! {
+            #parameters
+            let c: [S; #entries] = { #constants [#(#table),*] };
+        }
     }
 
     fn parameter_bindings(&self, routines: &[&Routine]) -> TokenStream {
@@ -493,11 +502,9 @@ impl Emission<'_> {
             let (field, name) = (identifier(&input.name.text), &input.name.text);
             quote!(("input", #name, self.inputs.#field.value(t)))
         });
-        let parameters = self.parameter_bindings(&[&program.constants, routine]);
-        let (constants, table) = self.body(&program.constants);
+        let constants = self.own_constants(program);
         let bindings = self.dynamic_bindings(routine);
         let (statements, values) = self.body(routine);
-        let entries = table.len();
         let laws = fallible.iter().zip(values).map(|(law, value)| {
             let (kind, element) = (law.kind, &law.element);
             quote!((#kind, #element, #value))
@@ -506,8 +513,7 @@ impl Emission<'_> {
             #[cold]
             fn not_finite(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> Option<::bg_model::failure::Origin> {
                 let parameters = &self.parameters;
-                #parameters
-                let c: [S; #entries] = { #constants [#(#table),*] };
+                #constants
                 let [x] = &x.data.0;
                 #bindings
                 #statements
