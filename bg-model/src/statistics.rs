@@ -9,6 +9,9 @@ pub struct Statistics {
     pub steps: u64,
     /// Attempts that were rejected: by the error estimate, or because a number was not finite.
     pub rejected: u64,
+    /// Accepted steps of explicit methods in which rounding of the states may make a larger error estimate than the tolerances allow,
+    /// by a look at every 64th step where the relative tolerance is at most 1e-10. A looser tolerance gives as good a result.
+    pub rounded: u64,
     /// Evaluations of the rate, but for those of Jacobians by differences.
     pub rate_evaluations: u64,
     /// Those of `rate_evaluations` that served the dense output only.
@@ -32,6 +35,12 @@ pub struct Statistics {
 }
 
 impl Statistics {
+    /// Whether the tolerances were below rounding in more than a tenth of the steps.
+    #[must_use]
+    pub fn is_at_rounding(&self) -> bool {
+        10 * self.rounded > self.steps
+    }
+
     /// Records an accepted step of size `h` (s).
     pub(crate) fn record(&mut self, h: f64) {
         self.smallest_step = if self.steps == 0 { h } else { self.smallest_step.min(h) };
@@ -54,6 +63,9 @@ impl fmt::Display for Statistics {
             self.guard_evaluations,
             self.events
         )?;
+        if self.rounded > 0 {
+            write!(f, ", {} steps with tolerances below rounding", self.rounded)?;
+        }
         if self.factorisations > 0 {
             let (jacobians, factorisations) = (self.jacobian_evaluations, self.factorisations);
             write!(

@@ -2,9 +2,9 @@
 
 mod problems;
 
-use bg_model::integrator::{Auto, Dop853, Method, Radau9};
+use bg_model::integrator::{Auto, Dop853, Method, Radau9, Tolerances};
 use bg_model::nalgebra::SVector;
-use bg_model::simulation::{Finish, Span, integrate};
+use bg_model::simulation::{Finish, Settings, Span, integrate};
 use problems::*;
 
 /// A run to `t_end` (s) from t = 0, and when which method took over.
@@ -46,4 +46,61 @@ fn a_slow_approach_to_rest_stays_with_the_implicit_method() {
     let (finish, changes) = chosen(&smooth(rate), [1.0, 1.0], 30.0);
     let (alone, _) = run(&smooth(rate), Radau9::new(), [1.0, 1.0], 30.0, &settings(1e-6));
     assert!(finish.statistics.steps < 10 * alone.statistics.steps + 1000, "{} {changes:?}", finish.statistics);
+}
+
+/// A mass that swings fast and lightly damped under a load that a switch reverses at regular times: the ringing has to be followed,
+/// however short a step is that an event or the end of the run leaves.
+fn ringing() -> Flow<Rate<2, 1>, 1> {
+    let guards: [fn(f64, &[f64]) -> f64; 1] = [|t, _| (40.0 * t).sin()];
+    let rate: Rate<2, 1> = |_, x, negative| {
+        let load = if negative[0] { 1.0 } else { -1.0 };
+        [x[1], -1e6 * x[0] - x[1] + load]
+    };
+    switched(guards, rate)
+}
+
+#[test]
+fn steps_cut_by_events_or_by_the_end_are_no_measure_of_stiffness() {
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
+        for t_end in [1.0, 1.000_01, 1.1, 1.234_567] {
+            let mut method = Auto::<2>::new();
+            let span = Span { t0: 0.0, t_end };
+            let start = SVector::from([1e-3, 0.0]);
+            let mut settings = settings(tolerance);
+            settings.tolerances = Tolerances::new(tolerance, 1e-6 * tolerance);
+            integrate(&ringing(), &mut method, &start, span, &settings, &mut ()).unwrap();
+            assert!(method.changes().is_empty(), "{tolerance} to {t_end}: {:?}", method.changes());
+        }
+    }
+}
+
+#[test]
+fn steps_that_rounding_shortens_are_no_stiffness_and_are_counted() {
+    // A stiff, nearly undamped joint between two masses that are far from the origin: its force is the difference of two states
+    // of 1, so rounding of them is 2e-9 of it.
+    let rate: Rate<4, 0> = |_, x, _| {
+        let force = 1e8 * (x[0] - x[1]);
+        [x[2], x[3], -force, force]
+    };
+    let steps = |tolerance: f64| {
+        let mut method = Auto::<4>::new();
+        let settings = Settings { tolerances: Tolerances::new(tolerance, 1e-4 * tolerance), ..Settings::default() };
+        let start = SVector::from([1.0, 1.0 + 1e-7, 0.0, 0.0]);
+        let finish =
+            integrate(&smooth(rate), &mut method, &start, Span { t0: 0.0, t_end: 2e-4 }, &settings, &mut ()).unwrap();
+        assert!(method.changes().is_empty(), "{tolerance}: {:?}", method.changes());
+        finish.statistics
+    };
+    let (loose, tight) = (steps(1e-8), steps(1e-12));
+    assert_eq!(loose.rounded, 0);
+    assert!(!loose.is_at_rounding() && tight.is_at_rounding(), "{tight}");
+}
+
+#[test]
+fn an_explicit_step_without_a_number_is_no_success() {
+    // A stiff law of a root: an explicit step as long as the implicit ones ends beyond its range, in no number.
+    let rate: Rate<2, 0> = |t, x, _| [-1e8 * (x[0].sqrt() - x[1]), 0.5 * t.cos()];
+    let (finish, changes) = chosen(&smooth(rate), [1.0, 1.0], 30.0);
+    assert_eq!(changes.len(), 1, "{changes:?}");
+    assert!((finish.x[0] - (1.0 + 0.5 * 30.0_f64.sin()).powi(2)).abs() < 1e-5, "{:?}", finish.x);
 }

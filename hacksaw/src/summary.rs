@@ -49,6 +49,10 @@ pub struct Summary {
     pub factorisations: u64,
     /// Those of them that needed row exchanges.
     pub pivoted_factorisations: u64,
+    /// Steps in which the tolerances are below what rounding makes of the error.
+    pub steps_below_rounding: u64,
+    /// Whether these are so many that larger tolerances would serve as well.
+    pub is_at_rounding: bool,
     /// Switchings of the stroke.
     pub events: u64,
     /// Time on the wall clock, s.
@@ -122,6 +126,8 @@ impl Summary {
             jacobian_evaluations: statistics.jacobian_evaluations,
             factorisations: statistics.factorisations,
             pivoted_factorisations: statistics.pivoted_factorisations,
+            steps_below_rounding: statistics.rounded,
+            is_at_rounding: statistics.is_at_rounding(),
             events: statistics.events,
             wall_time_s: wall,
             times_real_time: reached / wall,
@@ -161,6 +167,13 @@ impl Summary {
         });
         lines.push(("states", self.states.to_string()));
         lines.push(("steps", format!("{} accepted, {} rejected", self.steps, self.rejected)));
+        if self.is_at_rounding {
+            let share = 100.0 * self.steps_below_rounding as f64 / self.steps as f64;
+            let text = format!(
+                "in {share:.0} % of the steps the tolerances are below rounding: larger ones give as good a result"
+            );
+            lines.push(("limit of rounding", text));
+        }
         lines.push(("rate evaluations", self.rate_evaluations.to_string()));
         if self.series_orders > 0 {
             lines.push(("orders of Taylor series", self.series_orders.to_string()));

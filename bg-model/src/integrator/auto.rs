@@ -1,18 +1,32 @@
 //! Choice between an explicit and an implicit method while a run is under way.
 //!
-//! In: a method of each kind. Out: their steps. Now and then, more seldom the longer the answer stays the same, a step of
-//! the other method is tried from the same start: the implicit one takes over where its tolerances are met by a step so
-//! much longer that it is worth its cost, and hands back where they are not. Stiffness is thus measured by what it does to
-//! the steps, not guessed from eigenvalues, and oscillations that have to be followed anyway do not count as such.
+//! In: a method of each kind. Out: their steps. Now and then, more seldom the longer the answer stays the same, the other method is
+//! tried from the same start. The implicit one takes over where one step meets the tolerances that is so much longer that it is worth
+//! its cost, where the explicit steps then arrive at the same state, and where it is not rounding that keeps those short. It hands
+//! back where several explicit steps in succession meet the tolerances. Stiffness is thus measured by what it does to the steps, not
+//! guessed from eigenvalues, and oscillations that have to be followed anyway do not count as such.
 
 use nalgebra::SVector;
 
-use super::{Dop853, Flow, Method, Point, Radau9, Scale, StepControl};
+use super::{Dop853, Flow, Method, Point, Radau9, Scale, StepControl, is_finite, rounding};
 
 /// Steps before the first trial, and the most between two trials.
 const WAIT: [u32; 2] = [16, 4096];
-/// A step that falls below this part of the one at the last trial calls for a trial before its time.
+/// Steps that all fall below this part of the one at the last trial call for a trial before its time.
 const FALL: f64 = 0.1;
+/// The accepted steps by which the present one is judged: events, samples and rejections shorten single ones.
+const RECENT: usize = 16;
+/// A step below this part of the longest of them is no measure: an event or the end of the run has cut it.
+const CUT: f64 = 0.5;
+/// The largest difference between the implicit step and the explicit ones, in parts of the tolerances. On stiff joints it is 0.1 to 0.5,
+/// where a ring is passed over 2 to 70.
+const AGREEMENT: f64 = 1.0;
+/// What rounding may make of an explicit step's error, in parts of the tolerances. Stiff joints cause 3e-3 at most at 1e-11; steps that
+/// rounding keeps short have 0.04 and more.
+const NOISE: f64 = 1e-2;
+/// The explicit steps in succession that are tried: as long together as the implicit step in sight. A single one may meet the
+/// tolerances by luck.
+const SUCCESSION: u32 = 8;
 /// A method that hands back within so many steps took over by mistake: the next trial waits four times as long as before.
 const STINT: u32 = 256;
 
@@ -35,7 +49,23 @@ pub struct Auto<const N: usize, E = Dop853<N>, I = Radau9<N>> {
     doubt: [u32; 2],
     /// The step at the last trial, s.
     tried: f64,
+    /// The last accepted steps since the change, s; 0 where there are fewer.
+    recent: [f64; RECENT],
+    /// The step under way, s.
+    step: f64,
+    /// Where the implicit step led that is still to be confirmed.
+    claim: Option<Claim<N>>,
     changes: Vec<Change>,
+}
+
+/// An implicit step that satisfies the tolerances, with the explicit steps under way to its end.
+#[derive(Clone, Debug)]
+struct Claim<const N: usize> {
+    /// Its end.
+    t: f64,
+    x: SVector<f64, N>,
+    /// The start of the explicit step under way.
+    start: Point<N>,
 }
 
 /// A change of method.
@@ -83,31 +113,78 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
             stint: 0,
             doubt: [WAIT[0]; 2],
             tried: f64::NAN,
+            recent: [0.0; RECENT],
+            step: 0.0,
+            claim: None,
             changes: Vec::with_capacity(REMEMBERED),
         }
     }
 
-    /// Whether the other method is to be tried from the present start with the step `h` (s) in sight.
-    fn is_due(&self, h: f64) -> bool {
-        self.is_fresh && (self.since >= self.wait || h < FALL * self.tried)
+    /// The longest of the last accepted steps, s.
+    fn longest(&self) -> f64 {
+        self.recent.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Tries the other method, and changes to it if it is worth it.
+    /// Whether the other method is to be tried from the present start with the step `h` (s) in sight.
+    fn is_due(&self, h: f64) -> bool {
+        let has_measure = self.is_fresh && self.claim.is_none() && self.stint as usize >= RECENT;
+        has_measure && h >= CUT * self.longest() && (self.since >= self.wait || self.longest() < FALL * self.tried)
+    }
+
+    /// Tries the other method.
     fn try_other(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
-        let mut end = start.x;
-        let is_worth = if self.is_implicit {
-            // Half as long a step, so that the choice does not swing.
-            self.explicit.attempt(flow, start, 2.0 * h / self.worth, scale, &mut end) <= 1.0
-        } else {
-            self.implicit.attempt(flow, start, self.worth * h, scale, &mut end) <= 1.0
-        };
         self.since = 0;
         self.tried = h;
-        if is_worth {
+        if !self.is_implicit {
+            let (h, mut x) = (self.worth * h, start.x);
+            if self.implicit.attempt(flow, start, h, scale, &mut x) <= 1.0 {
+                self.claim = Some(Claim { t: start.t + h, x, start: *start });
+            } else {
+                self.stay();
+            }
+        } else if self.succeeds_explicitly(flow, start, h, scale) {
             self.change(start.t);
         } else {
-            self.wait = (2 * self.wait).min(WAIT[1]);
+            self.stay();
         }
+    }
+
+    /// Whether explicit steps meet the tolerances from `start` over the implicit step `h` (s). Each of them is twice as long as it
+    /// has to be to be worth a change, so that the choice does not swing.
+    fn succeeds_explicitly(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+        let h = 2.0 * h / self.worth;
+        let (mut point, mut end) = (*start, start.x);
+        let succeeds = (0..SUCCESSION).all(|_| {
+            let is_met = self.explicit.attempt(flow, &point, h, scale, &mut end) <= 1.0 && is_finite(&end);
+            if is_met {
+                self.explicit.advance();
+                (point.t, point.x) = (point.t + h, end);
+                flow.rate(point.t, &end, &mut point.rate);
+            }
+            is_met
+        });
+        self.explicit.restart();
+        succeeds
+    }
+
+    /// Holds the implicit step against the explicit ones, once these have come to its end.
+    fn confirm(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
+        let Some(claim) = self.claim.take_if(|claim| claim.t <= start.t) else { return };
+        let before = claim.start;
+        self.explicit.prepare_dense(flow, &before, self.step, start);
+        let mut x = start.x;
+        self.explicit.dense(&before, self.step, start, (claim.t - before.t) / self.step, &mut x);
+        let agrees = scale.norm(&(claim.x - x), &x) <= AGREEMENT;
+        if agrees && scale.norm(&(rounding(flow, start) * self.longest()), &start.x) < NOISE {
+            self.change(start.t);
+        } else {
+            self.stay();
+        }
+    }
+
+    /// The method stays: the next trial is later.
+    fn stay(&mut self) {
+        self.wait = (2 * self.wait).min(WAIT[1]);
     }
 
     /// The other method takes over at time `t` (s).
@@ -122,6 +199,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
             self.explicit.restart()
         }
         self.stint = 0;
+        self.recent = [0.0; RECENT];
         if self.changes.len() < REMEMBERED {
             self.changes.push(Change { t, method: self.name() });
         }
@@ -145,10 +223,17 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
+        if self.is_fresh {
+            self.confirm(flow, start, scale);
+        }
         if self.is_due(h) {
             self.try_other(flow, start, h, scale);
         }
         self.is_fresh = false;
+        self.step = h;
+        if let Some(claim) = &mut self.claim {
+            claim.start = *start;
+        }
         if self.is_implicit {
             self.implicit.attempt(flow, start, h, scale, end)
         } else {
@@ -158,6 +243,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
 
     fn advance(&mut self) {
         self.is_fresh = true;
+        self.recent[self.stint as usize % RECENT] = self.step;
         self.since += 1;
         self.stint += 1;
         // Only the method that makes the steps has seen the last one.
@@ -172,6 +258,9 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
 
     fn restart(&mut self) {
         self.is_fresh = false;
+        if self.claim.take().is_some() {
+            self.stay();
+        }
         self.explicit.restart();
         self.implicit.restart();
     }

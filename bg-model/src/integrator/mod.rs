@@ -40,6 +40,7 @@ pub use radau::{Radau, Radau5, Radau9, Radau13};
 pub use rk4::Rk4;
 pub use rosenbrock::{Rodas5p, Ros2};
 pub use taylor::Taylor;
+pub(crate) use tolerances::rounding;
 pub use tolerances::{Absolute, Scale, Tolerances};
 
 /// A smooth flow: a system with its switches frozen.

@@ -4,7 +4,7 @@
 
 use nalgebra::SVector;
 
-use super::Point;
+use super::{Flow, Point};
 
 /// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,6 +94,23 @@ pub(super) fn largest<const N: usize>(of: &[f64; N]) -> f64 {
         lanes[i % LANES] = larger(lanes[i % LANES], value);
     }
     lanes.into_iter().fold(0.0, larger)
+}
+
+/// The largest change of each rate at `start` where every state is rounded up or down, in some patterns: what rounding may add to the
+/// rates. Not negative. Takes four rates.
+pub(crate) fn rounding<const N: usize>(flow: &mut impl Flow<N>, start: &Point<N>) -> SVector<f64, N> {
+    const PATTERNS: usize = 4;
+    // Up or down without a pattern that states of one kind might share: the multiples of the golden ratio lie evenly.
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let mut largest = SVector::zeros();
+    for pattern in 0..PATTERNS {
+        let sign = |i: usize| if (GOLDEN * (PATTERNS * i + pattern) as f64).fract() < 0.5 { 1.0 } else { -1.0 };
+        let rounded = SVector::from_fn(|i, _| start.x[i] * (1.0 + sign(i) * f64::EPSILON));
+        let mut rate = SVector::zeros();
+        flow.rate(start.t, &rounded, &mut rate);
+        largest = (rate - start.rate).abs().sup(&largest);
+    }
+    largest
 }
 
 /// The index below `N` with the largest error, of equal ones the first.

@@ -6,6 +6,7 @@
 
 mod observer;
 mod pace;
+mod rounding;
 mod sampling;
 mod settings;
 mod stepper;
@@ -24,6 +25,7 @@ use crate::integrator::{Method, Point, Scale, StepControl, first_not_finite, is_
 use crate::statistics::Statistics;
 use crate::system::System;
 use pace::Pace;
+use rounding::RoundingWatch;
 use sampling::Sampling;
 
 /// Where a run has come to.
@@ -72,6 +74,7 @@ where
         limit: settings.step_limit,
         faulty_guard: None,
         independence: Independence::new(system.held()),
+        rounding: RoundingWatch::new(settings.tolerances.relative),
     };
     let outcome = settings::check(system, control, start, span, settings)
         .and_then(|()| settings::check_series(system, needs_series))
@@ -97,6 +100,8 @@ struct Run<'a, Sys, M, const N: usize, const G: usize> {
     faulty_guard: Option<(usize, f64)>,
     /// Of the rigid joints, where there are any.
     independence: Option<Independence>,
+    /// Of the error estimates, where the tolerances may be below it.
+    rounding: Option<RoundingWatch>,
 }
 
 impl<Sys, M, const N: usize, const G: usize> Run<'_, Sys, M, N, G>
@@ -262,6 +267,9 @@ where
     fn accept(&mut self, observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
         self.check_joints()?;
         self.faulty_guard = None;
+        if let Some(rounding) = &mut self.rounding {
+            rounding.follow(&mut self.stepper);
+        }
         self.stepper.statistics.record(self.stepper.h);
         self.sampling.next_step();
         let t = self.stepper.end.t;
