@@ -104,3 +104,33 @@ fn an_explicit_step_without_a_number_is_no_success() {
     assert_eq!(changes.len(), 1, "{changes:?}");
     assert!((finish.x[0] - (1.0 + 0.5 * 30.0_f64.sin()).powi(2)).abs() < 1e-5, "{:?}", finish.x);
 }
+
+#[test]
+fn a_law_too_stiff_for_a_single_explicit_step_is_handed_over() {
+    for stiffness in [1e20, 1e60] {
+        let rate = move |t: f64, x: &SVector<f64, 1>, _: &[bool; 0]| [-stiffness * (x[0] - t.cos())];
+        let mut method = Auto::<1>::new();
+        let span = Span { t0: 0.0, t_end: 1.0 };
+        let finish =
+            integrate(&smooth(rate), &mut method, &SVector::from([1.0]), span, &settings(1e-6), &mut ()).unwrap();
+        assert!((finish.x[0] - 1.0_f64.cos()).abs() < 1e-6, "{stiffness}: {:?}", finish.x);
+        assert_eq!(method.changes().len(), 1, "{stiffness}: {:?}", method.changes());
+    }
+}
+
+#[test]
+fn explicit_steps_at_the_limit_of_stability_that_switch_each_time_are_left() {
+    // A stiff resistance whose coefficient depends on the sign of the flow, which alternates where a step is too long.
+    let guards: [fn(f64, &[f64]) -> f64; 1] = [|_, x| x[0]];
+    let rate: Rate<2, 1> = |t, x, negative| {
+        let resistance = if negative[0] { 1e12 } else { 5e11 };
+        [-resistance * x[0] + (3.0 * t).sin(), -x[1] + x[0]]
+    };
+    let mut method = Auto::<2>::new();
+    let span = Span { t0: 0.0, t_end: 2.0 };
+    let limited = Settings { step_limit: 20_000, ..settings(1e-6) };
+    let start = SVector::from([1.0, 1.0]);
+    let finish = integrate(&switched(guards, rate), &mut method, &start, span, &limited, &mut ()).unwrap();
+    assert!((finish.x[1] - (-2.0_f64).exp()).abs() < 1e-5, "{:?}", finish.x);
+    assert_eq!(method.changes().len(), 1, "{:?}", method.changes());
+}

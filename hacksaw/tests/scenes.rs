@@ -4,10 +4,6 @@
 //! the same outputs change by C 4e-14 m, R 6e-13, p 9e-11 kg m/s, h 8e-12 N m s, F 9e-7 N, gaps 7e-15 m. The pins' stiffness
 //! of 1e8 N/m makes a force of 1e-8 N of the last bit of a position, and they ring at 1e4 rad/s almost without decay.
 
-#[path = "../benches/scenes/planar.rs"]
-#[allow(missing_docs)]
-mod planar;
-
 use bg_model::integrator::Tolerances;
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{Samples, Settings};
@@ -18,6 +14,7 @@ use hacksaw::methods::Integrator;
 use hacksaw::run::record;
 use hacksaw::scenes::{Scene, Visitor};
 use hacksaw::trajectory::sample_times;
+use hacksaw_planar as planar;
 
 /// The steps of both models, s: as many as the run takes at rtol 1e-10.
 const STEP: f64 = 1e-4;
@@ -170,7 +167,7 @@ fn a_planar_model_written_by_hand_has_the_same_accelerations() {
     let mut observer = bg_model::simulation::EachSample(|t: f64, x: &_, negative: &[bool; 1]| {
         // At the start only the weight and the torque act.
         if t > 0.0 {
-            planar::beside(&model, *x, *negative, &mut comparison);
+            planar::beside(&model, model.parameters(), *x, *negative, &mut comparison);
         }
     });
     bg_model::simulation::integrate(

@@ -2,8 +2,8 @@
 //!
 //! In: a method of each kind. Out: their steps. Now and then, more seldom the longer the answer stays the same, the other method is
 //! tried from the same start. The implicit one takes over where one step meets the tolerances that is so much longer that it is worth
-//! its cost, where the explicit steps then arrive at the same state, and where it is not rounding that keeps those short. It hands
-//! back where several explicit steps in succession meet the tolerances. Stiffness is thus measured by what it does to the steps, not
+//! its cost, where the explicit steps then arrive at the same state, and where it is not rounding that keeps those short; or where it
+//! goes on and explicit steps do not. It hands back where several explicit steps in succession meet the tolerances. Stiffness is thus measured by what it does to the steps, not
 //! guessed from eigenvalues, and oscillations that have to be followed anyway do not count as such.
 
 use nalgebra::SVector;
@@ -16,7 +16,8 @@ const WAIT: [u32; 2] = [16, 4096];
 const FALL: f64 = 0.1;
 /// The accepted steps by which the present one is judged: events, samples and rejections shorten single ones.
 const RECENT: usize = 16;
-/// A step below this part of the longest of them is no measure: an event or the end of the run has cut it.
+/// A step below this part of their median is no measure: it only looks for a guard's sign, or an event or the end of the run has cut
+/// it.
 const CUT: f64 = 0.5;
 /// The largest difference between the implicit step and the explicit ones, in parts of the tolerances. On stiff joints it is 0.1 to 0.5,
 /// where a ring is passed over 2 to 70.
@@ -24,6 +25,11 @@ const AGREEMENT: f64 = 1.0;
 /// What rounding may make of an explicit step's error, in parts of the tolerances. Stiff joints cause 3e-3 at most at 1e-11; steps that
 /// rounding keeps short have 0.04 and more.
 const NOISE: f64 = 1e-2;
+/// The claims in succession that events cut off before the explicit steps come to their ends; the next one is believed. Explicit steps at
+/// the limit of their stability let a guard change its sign in every step.
+const CUT_OFF: u32 = 4;
+/// An explicit step that fails though it is below this part of the longest one tried has an implicit one tried in its place.
+const LAST: f64 = 1e-9;
 /// The explicit steps in succession that are tried: as long together as the implicit step in sight. A single one may meet the
 /// tolerances by luck.
 const SUCCESSION: u32 = 8;
@@ -55,6 +61,10 @@ pub struct Auto<const N: usize, E = Dop853<N>, I = Radau9<N>> {
     step: f64,
     /// Where the implicit step led that is still to be confirmed.
     claim: Option<Claim<N>>,
+    /// The claims in succession that events have cut off.
+    cut_off: u32,
+    /// The longest explicit step tried since the last change, s.
+    longest: f64,
     changes: Vec<Change>,
 }
 
@@ -116,28 +126,38 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
             recent: [0.0; RECENT],
             step: 0.0,
             claim: None,
+            cut_off: 0,
+            longest: 0.0,
             changes: Vec::with_capacity(REMEMBERED),
         }
     }
 
-    /// The longest of the last accepted steps, s.
-    fn longest(&self) -> f64 {
-        self.recent.iter().copied().fold(0.0, f64::max)
+    /// The median of the last accepted steps, s.
+    fn typical(&self) -> f64 {
+        let mut recent = self.recent;
+        recent.sort_unstable_by(f64::total_cmp);
+        recent[RECENT / 2]
     }
 
     /// Whether the other method is to be tried from the present start with the step `h` (s) in sight.
     fn is_due(&self, h: f64) -> bool {
-        let has_measure = self.is_fresh && self.claim.is_none() && self.stint as usize >= RECENT;
-        has_measure && h >= CUT * self.longest() && (self.since >= self.wait || self.longest() < FALL * self.tried)
+        if self.claim.is_some() || (self.stint as usize) < RECENT {
+            return false;
+        }
+        let typical = self.typical();
+        h >= CUT * typical && (self.since >= self.wait || typical < FALL * self.tried)
     }
 
     /// Tries the other method.
     fn try_other(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
         self.since = 0;
-        self.tried = h;
+        self.tried = self.typical();
         if !self.is_implicit {
             let (h, mut x) = (self.worth * h, start.x);
-            if self.implicit.attempt(flow, start, h, scale, &mut x) <= 1.0 {
+            let is_met = self.implicit.attempt(flow, start, h, scale, &mut x) <= 1.0;
+            if is_met && self.cut_off >= CUT_OFF {
+                self.change(start.t);
+            } else if is_met {
                 self.claim = Some(Claim { t: start.t + h, x, start: *start });
             } else {
                 self.stay();
@@ -171,15 +191,22 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
     fn confirm(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
         let Some(claim) = self.claim.take_if(|claim| claim.t <= start.t) else { return };
         let before = claim.start;
+        self.cut_off = 0;
         self.explicit.prepare_dense(flow, &before, self.step, start);
         let mut x = start.x;
         self.explicit.dense(&before, self.step, start, (claim.t - before.t) / self.step, &mut x);
         let agrees = scale.norm(&(claim.x - x), &x) <= AGREEMENT;
-        if agrees && scale.norm(&(rounding(flow, start) * self.longest()), &start.x) < NOISE {
+        if agrees && scale.norm(&(rounding(flow, start) * self.typical()), &start.x) < NOISE {
             self.change(start.t);
         } else {
             self.stay();
         }
+    }
+
+    /// Whether an implicit step goes on where explicit ones fail.
+    fn goes_on(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+        let mut end = start.x;
+        self.implicit.attempt(flow, start, h, scale, &mut end) <= 1.0 && is_finite(&end)
     }
 
     /// The method stays: the next trial is later.
@@ -199,6 +226,8 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
             self.explicit.restart()
         }
         self.stint = 0;
+        self.cut_off = 0;
+        self.longest = 0.0;
         self.recent = [0.0; RECENT];
         if self.changes.len() < REMEMBERED {
             self.changes.push(Change { t, method: self.name() });
@@ -234,11 +263,16 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
         if let Some(claim) = &mut self.claim {
             claim.start = *start;
         }
-        if self.is_implicit {
-            self.implicit.attempt(flow, start, h, scale, end)
-        } else {
-            self.explicit.attempt(flow, start, h, scale, end)
+        if !self.is_implicit {
+            let error = self.explicit.attempt(flow, start, h, scale, end);
+            self.longest = self.longest.max(h);
+            let is_met = error <= 1.0 && is_finite(end);
+            if is_met || h > LAST * self.longest || !self.goes_on(flow, start, h, scale) {
+                return error;
+            }
+            self.change(start.t);
         }
+        self.implicit.attempt(flow, start, h, scale, end)
     }
 
     fn advance(&mut self) {
@@ -258,9 +292,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
 
     fn restart(&mut self) {
         self.is_fresh = false;
-        if self.claim.take().is_some() {
-            self.stay();
-        }
+        self.cut_off += u32::from(self.claim.take().is_some());
         self.explicit.restart();
         self.implicit.restart();
     }

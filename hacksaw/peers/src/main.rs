@@ -8,9 +8,6 @@ mod command;
 mod diagram;
 mod machine;
 mod measure;
-#[allow(dead_code, reason = "the benchmark that shares the file compares accelerations, the peers only run")]
-#[path = "../../benches/scenes/planar.rs"]
-mod planar;
 mod poses;
 mod problem;
 mod ratios;

@@ -8,7 +8,7 @@ use hacksaw::trajectory::{LINKS, Trajectory};
 
 use bg_model::integrator::{Dop853, Tolerances};
 
-use crate::planar::State;
+use hacksaw_planar::State;
 use crate::problem::{SAMPLES, instants};
 use crate::solvers::ours;
 

@@ -3,7 +3,7 @@
 //! In: the paper's parameters. Out: the start, the rate, the blade's slip velocity whose sign chooses the branch of the
 //! cutting law, the instants of the samples, and the model's constants for solvers outside of Rust.
 //!
-//! The rate is the plain one of `hacksaw/benches/scenes/planar.rs`, which `cargo bench -p hacksaw` compares with the
+//! The rate is the plain one of `hacksaw/planar`, which `cargo bench -p hacksaw` compares with the
 //! generated scene.
 
 use std::cell::Cell;
@@ -14,7 +14,7 @@ use serde_json::json;
 use bg_model::nalgebra::SVector;
 use bg_model::system::Model;
 
-use crate::planar::{CRANK, O5, Planar, ROD, State, WORK};
+use hacksaw_planar::{CRANK, O5, Planar, ROD, State, WORK};
 
 /// The end of the run, s.
 pub const T_END: f64 = 5.0;
@@ -78,7 +78,7 @@ impl Problem {
     /// The model's constants by name, SI units.
     pub fn constants(&self) -> serde_json::Value {
         let p = &self.planar;
-        let pin = |pin: crate::planar::Pin| json!([pin.k, pin.r]);
+        let pin = |pin: hacksaw_planar::Pin| json!([pin.k, pin.r]);
         json!({
             "torque": p.torque, "gravity": p.gravity, "masses": p.masses, "inertias": p.inertias,
             "pin_o": pin(p.pin_o), "pin_a": pin(p.pin_a), "pin_b": pin(p.pin_b), "pin_c": pin(p.pin_c),

@@ -16,7 +16,7 @@ use differential_equations::solout::Solout;
 use differential_equations::solution::Solution;
 
 use super::{Run, Solver, Source, Work, by_tolerance};
-use crate::planar::State;
+use hacksaw_planar::State;
 use crate::poses::{self, Poses};
 use crate::problem::{ABSOLUTE, Branch, Problem, SAMPLES, T_END, instant};
 

@@ -11,7 +11,7 @@ use std::time::Instant;
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason};
 
 use super::{Run, Solver, Source, Work, by_tolerance};
-use crate::planar::State;
+use hacksaw_planar::State;
 use crate::poses;
 use crate::problem::{ABSOLUTE, Branch, Problem, SAMPLES, T_END, instant};
 

@@ -14,7 +14,7 @@ use hacksaw::mechanism::{Motion, MotionParameters, Paper, PaperParameters};
 use hacksaw::trajectory::{Column, Trajectory};
 
 use super::{Entry, Line, Run, Setting, Solver, Source, Work, by_tolerance};
-use crate::planar::State;
+use hacksaw_planar::State;
 use crate::poses::{self, Poses};
 use crate::problem::{ABSOLUTE, Problem, T_END, instants, slip};
 

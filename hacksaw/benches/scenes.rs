@@ -4,8 +4,6 @@
 //! the scene's own trajectory, the models taking turns so that all see the same machine; of [`RUNS`] runs of 5 s.
 #![allow(missing_docs)]
 
-mod planar;
-
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -21,7 +19,7 @@ use hacksaw::report::{rate_operations, table};
 use hacksaw::run::{RunSettings, run};
 use hacksaw::scenes::{Scene, Visitor};
 use hacksaw::trajectory::sample_times;
-use planar::{Comparison, Planar};
+use hacksaw_planar::{self as planar, Comparison, Planar};
 
 const BATCHES: usize = 400;
 /// Passes over the states in a batch.
@@ -167,7 +165,9 @@ fn planar_states() -> (Vec<(planar::State, bool)>, f64) {
     let model = Paper::new(PaperParameters::default()).expect("defaults are in their ranges");
     let states = along(&model);
     let mut comparison = Comparison::default();
-    let poses = states.into_iter().map(|(x, negative)| planar::beside(&model, x, negative, &mut comparison));
+    let poses = states
+        .into_iter()
+        .map(|(x, negative)| planar::beside(&model, model.parameters(), x, negative, &mut comparison));
     (poses.collect(), comparison.relative())
 }
 

@@ -2,21 +2,22 @@
 //! 24 states, the laws of the specification spelled out. What the generated scene is measured against.
 //!
 //! In: the parameters, a state, the stroke. Out: the state's rate, twice: [`Planar::rate`] plainly, point by point and
-//! force by force, and [`Planar::tuned_rate`] with every known zero and common factor taken out by hand. The comparison
-//! with other solvers (`hacksaw/peers`) shares this file.
+//! force by force, and [`Planar::tuned_rate`] with every known zero and common factor taken out by hand. The benchmark of
+//! the scenes, the comparison with other solvers (`hacksaw/peers`) and the suite of the scenes use it.
 
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
-use bg_model::system::{Model, System};
-use hacksaw::mechanism::Paper;
+use bg_model::system::Model;
 
 /// Poses and velocities of crank, rod, frame and guide: `[x, y, angle]` of each, m and rad, then their rates.
 pub type State = [f64; 24];
 
-/// A pin's stiffness, N/m, and damping, N s/m.
+/// What a pin does against being pulled apart.
 #[derive(Clone, Copy)]
 pub struct Pin {
+    /// Stiffness, N/m.
     pub k: f64,
+    /// Damping, N s/m.
     pub r: f64,
 }
 
@@ -92,34 +93,51 @@ impl Link {
 
 /// What depends on the parameters only.
 pub struct Planar {
+    /// Torque at the crank, N m.
     pub torque: f64,
+    /// Gravitational acceleration downward, m/s^2.
     pub gravity: f64,
-    /// Reciprocal masses, 1/kg, and moments of inertia about the centres of mass, 1/(kg m^2).
+    /// Reciprocal masses, 1/kg.
     pub masses: [f64; 4],
+    /// Reciprocal moments of inertia about the centres of mass, 1/(kg m^2).
     pub inertias: [f64; 4],
+    /// Pin O2 between ground and crank.
     pub pin_o: Pin,
+    /// Pin A between crank and rod.
     pub pin_a: Pin,
+    /// Pin B between rod and frame.
     pub pin_b: Pin,
+    /// Pin O5 between ground and guide.
     pub pin_c: Pin,
+    /// The slot of the guide across its line.
     pub slot: Pin,
+    /// The slot against rotation, N m/rad and N m s/rad.
     pub twist: Pin,
+    /// The work piece below the blade.
     pub work: Pin,
+    /// Resistance of the cutting stroke, N s/m.
     pub r_cut: f64,
+    /// Resistance of the return stroke, N s/m.
     pub r_return: f64,
-    /// Points in their links, from the centre of mass, m: pin B and bar and blade line in the frame, block and pivot in the
-    /// guide.
+    /// Pin B in the frame, from the centre of mass like the next four, m.
     pub b4: [f64; 2],
+    /// Height of the bar in the frame, m.
     pub bar: f64,
+    /// Height of the blade line in the frame, m.
     pub blade: f64,
+    /// Height of the sliding block in the guide, m.
     pub block: f64,
+    /// Height of the pivot in the guide, m.
     pub pivot: f64,
 }
 
-/// Half the lengths of crank and rod, m: their pins are this far from their centres of mass.
+/// Half the length of the crank, m: its pins are this far from its centre of mass.
 pub const CRANK: f64 = 0.0375;
+/// Half the length of the rod, m.
 pub const ROD: f64 = 0.35;
-/// Pivot of the guide and the point on the work piece, m.
+/// Pivot of the guide, m.
 pub const O5: [f64; 2] = [0.9, 0.745];
+/// The point on the work piece, m.
 pub const WORK: [f64; 2] = [0.9, -0.145];
 
 /// Area in the plane, height of the centre of mass and moment of inertia about it over density and depth, of rectangles
@@ -354,15 +372,16 @@ pub const LINKS: [&str; 4] = ["crank", "rod", "frame", "guide"];
 ///
 /// The slot's twist is a state of its own in the scene, which the integrator keeps near the difference of the two angles
 /// to its tolerance; here it is put there.
-pub fn beside(
-    model: &Paper,
-    mut x: SVector<f64, { Paper::STATES }>,
+pub fn beside<M: Model<f64, N, 1, O>, const N: usize, const O: usize>(
+    model: &M,
+    parameters: &impl Parameters,
+    mut x: SVector<f64, N>,
     negative: [bool; 1],
     comparison: &mut Comparison,
 ) -> (State, bool) {
     let names = model.description().states;
     let index = |name: &str| names.iter().position(|state| state.name == name).expect("a state of the paper's scene");
-    let planar = Planar::new(model.parameters());
+    let planar = Planar::new(parameters);
     let state = planar.state(|name| x[index(name)]);
     x[index("slot.tilt_spring.q_z")] = state[11] - state[8];
     let mut rate = SVector::zeros();
