@@ -83,6 +83,7 @@
 mod sentence;
 
 pub mod assembly;
+pub mod capability;
 pub mod description;
 mod event;
 pub mod extended;

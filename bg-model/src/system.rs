@@ -2,15 +2,12 @@
 //!
 //! In: nothing. Out: the traits that `bond_graph!` implements and that a hand-written system can implement as well.
 
-use std::ops::Range;
-
 use nalgebra::SVector;
 
 use crate::assembly::AssemblyError;
+use crate::capability::{Absent, Joints, Linearised, SecondOrder, Series};
 use crate::description::Description;
 use crate::failure::Origin;
-use crate::holding::Held;
-use crate::linear::{Field, Sparsity, differences};
 use crate::scalar::Scalar;
 
 /// A system of ordinary differential equations dx/dt = f(t, x) with `N` states and `G` switches.
@@ -18,6 +15,9 @@ use crate::scalar::Scalar;
 /// A switch chooses between two branches of a law by the sign of its guard, a real function of time and state.
 /// Inside a step the branches stay as the integrator hands them over, so that f is smooth there; the integrator
 /// locates the guard's sign change and then changes the branch.
+///
+/// A system written by hand needs its rate only. What else it knows of itself it implements as a capability and hands
+/// over as `Some(self)`; what it does not know is [`Absent`].
 pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`. `negative[k]` says that switch `k` is in the branch of its
     /// negative guard. Allocates nothing.
@@ -46,66 +46,28 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         None
     }
 
-    /// Where the Jacobian df/dx can differ from zero; everywhere by default.
-    fn sparsity(&self) -> Sparsity {
-        Sparsity::Full
+    /// The Jacobian; by default none is known, and implicit methods take differences of the rate.
+    #[inline]
+    fn linearised(&self) -> Option<&impl Linearised<S, N, G>> {
+        None::<&Absent>
     }
 
-    /// Writes df/dx in the order of [`System::sparsity`] into `entries` and df/dt, per s, into `slope`; by differences by
-    /// default, with `N` + 2 rates.
-    fn jacobian(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S], slope: &mut SVector<S, N>) {
-        differences(|t, x: &SVector<S, N>, dx: &mut SVector<S, N>| self.rate(t, x, negative, dx), t, x, entries, slope);
+    /// The states of second order with their second derivatives; by default none are known.
+    #[inline]
+    fn second_order(&self) -> Option<&impl SecondOrder<S, N, G>> {
+        None::<&Absent>
     }
 
-    /// Writes the factors of I - `c` J into `factors`, of the length that the sparsity names; `entries` is J. Gives
-    /// whether it did: not where a pivot cancels to below [`SMALLEST_PIVOT`](crate::linear::SMALLEST_PIVOT) of the largest
-    /// value its place has had, and by default not at all.
-    fn eliminate<F: Field<S>>(&self, _c: F, _entries: &[S], _factors: &mut [F]) -> bool {
-        false
-    }
-
-    /// Replaces `b` by the solution y of (I - c J) y = b. Only called with factors of [`System::eliminate`].
-    fn substitute<F: Field<S>>(&self, _factors: &[F], _b: &mut [F; N]) {
-        unreachable!("only what was eliminated is substituted")
-    }
-
-    /// The states of second order, side by side: displacements and orientations, whose rates are smooth functions of states
-    /// alone; none by default.
-    fn second_order(&self) -> Range<usize> {
-        0..0
-    }
-
-    /// Replaces the rates `dx` at state `x` by second derivatives with respect to time, per s^2, where
-    /// [`System::second_order`] says so.
-    fn second_derivatives(&self, _x: &SVector<S, N>, _dx: &mut SVector<S, N>) {}
-
-    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second
-    /// derivatives; what [`System::rate`] and then [`System::second_derivatives`] give, to rounding.
-    fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
-        self.rate(t, x, negative, dx);
-        self.second_derivatives(x, dx);
+    /// The Taylor series of the states; none by default, nor of a model one of whose inputs changes with time.
+    #[inline]
+    fn series(&self) -> Option<&impl Series<S, N, G>> {
+        None::<&Absent>
     }
 
     /// What joints hold; nothing by default.
-    fn held(&self) -> Held {
-        Held::NOTHING
-    }
-
-    /// Writes the relative flows of the motions that joints hold, and what the reactions of rigid joints change, into
-    /// `entries`: in the order and of the length of [`Held`]. Only called where something is held.
-    fn hold(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _entries: &mut [S]) {}
-
-    /// How many numbers each order of the Taylor series of the states needs as work space; none where there is no series:
-    /// of a system written by hand, by default, and where an input changes with time.
-    fn series_width(&self) -> Option<usize> {
-        None
-    }
-
-    /// Writes the Taylor series of the states from time `t` (s) on: `series[0]` is the state there, `series[k]` becomes the
-    /// coefficient of the k-th power of (time - `t`) / `h`, which has the state's unit. `rows` has at least
-    /// [`System::series_width`] numbers for each `k` but the last. Only called where there is a series.
-    fn series(&self, _t: S, _h: S, _negative: &[bool; G], _rows: &mut [S], _series: &mut [SVector<S, N>]) {
-        unreachable!("only asked for where there is one")
+    #[inline]
+    fn joints(&self) -> Option<&impl Joints<S, N, G>> {
+        None::<&Absent>
     }
 }
 

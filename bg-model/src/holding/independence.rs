@@ -9,7 +9,7 @@ use nalgebra::SVector;
 
 use super::factors::Factors;
 use super::{Held, Hold, Redundancy};
-use crate::system::System;
+use crate::capability::Joints;
 
 /// The cosine down to which a row may turn without being looked at more closely: a third of a half turn.
 const TURNED: f64 = 0.5;
@@ -42,35 +42,35 @@ impl Independence {
     }
 
     /// Looks at the start of a run. Allocates only where something is wrong, as [`Independence::check`].
-    pub fn begin<Sys, const N: usize, const G: usize>(
+    pub fn begin<J, const N: usize, const G: usize>(
         &mut self,
-        system: &Sys,
+        joints: &J,
         (t, x): (f64, &SVector<f64, N>),
         negative: &[bool; G],
     ) -> Option<Redundancy>
     where
-        Sys: System<f64, N, G>,
+        J: Joints<f64, N, G>,
     {
         let Self { hold, factors, before, .. } = self;
-        look(system, (t, x), negative, hold, factors, before);
+        look(joints, (t, x), negative, hold, factors, before);
         factors.redundancy(hold.held.rigid)
     }
 
     /// Looks at a step that ends at time `t` (s) and state `x`; `inside` gives time and state after a part of it. Gives
     /// the time (s), too.
-    pub fn check<Sys, const N: usize, const G: usize>(
+    pub fn check<J, const N: usize, const G: usize>(
         &mut self,
-        system: &Sys,
+        joints: &J,
         (t, x): (f64, &SVector<f64, N>),
         negative: &[bool; G],
         mut inside: impl FnMut(f64) -> (f64, SVector<f64, N>),
     ) -> Option<(f64, Redundancy)>
     where
-        Sys: System<f64, N, G>,
+        J: Joints<f64, N, G>,
     {
         let Self { hold, factors, before, after, between, here } = self;
         let rigid = hold.held.rigid;
-        look(system, (t, x), negative, hold, factors, after);
+        look(joints, (t, x), negative, hold, factors, after);
         if let Some(redundancy) = factors.redundancy(rigid) {
             return Some((t, redundancy));
         }
@@ -86,7 +86,7 @@ impl Independence {
             while from < 1.0 {
                 let to = (from + part).min(1.0);
                 let (t, x) = inside(to);
-                look(system, (t, &x), negative, hold, factors, between);
+                look(joints, (t, &x), negative, hold, factors, between);
                 if !has_turned(here, &between[own.clone()]) {
                     here.copy_from_slice(&between[own.clone()]);
                     (from, part) = (to, 2.0 * part);
@@ -109,17 +109,17 @@ fn has_turned(from: &[f64], to: &[f64]) -> bool {
 }
 
 /// Reads what is held at a state: the factors, and what each row has beyond those before it.
-fn look<Sys, const N: usize, const G: usize>(
-    system: &Sys,
+fn look<J, const N: usize, const G: usize>(
+    joints: &J,
     (t, x): (f64, &SVector<f64, N>),
     negative: &[bool; G],
     hold: &mut Hold<f64>,
     factors: &mut Factors<f64>,
     remainders: &mut [f64],
 ) where
-    Sys: System<f64, N, G>,
+    J: Joints<f64, N, G>,
 {
-    hold.read(system, t, x, negative);
+    hold.read(joints, t, x, negative);
     factors.factor(hold.matrix());
     let width = hold.held.moved.len();
     for row in 0..hold.held.rigid.len() {

@@ -1,7 +1,7 @@
 //! What joints hold: whether start velocities fit, what impulses change, whether the reactions of rigid joints have
 //! unique values.
 //!
-//! In: a system that says what its joints hold ([`System::held`], [`System::hold`]). Out: a start state that fits, or the
+//! In: a system that says what its joints hold ([`Joints::held`], [`Joints::hold`]). Out: a start state that fits, or the
 //! joint that is torn apart; the joints that hold the same motion, at the start and in a run.
 //!
 //! The reactions l of rigid joints are solved from A l + b = 0, where A_ij is how much reaction j changes the rate of the
@@ -14,6 +14,7 @@ mod independence;
 use nalgebra::{DVector, SVector};
 
 use crate::assembly::{AssemblyError, nearest};
+use crate::capability::Joints;
 use crate::scalar::Scalar;
 use crate::system::System;
 use factors::Factors;
@@ -35,7 +36,7 @@ pub struct Slip {
 
 /// What the joints of a system hold.
 ///
-/// [`System::hold`] writes, one behind the other: the flow of each rigid motion, the flow of each compliant one, the
+/// [`Joints::hold`] writes, one behind the other: the flow of each rigid motion, the flow of each compliant one, the
 /// lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it
 /// changes the rate of each moved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +53,7 @@ impl Held {
     /// No joint holds anything.
     pub const NOTHING: Self = Self { rigid: &[], compliant: &[], moved: &[] };
 
-    /// How many numbers [`System::hold`] writes.
+    /// How many numbers [`Joints::hold`] writes.
     #[must_use]
     pub const fn entries(&self) -> usize {
         let reactions = self.rigid.len();
@@ -133,7 +134,7 @@ pub struct Started<S, const N: usize> {
     pub lost: S,
 }
 
-/// The numbers of [`System::hold`].
+/// The numbers of [`Joints::hold`].
 struct Hold<S> {
     held: Held,
     entries: Vec<S>,
@@ -144,11 +145,11 @@ impl<S: Scalar> Hold<S> {
         Self { held, entries: vec![S::from_f64(0.0); held.entries()] }
     }
 
-    fn read<Sys, const N: usize, const G: usize>(&mut self, system: &Sys, t: S, x: &SVector<S, N>, negative: &[bool; G])
+    fn read<J, const N: usize, const G: usize>(&mut self, joints: &J, t: S, x: &SVector<S, N>, negative: &[bool; G])
     where
-        Sys: System<S, N, G>,
+        J: Joints<S, N, G>,
     {
-        system.hold(t, x, negative, &mut self.entries);
+        joints.hold(t, x, negative, &mut self.entries);
     }
 
     /// The flows of rigid motions, then of compliant ones.
@@ -184,7 +185,7 @@ pub fn fit<Sys, S, const N: usize, const G: usize, const U: usize, const K: usiz
     impulse: bool,
 ) -> Result<Started<S, N>, AssemblyError>
 where
-    Sys: System<S, N, G>,
+    Sys: System<S, N, G> + Joints<S, N, G>,
     S: Scalar,
 {
     let held = system.held();

@@ -64,7 +64,7 @@ impl<const N: usize> Method<N> for AnyMethod<N> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -93,7 +93,7 @@ impl<const N: usize> Method<N> for AnyMethod<N> {
         inside!(self, method => method.faulty_rate())
     }
 
-    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         inside!(self, method => method.prepare_dense(flow, start, h, end));
     }
 

@@ -132,7 +132,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
     }
 
     /// Tries the other method.
-    fn try_other(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+    fn try_other(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
         self.since = 0;
         self.tried = h;
         if !self.is_implicit {
@@ -151,7 +151,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
 
     /// Whether explicit steps meet the tolerances from `start` over the implicit step `h` (s). Each of them is twice as long as it
     /// has to be to be worth a change, so that the choice does not swing.
-    fn succeeds_explicitly(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+    fn succeeds_explicitly(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         let h = 2.0 * h / self.worth;
         let (mut point, mut end) = (*start, start.x);
         let succeeds = (0..SUCCESSION).all(|_| {
@@ -168,7 +168,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
     }
 
     /// Holds the implicit step against the explicit ones, once these have come to its end.
-    fn confirm(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
+    fn confirm(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
         let Some(claim) = self.claim.take_if(|claim| claim.t <= start.t) else { return };
         let before = claim.start;
         self.explicit.prepare_dense(flow, &before, self.step, start);
@@ -217,7 +217,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -282,7 +282,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
         if self.is_implicit { self.implicit.faulty_rate() } else { self.explicit.faulty_rate() }
     }
 
-    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         if self.is_implicit {
             self.implicit.prepare_dense(flow, start, h, end);
         } else {

@@ -63,7 +63,7 @@ impl<const N: usize> Method<N> for Gauss6<N> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,

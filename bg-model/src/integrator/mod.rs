@@ -23,11 +23,10 @@ mod taylor;
 mod tolerances;
 mod vectors;
 
-use std::ops::Range;
-
 use nalgebra::SVector;
 
-use crate::linear::{Field, Sparsity, differences};
+use crate::capability::{Absent, Elimination, SecondOrder, Series};
+use crate::linear::{Sparsity, differences};
 pub use any::AnyMethod;
 pub use auto::{Auto, Change};
 pub use explicit::{
@@ -43,57 +42,39 @@ pub use taylor::Taylor;
 pub(crate) use tolerances::rounding;
 pub use tolerances::{Absolute, Scale, Tolerances};
 
-/// A smooth flow: a system with its switches frozen.
+/// A smooth flow: a system with its switches frozen. Only the rate has to be written; capabilities are those of a system
+/// without switches.
 pub trait Flow<const N: usize> {
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`.
-    fn rate(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>);
+    fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>);
 
     /// Where the Jacobian df/dx can differ from zero.
     fn sparsity(&self) -> Sparsity {
         Sparsity::Full
     }
 
-    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`.
-    fn jacobian(&mut self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
+    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`; by default by differences.
+    fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
         differences(|t, x: &SVector<f64, N>, dx: &mut SVector<f64, N>| self.rate(t, x, dx), t, x, entries, slope);
     }
 
-    /// See [`System::eliminate`](crate::system::System::eliminate).
-    fn eliminate<F: Field<f64>>(&self, _c: F, _entries: &[f64], _factors: &mut [F]) -> bool {
-        false
+    /// The elimination made for the sparsity.
+    fn elimination(&self) -> Option<&impl Elimination<f64, N>> {
+        None::<&Absent>
     }
 
-    /// See [`System::substitute`](crate::system::System::substitute).
-    fn substitute<F: Field<f64>>(&self, _factors: &[F], _b: &mut [F; N]) {
-        unreachable!("only what was eliminated is substituted")
+    /// The states of second order.
+    fn second_order(&self) -> Option<impl SecondOrder<f64, N, 0>> {
+        None::<Absent>
     }
 
-    /// See [`System::second_order`](crate::system::System::second_order).
-    fn second_order(&self) -> Range<usize> {
-        0..0
-    }
-
-    /// See [`System::second_derivatives`](crate::system::System::second_derivatives).
-    fn second_derivatives(&self, _x: &SVector<f64, N>, _dx: &mut SVector<f64, N>) {}
-
-    /// See [`System::forces`](crate::system::System::forces).
-    fn forces(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        self.rate(t, x, dx);
-        self.second_derivatives(x, dx);
-    }
-
-    /// See [`System::series_width`](crate::system::System::series_width).
-    fn series_width(&self) -> Option<usize> {
-        None
-    }
-
-    /// See [`System::series`](crate::system::System::series).
-    fn series(&mut self, _t: f64, _h: f64, _rows: &mut [f64], _series: &mut [SVector<f64, N>]) {
-        unreachable!("only asked for where there is one")
+    /// The Taylor series of the states.
+    fn series(&self) -> Option<impl Series<f64, N, 0>> {
+        None::<Absent>
     }
 
     /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small pivot.
-    fn count_factorisation(&mut self, _is_fallback: bool) {}
+    fn count_factorisation(&self, _is_fallback: bool) {}
 }
 
 /// A point of a trajectory.
@@ -161,7 +142,7 @@ pub trait Method<const N: usize> {
     /// How its steps are to be chosen.
     fn control(&self) -> StepControl;
 
-    /// Whether it needs the [`System::series`](crate::system::System::series) of the system.
+    /// Whether it needs the Taylor series of the system ([`System::series`](crate::system::System::series)).
     fn needs_series(&self) -> bool {
         false
     }
@@ -172,7 +153,7 @@ pub trait Method<const N: usize> {
     /// a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -201,7 +182,7 @@ pub trait Method<const N: usize> {
     /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
     /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be nothing to
     /// prepare.
-    fn prepare_dense(&mut self, _flow: &mut impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
+    fn prepare_dense(&mut self, _flow: &impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
 
     /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
     fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>);

@@ -79,7 +79,7 @@ impl<const N: usize, const S: usize, const P: usize> Method<N> for Radau<N, S, P
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,

@@ -38,7 +38,7 @@ impl<const N: usize> Method<N> for Rk4<N> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         _scale: &Scale<N>,

@@ -13,6 +13,7 @@ use nalgebra::SVector;
 use super::carry::Carry;
 use super::tolerances::{index_of_largest, largest};
 use super::{Bs5, Flow, Method, Point, Scale, StepControl, first_not_finite, is_finite};
+use crate::capability::Series;
 
 /// The highest order.
 const HIGHEST: usize = 30;
@@ -64,11 +65,19 @@ impl<const N: usize> Taylor<N> {
         self.series.len() - 1
     }
 
-    /// Makes room for a series of the order that `relative` calls for.
-    fn make_room(&mut self, flow: &impl Flow<N>, relative: f64) {
+    /// Expands the flow from `start` to the order that `relative` calls for, with the unit of time `h` (s). Without a
+    /// series, which the driver refuses, the other method makes the step.
+    fn expand(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, relative: f64) {
+        let series = flow.series();
+        self.is_current = true;
+        self.is_by_other = series.is_none();
+        let Some(series) = series else { return };
         let order = self.asked.unwrap_or_else(|| order_for(relative));
         self.series.resize(order + 1, SVector::zeros());
-        self.rows.resize(order * flow.series_width().unwrap_or(0), 0.0);
+        self.rows.resize(order * series.width(), 0.0);
+        self.unit = h;
+        self.series[0] = start.x;
+        series.expand(start.t, h, &[], &mut self.rows, &mut self.series);
     }
 
     /// At the part `theta` of the unit: the state less that at the start, and the slope of the series, in the state's unit.
@@ -133,19 +142,14 @@ impl<const N: usize> Method<N> for Taylor<N> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
         if !self.is_current {
-            self.make_room(flow, scale.relative);
-            self.unit = h;
-            self.series[0] = start.x;
-            flow.series(start.t, h, &mut self.rows, &mut self.series);
-            self.is_current = true;
-            self.is_by_other = false;
+            self.expand(flow, start, h, scale.relative);
         }
         if self.is_by_other {
             return self.other.attempt(flow, start, h, scale, end);
@@ -214,7 +218,7 @@ impl<const N: usize> Method<N> for Taylor<N> {
         self.series.iter().skip(1).find_map(first_not_finite)
     }
 
-    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         if self.is_by_other {
             self.other.prepare_dense(flow, start, h, end);
         }

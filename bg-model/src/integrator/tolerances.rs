@@ -98,7 +98,7 @@ pub(super) fn largest<const N: usize>(of: &[f64; N]) -> f64 {
 
 /// The largest change of each rate at `start` where every state is rounded up or down, in some patterns: what rounding may add to the
 /// rates. Not negative. Takes four rates.
-pub(crate) fn rounding<const N: usize>(flow: &mut impl Flow<N>, start: &Point<N>) -> SVector<f64, N> {
+pub(crate) fn rounding<const N: usize>(flow: &impl Flow<N>, start: &Point<N>) -> SVector<f64, N> {
     const PATTERNS: usize = 4;
     // Up or down without a pattern that states of one kind might share: the multiples of the golden ratio lie evenly.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;

@@ -13,7 +13,7 @@ pub(super) trait Vectorised<const N: usize> {
     /// As [`Method::attempt`](super::Method::attempt); to be inlined.
     fn attempt_inlined(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -23,7 +23,7 @@ pub(super) trait Vectorised<const N: usize> {
 
 struct Attempt<'a, M, F, const N: usize> {
     method: &'a mut M,
-    flow: &'a mut F,
+    flow: &'a F,
     start: &'a Point<N>,
     h: f64,
     scale: &'a Scale<N>,
@@ -44,7 +44,7 @@ impl<M: Vectorised<N>, F: Flow<N>, const N: usize> NullaryFnOnce for Attempt<'_,
 pub(super) fn attempt_in<const N: usize>(
     arch: Arch,
     method: &mut impl Vectorised<N>,
-    flow: &mut impl Flow<N>,
+    flow: &impl Flow<N>,
     start: &Point<N>,
     h: f64,
     scale: &Scale<N>,

@@ -5,6 +5,7 @@
 
 use super::dense::Dense;
 use super::{Field, Jacobian, Sparsity};
+use crate::capability::Elimination;
 use crate::integrator::Flow;
 
 /// Factors of I - c J.
@@ -22,26 +23,29 @@ impl<F: Field<f64>, const N: usize> Factors<F, N> {
     }
 
     /// Factors I - `c` J. Gives whether the matrix is regular.
-    pub fn factor(&mut self, flow: &mut impl Flow<N>, c: F, jacobian: &Jacobian<N>) -> bool {
-        let sparsity = flow.sparsity();
-        if let Sparsity::Places { factors, .. } = sparsity {
-            self.sparse.resize(factors, F::real(0.0));
-            if flow.eliminate(c, &jacobian.entries, &mut self.sparse) {
-                self.is_dense = false;
-                flow.count_factorisation(false);
-                return true;
-            }
+    pub fn factor(&mut self, flow: &impl Flow<N>, c: F, jacobian: &Jacobian<N>) -> bool {
+        let elimination = flow.elimination();
+        self.is_dense = !elimination.is_some_and(|elimination| self.eliminate(elimination, c, jacobian));
+        flow.count_factorisation(self.is_dense && elimination.is_some());
+        if !self.is_dense {
+            return true;
         }
-        self.is_dense = true;
-        flow.count_factorisation(matches!(sparsity, Sparsity::Places { .. }));
-        self.dense.get_or_insert_with(Dense::new).factor(|rows| fill(rows, sparsity, c, &jacobian.entries))
+        let dense = self.dense.get_or_insert_with(Dense::new);
+        dense.factor(|rows| fill(rows, flow.sparsity(), c, &jacobian.entries))
     }
 
-    /// Replaces `b` by the solution y of (I - c J) y = b.
-    pub fn solve(&self, flow: &mut impl Flow<N>, b: &mut [F; N]) {
-        match &self.dense {
-            Some(dense) if self.is_dense => dense.solve(b),
-            _ => flow.substitute(&self.sparse, b),
+    /// Factors I - `c` J along the planned order. Gives whether no pivot is too small.
+    fn eliminate(&mut self, elimination: &impl Elimination<f64, N>, c: F, jacobian: &Jacobian<N>) -> bool {
+        self.sparse.resize(elimination.factors(), F::real(0.0));
+        elimination.eliminate(c, &jacobian.entries, &mut self.sparse)
+    }
+
+    /// Replaces `b` by the solution y of (I - c J) y = b. To be called after [`Factors::factor`].
+    pub fn solve(&self, flow: &impl Flow<N>, b: &mut [F; N]) {
+        if let Some(dense) = self.dense.as_ref().filter(|_| self.is_dense) {
+            dense.solve(b);
+        } else if let Some(elimination) = flow.elimination() {
+            elimination.substitute(&self.sparse, b);
         }
     }
 }
@@ -56,7 +60,7 @@ fn fill<F: Field<f64>, const N: usize>(rows: &mut [[F; N]], sparsity: Sparsity, 
                 }
             }
         }
-        Sparsity::Places { entries: places, .. } => {
+        Sparsity::Places(places) => {
             for ((i, j), entry) in places.iter().zip(entries) {
                 rows[usize::from(*i)][usize::from(*j)] = -c.scaled(*entry);
             }

@@ -24,7 +24,7 @@ impl<const N: usize> Jacobian<N> {
     }
 
     /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known.
-    pub fn evaluate(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+    pub fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
         self.entries.resize(flow.sparsity().len(N), 0.0);
         flow.jacobian(start.t, &start.x, &mut self.entries, &mut self.slope);
         if !self.is_finite() {
@@ -39,7 +39,7 @@ impl<const N: usize> Jacobian<N> {
 
     /// Replaces each derivative that is not finite by a difference: of a state over as much as it changes in the step, and at
     /// least what its tolerance allows, of the time over the step.
-    fn replace_faulty(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+    fn replace_faulty(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
         let sparsity = flow.sparsity();
         let mut rate = SVector::zeros();
         for column in 0..N {

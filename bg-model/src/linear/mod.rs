@@ -24,12 +24,9 @@ pub enum Sparsity {
     /// Everywhere; the entries are stored column by column.
     Full,
     /// At these places only.
-    Places {
-        /// Row and column of every entry, in the order of storage.
-        entries: &'static [(u16, u16)],
-        /// The length of the factors of I - c J.
-        factors: usize,
-    },
+    ///
+    /// Row and column of every entry, in the order of storage.
+    Places(&'static [(u16, u16)]),
 }
 
 impl Sparsity {
@@ -38,7 +35,7 @@ impl Sparsity {
     pub const fn len(&self, n: usize) -> usize {
         match self {
             Self::Full => n * n,
-            Self::Places { entries, .. } => entries.len(),
+            Self::Places(entries) => entries.len(),
         }
     }
 
@@ -46,7 +43,7 @@ impl Sparsity {
     pub(crate) fn place(&self, k: usize, n: usize) -> (usize, usize) {
         match self {
             Self::Full => (k % n, k / n),
-            Self::Places { entries, .. } => (usize::from(entries[k].0), usize::from(entries[k].1)),
+            Self::Places(entries) => (usize::from(entries[k].0), usize::from(entries[k].1)),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! to an observer on the way, or a typed failure with the last good state. Switches change their branch at located
 //! instants only ([`crate::system::System`]); a step never runs over such an instant.
 
+mod frozen;
 mod observer;
 mod pace;
 mod rounding;
@@ -17,6 +18,7 @@ pub use observer::{EachSample, Observer};
 pub use settings::{Samples, Settings, Span};
 pub(crate) use stepper::Stepper;
 
+use crate::capability::Joints;
 use crate::event::Watch;
 use crate::failure::{Cause, Failure, Quantity};
 use crate::holding::Independence;
@@ -73,7 +75,7 @@ where
         attempts: 0,
         limit: settings.step_limit,
         faulty_guard: None,
-        independence: Independence::new(system.held()),
+        independence: system.joints().and_then(|joints| Independence::new(joints.held())),
         rounding: RoundingWatch::new(settings.tolerances.relative),
     };
     let outcome = settings::check(system, control, start, span, settings)
@@ -116,25 +118,25 @@ where
         self.check_start()?;
         let longest = self.span.length().min(settings.largest_step);
         if let (Some(order), None) = (control.order(), settings.first_step) {
-            let (_, mut flow, start, _, scale) = self.stepper.split();
-            let first = pace::first_step(&mut flow, start, scale, order, longest);
+            let (_, flow, start, _, scale) = self.stepper.split();
+            let first = pace::first_step(&flow, start, scale, order, longest);
             self.pace.begin(first);
         }
         self.watch.begin_by_probe(&mut self.stepper, self.pace.reach());
         self.stepper.end = self.stepper.start;
         self.check_start()?;
-        let Some(independence) = &mut self.independence else { return Ok(()) };
         let Stepper { system, start, negative, .. } = &self.stepper;
-        let found = independence.begin(*system, (start.t, &start.x), negative);
+        let (Some(independence), Some(joints)) = (&mut self.independence, system.joints()) else { return Ok(()) };
+        let found = independence.begin(joints, (start.t, &start.x), negative);
         found.map_or(Ok(()), |redundancy| Err(Cause::Redundant { redundancy, t: start.t }))
     }
 
     /// Sees to it that the rigid joints hold each a motion of its own over the whole step.
     fn check_joints(&mut self) -> Result<(), Cause> {
-        let Some(independence) = &mut self.independence else { return Ok(()) };
         let Stepper { system, start, h, end, negative, .. } = self.stepper;
+        let (Some(independence), Some(joints)) = (&mut self.independence, system.joints()) else { return Ok(()) };
         let inside = |part: f64| (start.t + part * h, self.stepper.dense(part));
-        let found = independence.check(system, (end.t, &end.x), &negative, inside);
+        let found = independence.check(joints, (end.t, &end.x), &negative, inside);
         found.map_or(Ok(()), |(t, redundancy)| Err(Cause::Redundant { redundancy, t }))
     }
 

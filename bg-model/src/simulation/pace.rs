@@ -180,7 +180,7 @@ impl Pace {
 
 /// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.
 pub(super) fn first_step<const N: usize>(
-    flow: &mut impl Flow<N>,
+    flow: &impl Flow<N>,
     start: &Point<N>,
     scale: &Scale<N>,
     order: f64,

@@ -37,8 +37,8 @@ impl RoundingWatch {
         if stepper.statistics.steps.is_multiple_of(WAIT) {
             self.is_above = is_exposed(stepper.method) && {
                 let h = stepper.h;
-                let (_, mut flow, start, _, scale) = stepper.split();
-                scale.norm(&(rounding(&mut flow, start) * (ESTIMATE * h)), &start.x) > 1.0
+                let (_, flow, start, _, scale) = stepper.split();
+                scale.norm(&(rounding(&flow, start) * (ESTIMATE * h)), &start.x) > 1.0
             };
         }
         stepper.statistics.rounded += u64::from(self.is_above);

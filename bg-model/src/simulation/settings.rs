@@ -110,7 +110,7 @@ where
     Sys: System<f64, N, G>,
 {
     match method {
-        Some(method) if system.series_width().is_none() => Err(BadInput::NoSeries { method }),
+        Some(method) if system.series().is_none() => Err(BadInput::NoSeries { method }),
         _ => Ok(()),
     }
 }

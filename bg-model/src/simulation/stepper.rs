@@ -1,80 +1,12 @@
 //! One step of a system by a method: the attempt, the projection, the rate at its end and the states in between.
 
-use std::ops::Range;
-
 use nalgebra::SVector;
 
+use super::frozen::Frozen;
 use crate::failure::Origin;
 use crate::integrator::{Flow, Method, Point, Scale, first_not_finite, is_finite};
-use crate::linear::{Field, Sparsity};
 use crate::statistics::Statistics;
 use crate::system::System;
-
-/// A system with its switches frozen, counting its evaluations.
-#[derive(Debug)]
-pub(crate) struct Frozen<'a, Sys, const G: usize> {
-    system: &'a Sys,
-    negative: &'a [bool; G],
-    statistics: &'a mut Statistics,
-}
-
-impl<Sys, const N: usize, const G: usize> Flow<N> for Frozen<'_, Sys, G>
-where
-    Sys: System<f64, N, G>,
-{
-    #[inline(always)]
-    fn rate(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        self.statistics.rate_evaluations += 1;
-        self.system.rate(t, x, self.negative, dx);
-    }
-
-    fn sparsity(&self) -> Sparsity {
-        self.system.sparsity()
-    }
-
-    fn jacobian(&mut self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
-        self.statistics.jacobian_evaluations += 1;
-        self.system.jacobian(t, x, self.negative, entries, slope);
-    }
-
-    fn eliminate<F: Field<f64>>(&self, c: F, entries: &[f64], factors: &mut [F]) -> bool {
-        self.system.eliminate(c, entries, factors)
-    }
-
-    fn substitute<F: Field<f64>>(&self, factors: &[F], b: &mut [F; N]) {
-        self.system.substitute(factors, b);
-    }
-
-    #[inline(always)]
-    fn second_order(&self) -> Range<usize> {
-        self.system.second_order()
-    }
-
-    #[inline(always)]
-    fn second_derivatives(&self, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        self.system.second_derivatives(x, dx);
-    }
-
-    #[inline(always)]
-    fn forces(&mut self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        self.statistics.rate_evaluations += 1;
-        self.system.forces(t, x, self.negative, dx);
-    }
-
-    fn series_width(&self) -> Option<usize> {
-        self.system.series_width()
-    }
-
-    fn series(&mut self, t: f64, h: f64, rows: &mut [f64], series: &mut [SVector<f64, N>]) {
-        self.statistics.series_orders += (series.len() - 1) as u64;
-        self.system.series(t, h, self.negative, rows, series);
-    }
-
-    fn count_factorisation(&mut self, is_fallback: bool) {
-        self.statistics.factorisations += 1;
-        self.statistics.pivoted_factorisations += u64::from(is_fallback);
-    }
-}
 
 /// A system, a method and the step between two points that is being made.
 #[derive(Debug)]
@@ -107,7 +39,7 @@ where
 
     /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
     pub fn split(&mut self) -> (&mut M, Frozen<'_, Sys, G>, &Point<N>, &mut Point<N>, &Scale<N>) {
-        let flow = Frozen { system: self.system, negative: &self.negative, statistics: &mut self.statistics };
+        let flow = Frozen::new(self.system, &self.negative, &mut self.statistics);
         (self.method, flow, &self.start, &mut self.end, &self.scale)
     }
 
@@ -115,9 +47,9 @@ where
     pub fn attempt(&mut self, h: f64) -> f64 {
         self.h = h;
         self.dense_is_ready = false;
-        let (method, mut flow, start, end, scale) = self.split();
+        let (method, flow, start, end, scale) = self.split();
         end.t = start.t + h;
-        method.attempt(&mut flow, start, h, scale, &mut end.x)
+        method.attempt(&flow, start, h, scale, &mut end.x)
     }
 
     /// Moves the end of the step back onto the invariants.
@@ -127,7 +59,7 @@ where
 
     /// Evaluates the rate at the end of the step.
     pub fn evaluate_end(&mut self) {
-        let (_, mut flow, _, end, _) = self.split();
+        let (_, flow, _, end, _) = self.split();
         let Point { t, x, rate } = end;
         flow.rate(*t, x, rate);
     }
@@ -143,12 +75,14 @@ where
     /// The first state whose rate has a derivative at the start of the step that is not finite, and that derivative; none
     /// where no derivative has been asked for.
     pub fn faulty_derivative(&self) -> Option<(usize, f64)> {
-        if self.statistics.jacobian_evaluations == 0 {
+        let mut statistics = self.statistics;
+        if statistics.jacobian_evaluations == 0 {
             return None;
         }
-        let sparsity = self.system.sparsity();
+        let flow = Frozen::new(self.system, &self.negative, &mut statistics);
+        let sparsity = flow.sparsity();
         let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], SVector::zeros());
-        self.system.jacobian(self.start.t, &self.start.x, &self.negative, &mut entries, &mut slope);
+        flow.jacobian(self.start.t, &self.start.x, &mut entries, &mut slope);
         let is_faulty = |(_, value): &(usize, f64)| !value.is_finite();
         let entry = entries.into_iter().enumerate().find(is_faulty).map(|(k, value)| (sparsity.place(k, N).0, value));
         entry.or_else(|| first_not_finite(&slope))
@@ -185,8 +119,8 @@ where
         if !self.dense_is_ready {
             let before = self.statistics.rate_evaluations;
             let h = self.h;
-            let (method, mut flow, start, end, _) = self.split();
-            method.prepare_dense(&mut flow, start, h, end);
+            let (method, flow, start, end, _) = self.split();
+            method.prepare_dense(&flow, start, h, end);
             self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
             self.dense_is_ready = true;
         }

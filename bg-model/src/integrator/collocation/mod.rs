@@ -116,7 +116,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     /// A step that satisfied the tolerances and is tried again with another size is part of a search for an event: it is
     /// solved to rounding, and like all attempts begins at the extrapolation of the step before, so its outcome depends
     /// on its size only.
-    pub fn solve(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> Result<(), f64> {
+    pub fn solve(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> Result<(), f64> {
         self.h = h;
         let goal = if self.is_exact || self.attempts == Attempts::Satisfied { Goal::Rounding } else { Goal::Tolerance };
         if !self.has_jacobian {
@@ -138,13 +138,13 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         }
     }
 
-    fn evaluate_jacobian(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+    fn evaluate_jacobian(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
         self.jacobian.evaluate(flow, start, h, scale);
         (self.has_jacobian, self.is_fresh, self.factored) = (true, true, 0.0);
     }
 
     /// Makes the factors for a step of size `h` (s) where those at hand do not serve. Gives whether there are any.
-    fn factor(&mut self, flow: &mut impl Flow<N>, h: f64) -> bool {
+    fn factor(&mut self, flow: &impl Flow<N>, h: f64) -> bool {
         if self.factored != 0.0 && (h - self.factored).abs() <= NEARLY * h.abs() {
             return true;
         }
@@ -166,7 +166,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     /// more, with the rate at x0 and the estimate, because the first one is too large for stiff states.
     pub fn estimate(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -184,7 +184,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
 
     fn filtered_defect(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,

@@ -49,7 +49,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     /// Iterates from the increments at hand.
     pub(super) fn iterate(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -97,7 +97,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     }
 
     /// Evaluates the rates of all stages. Gives whether they are finite; stops at the first that is not.
-    fn evaluate_stages(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64) -> bool {
+    fn evaluate_stages(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64) -> bool {
         for (j, c) in self.tableau.c.iter().enumerate() {
             let mut x = [0.0; N];
             for (i, x) in x.iter_mut().enumerate() {
@@ -112,7 +112,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     }
 
     /// Corrects the increments once. Gives the norm of the correction.
-    fn correct(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
+    fn correct(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
         let tableau = self.tableau;
         let mut real = [0.0; N];
         let mut complex = [[Complex::new(0.0, 0.0); N]; P];

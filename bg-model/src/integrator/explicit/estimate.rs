@@ -9,7 +9,7 @@ use crate::integrator::{Flow, Method, Point, Scale};
 struct Clock<F>(F);
 
 impl<F: Fn(f64) -> f64> Flow<1> for Clock<F> {
-    fn rate(&mut self, t: f64, _: &SVector<f64, 1>, dx: &mut SVector<f64, 1>) {
+    fn rate(&self, t: f64, _: &SVector<f64, 1>, dx: &mut SVector<f64, 1>) {
         dx[0] = (self.0)(t);
     }
 }
@@ -19,7 +19,7 @@ fn norm(mut method: impl Method<1>, rate: impl Fn(f64) -> f64, h: f64) -> f64 {
     let mut start = Point::at(0.0, SVector::from([0.0]));
     start.rate[0] = rate(0.0);
     let scale = Scale { relative: 0.0, absolute: SVector::from([1.0]) };
-    method.attempt(&mut Clock(rate), &start, h, &scale, &mut SVector::from([0.0]))
+    method.attempt(&Clock(rate), &start, h, &scale, &mut SVector::from([0.0]))
 }
 
 /// The combination of the stages' rates.

@@ -121,7 +121,7 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// Evaluates the stages from `first` up to `behind`. Their sums are written out, so that each finds its weights as
     /// constants; the rate stands there once, which is less to compile and takes no longer.
     #[inline(always)]
-    fn evaluate(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, first: usize, behind: usize) {
+    fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, first: usize, behind: usize) {
         for stage in first..behind {
             let mut x = start.x;
             macro_rules! written_out {
@@ -184,7 +184,7 @@ impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
     #[inline(always)]
     fn attempt_inlined(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -207,7 +207,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -239,7 +239,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         self.k[1..T::END].iter().find_map(first_not_finite)
     }
 
-    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         self.k[T::END] = end.rate;
         self.evaluate(flow, start, h, T::END + 1, T::A.len());
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();

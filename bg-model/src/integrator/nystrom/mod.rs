@@ -20,6 +20,7 @@ use super::dense::{FROM_ENDS, Polynomial};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl};
+use crate::capability::SecondOrder;
 use ring::Ring;
 use tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES};
 
@@ -99,21 +100,28 @@ impl<const N: usize> Nystrom<N> {
 
     /// Evaluates the stages. Their sums are written out, so that each finds its weights as constants.
     #[inline(always)]
-    fn evaluate(&mut self, flow: &mut impl Flow<N>, second: &Range<usize>, start: &Point<N>, h: f64) {
+    fn evaluate(&mut self, flow: &impl Flow<N>, states: &Range<usize>, start: &Point<N>, h: f64) {
+        let second = flow.second_order();
         let mut x = start.x;
         self.k[0].0 = start.rate;
-        flow.second_derivatives(&x, &mut self.k[0].0);
+        if let Some(second) = &second {
+            second.second_derivatives(&x, &mut self.k[0].0);
+        }
         for (stage, c) in INSTANTS.iter().enumerate().skip(1) {
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage => self.reach::<$stage>(second, *c, start, h, &mut x), )*
+                        $( $stage => self.reach::<$stage>(states, *c, start, h, &mut x), )*
                         _ => unreachable!("a step has nine stages"),
                     }
                 };
             }
             written_out!(1 2 3 4 5 6 7 8);
-            flow.forces(start.t + c * h, &x, &mut self.k[stage].0);
+            let (t, k) = (start.t + c * h, &mut self.k[stage].0);
+            match &second {
+                Some(second) => second.forces(t, &x, &[], k),
+                None => flow.rate(t, &x, k),
+            }
         }
     }
 
@@ -130,6 +138,12 @@ impl<const N: usize> Nystrom<N> {
     }
 }
 
+/// The states of second order of a flow; an empty range where there are none.
+#[inline(always)]
+fn states_of_second_order<const N: usize>(flow: &impl Flow<N>) -> Range<usize> {
+    flow.second_order().map_or(0..0, |second| second.states())
+}
+
 impl<const N: usize> Default for Nystrom<N> {
     fn default() -> Self {
         Self::new()
@@ -140,16 +154,16 @@ impl<const N: usize> Vectorised<N> for Nystrom<N> {
     #[inline(always)]
     fn attempt_inlined(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        let second = flow.second_order();
-        self.evaluate(flow, &second, start, h);
-        self.reach::<END>(&second, 1.0, start, h, end);
-        self.compare(&second, start, h, scale, end);
+        let states = states_of_second_order(flow);
+        self.evaluate(flow, &states, start, h);
+        self.reach::<END>(&states, 1.0, start, h, end);
+        self.compare(&states, start, h, scale, end);
         largest(&self.errors)
     }
 }
@@ -165,13 +179,13 @@ impl<const N: usize> Method<N> for Nystrom<N> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        self.second = flow.second_order();
+        self.second = states_of_second_order(flow);
         self.ring.follow(flow, start, &self.second);
         let reach = (h * self.ring.frequency / tableau::REACH).powi(tableau::ERROR_ORDER as i32);
         if reach > 1.0 {
@@ -199,9 +213,11 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         self.k[..STAGES].iter().find_map(|k| forces_first().map(|i| (i, k.0[i])).find(|(_, rate)| !rate.is_finite()))
     }
 
-    fn prepare_dense(&mut self, flow: &mut impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         self.k[END].0 = end.rate;
-        flow.second_derivatives(&end.x, &mut self.k[END].0);
+        if let Some(second) = flow.second_order() {
+            second.second_derivatives(&end.x, &mut self.k[END].0);
+        }
         let Self { k, second, polynomial, .. } = self;
         polynomial.set(start, h, end, |m, i, [_, first, third]| {
             if second.contains(&i) {

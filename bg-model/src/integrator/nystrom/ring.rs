@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
+use crate::capability::SecondOrder;
 use crate::integrator::{Flow, Point};
 
 /// Steps after a restart that each iterate once.
@@ -51,11 +52,11 @@ impl<const N: usize> Ring<N> {
     }
 
     /// Iterates once if it is time to.
-    pub fn follow(&mut self, flow: &mut impl Flow<N>, point: &Point<N>, states: &Range<usize>) {
-        if states.is_empty() {
+    pub fn follow(&mut self, flow: &impl Flow<N>, point: &Point<N>, states: &Range<usize>) {
+        let Some(second_order) = flow.second_order().filter(|_| !states.is_empty()) else {
             self.frequency = 0.0;
             return;
-        }
+        };
         let is_due = self.steps < FIRST_STEPS || self.steps.is_multiple_of(PAUSE);
         if self.is_done || !is_due {
             return;
@@ -71,10 +72,10 @@ impl<const N: usize> Ring<N> {
         let size = DISPLACEMENT * masked(&point.x).amax().max(DISPLACEMENT);
         let x = point.x + self.direction * size;
         let (mut moved, mut second) = (SVector::zeros(), point.rate);
-        flow.second_derivatives(&point.x, &mut second);
-        // Not `Flow::forces`, which may round otherwise: their difference is small.
+        second_order.second_derivatives(&point.x, &mut second);
+        // Not `SecondOrder::forces`, which may round otherwise: their difference is small.
         flow.rate(point.t, &x, &mut moved);
-        flow.second_derivatives(&x, &mut moved);
+        second_order.second_derivatives(&x, &mut moved);
         let change = masked(&(moved - second));
         let stiffness = change.norm() / size;
         if stiffness.is_finite() {

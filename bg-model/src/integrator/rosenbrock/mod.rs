@@ -47,7 +47,7 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
@@ -80,7 +80,7 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
         self.stages.fault
     }
 
-    fn prepare_dense(&mut self, _flow: &mut impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {
+    fn prepare_dense(&mut self, _flow: &impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {
         for (v, weights) in self.dense.iter_mut().zip(&RODAS5P_DENSE) {
             *v = SVector::zeros();
             add(v, weights, &self.stages.u, 1.0);
@@ -125,7 +125,7 @@ impl<const N: usize> Method<N> for Ros2<N> {
 
     fn attempt(
         &mut self,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,

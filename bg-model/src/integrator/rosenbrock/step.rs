@@ -39,7 +39,7 @@ impl<const S: usize, const N: usize> Stages<S, N> {
     pub fn evaluate(
         &mut self,
         tableau: &Tableau<S>,
-        flow: &mut impl Flow<N>,
+        flow: &impl Flow<N>,
         start: &Point<N>,
         h: f64,
         scale: &Scale<N>,
