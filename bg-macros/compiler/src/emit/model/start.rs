@@ -53,14 +53,14 @@ impl Emission<'_> {
             impl<S: Scalar> Model<S> {
                 /// The start state, and what it took to make it fit.
                 fn started(&self)
-                    -> Result<::bg_model::holding::Started<S, #n>, ::bg_model::assembly::AssemblyError>
+                    -> Result<::bg_model::__private::Started<S, #n>, ::bg_model::assembly::AssemblyError>
                 {
                     #closed
                     let state = |unknowns: &[f64; #count]| {
                         let unknowns = unknowns.map(S::from_f64);
                         SVector::from(Self::start_state(&self.parameters, &unknowns))
                     };
-                    ::bg_model::holding::fit(self, unknowns, [#(#speeds),*], state, #impulse)
+                    ::bg_model::__private::fit(self, unknowns, [#(#speeds),*], state, #impulse)
                 }
             }
         };
