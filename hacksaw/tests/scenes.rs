@@ -8,13 +8,12 @@
 #[allow(missing_docs)]
 mod planar;
 
-use bg_model::integrator::Tolerances;
+use bg_model::integrator::{Integrator, Tolerances};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{Samples, Settings};
 use bg_model::system::Model;
 use hacksaw::agreement::{Agreement, Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
-use hacksaw::methods::Integrator;
 use hacksaw::run::record;
 use hacksaw::scenes::{Scene, Visitor};
 use hacksaw::trajectory::sample_times;

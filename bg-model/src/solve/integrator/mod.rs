@@ -10,6 +10,7 @@
 mod any;
 mod auto;
 mod carry;
+mod choice;
 mod collocation;
 mod dense;
 mod explicit;
@@ -30,13 +31,14 @@ use crate::model::capability::{Absent, Elimination, SecondOrder, Series};
 use crate::model::linear::{Sparsity, differences};
 pub use any::AnyMethod;
 pub use auto::{Auto, Change};
+pub use choice::{Integrator, UnknownIntegrator};
 pub use explicit::{
     BogackiShampine, Bs5, CalvoFrancoMontijanoRandez, Cfmr7, Dop853, DormandPrince, Explicit, Row, Tableau,
 };
 pub use gauss::Gauss6;
 pub(crate) use hermite::hermite;
 pub use nystrom::Nystrom;
-pub use radau::{Radau, Radau5, Radau9, Radau13};
+pub use radau::{Radau, Radau5, Radau9};
 pub use rk4::Rk4;
 pub use rosenbrock::{Rodas5p, Ros2};
 pub use taylor::Taylor;

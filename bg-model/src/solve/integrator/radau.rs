@@ -1,4 +1,4 @@
-//! Radau IIA: implicit methods for stiff systems, of order 5, 9 and 13.
+//! Radau IIA: implicit methods for stiff systems, of order 5 and 9.
 //!
 //! In: a step. Out: the state after it with an error estimate, in between the collocation polynomial. L-stable and
 //! stiffly accurate: the last stage is the end of the step. For systems whose Jacobian is cheap beside the steps that an
@@ -6,7 +6,7 @@
 
 use nalgebra::SVector;
 
-use super::collocation::{Collocation, RADAU5, RADAU9, RADAU13};
+use super::collocation::{Collocation, RADAU5, RADAU9};
 use super::{Flow, Method, Point, Scale, StepControl};
 
 /// Radau IIA with `S` stages and `P` = (S - 1) / 2 complex systems in each correction.
@@ -19,8 +19,6 @@ pub struct Radau<const N: usize, const S: usize, const P: usize> {
 pub type Radau5<const N: usize> = Radau<N, 3, 1>;
 /// Radau IIA of order 9: on the hacksaw with the rod off cheaper than order 5 from a pose error of 1e-5 down.
 pub type Radau9<const N: usize> = Radau<N, 5, 2>;
-/// Radau IIA of order 13.
-pub type Radau13<const N: usize> = Radau<N, 7, 3>;
 
 impl<const N: usize> Radau<N, 3, 1> {
     /// The method, its work space empty.
@@ -38,14 +36,6 @@ impl<const N: usize> Radau<N, 5, 2> {
     }
 }
 
-impl<const N: usize> Radau<N, 7, 3> {
-    /// The method, its work space empty.
-    #[must_use]
-    pub fn new() -> Self {
-        Self { core: Collocation::new(&RADAU13, false) }
-    }
-}
-
 impl<const N: usize> Default for Radau<N, 3, 1> {
     fn default() -> Self {
         Self::new()
@@ -58,19 +48,9 @@ impl<const N: usize> Default for Radau<N, 5, 2> {
     }
 }
 
-impl<const N: usize> Default for Radau<N, 7, 3> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl<const N: usize, const S: usize, const P: usize> Method<N> for Radau<N, S, P> {
     fn name(&self) -> &'static str {
-        match S {
-            3 => "Radau IIA 5",
-            5 => "Radau IIA 9",
-            _ => "Radau IIA 13",
-        }
+        if S == 3 { "Radau IIA 5" } else { "Radau IIA 9" }
     }
 
     fn control(&self) -> StepControl {

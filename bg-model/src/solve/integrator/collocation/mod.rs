@@ -11,7 +11,6 @@ mod newton;
 #[cfg(test)]
 mod order;
 mod polynomial;
-mod radau13;
 mod radau9;
 mod tableau;
 
@@ -19,7 +18,6 @@ use nalgebra::{Complex, SVector};
 
 use self::newton::{Convergence, Goal};
 pub(super) use self::radau9::RADAU9;
-pub(super) use self::radau13::RADAU13;
 pub(super) use self::tableau::{GAUSS6, RADAU5, Tableau};
 use super::tolerances::{index_of_largest, largest};
 use super::{Flow, Point, Scale, first_not_finite};
