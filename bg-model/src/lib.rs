@@ -82,22 +82,16 @@
 #[macro_use]
 mod sentence;
 
-pub mod assembly;
-pub mod description;
-mod event;
-pub mod extended;
-pub mod failure;
-pub mod holding;
-pub mod input;
-pub mod integrator;
-pub mod linear;
-pub mod parameters;
-pub mod requirement;
-pub mod scalar;
-pub mod series;
-pub mod simulation;
-pub mod statistics;
-pub mod system;
+#[doc(hidden)]
+#[path = "private.rs"]
+pub mod __private;
+mod model;
+mod solve;
+
+pub use model::{
+    assembly, capability, description, holding, input, linear, parameters, requirement, scalar, series, system,
+};
+pub use solve::{extended, failure, integrator, simulation, statistics};
 
 pub use bg_macros::bond_graph;
 pub use nalgebra;

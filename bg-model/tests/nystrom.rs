@@ -5,6 +5,7 @@ mod problems;
 
 use std::ops::Range;
 
+use bg_model::capability::SecondOrder;
 use bg_model::integrator::{AnyMethod, Cfmr7, Dop853, Method, Nystrom};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
@@ -16,6 +17,18 @@ use problems::*;
 fn order(errors: [f64; 2]) -> f64 {
     (errors[0] / errors[1]).log2()
 }
+
+/// Forces as the rates and then the second derivatives.
+macro_rules! forces {
+    ($states:literal, $switches:literal) => {
+        fn forces(&self, t: f64, x: &Vector<$states>, negative: &[bool; $switches], dx: &mut Vector<$states>) {
+            self.rate(t, x, negative, dx);
+            self.second_derivatives(x, dx);
+        }
+    };
+}
+
+type Vector<const N: usize> = SVector<f64, N>;
 
 /// A heavy block on a rod that is an elastic, damped spring: x, y and their momenta, for mass 1.
 struct Pendulum {
@@ -36,13 +49,21 @@ impl System<f64, 4, 0> for Pendulum {
         *dx = SVector::from([x[2], x[3], -force * along_x, -force * along_y - 9.81]);
     }
 
-    fn second_order(&self) -> Range<usize> {
-        0..if self.is_second { 2 } else { 0 }
+    fn second_order(&self) -> Option<&impl SecondOrder<f64, 4, 0>> {
+        self.is_second.then_some(self)
+    }
+}
+
+impl SecondOrder<f64, 4, 0> for Pendulum {
+    fn states(&self) -> Range<usize> {
+        0..2
     }
 
     fn second_derivatives(&self, _x: &SVector<f64, 4>, dx: &mut SVector<f64, 4>) {
         (dx[0], dx[1]) = (dx[2], dx[3]);
     }
+
+    forces!(4, 0);
 }
 
 fn ends<M: Method<4>>(pendulum: &Pendulum, method: M, settings: &Settings<4>) -> (SVector<f64, 4>, Statistics) {
@@ -148,16 +169,22 @@ impl System<f64, 2, 0> for SliderCrank {
         *dx = SVector::from([speed, torque + 0.5 * slope * speed * speed]);
     }
 
-    fn second_order(&self) -> Range<usize> {
-        0..usize::from(self.is_second)
+    fn second_order(&self) -> Option<&impl SecondOrder<f64, 2, 0>> {
+        self.is_second.then_some(self)
+    }
+}
+
+impl SecondOrder<f64, 2, 0> for SliderCrank {
+    fn states(&self) -> Range<usize> {
+        0..1
     }
 
     fn second_derivatives(&self, x: &SVector<f64, 2>, dx: &mut SVector<f64, 2>) {
-        if self.is_second {
-            let [inertia, slope] = Self::inertia(x[0]);
-            dx[0] = (dx[1] - slope * dx[0] * dx[0]) / inertia;
-        }
+        let [inertia, slope] = Self::inertia(x[0]);
+        dx[0] = (dx[1] - slope * dx[0] * dx[0]) / inertia;
     }
+
+    forces!(2, 0);
 }
 
 /// A block of 1 kg on a spring and a damper, pushed by a force that changes with time: position and momentum.
@@ -176,13 +203,21 @@ impl System<f64, 2, 0> for Forced {
         *dx = SVector::from([x[1], (self.force * t).cos() - back]);
     }
 
-    fn second_order(&self) -> Range<usize> {
+    fn second_order(&self) -> Option<&impl SecondOrder<f64, 2, 0>> {
+        Some(self)
+    }
+}
+
+impl SecondOrder<f64, 2, 0> for Forced {
+    fn states(&self) -> Range<usize> {
         0..1
     }
 
     fn second_derivatives(&self, _x: &SVector<f64, 2>, dx: &mut SVector<f64, 2>) {
         dx[0] = dx[1];
     }
+
+    forces!(2, 0);
 }
 
 /// The largest error over the tolerance, for tolerances from 1e-2 to 1e-9, of all states over ten seconds.
@@ -226,13 +261,21 @@ impl System<f64, 2, 0> for Tightened {
         *dx = SVector::from([x[1], -frequency * frequency * x[0] - 0.04 * frequency * x[1]]);
     }
 
-    fn second_order(&self) -> Range<usize> {
+    fn second_order(&self) -> Option<&impl SecondOrder<f64, 2, 0>> {
+        Some(self)
+    }
+}
+
+impl SecondOrder<f64, 2, 0> for Tightened {
+    fn states(&self) -> Range<usize> {
         0..1
     }
 
     fn second_derivatives(&self, _x: &SVector<f64, 2>, dx: &mut SVector<f64, 2>) {
         dx[0] = dx[1];
     }
+
+    forces!(2, 0);
 }
 
 #[test]
@@ -260,13 +303,21 @@ impl System<f64, 4, 1> for Exchange {
         guards[0] = t - 1.0;
     }
 
-    fn second_order(&self) -> Range<usize> {
+    fn second_order(&self) -> Option<&impl SecondOrder<f64, 4, 1>> {
+        Some(self)
+    }
+}
+
+impl SecondOrder<f64, 4, 1> for Exchange {
+    fn states(&self) -> Range<usize> {
         0..2
     }
 
     fn second_derivatives(&self, _x: &SVector<f64, 4>, dx: &mut SVector<f64, 4>) {
         (dx[0], dx[1]) = (dx[2], dx[3]);
     }
+
+    forces!(4, 1);
 }
 
 #[test]
@@ -289,13 +340,21 @@ impl System<f64, 3, 1> for Ball {
         guards[0] = x[0];
     }
 
-    fn second_order(&self) -> Range<usize> {
+    fn second_order(&self) -> Option<&impl SecondOrder<f64, 3, 1>> {
+        Some(self)
+    }
+}
+
+impl SecondOrder<f64, 3, 1> for Ball {
+    fn states(&self) -> Range<usize> {
         0..1
     }
 
     fn second_derivatives(&self, _x: &SVector<f64, 3>, dx: &mut SVector<f64, 3>) {
         dx[0] = dx[1];
     }
+
+    forces!(3, 1);
 }
 
 #[test]

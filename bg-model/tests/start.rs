@@ -2,11 +2,12 @@
 
 use bg_model::assembly::AssemblyError;
 use bg_model::bond_graph;
+use bg_model::capability::Joints;
 use bg_model::integrator::Dop853;
 use bg_model::nalgebra::SVector;
 use bg_model::scalar::{DoubleDouble, Scalar};
 use bg_model::simulation::{Settings, Span, integrate};
-use bg_model::system::{Model, System};
+use bg_model::system::Model;
 
 bond_graph! {
     /// A bar that turns about a pin at its end, which the start does not know of.

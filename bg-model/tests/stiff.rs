@@ -5,7 +5,7 @@
 
 mod problems;
 
-use bg_model::integrator::{Absolute, Method, Radau5, Radau9, Radau13, Tolerances};
+use bg_model::integrator::{Absolute, Method, Radau5, Radau9, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
 use bg_model::statistics::Statistics;
@@ -67,7 +67,6 @@ fn van_der_pols_error_follows_the_tolerance() {
     let tolerances = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
     assert_follows(|tolerance| van_der_pols_errors(Radau5::new(), tolerance), &tolerances, 0.3..2.0);
     assert_follows(|tolerance| van_der_pols_errors(Radau9::new(), tolerance), &tolerances, 0.01..3.0);
-    assert_follows(|tolerance| van_der_pols_errors(Radau13::new(), tolerance), &tolerances, 0.01..3.0);
 }
 
 #[test]
@@ -75,7 +74,6 @@ fn robertsons_error_follows_the_tolerance_over_eleven_decades_of_time() {
     let tolerances = [1e-3, 1e-5, 1e-7, 1e-9];
     assert_follows(|tolerance| robertson(Radau5::new(), tolerance), &tolerances, 0.03..2.0);
     assert_follows(|tolerance| robertson(Radau9::new(), tolerance), &tolerances, 0.005..1.0);
-    assert_follows(|tolerance| robertson(Radau13::new(), tolerance), &tolerances, 0.005..1.0);
 }
 
 #[test]

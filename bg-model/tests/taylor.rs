@@ -3,6 +3,7 @@
 
 mod problems;
 
+use bg_model::capability::Series;
 use bg_model::failure::{BadInput, Cause};
 use bg_model::integrator::{Dop853, Method, Taylor};
 use bg_model::nalgebra::SVector;
@@ -28,10 +29,16 @@ impl<const N: usize, const G: usize, const W: usize> System<f64, N, G> for BySer
     fn guards(&self, _: f64, x: &SVector<f64, N>, _: &[bool; G], guards: &mut SVector<f64, G>) {
         guards.iter_mut().zip(x).for_each(|(guard, x)| *guard = *x);
     }
-    fn series_width(&self) -> Option<usize> {
-        Some(W)
+    fn series(&self) -> Option<&impl Series<f64, N, G>> {
+        Some(self)
     }
-    fn series(&self, t: f64, h: f64, _: &[bool; G], rows: &mut [f64], series: &mut [SVector<f64, N>]) {
+}
+
+impl<const N: usize, const G: usize, const W: usize> Series<f64, N, G> for BySeries<N, G, W> {
+    fn width(&self) -> usize {
+        W
+    }
+    fn expand(&self, t: f64, h: f64, _: &[bool; G], rows: &mut [f64], series: &mut [SVector<f64, N>]) {
         let rows = rows.as_chunks_mut::<W>().0;
         for k in 0..series.len() - 1 {
             let time = [t, h].get(k).copied().unwrap_or(0.0);

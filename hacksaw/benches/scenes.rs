@@ -7,14 +7,13 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::integrator::{Dop853, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::Model;
 use hacksaw::agreement::{Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
-use hacksaw::methods::Integrator;
 use hacksaw::report::{rate_operations, table};
 use hacksaw::run::{RunSettings, run};
 use hacksaw::scenes::{Scene, Visitor};

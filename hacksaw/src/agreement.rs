@@ -10,14 +10,13 @@ use std::f64::consts::TAU;
 
 use bg_model::assembly::AssemblyError;
 use bg_model::description::{Description, StateKind};
-use bg_model::integrator::{Absolute, Tolerances};
+use bg_model::integrator::{Absolute, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{Samples, Settings};
 use bg_model::system::{Model, Powers, System};
 
 use crate::mechanism::{Hacksaw, HacksawParameters};
-use crate::methods::Integrator;
 use crate::run::{Simulation, record};
 use crate::scenes::{Scene, Visitor};
 use crate::trajectory::{AXES, Column, Trajectory};

@@ -11,14 +11,14 @@ use std::process::ExitCode;
 
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::system::Model;
-use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use thiserror::Error;
 
 use crate::checks;
 use crate::files::{FileError, RunFolder, console};
 use crate::mechanism::HacksawParameters;
-use crate::methods::Integrator;
+use crate::methods::integrator;
 use crate::output::{Claimed, OutputError, Places};
 use crate::parameters::{self, Chosen, SettingError};
 use crate::precision::case::Case;
@@ -29,6 +29,7 @@ use crate::run::{self, RTOL_OVER_ATOL, RunSettings, Simulation};
 use crate::scenes::{Fixed, Scene, Visitor};
 use crate::summary::Summary;
 use crate::trajectory::TrajectoryError;
+use bg_model::integrator::Integrator;
 
 /// Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says about them.
 #[derive(Debug, Parser)]
@@ -88,7 +89,7 @@ struct RunArguments {
     t_end: f64,
 
     /// The integrator; auto says in the summary what it chose
-    #[arg(long, value_name = "NAME", default_value_t, value_enum)]
+    #[arg(long, value_name = "NAME", default_value_t, value_parser = integrator())]
     method: Integrator,
 
     /// Step of an integrator with a fixed step, s
@@ -128,7 +129,7 @@ struct PrecisionArguments {
     cases: Vec<Case>,
 
     /// The integrators [default: all]
-    #[arg(long, value_name = "NAME", value_enum, value_delimiter = ',')]
+    #[arg(long, value_name = "NAME", value_parser = integrator(), value_delimiter = ',')]
     methods: Vec<Integrator>,
 
     /// Relative tolerances
@@ -246,8 +247,7 @@ fn measure_precision(arguments: &PrecisionArguments) -> Result<ExitCode, InputEr
             return Err(InputError::Range { name, value, range: "a finite number above 0".to_owned() });
         }
     }
-    let all = Integrator::value_variants();
-    let methods = if arguments.methods.is_empty() { all } else { &arguments.methods };
+    let methods = if arguments.methods.is_empty() { &Integrator::ALL[..] } else { &arguments.methods };
     let settings = |method: Integrator| -> Vec<Setting> {
         if method.has_fixed_step() {
             arguments.fixed_step.iter().copied().map(Setting::Step).collect()

@@ -6,13 +6,12 @@
 use std::time::{Duration, Instant};
 
 use bg_model::assembly::AssemblyError;
-use bg_model::integrator::{AnyMethod, Change, Method, Tolerances};
+use bg_model::integrator::{AnyMethod, Change, Integrator, Method, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 
-use crate::methods::Integrator;
 use crate::trajectory::{Column, Trajectory, sample_times};
 
 /// What is asked of a run.

@@ -2,7 +2,7 @@
 //!
 //! Pinned; to be renewed only where an integrator, the step control or the generated code was meant to change.
 
-use hacksaw::methods::Integrator;
+use bg_model::integrator::Integrator;
 use hacksaw::precision::case::Case;
 use hacksaw::precision::measure::{Counts, Entry, Setting, measure};
 use hacksaw::trajectory::Trajectory;
@@ -61,9 +61,9 @@ fn the_error_is_proportional_to_the_tolerance_over_eight_decades() {
 #[test]
 fn every_integrator_approaches_the_reference() {
     let reference = beginning(&Case::Paper.reference().load(), 21);
-    for method in <Integrator as clap::ValueEnum>::value_variants() {
+    for method in Integrator::ALL {
         let setting = if method.has_fixed_step() { Setting::Step(1e-5) } else { tolerance(1e-7) };
-        let entry = measure(Case::Paper, *method, setting, 1, &reference).unwrap();
+        let entry = measure(Case::Paper, method, setting, 1, &reference).unwrap();
         let poses = entry.errors.expect("the run reached its end").poses.unwrap();
         assert!(poses.largest < 1e-6, "{}: {:e}", method.name(), poses.largest);
     }

@@ -4,13 +4,12 @@
 //! the same outputs change by C 4e-14 m, R 6e-13, p 9e-11 kg m/s, h 8e-12 N m s, F 9e-7 N, gaps 7e-15 m. The pins' stiffness
 //! of 1e8 N/m makes a force of 1e-8 N of the last bit of a position, and they ring at 1e4 rad/s almost without decay.
 
-use bg_model::integrator::Tolerances;
+use bg_model::integrator::{Integrator, Tolerances};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{Samples, Settings};
 use bg_model::system::Model;
 use hacksaw::agreement::{Agreement, Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
-use hacksaw::methods::Integrator;
 use hacksaw::run::record;
 use hacksaw::scenes::{Scene, Visitor};
 use hacksaw::trajectory::sample_times;

@@ -6,9 +6,10 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use bg_model::capability::{Elimination, Linearised};
 use bg_model::linear::{Field, Sparsity};
 use bg_model::nalgebra::{Complex, ComplexField, Const, DMatrix, DimMin, SMatrix, SVector};
-use bg_model::system::{Model, System};
+use bg_model::system::Model;
 use hacksaw::mechanism::{Full, FullParameters, Paper, PaperParameters, Rigid, RigidParameters};
 
 const BATCHES: usize = 40;
@@ -24,13 +25,8 @@ fn nanoseconds(calls: u32, mut call: impl FnMut()) -> f64 {
 }
 
 /// Elimination and substitution with this step; nanoseconds of each.
-fn generated<F: Field<f64>, Mo: System<f64, N, G>, const N: usize, const G: usize>(
-    model: &Mo,
-    c: F,
-    entries: &[f64],
-    length: usize,
-) -> [f64; 2] {
-    let mut factors = vec![F::real(0.0); length];
+fn generated<F: Field<f64>, const N: usize>(model: &impl Elimination<f64, N>, c: F, entries: &[f64]) -> [f64; 2] {
+    let mut factors = vec![F::real(0.0); model.factors()];
     let eliminate = nanoseconds(200, || {
         assert!(model.eliminate(black_box(c), black_box(entries), &mut factors));
         black_box(&factors);
@@ -62,10 +58,11 @@ where
 
 fn measure<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo)
 where
-    Mo: Model<f64, N, G, M>,
+    Mo: Model<f64, N, G, M> + Linearised<f64, N, G> + Elimination<f64, N>,
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
-    let Sparsity::Places { entries: places, factors } = model.sparsity() else { return };
+    let Sparsity::Places(places) = model.sparsity() else { return };
+    let factors = model.factors();
     let x = model.start().expect("the mechanism closes");
     let negative = [false; G];
     let (mut dx, mut slope) = (SVector::zeros(), SVector::zeros());
@@ -79,8 +76,8 @@ where
     for (&(row, column), entry) in places.iter().zip(&entries) {
         matrix[(usize::from(row), usize::from(column))] -= c * entry;
     }
-    let [eliminate, substitute] = generated(model, c, &entries, factors);
-    let [eliminate_complex, substitute_complex] = generated(model, Complex::new(c, c), &entries, factors);
+    let [eliminate, substitute] = generated(model, c, &entries);
+    let [eliminate_complex, substitute_complex] = generated(model, Complex::new(c, c), &entries);
     let [fixed, dynamic] = dense::<f64, N>(&matrix);
     let complex = matrix.map(|entry| Complex::new(entry, 0.1 * entry));
     let [fixed_complex, dynamic_complex] = dense::<Complex<f64>, N>(&complex);

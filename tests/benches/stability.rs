@@ -55,7 +55,7 @@ fn rows(cases: &[Case], limit: u64) -> Vec<Row> {
                 let outcome = case.run(*integrator, tolerance, limit);
                 eprint!(" {}", outcome.verdict.word());
                 let seconds = begin.elapsed().as_secs_f64();
-                rows.push(Row { case: case.name, integrator: name.clone(), tolerance, outcome, seconds });
+                rows.push(Row { case: case.name, integrator: name.to_owned(), tolerance, outcome, seconds });
             }
             eprintln!();
         }

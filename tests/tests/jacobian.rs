@@ -5,6 +5,7 @@
 //! along the flow. The solutions are put back into the system.
 
 use bg_model::bond_graph;
+use bg_model::capability::{Elimination, Linearised, SecondOrder};
 use bg_model::input::Input;
 use bg_model::integrator::Dop853;
 use bg_model::linear::{Field, SMALLEST_PIVOT, Sparsity};
@@ -28,9 +29,9 @@ const RESIDUAL: f64 = 1e-12;
 const LARGE_STEP: f64 = f64::EPSILON / SMALLEST_PIVOT;
 
 /// Row and column of every entry.
-fn places<Mo: System<f64, N, G>, const N: usize, const G: usize>(model: &Mo) -> &'static [(u16, u16)] {
-    let Sparsity::Places { entries, .. } = model.sparsity() else { panic!("a generated model knows its pattern") };
-    entries
+fn places<const N: usize, const G: usize>(model: &impl Linearised<f64, N, G>) -> &'static [(u16, u16)] {
+    let Sparsity::Places(places) = model.sparsity() else { panic!("a generated model knows its pattern") };
+    places
 }
 
 /// df/dx as a full matrix and df/dt.
@@ -43,6 +44,7 @@ fn jacobian<Mo, const N: usize, const G: usize>(
 where
     Mo: System<f64, N, G>,
 {
+    let model = model.linearised().expect("a generated model knows its Jacobian");
     let places = places(model);
     let (mut entries, mut slope) = (vec![f64::NAN; places.len()], SVector::repeat(f64::NAN));
     model.jacobian(t, x, negative, &mut entries, &mut slope);
@@ -116,13 +118,17 @@ where
     let mut rate = SVector::zeros();
     model.rate(t, x, negative, &mut rate);
     let mut found = rate;
-    model.second_derivatives(x, &mut found);
+    if let Some(second) = model.second_order() {
+        second.second_derivatives(x, &mut found);
+    }
     let moving = SVector::<Dual, N>::from_fn(|k, _| Dual::new(x[k], rate[k]));
     let mut expected = SVector::repeat(Dual::new(0.0, 0.0));
     twin.rate(Dual::new(t, 1.0), &moving, negative, &mut expected);
-    let of_second_order = model.second_order();
-    let mut forces = SVector::zeros();
-    model.forces(t, x, negative, &mut forces);
+    let of_second_order = model.second_order().map_or(0..0, |second| second.states());
+    let mut forces = rate;
+    if let Some(second) = model.second_order() {
+        second.forces(t, x, negative, &mut forces);
+    }
     for (k, (force, value)) in forces.iter().zip(&found).enumerate() {
         let scale = value.abs().max(1e-2 * found.amax());
         assert!((force - value).abs() <= DERIVATIVE * scale, "state {k}: {force:e}, not {value:e}, at {x:?}");
@@ -153,13 +159,13 @@ where
     F: Field<f64>,
     Mo: System<f64, N, G>,
 {
-    let Sparsity::Places { factors, .. } = model.sparsity() else { return None };
-    let mut factors = vec![F::real(f64::NAN); factors];
-    if !model.eliminate(c, entries, &mut factors) {
+    let elimination = model.linearised()?.elimination()?;
+    let mut factors = vec![F::real(f64::NAN); elimination.factors()];
+    if !elimination.eliminate(c, entries, &mut factors) {
         return None;
     }
     let mut y = *b;
-    model.substitute(&factors, &mut y);
+    elimination.substitute(&factors, &mut y);
     let (mut rest, mut norm): (f64, f64) = (0.0, 0.0);
     for row in 0..N {
         let products = (0..N).map(|column| c.scaled(matrix[(row, column)]) * y[column]);
@@ -308,8 +314,7 @@ fn a_dense_solution_is_the_same() {
     let model = Paper::new(PaperParameters::default()).unwrap();
     let x = model.start().unwrap();
     let (entries, matrix, _) = jacobian(&model, 0.0, &x, &[false; Paper::SWITCHES]);
-    let Sparsity::Places { factors, .. } = model.sparsity() else { panic!("a generated model knows its pattern") };
-    let mut factors = vec![0.0; factors];
+    let mut factors = vec![0.0; model.factors()];
     let mut draw = Draw::new(5);
     for c in [1e-8, 1e-5, 1e-3, 1e-2] {
         let b: [f64; Paper::STATES] = std::array::from_fn(|_| draw.number());
@@ -342,7 +347,7 @@ fn a_pivot_that_vanishes_is_refused() {
     for negative in [false, true] {
         let (entries, matrix, _) = jacobian(&model, 0.0, &x, &[negative]);
         let rate = matrix[(0, 0)];
-        let Sparsity::Places { factors, .. } = model.sparsity() else { panic!("a generated model knows its pattern") };
+        let factors = model.factors();
         let eliminated = |c: f64| model.eliminate(c, &entries, &mut vec![0.0; factors]);
         assert!(!eliminated(1.0 / rate), "{negative}: {rate}");
         assert!(!eliminated((1.0 + 0.1 * SMALLEST_PIVOT) / rate));
@@ -356,14 +361,13 @@ fn a_pivot_that_vanishes_is_refused() {
 /// Entries, factors, and operations of `jacobian`, `eliminate`, `substitute`.
 fn counts<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo) -> [usize; 5]
 where
-    Mo: Model<f64, N, G, M>,
+    Mo: Model<f64, N, G, M> + Linearised<f64, N, G> + Elimination<f64, N>,
 {
-    let Sparsity::Places { entries, factors } = model.sparsity() else { panic!("a generated model knows its pattern") };
     let operations = |wanted: &str| {
         let found = model.description().operations.iter().find(|(name, _)| *name == wanted);
         found.expect("every function is listed").1.total()
     };
-    [entries.len(), factors, operations("jacobian"), operations("eliminate"), operations("substitute")]
+    [places(model).len(), model.factors(), operations("jacobian"), operations("eliminate"), operations("substitute")]
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! Held for every example and every scene of the hacksaw at random states, every switch in either branch, over a time so short
 //! that what the polynomial leaves out is below rounding, and so long that its later terms are not.
 
+use bg_model::capability::Series;
 use bg_model::input::Input;
 use bg_model::nalgebra::SVector;
 use bg_model::system::{Model, System};
@@ -35,8 +36,8 @@ where
 {
     let mut polynomial = [SVector::repeat(f64::NAN); ORDER + 1];
     polynomial[0] = *x;
-    let width = model.series_width().expect("constant inputs only");
-    model.series(t, h, negative, &mut vec![f64::NAN; ORDER * width], &mut polynomial);
+    let series = model.series().expect("constant inputs only");
+    series.expand(t, h, negative, &mut vec![f64::NAN; ORDER * series.width()], &mut polynomial);
     polynomial
 }
 
@@ -141,16 +142,17 @@ mod scenes {
 #[test]
 fn an_input_that_changes_leaves_no_series() {
     use models::dc_motor::{DcMotor, DcMotorInputs, DcMotorParameters};
-    let width = |voltage| DcMotor::new(DcMotorParameters::default(), DcMotorInputs { voltage }).unwrap().series_width();
-    assert!(width(Input::constant(12.0)).is_some());
-    assert_eq!(width(Input::function(|t| t)), None);
-    assert_eq!(width(Input::with_rate(|t| t, |_| 1.0)), None);
+    let motor = |voltage| DcMotor::new(DcMotorParameters::default(), DcMotorInputs { voltage }).unwrap();
+    let has_series = |voltage| motor(voltage).series().is_some();
+    assert!(has_series(Input::constant(12.0)));
+    assert!(!has_series(Input::function(|t| t)));
+    assert!(!has_series(Input::with_rate(|t| t, |_| 1.0)));
 }
 
 /// Twice the products of two factors that change, and the places of quotients and functions.
 #[test]
 fn widths_of_the_hacksaw() {
-    assert_eq!(Paper::new(PaperParameters::default()).unwrap().series_width(), Some(116));
-    assert_eq!(FreeRun::new(FreeRunParameters::default()).unwrap().series_width(), Some(64));
-    assert_eq!(Hacksaw::new(HacksawParameters::default()).unwrap().series_width(), Some(572));
+    assert_eq!(Paper::new(PaperParameters::default()).unwrap().width(), 116);
+    assert_eq!(FreeRun::new(FreeRunParameters::default()).unwrap().width(), 64);
+    assert_eq!(Hacksaw::new(HacksawParameters::default()).unwrap().width(), 572);
 }

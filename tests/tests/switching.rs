@@ -35,7 +35,7 @@ fn one_step(end: f64) -> Request {
 /// Runs `problem` by every integrator and hands each run with the integrator's name to `check`.
 fn by_all(problem: &dyn Switched, request: &Request, mut check: impl FnMut(&str, &Run)) {
     for integrator in integrators_of_rates() {
-        check(&integrator.name(), &problem.run(integrator, request));
+        check(integrator.name(), &problem.run(integrator, request));
     }
 }
 

@@ -4,7 +4,7 @@
 //! run with the outputs at the reference's instants, without the building of the model.
 
 use bg_model::assembly::AssemblyError;
-use bg_model::integrator::Tolerances;
+use bg_model::integrator::{Integrator, Tolerances};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::simulation::{Samples, Settings};
 use bg_model::statistics::Statistics;
@@ -14,7 +14,6 @@ use thiserror::Error;
 
 use super::case::Case;
 use super::errors::{Errors, Incomparable};
-use crate::methods::Integrator;
 use crate::run::{Simulation, record};
 use crate::scenes::{Fixed, Visitor};
 use crate::trajectory::Trajectory;
@@ -148,7 +147,7 @@ pub fn measure(
     };
     Ok(Entry {
         case: case.name(),
-        integrator: integrator.name(),
+        integrator: integrator.name().to_owned(),
         rtol,
         atol,
         fixed_step_s: step,

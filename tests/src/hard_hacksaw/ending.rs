@@ -4,8 +4,8 @@
 //! from the same instant of a longer run, and how many switchings were told.
 
 use bg_model::failure::Cause;
+use bg_model::integrator::Integrator;
 use bg_model::simulation::Samples;
-use hacksaw::methods::Integrator;
 
 use super::machine::{Scale, planar};
 use super::request;

@@ -4,9 +4,9 @@
 //! tenth of the run, which stays the same where nothing builds up.
 
 use bg_model::failure::Cause;
+use bg_model::integrator::Integrator;
 use bg_model::simulation::Samples;
 use bg_model::statistics::Statistics;
-use hacksaw::methods::Integrator;
 
 use super::machine::{Scale, planar, planar_names};
 use super::request;

@@ -5,8 +5,8 @@
 //! has no error but rounding.
 
 use bg_model::failure::Cause;
+use bg_model::integrator::Integrator;
 use bg_model::simulation::Samples;
-use hacksaw::methods::Integrator;
 
 use super::machine::{Scale, planar, planar_names};
 use super::request;

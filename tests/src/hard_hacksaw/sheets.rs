@@ -82,7 +82,7 @@ pub fn sampling(progress: Progress) -> Sheet {
 pub fn ending(progress: Progress) -> Sheet {
     let mut rows = Vec::new();
     for by in integrators() {
-        progress(&by.name());
+        progress(by.name());
         for of in endings(*by, 1e-8, 0.5, 4) {
             let failure = message(of.failure.as_ref());
             let numbers = [json!(of.end), json!(of.difference), json!(of.events)];

@@ -9,8 +9,8 @@
 //! way, a property of the equations: no method can do without it. It is 1 but for orbits, a strong ring and free bodies.
 
 use bg_model::failure::{BadInput, Cause};
+use bg_model::integrator::Integrator;
 use bg_model::statistics::Statistics;
-use hacksaw::methods::Integrator;
 
 use super::problem::{Problem, Request};
 

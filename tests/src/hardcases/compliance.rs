@@ -5,8 +5,8 @@
 //! with compliant joints lacks of the rigid one is a series in 1/k: (y(k) - 6 y(2 k) + 8 y(4 k)) / 3 leaves its third
 //! power.
 
+use bg_model::integrator::Integrator;
 use bg_model::statistics::Statistics;
-use hacksaw::methods::Integrator;
 
 use super::case::{Case, larger};
 use super::problem::{Problem, Request, Run};

@@ -3,6 +3,7 @@
 //! In: nothing. Out: cases. Each is stiff with negative real eigenvalues, and held against Radau IIA of orders 13 and 17 in
 //! quad precision, whose two runs agree to 14 digits and more.
 
+use bg_model::capability::Linearised;
 use bg_model::nalgebra::SVector;
 use bg_model::system::System;
 
@@ -18,6 +19,12 @@ impl System<f64, 3, 0> for Robertson {
         *dy = SVector::from([-r1 + r3, r1 - r2 - r3, r2]);
     }
 
+    fn linearised(&self) -> Option<&impl Linearised<f64, 3, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 3, 0> for Robertson {
     fn jacobian(&self, _: f64, y: &SVector<f64, 3>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 3>) {
         let [square, a, b] = [6e7 * y[1], 1e4 * y[2], 1e4 * y[1]];
         dense([[-0.04, a, b], [0.04, -square - a, -b], [0.0, square, 0.0]], entries, slope);
@@ -68,6 +75,12 @@ impl System<f64, 8, 0> for Hires {
         ]);
     }
 
+    fn linearised(&self) -> Option<&impl Linearised<f64, 8, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 8, 0> for Hires {
     fn jacobian(&self, _: f64, y: &SVector<f64, 8>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 8>) {
         let [a, b] = [280.0 * y[7], 280.0 * y[5]];
         let rows = [
@@ -162,6 +175,12 @@ impl System<f64, 4, 0> for E5 {
         *dy = SVector::from([-p1 - p2, d2, d2 - d4, d4]);
     }
 
+    fn linearised(&self) -> Option<&impl Linearised<f64, 4, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 4, 0> for E5 {
     fn jacobian(&self, _: f64, y: &SVector<f64, 4>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 4>) {
         let mc = Self::M * Self::C;
         let second = [Self::A, -mc * y[2], -mc * y[1], 0.0];
@@ -214,6 +233,12 @@ impl System<f64, 3, 0> for Oregonator {
         ]);
     }
 
+    fn linearised(&self) -> Option<&impl Linearised<f64, 3, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 3, 0> for Oregonator {
     fn jacobian(&self, _: f64, y: &SVector<f64, 3>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 3>) {
         let rows = [
             [Self::S * (1.0 - 2.0 * Self::Q * y[0] - y[1]), Self::S * (1.0 - y[0]), 0.0],

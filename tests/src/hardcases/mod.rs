@@ -20,9 +20,8 @@ pub mod sheet;
 pub mod singular;
 pub mod slider_crank;
 
+use bg_model::integrator::Integrator;
 use bg_model::nalgebra::SVector;
-use clap::ValueEnum;
-use hacksaw::methods::Integrator;
 
 use case::Case;
 
@@ -84,7 +83,7 @@ pub fn short_cases() -> Vec<Case> {
 /// All integrators by the names that the command line knows.
 #[must_use]
 pub fn integrators() -> &'static [Integrator] {
-    Integrator::value_variants()
+    &Integrator::ALL
 }
 
 /// Those of them that need nothing of a system but its rate.
@@ -100,8 +99,7 @@ pub fn integrators_of_rates() -> impl ExactSizeIterator<Item = Integrator> + Clo
 /// There is none.
 #[must_use]
 pub fn integrator(name: &str) -> Integrator {
-    let found = integrators().iter().find(|integrator| integrator.name() == name);
-    *found.unwrap_or_else(|| panic!("no integrator `{name}`"))
+    name.parse().unwrap_or_else(|unknown| panic!("{unknown}"))
 }
 
 /// Writes the Jacobian with these rows of a system that does not depend on time.

@@ -4,7 +4,7 @@
 //! in 1 s, and the orders that follow. On the stiff joint the order is what a method has left of its classical one
 //! (order reduction, A. Prothero, A. Robinson 1974). It shows in the velocity: positions are divided by the stiffness.
 
-use hacksaw::methods::Integrator;
+use bg_model::integrator::Integrator;
 
 use super::case::larger;
 use super::problem::{self, Request};

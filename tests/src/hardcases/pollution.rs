@@ -2,6 +2,7 @@
 //!
 //! In: nothing. Out: the case. Rates and Jacobian follow from one table of reactions.
 
+use bg_model::capability::Linearised;
 use bg_model::nalgebra::SVector;
 use bg_model::system::System;
 
@@ -56,6 +57,12 @@ impl System<f64, N, 0> for Pollution {
         }
     }
 
+    fn linearised(&self) -> Option<&impl Linearised<f64, N, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, N, 0> for Pollution {
     fn jacobian(&self, _: f64, y: &SVector<f64, N>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, N>) {
         entries.fill(0.0);
         slope.fill(0.0);

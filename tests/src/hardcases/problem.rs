@@ -3,12 +3,11 @@
 //! In: a system, its start and what is watched of it. Out: a run by any integrator, as rows of what was watched.
 
 use bg_model::failure::Cause;
-use bg_model::integrator::{AnyMethod, Tolerances};
+use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::{Model, System};
-use hacksaw::methods::Integrator;
 
 /// What a run is asked for.
 #[derive(Clone, Copy, Debug)]

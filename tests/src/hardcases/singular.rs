@@ -3,6 +3,7 @@
 //!
 //! In: nothing. Out: cases. But for van der Pol's the solutions are closed forms, so that errors are exact.
 
+use bg_model::capability::Linearised;
 use bg_model::nalgebra::SVector;
 use bg_model::system::System;
 
@@ -19,6 +20,12 @@ impl System<f64, 2, 0> for VanDerPol {
         *dy = SVector::from([y[1], ((1.0 - y[0] * y[0]) * y[1] - y[0]) / self.eps]);
     }
 
+    fn linearised(&self) -> Option<&impl Linearised<f64, 2, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 2, 0> for VanDerPol {
     fn jacobian(&self, _: f64, y: &SVector<f64, 2>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 2>) {
         let second = [(-2.0 * y[0] * y[1] - 1.0) / self.eps, (1.0 - y[0] * y[0]) / self.eps];
         dense([[0.0, 1.0], second], entries, slope);
@@ -54,6 +61,12 @@ impl System<f64, 1, 0> for ProtheroRobinson {
         dy[0] = self.lambda * (y[0] - libm::cos(t)) - libm::sin(t);
     }
 
+    fn linearised(&self) -> Option<&impl Linearised<f64, 1, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 1, 0> for ProtheroRobinson {
     fn jacobian(&self, t: f64, _: &SVector<f64, 1>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 1>) {
         entries[0] = self.lambda;
         slope[0] = self.lambda * libm::sin(t) - libm::cos(t);
@@ -91,6 +104,12 @@ impl System<f64, 2, 0> for Kaps {
         *dy = SVector::from([fast, y[0] - y[1] - y[1] * y[1]]);
     }
 
+    fn linearised(&self) -> Option<&impl Linearised<f64, 2, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 2, 0> for Kaps {
     fn jacobian(&self, _: f64, y: &SVector<f64, 2>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 2>) {
         let rows = [[-(1.0 / self.eps + 2.0), 2.0 * y[1] / self.eps], [1.0, -1.0 - 2.0 * y[1]]];
         dense(rows, entries, slope);
@@ -195,16 +214,22 @@ impl System<f64, 3, 0> for StiffJoint {
         *dy = SVector::from([y[1], force, -self.damper * (y[2] - libm::cos(2.0 * t)) - 2.0 * libm::sin(2.0 * t)]);
     }
 
+    fn state_name(&self, index: usize) -> &'static str {
+        ["x", "v", "w"][index]
+    }
+
+    fn linearised(&self) -> Option<&impl Linearised<f64, 3, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 3, 0> for StiffJoint {
     fn jacobian(&self, t: f64, _: &SVector<f64, 3>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 3>) {
         let [_, v, a, b] = Self::path(t);
         let rows = [[0.0, 1.0, 0.0], [-self.stiffness, -self.damping, 0.0], [0.0, 0.0, -self.damper]];
         dense(rows, entries, slope);
         let driven = -self.damper * 2.0 * libm::sin(2.0 * t) - 4.0 * libm::cos(2.0 * t);
         *slope = SVector::from([0.0, self.stiffness * v + self.damping * a + b, driven]);
-    }
-
-    fn state_name(&self, index: usize) -> &'static str {
-        ["x", "v", "w"][index]
     }
 }
 

@@ -5,9 +5,9 @@
 //! in all three; one that grows as a random walk is 10^(1/2) times, one that grows linearly 10 times as large each time.
 
 use bg_model::failure::Cause;
+use bg_model::integrator::Integrator;
 use bg_model::simulation::Samples;
 use bg_model::statistics::Statistics;
-use hacksaw::methods::Integrator;
 
 use super::scenes::Scene;
 use crate::hardcases::problem::Request;

@@ -3,12 +3,11 @@
 //! In: a case, an integrator and a tolerance or step. Out: the events found, and the largest error of their times.
 
 use bg_model::failure::Cause;
-use bg_model::integrator::{AnyMethod, Tolerances};
+use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::System;
-use hacksaw::methods::Integrator;
 
 /// What a run is asked for.
 #[derive(Clone, Debug)]

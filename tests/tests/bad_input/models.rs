@@ -75,7 +75,7 @@ fn an_input_that_stops_being_a_number_is_named_with_the_state_that_it_moves() {
         let settings = Settings { step_limit: 10_000, ..Settings::default() };
         let name = integrator.name();
         let failure =
-            integrate(&model, &mut integrator.method(0.01), &start, span, &settings, &mut ()).expect_err(&name);
+            integrate(&model, &mut integrator.method(0.01), &start, span, &settings, &mut ()).expect_err(name);
         let Cause::NonFinite { origin, quantity, name: state, t, .. } = &failure.cause else {
             panic!("{name}: {failure}")
         };

@@ -1,5 +1,6 @@
 //! Rates, Jacobians and guards that break on the way.
 
+use bg_model::capability::Linearised;
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::Settings;
 use bg_model::system::System;
@@ -93,13 +94,19 @@ impl System<f64, 2, 0> for Derivatives {
         *dx = SVector::from([x[1], -x[0]]);
     }
 
+    fn state_name(&self, index: usize) -> &'static str {
+        NAMES[index]
+    }
+
+    fn linearised(&self) -> Option<&impl Linearised<f64, 2, 0>> {
+        Some(self)
+    }
+}
+
+impl Linearised<f64, 2, 0> for Derivatives {
     fn jacobian(&self, _: f64, _: &SVector<f64, 2>, _: &[bool; 0], entries: &mut [f64], slope: &mut SVector<f64, 2>) {
         entries.copy_from_slice(&self.entries);
         slope.fill(self.slope);
-    }
-
-    fn state_name(&self, index: usize) -> &'static str {
-        NAMES[index]
     }
 }
 

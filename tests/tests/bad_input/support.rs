@@ -1,14 +1,13 @@
 //! A trial: a run that cannot end well, and what is expected of it.
 
 use bg_model::failure::Cause;
-use bg_model::integrator::{AnyMethod, Tolerances};
+use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::System;
 use bond_graph_tests::hardcases::integrators_of_rates;
 use bond_graph_tests::switching::flow::Flow;
-use hacksaw::methods::Integrator;
 
 /// The most attempted steps of a trial.
 pub const LIMIT: u64 = 3000;
@@ -131,8 +130,8 @@ impl Trial {
     }
 
     /// The messages, each with the integrators that give it, in the order in which they came.
-    pub fn messages(&self) -> Vec<(String, Vec<String>)> {
-        let mut messages: Vec<(String, Vec<String>)> = Vec::new();
+    pub fn messages(&self) -> Vec<(String, Vec<&'static str>)> {
+        let mut messages: Vec<(String, Vec<&'static str>)> = Vec::new();
         for integrator in integrators_of_rates() {
             let cause = (self.run)(integrator).cause;
             let message = match cause {

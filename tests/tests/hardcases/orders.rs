@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
+use bg_model::integrator::Integrator;
 use bond_graph_tests::hardcases::orders::{COUNTS, mean_order, orders, velocity_errors};
 use bond_graph_tests::hardcases::singular::StiffJoint;
 use bond_graph_tests::hardcases::{integrator, integrators_of_rates};
-use hacksaw::methods::Integrator;
 
 /// The errors of the velocity and the orders, one line for each integrator; nothing below `floor`, where rounding is.
 fn table(joint: StiffJoint, floor: f64) -> String {

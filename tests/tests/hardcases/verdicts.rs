@@ -42,14 +42,14 @@ fn entries() -> &'static [Entry] {
         for case in short_cases() {
             for integrator in integrators() {
                 let name = integrator.name();
-                let is_fitting = case.fitting.contains(&name.as_str());
+                let is_fitting = case.fitting.contains(&name);
                 let outcome = case.run(*integrator, case.moderate, if is_fitting { ENOUGH } else { FEW });
                 let Outcome { error, between, statistics, verdict, .. } = &outcome;
                 println!(
                     "{} by {name}: {verdict:?}, error {error:.1e}, between {between:.1e}, {statistics}",
                     case.name
                 );
-                entries.push(Entry { case: case.name, integrator: name, is_fitting, outcome });
+                entries.push(Entry { case: case.name, integrator: name.to_owned(), is_fitting, outcome });
             }
         }
         entries

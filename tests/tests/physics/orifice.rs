@@ -1,11 +1,10 @@
 use bg_model::extended::{self, Accuracy};
-use bg_model::integrator::Tolerances;
+use bg_model::integrator::{Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::scalar::{DoubleDouble, Scalar};
 use bg_model::simulation::{Settings, Span, integrate};
 use bg_model::system::Model;
 use bond_graph_tests::examples::orifice::{Orifice, OrificeParameters as Parameters};
-use hacksaw::methods::Integrator;
 
 use super::truth::within;
 
@@ -42,9 +41,9 @@ fn it_starts_at_rest_and_comes_to_the_flow_that_the_tank_takes() {
     for integrator in METHODS {
         let end = run(&model, integrator, 8.0);
         let name = integrator.name();
-        within(&name, (end[0] / drop - 1.0).abs(), 1e-8);
-        within(&name, (end[1] / (p.rise * p.capacity) - 1.0).abs(), 1e-8);
-        within(&name, (end[3] + end[5] - end[4]).abs() / end[4], 1e-8);
+        within(name, (end[0] / drop - 1.0).abs(), 1e-8);
+        within(name, (end[1] / (p.rise * p.capacity) - 1.0).abs(), 1e-8);
+        within(name, (end[3] + end[5] - end[4]).abs() / end[4], 1e-8);
     }
 }
 
@@ -62,7 +61,7 @@ fn all_methods_leave_the_rest_alike() {
     assert!((50.0..200.0).contains(&reference[0]), "in the laminar range: {reference}");
     for integrator in METHODS {
         let end = run(&model, integrator, 2e-3);
-        within(&integrator.name(), (end[0] / reference[0] - 1.0).abs(), 1e-7);
-        within(&integrator.name(), (end[2] / reference[2] - 1.0).abs(), 1e-7);
+        within(integrator.name(), (end[0] / reference[0] - 1.0).abs(), 1e-7);
+        within(integrator.name(), (end[2] / reference[2] - 1.0).abs(), 1e-7);
     }
 }

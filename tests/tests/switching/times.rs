@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::sync::OnceLock;
 
+use bg_model::integrator::Integrator;
 use bond_graph_tests::hardcases::integrators_of_rates;
 use bond_graph_tests::switching::cases;
-use hacksaw::methods::Integrator;
 
 const TOLERANCES: [f64; 4] = [1e-4, 1e-6, 1e-8, 1e-10];
 /// An error up to this multiple of the tolerance, amplified, follows it.

@@ -1,105 +1,25 @@
-//! The static description and the documentation of a generated model.
+//! The static description of a generated model.
 //!
-//! In: graph, strokes, equations, operation counts. Out: a `Description` literal, a doc text.
+//! In: a [`Compiled`], operation counts. Out: a `Description` literal.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::graph::NodeKind;
 use crate::graph::causality::{CausalGraph, End};
+use crate::graph::{BondGraph, NodeKind};
+use crate::pipeline::Compiled;
 use crate::program::Counts;
-use crate::program::elimination::Elimination;
 use crate::system::equations::{Origin, StateEquations};
-use crate::system::jacobian::Jacobian;
-
-/// The generated type's documentation: the user's, then the states, the operations and the Jacobian's pattern. `costs` are
-/// the functions with their operations.
-pub(super) fn documentation(
-    docs: &str,
-    equations: &StateEquations,
-    (jacobian, elimination): (&Jacobian, &Elimination),
-    costs: &[(&str, Counts)],
-) -> String {
-    let mut doc = String::from(docs);
-    doc.push_str("\n\n# States\n\n| index | name | unit | storage | causality |\n|---|---|---|---|---|\n");
-    for (index, state) in equations.states.iter().enumerate() {
-        doc.push_str(&format!(
-            "| {index} | `{}` | {} | {} | integral |\n",
-            state.name,
-            state.unit,
-            state.origin.kind().storage()
-        ));
-    }
-    doc.push_str("\n# Operations\n\n| function | additions | multiplications | divisions | functions | choices |\n");
-    doc.push_str("|---|---|---|---|---|---|\n");
-    for (name, counts) in costs {
-        let Counts { additions, multiplications, divisions, functions, choices } = counts;
-        doc.push_str(&format!(
-            "| {name} | {additions} | {multiplications} | {divisions} | {functions} | {choices} |\n"
-        ));
-    }
-    doc.push_str(&format!(
-        "\nThe Jacobian has {} entries that are not identically zero; its elimination fills {} more places.\n",
-        jacobian.entries.len(),
-        elimination.fill
-    ));
-    doc
-}
-
-/// Texts of a description that earlier stages made.
-pub(super) struct Texts<'a> {
-    /// The graph in bond-graph words.
-    pub(super) expanded: &'a str,
-    /// What a scene left out and why; empty for a literal model.
-    pub(super) reduction: &'a str,
-}
 
 /// The `Description` literal; `PARAMETERS` is the parameter struct's table.
-pub(super) fn description(
-    texts: &Texts<'_>,
-    causal: &CausalGraph,
-    equations: &StateEquations,
-    costs: &[(&str, Counts)],
-) -> TokenStream {
+pub(super) fn description(model: &Compiled, costs: &[(&str, Counts)]) -> TokenStream {
+    let (causal, equations) = (&model.derived.causal, &model.equations);
     let graph = &causal.graph;
-    let Texts { expanded, reduction } = texts;
-    let (name, doc) = (&graph.name.text, &graph.docs);
-    let inputs = graph.inputs.iter().map(|input| {
-        let (name, unit, doc) = (&input.name.text, &input.unit, &input.docs);
-        quote!(::bg_model::description::InputInfo { name: #name, unit: #unit, doc: #doc })
-    });
-    let states = equations.states.iter().map(|state| {
-        let (name, unit, kind) = (&state.name, &state.unit, state_kind(state.origin));
-        quote! {
-            ::bg_model::description::StateInfo { name: #name, unit: #unit, kind: #kind, causality: "integral" }
-        }
-    });
-    let outputs = equations.outputs.iter().map(|output| {
-        let (name, unit) = (&output.name, &output.unit);
-        quote!(::bg_model::description::OutputInfo { name: #name, unit: #unit })
-    });
-    let switches = equations.switches.iter().map(|switch| {
-        let (element, condition) = (&switch.element, &switch.condition);
-        let (name, guard) =
-            (format!("`if {condition}` of `{element}`"), equations.shown(&equations.pool, switch.guard));
-        quote!(::bg_model::description::SwitchInfo { name: #name, element: #element, guard: #guard })
-    });
-    let elements = graph.nodes.iter().map(|node| {
-        let (kind, name) = (node.kind.symbol(), &node.name.text);
-        let law = if let NodeKind::Element(element) = &node.kind { element.text.as_str() } else { "" };
-        quote!(::bg_model::description::ElementInfo { kind: #kind, name: #name, law: #law })
-    });
-    let bonds = bonds(causal);
-    let lines = &equations.texts;
-    let counts = costs.iter().map(|(name, counts)| {
-        let Counts { additions, multiplications, divisions, functions, choices } = counts;
-        quote! {
-            (#name, ::bg_model::description::OperationCount {
-                additions: #additions, multiplications: #multiplications, divisions: #divisions,
-                functions: #functions, choices: #choices,
-            })
-        }
-    });
+    let (name, doc, expanded) = (&graph.name.text, &graph.docs, model.derived.expanded.to_string());
+    let reduction = model.reduction.as_ref().map(ToString::to_string).unwrap_or_default();
+    let (inputs, states, outputs) = (inputs(graph), states(equations), outputs(equations));
+    let (switches, elements, bonds) = (switches(equations), elements(graph), bonds(causal));
+    let (lines, counts) = (&equations.texts, operations(costs));
     quote! {
         ::bg_model::description::Description {
             name: #name, doc: #doc, graph: #expanded, reduction: #reduction, parameters: PARAMETERS,
@@ -108,6 +28,58 @@ pub(super) fn description(
             equations: &[#(#lines,)*], operations: &[#(#counts,)*],
         }
     }
+}
+
+fn inputs(graph: &BondGraph) -> impl Iterator<Item = TokenStream> {
+    graph.inputs.iter().map(|input| {
+        let (name, unit, doc) = (&input.name.text, &input.unit, &input.docs);
+        quote!(::bg_model::description::InputInfo { name: #name, unit: #unit, doc: #doc })
+    })
+}
+
+fn states(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
+    equations.states.iter().map(|state| {
+        let (name, unit, kind) = (&state.name, &state.unit, state_kind(state.origin));
+        quote! {
+            ::bg_model::description::StateInfo { name: #name, unit: #unit, kind: #kind, causality: "integral" }
+        }
+    })
+}
+
+fn outputs(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
+    equations.outputs.iter().map(|output| {
+        let (name, unit) = (&output.name, &output.unit);
+        quote!(::bg_model::description::OutputInfo { name: #name, unit: #unit })
+    })
+}
+
+fn switches(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
+    equations.switches.iter().map(|switch| {
+        let (element, condition) = (&switch.element, &switch.condition);
+        let (name, guard) =
+            (format!("`if {condition}` of `{element}`"), equations.shown(&equations.pool, switch.guard));
+        quote!(::bg_model::description::SwitchInfo { name: #name, element: #element, guard: #guard })
+    })
+}
+
+fn elements(graph: &BondGraph) -> impl Iterator<Item = TokenStream> {
+    graph.nodes.iter().map(|node| {
+        let (kind, name) = (node.kind.symbol(), &node.name.text);
+        let law = if let NodeKind::Element(element) = &node.kind { element.text.as_str() } else { "" };
+        quote!(::bg_model::description::ElementInfo { kind: #kind, name: #name, law: #law })
+    })
+}
+
+fn operations(costs: &[(&str, Counts)]) -> impl Iterator<Item = TokenStream> {
+    costs.iter().map(|(name, counts)| {
+        let Counts { additions, multiplications, divisions, functions, choices } = counts;
+        quote! {
+            (#name, ::bg_model::description::OperationCount {
+                additions: #additions, multiplications: #multiplications, divisions: #divisions,
+                functions: #functions, choices: #choices,
+            })
+        }
+    })
 }
 
 fn state_kind(origin: Origin) -> TokenStream {

@@ -47,7 +47,7 @@ fn step(step: &Step) -> TokenStream {
         Step::Enter { slot, entry, is_pivot } => {
             let (value, entry) = (value(slot), Literal::usize_unsuffixed(entry));
             if is_pivot {
-                quote!(let #value = ::bg_model::linear::Pivot::new(one + minus.scaled(entries[#entry]));)
+                quote!(let #value = ::bg_model::__private::Pivot::new(one + minus.scaled(entries[#entry]));)
             } else {
                 quote!(let #value = minus.scaled(entries[#entry]);)
             }
@@ -55,7 +55,7 @@ fn step(step: &Step) -> TokenStream {
         Step::Fill { slot, product: factors, is_pivot } => {
             let (value, product) = (value(slot), product(factors));
             if is_pivot {
-                quote!(let #value = ::bg_model::linear::Pivot::new(one - #product);)
+                quote!(let #value = ::bg_model::__private::Pivot::new(one - #product);)
             } else {
                 quote!(let #value = -(#product);)
             }
@@ -137,7 +137,7 @@ fn factorisation_table(elimination: &Elimination) -> TokenStream {
         })
         .collect();
     quote! {
-        use ::bg_model::linear::table::{self, Slot};
+        use ::bg_model::__private::table::{self, Slot};
         static SLOTS: &[Slot] = &[#(#slots),*];
         static PRODUCTS: &[(u32, u32)] = &[#(#products),*];
         table::eliminate(SLOTS, PRODUCTS, c, entries, factors)
@@ -155,6 +155,6 @@ fn substitution_table(elimination: &Elimination) -> TokenStream {
     });
     quote! {
         static STEPS: &[(u32, u32, u32)] = &[#(#steps),*];
-        ::bg_model::linear::table::substitute::<S, F>(STEPS, factors, b)
+        ::bg_model::__private::table::substitute::<S, F>(STEPS, factors, b)
     }
 }

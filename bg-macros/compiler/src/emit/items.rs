@@ -165,13 +165,13 @@ impl Given<'_> {
 
             impl ::bg_model::serde::Serialize for Parameters {
                 fn serialize<T: ::bg_model::serde::Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
-                    ::bg_model::parameters::serialize(self, #name, serializer)
+                    ::bg_model::__private::serialize(self, #name, serializer)
                 }
             }
 
             impl<'de> ::bg_model::serde::Deserialize<'de> for Parameters {
                 fn deserialize<D: ::bg_model::serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                    ::bg_model::parameters::deserialize(#name, &[#(#texts),*], deserializer)
+                    ::bg_model::__private::deserialize(#name, &[#(#texts),*], deserializer)
                 }
             }
         }

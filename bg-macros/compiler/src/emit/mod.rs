@@ -3,6 +3,7 @@
 //! In: a [`crate::pipeline::Compiled`]. Out: tokens. Only this module quotes.
 
 mod description;
+mod documentation;
 mod elimination;
 mod items;
 mod model;

@@ -1,11 +1,11 @@
 //! The Taylor series of the rates as tokens.
 //!
-//! In: the routine of the rates. Out: the body of `series`: its assignments once for the values at the start, and once, in
+//! In: the routine of the rates. Out: the body of `expand` of `Series`: its assignments once for the values at the start, and once, in
 //! a loop over the orders, for the coefficients. Products, quotients and functions need the coefficients of lower orders as
 //! well, which rows of a work table keep; see `bg_model::series`. What does not change has no coefficients behind the
 //! start: nothing is left of it in the loop.
 
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::routine::{self, Names};
@@ -13,17 +13,15 @@ use crate::expr::{Function, Symbol};
 use crate::program::{Assignment, Operand, Operation, Routine};
 
 /// What a series reads, beside constants.
-pub(super) struct Reads<'a> {
-    /// The fields of the inputs.
-    pub inputs: &'a [Ident],
+pub(super) struct Reads {
     /// `let`s of the inputs that the rates read, from the time `t`.
     pub values: TokenStream,
     /// `let`s of the states' coefficients, from `x`.
     pub states: TokenStream,
 }
 
-/// The functions `series_width` and `series`, from the routine of the rates.
-pub(super) fn functions(routine: &Routine, names: &Names, reads: &Reads) -> TokenStream {
+/// How many numbers each order takes, and the body of `expand`, from the routine of the rates.
+pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> (usize, TokenStream) {
     let changes = changing(&routine.assignments);
     let (moving, fixed): (Vec<_>, Vec<_>) =
         routine.assignments.iter().cloned().partition(|assignment| changes[assignment.target as usize]);
@@ -36,46 +34,36 @@ pub(super) fn functions(routine: &Routine, names: &Names, reads: &Reads) -> Toke
     let ((start, start_rates), (order, order_rates)) = (written(true), written(false));
     let (products, places) = (start.products, (2 * start.products + start.others).max(1));
     let (start, order) = (start.tokens, order.tokens);
-    let Reads { inputs, values, states } = reads;
-    let width = if inputs.is_empty() {
-        quote!(Some(#places))
-    } else {
-        quote!((#(self.inputs.#inputs.is_constant())&&*).then_some(#places))
-    };
+    let Reads { values, states } = reads;
     let array = routine::array(routine);
     // What does not change with time, and yet is no constant of the model: it depends on inputs.
     let fixed = routine::assignments(&fixed, names);
-    quote! {
-        fn series_width(&self) -> Option<usize> {
-            #width
+    let body = quote! {
+        let c = &self.constants;
+        let table = rows.as_chunks_mut::<#places>().0;
+        #values
+        #array
+        #fixed
+        {
+            let k = 0;
+            let rows = &mut table[..1];
+            let [x] = &series[0].data.0;
+            #states
+            #start
+            series[1].data.0 = [[#(#start_rates * h),*]];
         }
-        #[inline(never)]
-        fn series(&self, t: S, h: S, negative: &[bool; G], rows: &mut [S], series: &mut [SVector<S, N>]) {
-            let c = &self.constants;
-            let table = rows.as_chunks_mut::<#places>().0;
-            #values
-            #array
-            #fixed
-            {
-                let k = 0;
-                let rows = &mut table[..1];
-                let [x] = &series[0].data.0;
-                #states
-                #start
-                series[1].data.0 = [[#(#start_rates * h),*]];
-            }
-            for k in 1..series.len() - 1 {
-                let t = if k == 1 { h } else { S::from_f64(0.0) };
-                let inner = ::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
-                let rows = &mut table[..=k];
-                let [x] = &series[k].data.0;
-                #states
-                #order
-                let part = h / S::from_f64((k + 1) as f64);
-                series[k + 1].data.0 = [[#(#order_rates * part),*]];
-            }
+        for k in 1..series.len() - 1 {
+            let t = if k == 1 { h } else { S::from_f64(0.0) };
+            let inner = ::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
+            let rows = &mut table[..=k];
+            let [x] = &series[k].data.0;
+            #states
+            #order
+            let part = h / S::from_f64((k + 1) as f64);
+            series[k + 1].data.0 = [[#(#order_rates * part),*]];
         }
-    }
+    };
+    (places, body)
 }
 
 /// Which assignments change with time.

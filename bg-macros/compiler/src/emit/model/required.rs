@@ -28,8 +28,8 @@ impl Emission<'_> {
         let requirements = self.model.equations.requirements.of(is_of_start);
         let table = requirements.map(|requirement| self.requirement(requirement));
         Some(quote! {
-            static REQUIREMENTS: &[::bg_model::requirement::Requirement] = &[#(#table),*];
-            ::bg_model::requirement::require(REQUIREMENTS, &Model::<f64>::#function(#parameters, #unknowns))?;
+            static REQUIREMENTS: &[::bg_model::__private::Requirement] = &[#(#table),*];
+            ::bg_model::__private::require(REQUIREMENTS, &Model::<f64>::#function(#parameters, #unknowns))?;
         })
     }
 
@@ -46,7 +46,7 @@ impl Emission<'_> {
             _ => None,
         });
         quote! {
-            ::bg_model::requirement::Requirement {
+            ::bg_model::__private::Requirement {
                 subject: #subject, wanted: #wanted, unit: #unit, is_strict: #is_strict, parameters: &[#(#parameters),*],
             }
         }

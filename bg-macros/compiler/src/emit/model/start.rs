@@ -1,21 +1,45 @@
 //! The start of a model: the pose that closes its joints, the velocities that fit them, what they hold.
 //!
-//! In: gaps, unknowns, held motions. Out: `start` and `impulse_energy` of the model, `held` and `hold` of the system.
+//! In: gaps, unknowns, held motions. Out: the functions that make the start, `start` and `impulse_energy` of the model, and
+//! `Joints` for the model.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::Emission;
-use crate::program::Program;
+use super::super::items::identifier;
+use super::{Emission, Shape};
+use crate::program::{Program, Programs};
 use crate::system::equations::Slip;
 
 impl Emission<'_> {
+    /// Guesses, gaps, start state and what is asked of values, each with its constants inside.
+    pub(super) fn starting(&self) -> TokenStream {
+        let unknowns = self.model.equations.guesses.len();
+        let Programs { starting, required, .. } = &self.model.programs;
+        let functions = starting.programs().into_iter().chain(required.iter().flatten()).map(|program| {
+            let [routine] = &program.routines;
+            let function = identifier(&routine.name);
+            let constants = self.own_constants(program);
+            let (statements, results) = self.body(routine);
+            let length = results.len();
+            quote! {
+                fn #function(parameters: &Parameters, u: &[S; #unknowns]) -> [S; #length] {
+                    #constants
+                    #statements
+                    [#(#results),*]
+                }
+            }
+        });
+        quote! { #(#functions)* }
+    }
+
     /// The functions of the trait that give the start, and before them what they share.
     pub(super) fn start(&self) -> (TokenStream, TokenStream) {
+        let n = &self.shape.n;
         let closed = self.closed_pose();
         if self.model.programs.holding.is_none() {
             let start = quote! {
-                fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
+                fn start(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
                     #closed
                     let unknowns = unknowns.map(S::from_f64);
                     Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
@@ -29,19 +53,19 @@ impl Emission<'_> {
             impl<S: Scalar> Model<S> {
                 /// The start state, and what it took to make it fit.
                 fn started(&self)
-                    -> Result<::bg_model::holding::Started<S, N>, ::bg_model::assembly::AssemblyError>
+                    -> Result<::bg_model::__private::Started<S, #n>, ::bg_model::assembly::AssemblyError>
                 {
                     #closed
                     let state = |unknowns: &[f64; #count]| {
                         let unknowns = unknowns.map(S::from_f64);
                         SVector::from(Self::start_state(&self.parameters, &unknowns))
                     };
-                    ::bg_model::holding::fit(self, unknowns, [#(#speeds),*], state, #impulse)
+                    ::bg_model::__private::fit(self, unknowns, [#(#speeds),*], state, #impulse)
                 }
             }
         };
         let start = quote! {
-            fn start(&self) -> Result<SVector<S, N>, ::bg_model::assembly::AssemblyError> {
+            fn start(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
                 Ok(self.started()?.x)
             }
             fn impulse_energy(&self) -> Result<S, ::bg_model::assembly::AssemblyError> {
@@ -90,20 +114,23 @@ impl Emission<'_> {
     }
 
     /// What the joints hold.
-    pub(super) fn holding(&self) -> TokenStream {
+    pub(super) fn joints(&self) -> TokenStream {
         let Some(Program { routines: [routine], .. }) = &self.model.programs.holding else { return TokenStream::new() };
+        let Shape { n, g, .. } = &self.shape;
         let holding = &self.model.equations.holding;
         let (rigid, compliant) = (slips(&holding.rigid), slips(&holding.compliant));
         let moved = holding.moves.iter().map(|(state, _)| Literal::usize_unsuffixed(*state));
         let (body, entries) = self.running(routine, &format_ident!("holding_constants"));
         quote! {
-            fn held(&self) -> ::bg_model::holding::Held {
-                ::bg_model::holding::Held { rigid: &[#rigid], compliant: &[#compliant], moved: &[#(#moved),*] }
-            }
-            #[inline(never)]
-            fn hold(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S]) {
-                #body
-                entries.copy_from_slice(&[#(#entries),*]);
+            impl<S: Scalar> ::bg_model::capability::Joints<S, #n, #g> for Model<S> {
+                fn held(&self) -> ::bg_model::holding::Held {
+                    ::bg_model::holding::Held { rigid: &[#rigid], compliant: &[#compliant], moved: &[#(#moved),*] }
+                }
+                #[inline(never)]
+                fn hold(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], entries: &mut [S]) {
+                    #body
+                    entries.copy_from_slice(&[#(#entries),*]);
+                }
             }
         }
     }

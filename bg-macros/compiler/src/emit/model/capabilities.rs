@@ -1,0 +1,126 @@
+//! What the model knows of itself beyond its rates: the capabilities, and the functions that hand them over.
+//!
+//! In: the programs that there are. Out: `SecondOrder` and `Series` for the model, beside those of the other files here.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::super::items::identifier;
+use super::super::series;
+use super::{Emission, Shape, names};
+use crate::expr::Symbol;
+use crate::program::Programs;
+
+/// The function that hands over a capability, as `value`.
+pub(super) fn accessor(name: &str, capability: &TokenStream, value: &TokenStream) -> TokenStream {
+    let name = format_ident!("{name}");
+    quote! {
+        #[inline(always)]
+        fn #name(&self) -> Option<&impl ::bg_model::capability::#capability> {
+            #value
+        }
+    }
+}
+
+impl Emission<'_> {
+    /// The implementations of all capabilities that the model has.
+    pub(super) fn capabilities(&self) -> TokenStream {
+        let (linear, second_order, series, joints) = (self.linear(), self.second_order(), self.series(), self.joints());
+        quote! { #linear #second_order #series #joints }
+    }
+
+    /// The functions that hand them over.
+    pub(super) fn accessors(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let Programs { second_order, holding, .. } = &self.model.programs;
+        let itself = quote!(Some(self));
+        let linearised = accessor("linearised", &quote!(Linearised<S, #n, #g>), &itself);
+        let second_order =
+            second_order.as_ref().map(|_| accessor("second_order", &quote!(SecondOrder<S, #n, #g>), &itself));
+        let series = accessor("series", &quote!(Series<S, #n, #g>), &self.series_where_known());
+        let joints = holding.as_ref().map(|_| accessor("joints", &quote!(Joints<S, #n, #g>), &itself));
+        quote! { #linearised #second_order #series #joints }
+    }
+
+    /// The model as its series: none is known where an input changes with time.
+    fn series_where_known(&self) -> TokenStream {
+        let inputs = &self.model.equations.inputs;
+        if inputs.is_empty() {
+            return quote!(Some(self));
+        }
+        let inputs = inputs.iter().map(|input| identifier(&input.name.text));
+        quote!((#(self.inputs.#inputs.is_constant())&&*).then_some(self))
+    }
+
+    /// The states of second order and their second derivatives.
+    fn second_order(&self) -> Option<TokenStream> {
+        let Shape { n, g, .. } = &self.shape;
+        let programs = self.model.programs.second_order.as_ref()?;
+        let (body, derivatives) = self.running(&programs.second_derivatives, &format_ident!("second_constants"));
+        let states = &self.model.second_order.states;
+        let [first, behind] = [states.start, states.end].map(Literal::usize_unsuffixed);
+        let indices = states.clone().map(Literal::usize_unsuffixed);
+        let forces = self.forces();
+        Some(quote! {
+            impl<S: Scalar> ::bg_model::capability::SecondOrder<S, #n, #g> for Model<S> {
+                #[inline(always)]
+                fn states(&self) -> ::core::ops::Range<usize> {
+                    #first..#behind
+                }
+                fn second_derivatives(&self, x: &SVector<S, #n>, dx: &mut SVector<S, #n>) {
+                    let [r] = dx.data.0;
+                    #body
+                    let [dx] = &mut dx.data.0;
+                    #(dx[#indices] = #derivatives;)*
+                }
+                #forces
+            }
+        })
+    }
+
+    /// The rates with second derivatives in their places: in one program where that pays, else one after the other.
+    fn forces(&self) -> Option<TokenStream> {
+        let Shape { n, g, .. } = &self.shape;
+        let programs = self.model.programs.second_order.as_ref()?;
+        let own = programs.forces.as_ref().map(|routine| {
+            let (body, forces) = self.with_pairs(routine, programs.paired_forces.as_ref(), "second_constant");
+            quote!(#body dx.data.0 = [[#(#forces),*]];)
+        });
+        let inline = own.as_ref().and_then(|_| self.inline());
+        let body = own.unwrap_or_else(|| {
+            quote! {
+                ::bg_model::system::System::rate(self, t, x, negative, dx);
+                ::bg_model::capability::SecondOrder::second_derivatives(self, x, dx);
+            }
+        });
+        Some(quote! {
+            #inline
+            fn forces(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], dx: &mut SVector<S, #n>) {
+                #body
+            }
+        })
+    }
+
+    /// The Taylor series of the states.
+    fn series(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let routine = &self.model.programs.running.rate;
+        let reading = |is_state: bool| {
+            let reads = |symbol: Symbol| matches!(symbol, Symbol::State(_)) == is_state;
+            names::bindings(&[routine], &|symbol| if reads(symbol) { self.dynamic_binding(symbol) } else { None })
+        };
+        let reads = series::Reads { values: reading(false), states: reading(true) };
+        let (width, expansion) = self.with_names(routine.is_long(), |names| series::expansion(routine, names, &reads));
+        quote! {
+            impl<S: Scalar> ::bg_model::capability::Series<S, #n, #g> for Model<S> {
+                fn width(&self) -> usize {
+                    #width
+                }
+                #[inline(never)]
+                fn expand(&self, t: S, h: S, negative: &[bool; #g], rows: &mut [S], series: &mut [SVector<S, #n>]) {
+                    #expansion
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! The Jacobian of the rates and the elimination along its pattern.
+//!
+//! In: the program of the derivatives, the planned elimination. Out: `Linearised` and `Elimination` for the model.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::super::elimination;
+use super::capabilities::accessor;
+use super::routines::Parts;
+use super::{Emission, Shape};
+
+impl Emission<'_> {
+    pub(super) fn linear(&self) -> TokenStream {
+        let (linearised, elimination) = (self.linearised(), self.elimination());
+        quote! { #linearised #elimination }
+    }
+
+    /// The Jacobian with its sparsity; before it the parts of a long one.
+    fn linearised(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let places = self.model.jacobian.entries.iter().map(|entry| {
+            let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
+            quote!((#row, #column))
+        });
+        let count = self.model.jacobian.entries.len();
+        let Parts { functions, body, results } = self.derivatives();
+        let (entries, slopes) = results.split_at(count);
+        let parts = (!functions.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #functions }));
+        let elimination = accessor("elimination", &quote!(Elimination<S, #n>), &quote!(Some(self)));
+        quote! {
+            #parts
+            impl<S: Scalar> ::bg_model::capability::Linearised<S, #n, #g> for Model<S> {
+                fn sparsity(&self) -> ::bg_model::linear::Sparsity {
+                    static ENTRIES: [(u16, u16); #count] = [#(#places),*];
+                    ::bg_model::linear::Sparsity::Places(&ENTRIES)
+                }
+                #[inline(never)]
+                fn jacobian(
+                    &self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], entries: &mut [S], slope: &mut SVector<S, #n>,
+                ) {
+                    let entries: &mut [S; #count] = entries.try_into().expect("one entry for each place");
+                    #body
+                    *entries = [#(#entries),*];
+                    slope.data.0 = [[#(#slopes),*]];
+                }
+                #elimination
+            }
+        }
+    }
+
+    /// The derivatives of the rates by states, then by time; in parts where there are many.
+    fn derivatives(&self) -> Parts {
+        let [routine] = &self.model.programs.jacobian.routines;
+        let constants = format_ident!("slope_constants");
+        if routine.is_long() {
+            return self.in_parts(routine, &constants);
+        }
+        let (body, results) = self.running(routine, &constants);
+        Parts { functions: TokenStream::new(), body, results }
+    }
+
+    fn elimination(&self) -> TokenStream {
+        let n = &self.shape.n;
+        let plan = &self.model.elimination;
+        let (count, slots) = (self.model.jacobian.entries.len(), plan.slots);
+        let (factorisation, substitution) = (elimination::factorisation(plan), elimination::substitution(plan));
+        quote! {
+            impl<S: Scalar> ::bg_model::capability::Elimination<S, #n> for Model<S> {
+                fn factors(&self) -> usize {
+                    #slots
+                }
+                #[inline(never)]
+                fn eliminate<F: ::bg_model::linear::Field<S>>(&self, c: F, entries: &[S], factors: &mut [F]) -> bool {
+                    let entries: &[S; #count] = entries.try_into().expect("one entry for each place");
+                    let factors: &mut [F; #slots] = factors.try_into().expect("as many factors as are eliminated");
+                    #factorisation
+                }
+                #[inline(never)]
+                fn substitute<F: ::bg_model::linear::Field<S>>(&self, factors: &[F], b: &mut [F; #n]) {
+                    let factors: &[F; #slots] = factors.try_into().expect("as many factors as are eliminated");
+                    #substitution
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! What values are called in generated functions.
+//!
+//! In: symbols of a program. Out: identifiers, and the `let`s that read parameters, states and inputs under them.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::super::items::identifier;
+use super::super::routine::Names;
+use super::Emission;
+use crate::expr::Symbol;
+use crate::program::{Operand, Routine};
+use crate::system::equations::StateEquations;
+
+/// `let name = value;` for the symbols that some routines use.
+pub(super) fn bindings(routines: &[&Routine], binding: &dyn Fn(Symbol) -> Option<TokenStream>) -> TokenStream {
+    let operands = routines.iter().flat_map(|routine| {
+        let inside = routine.assignments.iter().flat_map(|assignment| assignment.operation.operands());
+        inside.chain(routine.results.iter().copied())
+    });
+    let used: BTreeSet<Symbol> = operands
+        .filter_map(|operand| if let Operand::Symbol(symbol) = operand { Some(symbol) } else { None })
+        .collect();
+    used.into_iter().filter_map(binding).collect()
+}
+
+impl Emission<'_> {
+    /// Parameters that the routines use.
+    pub(super) fn parameter_bindings(&self, routines: &[&Routine]) -> TokenStream {
+        bindings(routines, &|symbol| match symbol {
+            Symbol::Parameter(index) => {
+                let field = identifier(&self.model.equations.parameters[index as usize].name.text);
+                let name = self.symbol_name(symbol);
+                Some(quote!(let #name = S::from_f64(parameters.#field);))
+            }
+            _ => None,
+        })
+    }
+
+    /// Inputs, their slopes and states that the routine uses.
+    pub(super) fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
+        bindings(&[routine], &|symbol| self.dynamic_binding(symbol))
+    }
+
+    /// An input at time `t`, its slope there, or a state of `x`.
+    pub(super) fn dynamic_binding(&self, symbol: Symbol) -> Option<TokenStream> {
+        let name = self.symbol_name(symbol);
+        let input = |index: u32| identifier(&self.model.equations.inputs[index as usize].name.text);
+        match symbol {
+            Symbol::State(index) => {
+                let index = Literal::u32_unsuffixed(index);
+                Some(quote!(let #name = x[#index];))
+            }
+            Symbol::Input(index) => {
+                let field = input(index);
+                Some(quote!(let #name = self.inputs.#field.value(t);))
+            }
+            Symbol::Slope(index) => {
+                let field = input(index);
+                Some(quote!(let #name = self.inputs.#field.slope(t);))
+            }
+            _ => None,
+        }
+    }
+
+    fn symbol_name(&self, symbol: Symbol) -> TokenStream {
+        let equations = &self.model.equations;
+        let input = |index: u32| &equations.inputs[index as usize].name.text;
+        let ident = match symbol {
+            Symbol::Time => format_ident!("t"),
+            Symbol::State(index) => self.states[index as usize].clone(),
+            Symbol::Parameter(index) => format_ident!("p_{}", equations.parameters[index as usize].name.text),
+            Symbol::Input(index) => format_ident!("u_{}", input(index)),
+            Symbol::Slope(index) => format_ident!("slope_{}", input(index)),
+            Symbol::Atom(index) => format_ident!("atom_{index}"),
+            Symbol::Unknown(index) => return entry("u", index),
+            Symbol::Rate(index) => return entry("r", index),
+        };
+        quote!(#ident)
+    }
+
+    /// Hands the tokens of what a routine refers to to `then`.
+    pub(super) fn with_names<T>(&self, is_long: bool, then: impl FnOnce(&Names) -> T) -> T {
+        then(&Names {
+            symbol: &|symbol| self.symbol_name(symbol),
+            constant: &|index| entry("c", index),
+            switch: &|index| entry("negative", index),
+            is_long,
+        })
+    }
+}
+
+/// An entry of an array.
+fn entry(array: &str, index: u32) -> TokenStream {
+    let (array, index) = (format_ident!("{array}"), Literal::u32_unsuffixed(index));
+    quote!(#array[#index])
+}
+
+/// The states' names as identifiers: readable, different from each other and from the functions' own names.
+pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
+    // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b \
+        DESCRIPTION Some None Ok Err";
+    let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
+    for input in &equations.inputs {
+        used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));
+    }
+    let mut identifiers = Vec::new();
+    for (index, state) in equations.states.iter().enumerate() {
+        let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let mut name: String = state.name.chars().map(letter).collect();
+        let is_temporary = name.strip_prefix(['v', 'w']).is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()));
+        if is_temporary || syn::parse_str::<Ident>(&name).is_err() || !used.insert(name.clone()) {
+            name = format!("state_{index}_{name}");
+            used.insert(name.clone());
+        }
+        identifiers.push(identifier(&name));
+    }
+    identifiers
+}

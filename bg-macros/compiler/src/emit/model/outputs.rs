@@ -1,0 +1,62 @@
+//! What a run asks of a model: its description, its start, outputs, energies and powers.
+//!
+//! In: the programs of the running model and of the start. Out: `bg_model::Model` for the model.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::{Emission, Shape};
+
+impl Emission<'_> {
+    pub(super) fn model(&self) -> TokenStream {
+        let Shape { n, g, m } = &self.shape;
+        let (start, started) = self.start();
+        let (outputs, stored_energy, powers) = (self.outputs(), self.stored_energy(), self.powers());
+        quote! {
+            #started
+            impl<S: Scalar> ::bg_model::system::Model<S, #n, #g, #m> for Model<S> {
+                fn description(&self) -> &'static ::bg_model::description::Description {
+                    &DESCRIPTION
+                }
+                #start
+                #outputs
+                #stored_energy
+                #powers
+            }
+        }
+    }
+
+    fn outputs(&self) -> TokenStream {
+        let Shape { n, g, m } = &self.shape;
+        let (body, outputs) = self.function(&self.model.programs.running.outputs);
+        quote! {
+            fn outputs(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], y: &mut SVector<S, #m>) {
+                #body
+                y.data.0 = [[#(#outputs),*]];
+            }
+        }
+    }
+
+    fn stored_energy(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let (body, stored) = self.function(&self.model.programs.running.stored_energy);
+        quote! {
+            fn stored_energy(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g]) -> S {
+                #body
+                #(#stored)*
+            }
+        }
+    }
+
+    fn powers(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let (body, powers) = self.function(&self.model.programs.running.powers);
+        let (supplied, dissipated) = (&powers[0], &powers[1]);
+        quote! {
+            fn powers(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g]) -> ::bg_model::system::Powers<S> {
+                #body
+                ::bg_model::system::Powers { supplied: #supplied, dissipated: #dissipated }
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! What an integrator asks of every system: rates, guards, projection, names for messages.
+//!
+//! In: the programs of the running model. Out: `System` for the model.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use super::super::items::identifier;
+use super::{Emission, Shape};
+
+impl Emission<'_> {
+    pub(super) fn system(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let (rate, guards, project) = (self.rate(), self.guards(), self.project());
+        let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
+        quote! {
+            impl<S: Scalar> ::bg_model::system::System<S, #n, #g> for Model<S> {
+                #rate
+                #guards
+                #project
+                fn state_name(&self, index: usize) -> &'static str {
+                    DESCRIPTION.states.get(index).map_or("state", |state| state.name)
+                }
+                #switch_name
+                #not_finite
+                #accessors
+            }
+        }
+    }
+
+    fn rate(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let running = &self.model.programs.running;
+        let (body, rates) = self.with_pairs(&running.rate, running.paired_rate.as_ref(), "constant");
+        let inline = self.inline();
+        quote! {
+            #inline
+            fn rate(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], dx: &mut SVector<S, #n>) {
+                #body
+                dx.data.0 = [[#(#rates),*]];
+            }
+        }
+    }
+
+    /// The attribute of rates, and of forces, that are inlined into a step.
+    pub(super) fn inline(&self) -> Option<TokenStream> {
+        let is_inlined = self.model.programs.running.is_inlined();
+        is_inlined.then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]))
+    }
+
+    fn guards(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let (body, guards) = self.function(&self.model.programs.running.guards);
+        quote! {
+            #[inline(always)]
+            fn guards(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], guards: &mut SVector<S, #g>) {
+                #body
+                guards.data.0 = [[#(#guards),*]];
+            }
+        }
+    }
+
+    fn project(&self) -> TokenStream {
+        let n = &self.shape.n;
+        let (body, projected) = self.function(&self.model.programs.running.project);
+        let indices = self.model.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        quote! {
+            fn project(&self, state: &mut SVector<S, #n>) {
+                let x = &*state;
+                #body
+                let [projected] = &mut state.data.0;
+                #(projected[#indices] = #projected;)*
+            }
+        }
+    }
+
+    /// What switches are called.
+    fn switch_name(&self) -> Option<TokenStream> {
+        (!self.model.equations.switches.is_empty()).then(|| {
+            quote! {
+                fn switch_name(&self, index: usize) -> Option<&'static str> {
+                    DESCRIPTION.switches.get(index).map(|switch| switch.name)
+                }
+            }
+        })
+    }
+
+    /// Which input or law is the first whose value is not finite; nothing where none can be.
+    fn not_finite(&self) -> Option<TokenStream> {
+        let Shape { n, g, .. } = &self.shape;
+        let program = &self.model.programs.not_finite;
+        let [routine] = &program.routines;
+        let (fallible, inputs) = (&self.model.equations.fallible, &self.model.equations.inputs);
+        if fallible.is_empty() && inputs.is_empty() {
+            return None;
+        }
+        let inputs = inputs.iter().map(|input| {
+            let (field, name) = (identifier(&input.name.text), &input.name.text);
+            quote!(("input", #name, self.inputs.#field.value(t)))
+        });
+        let constants = self.own_constants(program);
+        let bindings = self.dynamic_bindings(routine);
+        let (statements, values) = self.body(routine);
+        let laws = fallible.iter().zip(values).map(|(law, value)| {
+            let (kind, element) = (law.kind, &law.element);
+            quote!((#kind, #element, #value))
+        });
+        Some(quote! {
+            #[cold]
+            fn not_finite(
+                &self, t: S, x: &SVector<S, #n>, negative: &[bool; #g],
+            ) -> Option<::bg_model::failure::Origin> {
+                let parameters = &self.parameters;
+                #constants
+                let [x] = &x.data.0;
+                #bindings
+                #statements
+                ::bg_model::failure::Origin::first(&[#(#inputs,)* #(#laws,)*])
+            }
+        })
+    }
+}

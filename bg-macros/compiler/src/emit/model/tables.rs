@@ -1,0 +1,102 @@
+//! The tables of constants: what depends on parameters only, calculated once in `new`.
+//!
+//! In: the constants of each program that runs. Out: fields of the model's struct, and the functions that fill them.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+use super::super::pairs;
+use super::Emission;
+use crate::program::pairs::Paired;
+use crate::program::{Programs, Routine, SecondOrderPrograms};
+
+/// A table of what depends on parameters only.
+struct Table<'a> {
+    /// What the names of the table, of its pairs and of their functions begin with.
+    prefix: &'static str,
+    doc: &'static str,
+    constants: &'a Routine,
+    /// The routine that reads pairs of the table.
+    paired: Option<&'a Paired>,
+}
+
+/// What a model has of its tables: fields of its type, their values, the functions that calculate them and the `let`s that call
+/// these.
+#[derive(Default)]
+pub(super) struct Tables {
+    pub(super) fields: TokenStream,
+    pub(super) values: TokenStream,
+    pub(super) functions: TokenStream,
+    pub(super) lets: TokenStream,
+    pub(super) has_pairs: bool,
+}
+
+impl Emission<'_> {
+    /// The tables of the running model, and of their pairs; `scalar` is what the model's struct calls it.
+    pub(super) fn tables(&self, scalar: &Ident) -> Tables {
+        let mut made = Tables::default();
+        for table in self.constant_tables() {
+            self.add_table(&mut made, &table, scalar);
+        }
+        made
+    }
+
+    fn constant_tables(&self) -> Vec<Table<'_>> {
+        let Programs { running, jacobian, second_order, holding, .. } = &self.model.programs;
+        let table = |prefix, doc, constants, paired| Table { prefix, doc, constants, paired };
+        let of_rates = " What depends on parameters only.";
+        let of_jacobian = " What depends on parameters only, of the Jacobian.";
+        let of_forces = " What depends on parameters only, of forces.";
+        let of_holding = " What depends on parameters only, of held motions.";
+        let mut tables = vec![
+            table("constant", of_rates, &running.constants, running.paired_rate.as_ref()),
+            table("slope_constant", of_jacobian, &jacobian.constants, None),
+        ];
+        tables.extend(holding.as_ref().map(|program| table("holding_constant", of_holding, &program.constants, None)));
+        tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, paired_forces, .. }| {
+            table("second_constant", of_forces, constants, paired_forces.as_ref())
+        }));
+        tables
+    }
+
+    fn add_table(&self, made: &mut Tables, table: &Table, scalar: &Ident) {
+        let &Table { prefix, doc, constants, paired } = table;
+        let (field, function) = (format_ident!("{prefix}s"), format_ident!("{prefix}_table"));
+        let (count, body) = (constants.results.len(), self.constant_table(constants));
+        made.fields.extend(quote!(#field: [#scalar; #count],));
+        made.lets.extend(quote!(let #field = Self::#function(&parameters);));
+        made.functions.extend(quote! {
+            #[doc = #doc]
+            fn #function(parameters: &Parameters) -> [S; #count] {
+                #body
+            }
+        });
+        if let Some(paired) = paired {
+            self.add_pairs(made, table, paired, scalar);
+        }
+        made.values.extend(quote!(#field,));
+    }
+
+    /// The pairs of a table's constants.
+    fn add_pairs(&self, made: &mut Tables, table: &Table, paired: &Paired, scalar: &Ident) {
+        let Table { prefix, constants, .. } = table;
+        let (field, pair_field) = (format_ident!("{prefix}s"), format_ident!("{prefix}_pairs"));
+        let (count, pairs) = (constants.results.len(), paired.constants.len());
+        let body = self.with_names(false, |names| pairs::constants(paired, names));
+        made.has_pairs = true;
+        made.fields.extend(quote!(#pair_field: [#scalar::Pair; #pairs],));
+        made.values.extend(quote!(#pair_field: Self::#pair_field(&#field),));
+        made.functions.extend(quote! {
+            /// Pairs of them.
+            fn #pair_field(c: &[S; #count]) -> [S::Pair; #pairs] {
+                #body
+            }
+        });
+    }
+
+    fn constant_table(&self, routine: &Routine) -> TokenStream {
+        let parameters = self.parameter_bindings(&[routine]);
+        let (statements, results) = self.body(routine);
+        quote! { #parameters #statements [#(#results),*] }
+    }
+}

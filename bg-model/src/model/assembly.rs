@@ -1,0 +1,238 @@
+//! Assembly: moves a guessed start pose until every loop is closed.
+//!
+//! In: the guessed coordinates and a function that gives the gaps of the joints. Out: the nearest coordinates, to first
+//! order, at which the gaps vanish to rounding, or the joints that stay open. Method: see `nearest`.
+
+use nalgebra::{DVector, SVector};
+use thiserror::Error;
+
+use crate::model::holding::{FITTING, Redundancy, Slipping};
+use crate::model::nearest::nearest;
+use crate::model::requirement::Impossible;
+
+/// The largest gap of a closed joint, in the gap's unit (m or rad).
+pub const CLOSED: f64 = 1e-10;
+
+/// One residual row: a component of the gap of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gap {
+    /// The joint's name.
+    pub joint: &'static str,
+    /// Which component, such as `x`; empty where the gap has only one.
+    pub component: &'static str,
+    /// Its unit, `m` or `rad`.
+    pub unit: &'static str,
+}
+
+impl Gap {
+    /// ` in x`, or nothing where the gap has only one component.
+    fn direction(&self) -> String {
+        if self.component.is_empty() { String::new() } else { format!(" in {}", self.component) }
+    }
+}
+
+/// A gap that stays open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenGap {
+    /// Which gap.
+    pub gap: Gap,
+    /// Its signed size, in the gap's unit.
+    pub size: f64,
+}
+
+impl std::fmt::Display for OpenGap {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "`{}` by {:.2e} {}{}", self.gap.joint, self.size, self.gap.unit, self.gap.direction())
+    }
+}
+
+/// A mechanism that cannot be put together near the guess.
+#[derive(Clone, PartialEq, Error)]
+pub enum AssemblyError {
+    /// Some joints stay open by more than [`CLOSED`].
+    #[error("the mechanism does not close: joint {largest} (allowed: {CLOSED:e}){}", also_open(.others))]
+    Open {
+        /// The largest gap.
+        largest: OpenGap,
+        /// The other joints that stay open, each with its largest gap.
+        others: Vec<OpenGap>,
+    },
+    /// A gap is not a finite number at the guess or near it.
+    #[error("the gap of joint `{}`{} is not a finite number: {value}", .gap.joint, .gap.direction())]
+    NonFinite {
+        /// Which gap.
+        gap: Gap,
+        /// Its value.
+        value: f64,
+    },
+    /// A start value cannot be, such as an orientation that is no rotation.
+    #[error(transparent)]
+    Impossible(#[from] Impossible),
+    /// Some joints are torn apart by the start velocities, faster than [`FITTING`].
+    #[error(
+        "the start velocities do not fit: joint {largest} (allowed: {FITTING:e}){}; correct them, give `guess(..)` to \
+         those that may change{}",
+        also_torn(.others), or_impulse(.largest)
+    )]
+    Torn {
+        /// The fastest.
+        largest: Slipping,
+        /// The other joints that are torn apart, each with its fastest motion.
+        others: Vec<Slipping>,
+    },
+    /// Rigid joints hold the same motion at the start, so their reactions have no unique values.
+    #[error("{0}; make one of them compliant, or of a kind that holds less")]
+    Redundant(Redundancy),
+}
+
+fn also_torn(others: &[Slipping]) -> String {
+    if others.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> = others.iter().map(Slipping::to_string).collect();
+    format!("; also {}", names.join(", "))
+}
+
+fn or_impulse(of: &Slipping) -> &'static str {
+    if of.is_rigid { ", or write `start impulse;`" } else { "" }
+}
+
+debug_is_display!(AssemblyError);
+
+fn also_open(others: &[OpenGap]) -> String {
+    if others.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> = others.iter().map(OpenGap::to_string).collect();
+    format!("; also open: {}", names.join(", "))
+}
+
+/// The coordinates nearest to `guess`, to first order, at which all gaps are closed to rounding.
+///
+/// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates. Redundant gaps
+/// and coordinates without influence are allowed. With `U = 0` the gaps are only checked. Allocates.
+///
+/// # Errors
+/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 m or rad), [`AssemblyError::NonFinite`] if a gap is
+/// not a number.
+pub fn close<const U: usize>(
+    guess: [f64; U],
+    gaps: &'static [Gap],
+    residual: impl Fn(&[f64; U], &mut [f64]),
+) -> Result<[f64; U], AssemblyError> {
+    // Half a radian, or half the size of the coordinates, so that the pose is not thrown over into another one that
+    // closes as well.
+    let longest = |coordinates: &SVector<f64, U>| 0.5 * coordinates.amax().max(1.0);
+    let (coordinates, sizes) = nearest(guess, gaps.len(), longest, residual, |sizes| check_finite(gaps, sizes))?;
+    check_closed(gaps, &sizes)?;
+    Ok(coordinates)
+}
+
+fn check_finite(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError> {
+    match gaps.iter().zip(sizes.iter()).find(|(_, size)| !size.is_finite()) {
+        Some((gap, value)) => Err(AssemblyError::NonFinite { gap: *gap, value: *value }),
+        None => Ok(()),
+    }
+}
+
+fn check_closed(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError> {
+    let mut joints: Vec<OpenGap> = Vec::new();
+    for (gap, size) in gaps.iter().zip(sizes.iter()).filter(|(_, size)| size.abs() > CLOSED) {
+        match joints.iter_mut().find(|open| open.gap.joint == gap.joint) {
+            Some(open) if open.size.abs() >= size.abs() => {}
+            Some(open) => *open = OpenGap { gap: *gap, size: *size },
+            None => joints.push(OpenGap { gap: *gap, size: *size }),
+        }
+    }
+    joints.sort_by(|a, b| b.size.abs().total_cmp(&a.size.abs()));
+    if joints.is_empty() {
+        return Ok(());
+    }
+    let largest = joints.remove(0);
+    Err(AssemblyError::Open { largest, others: joints })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn gap(joint: &'static str, component: &'static str) -> Gap {
+        Gap { joint, component, unit: "m" }
+    }
+    static PIN: [Gap; 2] = [gap("pin", "x"), gap("pin", "y")];
+
+    /// Two links of lengths 0.3 and 0.5 m that must reach the point (0.6, y).
+    fn two_links(y: f64) -> impl Fn(&[f64; 2], &mut [f64]) {
+        move |q, r| {
+            r[0] = 0.3 * libm::cos(q[0]) + 0.5 * libm::cos(q[1]) - 0.6;
+            r[1] = 0.3 * libm::sin(q[0]) + 0.5 * libm::sin(q[1]) - y;
+        }
+    }
+
+    #[test]
+    fn a_loop_closes_to_rounding_on_the_side_of_the_guess() {
+        for side in [1.0, -1.0] {
+            let q = close([0.4 * side, -0.5 * side], &PIN, two_links(0.1)).unwrap();
+            let mut r = [1.0; 2];
+            two_links(0.1)(&q, &mut r);
+            assert!(r.iter().all(|r| r.abs() <= 2.3e-16), "{r:?}");
+            assert!((q[0] - q[1]) * side > 0.0, "{q:?}");
+        }
+    }
+
+    #[test]
+    fn a_loop_out_of_reach_names_its_joint_gap_and_unit() {
+        let error = close([0.4, -0.5], &PIN, two_links(2.0)).unwrap_err();
+        let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
+        assert_eq!((largest.gap, others.len()), (PIN[1], 0));
+        let (sum, reach) = (0.6_f64.hypot(2.0), 0.8);
+        assert!((largest.size + 2.0 * (1.0 - reach / sum)).abs() < 1e-6, "{error}");
+        assert!(error.to_string().contains("`pin` by -1.2") && error.to_string().contains(" m in y"), "{error}");
+    }
+
+    #[test]
+    fn coordinates_without_influence_stay_and_redundant_gaps_do_no_harm() {
+        static GAPS: [Gap; 3] = [gap("a", "x"), gap("a", "y"), gap("a", "again")];
+        let q = close([0.4, 7.0, -0.5], &GAPS, |q, r| {
+            two_links(0.1)(&[q[0], q[2]], &mut r[..2]);
+            r[2] = r[0] + r[1];
+        })
+        .unwrap();
+        assert_eq!(q[1], 7.0);
+        let alone = close([0.4, -0.5], &PIN, two_links(0.1)).unwrap();
+        assert!((q[0] - alone[0]).abs() < 1e-12 && (q[2] - alone[1]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_free_coordinate_pair_moves_as_little_as_possible() {
+        static ONE: [Gap; 1] = [gap("rod", "length")];
+        let q = close([3.0, 4.5], &ONE, |q, r| r[0] = q[0] + q[1] - 7.0).unwrap();
+        assert!((q[0] - 2.75).abs() < 1e-14 && (q[1] - 4.25).abs() < 1e-14, "{q:?}");
+    }
+
+    #[test]
+    fn without_coordinates_the_gaps_are_only_checked() {
+        assert_eq!(close([], &PIN, |_, r| r.fill(CLOSED)), Ok([]));
+        let error = close([], &PIN, |_, r| r.copy_from_slice(&[2e-10, -3e-10])).unwrap_err();
+        assert!(matches!(error, AssemblyError::Open { largest, .. } if largest.size == -3e-10));
+        assert_eq!(close([1.0], &[], |_, _| {}), Ok([1.0]));
+    }
+
+    #[test]
+    fn other_open_joints_are_listed_once_each() {
+        static GAPS: [Gap; 4] = [gap("a", "x"), gap("b", "x"), gap("b", "y"), gap("c", "x")];
+        let error = close([], &GAPS, |_, r| r.copy_from_slice(&[1e-3, 2e-3, -5e-3, 0.0])).unwrap_err();
+        let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
+        assert_eq!((largest.gap, largest.size), (GAPS[2], -5e-3));
+        assert_eq!(others.as_slice(), &[OpenGap { gap: GAPS[0], size: 1e-3 }]);
+        assert!(error.to_string().ends_with("also open: `a` by 1.00e-3 m in x"), "{error}");
+    }
+
+    #[test]
+    fn a_gap_that_is_no_number_is_an_error() {
+        let error = close([1.0, 1.0], &PIN, |_, r| r.copy_from_slice(&[0.0, f64::NAN])).unwrap_err();
+        assert!(matches!(error, AssemblyError::NonFinite { gap, .. } if gap == PIN[1]));
+        let error = close([0.0, 0.0], &PIN, |q, r| r.copy_from_slice(&[q[0].sqrt() - 1.0, q[1]])).unwrap_err();
+        assert!(matches!(error, AssemblyError::NonFinite { gap, .. } if gap == PIN[0]));
+    }
+}

@@ -1,0 +1,130 @@
+//! Capabilities: what a system knows of itself beyond its rate.
+//!
+//! In: nothing. Out: a trait for each capability, which [`System`](crate::system::System) hands over where it has it. What
+//! a system lacks is `None` of the type [`Absent`], which has no values: an absent capability cannot be called, and the
+//! compiler removes the code that would call it.
+
+use std::ops::Range;
+
+use nalgebra::SVector;
+
+use crate::model::holding::Held;
+use crate::model::linear::{Field, Sparsity};
+use crate::model::scalar::Scalar;
+
+/// A system that knows its Jacobian.
+pub trait Linearised<S: Scalar, const N: usize, const G: usize> {
+    /// Where df/dx can differ from zero; everywhere by default.
+    fn sparsity(&self) -> Sparsity {
+        Sparsity::Full
+    }
+
+    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`.
+    fn jacobian(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S], slope: &mut SVector<S, N>);
+
+    /// An elimination made for the sparsity; none by default.
+    #[inline]
+    fn elimination(&self) -> Option<&impl Elimination<S, N>> {
+        None::<&Absent>
+    }
+}
+
+/// A solution of (I - c J) y = b along the pattern of J, in a fixed order and without a search for pivots.
+pub trait Elimination<S: Scalar, const N: usize> {
+    /// How many numbers the factors of I - c J are.
+    fn factors(&self) -> usize;
+
+    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it did: not
+    /// where a pivot cancels to below [`SMALLEST_PIVOT`](crate::linear::SMALLEST_PIVOT) of the largest value its place has had.
+    fn eliminate<F: Field<S>>(&self, c: F, entries: &[S], factors: &mut [F]) -> bool;
+
+    /// Replaces `b` by the solution y of (I - c J) y = b, with the `factors` of I - c J.
+    fn substitute<F: Field<S>>(&self, factors: &[F], b: &mut [F; N]);
+}
+
+/// A system some of whose states are of second order: displacements and orientations, whose rates are smooth functions of
+/// states alone.
+pub trait SecondOrder<S: Scalar, const N: usize, const G: usize> {
+    /// The states of second order, side by side.
+    fn states(&self) -> Range<usize>;
+
+    /// Replaces the rates `dx` of these states at state `x` by their second derivatives with respect to time, per s^2.
+    fn second_derivatives(&self, x: &SVector<S, N>, dx: &mut SVector<S, N>);
+
+    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second
+    /// derivatives: what the rate and then [`SecondOrder::second_derivatives`] give, to rounding.
+    fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>);
+}
+
+/// A system that knows the Taylor series of its states.
+pub trait Series<S: Scalar, const N: usize, const G: usize> {
+    /// How many numbers each order takes as work space.
+    fn width(&self) -> usize;
+
+    /// Writes the Taylor series of the states from time `t` (s) on: `series[0]` is the state there, `series[k]` becomes the
+    /// coefficient of the k-th power of (time - `t`) / `h`, which has the state's unit. `rows` has at least
+    /// [`Series::width`] numbers for each `k` but the last.
+    fn expand(&self, t: S, h: S, negative: &[bool; G], rows: &mut [S], series: &mut [SVector<S, N>]);
+}
+
+/// A system whose joints hold motions.
+pub trait Joints<S: Scalar, const N: usize, const G: usize> {
+    /// What they hold.
+    fn held(&self) -> Held;
+
+    /// Writes the relative flows of these motions, and what the reactions of rigid joints change, into `entries`: in the order
+    /// and of the length of [`Held`].
+    fn hold(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S]);
+}
+
+/// A capability that is not there.
+#[derive(Clone, Copy, Debug)]
+pub enum Absent {}
+
+impl<S: Scalar, const N: usize, const G: usize> Linearised<S, N, G> for Absent {
+    fn jacobian(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut [S], _: &mut SVector<S, N>) {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize> Elimination<S, N> for Absent {
+    fn factors(&self) -> usize {
+        match *self {}
+    }
+    fn eliminate<F: Field<S>>(&self, _: F, _: &[S], _: &mut [F]) -> bool {
+        match *self {}
+    }
+    fn substitute<F: Field<S>>(&self, _: &[F], _: &mut [F; N]) {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize, const G: usize> SecondOrder<S, N, G> for Absent {
+    fn states(&self) -> Range<usize> {
+        match *self {}
+    }
+    fn second_derivatives(&self, _: &SVector<S, N>, _: &mut SVector<S, N>) {
+        match *self {}
+    }
+    fn forces(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut SVector<S, N>) {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize, const G: usize> Series<S, N, G> for Absent {
+    fn width(&self) -> usize {
+        match *self {}
+    }
+    fn expand(&self, _: S, _: S, _: &[bool; G], _: &mut [S], _: &mut [SVector<S, N>]) {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize, const G: usize> Joints<S, N, G> for Absent {
+    fn held(&self) -> Held {
+        match *self {}
+    }
+    fn hold(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut [S]) {
+        match *self {}
+    }
+}

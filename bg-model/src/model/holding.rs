@@ -1,0 +1,108 @@
+//! What joints hold: the motions, how they are stored, and what is wrong with them.
+//!
+//! In: nothing. Out: the tables that generated code fills, and the sentences of joints that are torn apart or hold the same.
+
+/// The largest relative flow of a joint that fits, in the flow's unit (m/s or rad/s).
+pub const FITTING: f64 = 1e-9;
+
+/// A motion that a joint holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slip {
+    /// The joint's name.
+    pub joint: &'static str,
+    /// `in x`, `about x` and so on; empty where there is only one direction.
+    pub direction: &'static str,
+    /// The unit of the relative flow, `m/s` or `rad/s` of a mechanism.
+    pub unit: &'static str,
+}
+
+/// What the joints of a system hold.
+///
+/// [`Joints::hold`](crate::capability::Joints::hold) writes, one behind the other: the flow of each rigid motion, the flow of each compliant one, the
+/// lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it
+/// changes the rate of each moved state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Held {
+    /// The motions that rigid joints hold, each with a reaction.
+    pub rigid: &'static [Slip],
+    /// Those that compliant joints hold, of the joints that a guessed start velocity moves.
+    pub compliant: &'static [Slip],
+    /// The indices of the states that reactions change: momenta.
+    pub moved: &'static [usize],
+}
+
+impl Held {
+    /// No joint holds anything.
+    pub const NOTHING: Self = Self { rigid: &[], compliant: &[], moved: &[] };
+
+    /// How many numbers [`Joints::hold`](crate::capability::Joints::hold) writes.
+    #[must_use]
+    pub const fn entries(&self) -> usize {
+        let reactions = self.rigid.len();
+        reactions + self.compliant.len() + reactions * (reactions + 1) / 2 + reactions * self.moved.len()
+    }
+}
+
+/// A joint that is torn apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slipping {
+    /// What it should hold.
+    pub slip: Slip,
+    /// How fast it moves, in the slip's unit.
+    pub speed: f64,
+    /// Whether it is a rigid joint.
+    pub is_rigid: bool,
+}
+
+impl std::fmt::Display for Slipping {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Slip { joint, direction, unit } = self.slip;
+        let how = match unit {
+            "m/s" => "is torn apart at",
+            "rad/s" => "is twisted at",
+            _ => "misses its flow by",
+        };
+        let space = if direction.is_empty() { "" } else { " " };
+        write!(f, "`{joint}` {how} {} {unit}{space}{direction}", Short(self.speed))
+    }
+}
+
+/// A number to five digits.
+struct Short(f64);
+
+impl std::fmt::Display for Short {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let rounded = format!("{:.4e}", self.0).parse::<f64>().unwrap_or(self.0);
+        write!(f, "{rounded:?}")
+    }
+}
+
+/// Rigid joints that hold the same motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Redundancy {
+    /// The joint that holds nothing more.
+    pub joint: &'static str,
+    /// The directions in which it does so; empty where it has only one.
+    pub directions: Vec<&'static str>,
+    /// The joints that hold these motions already; none where nothing could move anyway.
+    pub others: Vec<&'static str>,
+}
+
+impl std::fmt::Display for Redundancy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { joint, directions, others } = self;
+        let space = if directions.is_empty() { "" } else { " " };
+        let directions = format!("{space}{}", directions.join(", "));
+        if others.is_empty() {
+            return write!(f, "rigid joint `{joint}` holds{directions} what cannot move anyway");
+        }
+        let others: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
+        let (word, verb) = if others.len() == 1 { ("joint", "holds") } else { ("joints", "hold") };
+        let others = others.join(", ");
+        write!(
+            f,
+            "rigid joint `{joint}` holds{directions} what rigid {word} {others} {verb} already, so their reactions have no \
+             unique values"
+        )
+    }
+}

@@ -1,0 +1,189 @@
+//! Inputs: functions of time given at run time.
+//!
+//! In: a number or a closure. Out: the input's value, and its rate where it is known, at any time.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::model::scalar::Scalar;
+
+/// A real function of time (s).
+type OfTime = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
+
+/// A function of time that a model reads: a constant, or a closure with or without its rate. The default is the constant 0.
+///
+/// The unit is that of the model's input. The function must be smooth between switchings, or the integrator has to
+/// shorten its steps at each kink; it is evaluated several times a step and not in order of time.
+#[derive(Clone)]
+pub struct Input {
+    law: Law,
+}
+
+#[derive(Clone)]
+enum Law {
+    Constant(f64),
+    Function(OfTime),
+    FunctionAndRate(OfTime, OfTime),
+}
+
+impl Input {
+    /// The same `value` at all times.
+    #[must_use]
+    pub const fn constant(value: f64) -> Self {
+        Self { law: Law::Constant(value) }
+    }
+
+    /// `value` at time t (s).
+    pub fn function(value: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self { law: Law::Function(Arc::new(value)) }
+    }
+
+    /// `value` at time t (s) and its derivative with respect to time, `rate`, in the input's unit per s.
+    pub fn with_rate(
+        value: impl Fn(f64) -> f64 + Send + Sync + 'static,
+        rate: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self { law: Law::FunctionAndRate(Arc::new(value), Arc::new(rate)) }
+    }
+
+    /// Whether the value is the same at all times: not of a closure.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        matches!(self.law, Law::Constant(_))
+    }
+
+    /// The value at time `t` (s).
+    ///
+    /// A closure is evaluated at the `f64` nearest to `t`. With a rate, what `t` has beyond that `f64` (the low part of
+    /// a double-double number, the infinitesimal part of a dual one) enters to first order.
+    pub fn value<S: Scalar>(&self, t: S) -> S {
+        match &self.law {
+            Law::Constant(value) => S::from_f64(*value),
+            Law::Function(value) => S::from_f64(value(t.to_f64())),
+            Law::FunctionAndRate(value, rate) => {
+                let nearest = t.to_f64();
+                S::from_f64(value(nearest)) + S::from_f64(rate(nearest)) * (t - S::from_f64(nearest))
+            }
+        }
+    }
+
+    /// The derivative with respect to time at time `t` (s), where it is known: of a constant, and of a closure given
+    /// with its rate.
+    pub fn rate<S: Scalar>(&self, t: S) -> Option<S> {
+        match &self.law {
+            Law::Constant(_) => Some(S::from_f64(0.0)),
+            Law::Function(_) => None,
+            Law::FunctionAndRate(_, rate) => Some(S::from_f64(rate(t.to_f64()))),
+        }
+    }
+}
+
+impl Input {
+    /// The derivative with respect to time at time `t` (s), in the input's unit per s: [`Input::rate`] where that is
+    /// known, else the slope at `t` of the parabola through three values of the closure, at `t` and up to
+    /// 3e-8 max(1, |t|) s behind it. It never asks for the time before `t`. A closure that changes within so short a
+    /// time, or jumps, should be given with its rate.
+    pub fn slope<S: Scalar>(&self, t: S) -> S {
+        match &self.law {
+            Law::Function(value) => S::from_f64(parabola_slope(value.as_ref(), t.to_f64())),
+            _ => self.rate(t).unwrap_or(S::from_f64(0.0)),
+        }
+    }
+}
+
+/// How far after time `t` (s) a closure is asked for its slope, s.
+pub(crate) fn reach(t: f64) -> f64 {
+    2.0 * distance(t)
+}
+
+/// The distance of the times at which a slope is asked for: it balances truncation with rounding where the time scale is 1 s or
+/// `t`.
+fn distance(t: f64) -> f64 {
+    let size = t.abs();
+    f64::EPSILON.sqrt() * if size > 1.0 { size } else { 1.0 }
+}
+
+/// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences at
+/// the times as rounded.
+fn parabola_slope(value: &dyn Fn(f64) -> f64, t: f64) -> f64 {
+    let distance = distance(t);
+    let times = [t, t + distance, t + 2.0 * distance];
+    let values = times.map(value);
+    let first = (values[1] - values[0]) / (times[1] - times[0]);
+    let second = (values[2] - values[1]) / (times[2] - times[1]);
+    first - (second - first) * ((times[1] - times[0]) / (times[2] - times[0]))
+}
+
+impl Default for Input {
+    fn default() -> Self {
+        Self::constant(0.0)
+    }
+}
+
+impl From<f64> for Input {
+    fn from(value: f64) -> Self {
+        Self::constant(value)
+    }
+}
+
+impl fmt::Debug for Input {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.law {
+            Law::Constant(value) => write!(f, "Input::constant({value:?})"),
+            Law::Function(_) => f.write_str("Input::function(..)"),
+            Law::FunctionAndRate(..) => f.write_str("Input::with_rate(..)"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn default_is_zero_and_a_number_is_a_constant() {
+        assert_eq!(Input::default().value(3.0), 0.0);
+        assert_eq!(Input::from(2.5).value(-1.0), 2.5);
+        assert_eq!(Input::from(2.5).rate(-1.0), Some(0.0));
+    }
+
+    #[test]
+    fn closures_are_evaluated_at_the_time_and_clones_share_them() {
+        let input = Input::function(|t| 2.0 * t + 1.0);
+        let twin = input.clone();
+        assert_eq!(input.value(3.0), 7.0);
+        assert_eq!(twin.value(-3.0), -5.0);
+        assert_eq!(input.rate(3.0), None);
+    }
+
+    #[test]
+    fn a_rate_is_given_back_and_does_not_disturb_the_value() {
+        let input = Input::with_rate(|t| t * t, |t| 2.0 * t);
+        assert_eq!(input.value(0.1), 0.1 * 0.1);
+        assert_eq!(input.rate(0.1), Some(0.2));
+    }
+
+    #[test]
+    fn slopes_are_derivatives() {
+        assert_eq!(Input::from(2.5).slope(-1.0), 0.0);
+        assert_eq!(Input::with_rate(|t| t * t, |t| 2.0 * t).slope(0.1), 0.2);
+        for t in [0.0, 0.7, 5.0, 60.0] {
+            let slope = Input::function(|t| (3.0 * t).sin()).slope(t);
+            let expected = 3.0 * (3.0 * t).cos();
+            assert!((slope - expected).abs() < 5e-7, "{t}: {slope} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_slope_asks_for_no_earlier_time() {
+        let input = Input::function(|t| if t < 2.0 { f64::NAN } else { 4.0 * t });
+        assert!((input.slope(2.0) - 4.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn debug_tells_the_kinds_apart() {
+        assert_eq!(format!("{:?}", Input::from(1.0)), "Input::constant(1.0)");
+        assert_eq!(format!("{:?}", Input::function(|t| t)), "Input::function(..)");
+        assert_eq!(format!("{:?}", Input::with_rate(|t| t, |_| 1.0)), "Input::with_rate(..)");
+    }
+}

@@ -1,0 +1,16 @@
+//! What a mechanism is, and what its generated code calls. Nothing here knows how it is integrated.
+
+pub mod assembly;
+pub mod capability;
+pub mod description;
+pub mod holding;
+pub mod input;
+pub mod linear;
+pub(crate) mod nearest;
+pub(crate) mod origin;
+pub mod parameters;
+pub(crate) mod reactions;
+pub mod requirement;
+pub mod scalar;
+pub mod series;
+pub mod system;

@@ -1,0 +1,103 @@
+//! The nearest coordinates at which residuals vanish.
+//!
+//! In: guessed coordinates and their residuals. Out: the coordinates nearest to them, to first order, at which the norm of
+//! the residuals falls no further.
+//! Method: Gauss-Newton with a pseudo-inverse step (least norm, so coordinates that no residual depends on stay where they
+//! are), damped as Levenberg and Marquardt do where the plain step does not shrink the residuals.
+
+use nalgebra::{DMatrix, DVector, SVector};
+
+/// The coordinates nearest to `guess`, to first order, at which the norm of the `rows` residuals falls no further, and
+/// the residuals there. `longest` limits a step; `check` sees the residuals and their derivatives.
+///
+/// # Errors
+/// Those of `check`.
+pub(crate) fn nearest<E, const U: usize>(
+    guess: [f64; U],
+    rows: usize,
+    longest: impl Fn(&SVector<f64, U>) -> f64,
+    residual: impl Fn(&[f64; U], &mut [f64]),
+    check: impl Fn(&DVector<f64>) -> Result<(), E>,
+) -> Result<([f64; U], DVector<f64>), E> {
+    // Quadratic convergence needs some ten iterations; more only for far guesses, whose steps are limited.
+    const ITERATIONS: usize = 200;
+    let sizes_at = |coordinates: &SVector<f64, U>| {
+        let mut sizes = DVector::zeros(rows);
+        residual(&coordinates.data.0[0], sizes.as_mut_slice());
+        sizes
+    };
+    let mut coordinates = SVector::from(guess);
+    let mut sizes = sizes_at(&coordinates);
+    check(&sizes)?;
+    if U > 0 {
+        for _ in 0..ITERATIONS {
+            let jacobian = jacobian(&coordinates, rows, sizes_at);
+            (0..jacobian.ncols()).try_for_each(|column| check(&jacobian.column(column).into_owned()))?;
+            let Some((nearer, smaller)) = shrink(&coordinates, &sizes, jacobian, &longest, sizes_at) else { break };
+            (coordinates, sizes) = (nearer, smaller);
+        }
+    }
+    Ok((coordinates.data.0[0], sizes))
+}
+
+/// The derivatives of the gaps by five-point central differences; their error is of the order 1e-13 for mechanisms of
+/// the size of 1 m.
+fn jacobian<const U: usize>(
+    coordinates: &SVector<f64, U>,
+    rows: usize,
+    gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
+) -> DMatrix<f64> {
+    // Balances the truncation error d^4 / 30 against the rounding error 1e-16 / d.
+    const DISPLACEMENT: f64 = 1.0 / 1024.0;
+    let mut jacobian = DMatrix::zeros(rows, U);
+    for column in 0..U {
+        let d = DISPLACEMENT * coordinates[column].abs().max(1.0);
+        let moved = |by: f64| {
+            let mut displaced = *coordinates;
+            displaced[column] += by;
+            gaps_at(&displaced)
+        };
+        let near = (moved(d) - moved(-d)) * (2.0 / (3.0 * d));
+        let far = (moved(2.0 * d) - moved(-2.0 * d)) * (1.0 / (12.0 * d));
+        jacobian.set_column(column, &(near - far));
+    }
+    jacobian
+}
+
+/// The first damped step that shrinks the gaps' norm, with the new gaps; none if the norm has stopped falling.
+fn shrink<const U: usize>(
+    coordinates: &SVector<f64, U>,
+    sizes: &DVector<f64>,
+    jacobian: DMatrix<f64>,
+    longest: impl Fn(&SVector<f64, U>) -> f64,
+    gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
+) -> Option<(SVector<f64, U>, DVector<f64>)> {
+    // Singular values below this part of the largest one are rounding errors of the differences.
+    const RANK: f64 = 1e-10;
+    const DAMPINGS: [f64; 8] = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
+    let norm = sizes.norm();
+    if jacobian.is_empty() || norm == 0.0 {
+        return None;
+    }
+    let svd = jacobian.svd(true, true);
+    let (u, v_t) = (svd.u.as_ref()?, svd.v_t.as_ref()?);
+    let largest = svd.singular_values.max();
+    let projected = u.tr_mul(sizes);
+    DAMPINGS.iter().find_map(|damping| {
+        let lambda = damping * largest;
+        let weights = DVector::from_fn(projected.len(), |i, _| {
+            let sigma = svd.singular_values[i];
+            if sigma <= RANK * largest { 0.0 } else { -projected[i] * sigma / (sigma * sigma + lambda * lambda) }
+        });
+        let step = limited(v_t.tr_mul(&weights), longest(coordinates));
+        let nearer = SVector::from_fn(|i, _| coordinates[i] + step[i]);
+        let smaller = gaps_at(&nearer);
+        (smaller.norm() < norm).then_some((nearer, smaller))
+    })
+}
+
+/// Shortens a step that is longer than `longest`.
+fn limited(step: DVector<f64>, longest: f64) -> DVector<f64> {
+    let length = step.amax();
+    if length > longest { step * (longest / length) } else { step }
+}

@@ -1,0 +1,204 @@
+//! A = L D L^T of a symmetric definite matrix, with the rows that follow from those before them.
+//!
+//! Method: Golub and Van Loan, Matrix Computations, algorithm 4.1.2, without pivots, as in the generated rates. D_i / A_ii
+//! is the squared sine of the angle between row i of the constraints and the plane of those before it, in the metric of
+//! the inverse masses.
+
+use super::{Redundancy, Slip};
+use crate::model::scalar::Scalar;
+
+/// A pivot below this part of the entry it came from follows from the rows before it. Rounding leaves some 1e-15 of the
+/// entry, so five digits of the reactions are left here, and a row that does follow comes out far below.
+const DISTINCT: f64 = 1e-10;
+
+/// A part of a row that is smaller beside it is rounding.
+const PART: f64 = 1e-6;
+
+/// The factors.
+#[derive(Clone, Debug)]
+pub(super) struct Factors<S> {
+    /// The rows of L up to the diagonal, in whose places D is.
+    rows: Vec<S>,
+    /// Rows that follow from those before them; they take no part in what comes after.
+    follows: Vec<bool>,
+    /// A_ii.
+    diagonal: Vec<S>,
+}
+
+/// Where row `i` of a packed lower triangle begins.
+const fn row(i: usize) -> usize {
+    i * (i + 1) / 2
+}
+
+impl<S: Scalar> Factors<S> {
+    /// Room for `n` rows.
+    pub fn new(n: usize) -> Self {
+        let zero = S::from_f64(0.0);
+        Self { rows: vec![zero; row(n)], follows: vec![false; n], diagonal: vec![zero; n] }
+    }
+
+    /// The factors of the lower triangle `matrix`.
+    pub fn of(matrix: &[S]) -> Self {
+        let n = (0..).find(|&n| row(n) == matrix.len()).expect("the length of a triangle");
+        let mut factors = Self::new(n);
+        factors.factor(matrix);
+        factors
+    }
+
+    /// Replaces the factors by those of the lower triangle `matrix`. Allocates nothing.
+    pub fn factor(&mut self, matrix: &[S]) {
+        self.rows.copy_from_slice(matrix);
+        for i in 0..self.follows.len() {
+            let (above, rest) = self.rows.split_at_mut(row(i));
+            let own = &mut rest[..=i];
+            self.diagonal[i] = own[i];
+            // The entries are L_ij D_j until all of them are known.
+            for j in 0..i {
+                for k in 0..j {
+                    own[j] = own[j] - own[k] * above[row(j) + k];
+                }
+                if self.follows[j] {
+                    own[j] = S::from_f64(0.0);
+                }
+            }
+            for j in (0..i).filter(|&j| !self.follows[j]) {
+                let scaled = own[j];
+                own[j] = scaled / above[row(j) + j];
+                own[i] = own[i] - scaled * own[j];
+            }
+            let (pivot, entry) = (own[i].to_f64().abs(), self.diagonal[i].to_f64().abs());
+            // What is not a number is for the rate to find.
+            self.follows[i] = pivot <= DISTINCT * entry;
+        }
+    }
+
+    /// L_ij, below the diagonal.
+    pub fn lower(&self, i: usize, j: usize) -> S {
+        self.rows[row(i) + j]
+    }
+
+    /// The solution of A y = b; zero in rows that follow.
+    pub fn solved(&self, b: &[S]) -> Vec<S> {
+        let mut y = b.to_vec();
+        let n = y.len();
+        for i in 0..n {
+            for j in 0..i {
+                y[i] = y[i] - self.lower(i, j) * y[j];
+            }
+            if self.follows[i] {
+                y[i] = S::from_f64(0.0);
+            }
+        }
+        for i in (0..n).filter(|&i| !self.follows[i]) {
+            y[i] = y[i] / self.lower(i, i);
+        }
+        for i in (0..n).rev() {
+            for k in (i + 1..n).filter(|&k| !self.follows[k]) {
+                y[i] = y[i] - self.lower(k, i) * y[k];
+            }
+            if self.follows[i] {
+                y[i] = S::from_f64(0.0);
+            }
+        }
+        y
+    }
+
+    /// How row `i` is nearest to a combination of those before it: their factors, into the first `i` of `parts`.
+    fn combination(&self, i: usize, parts: &mut [S]) {
+        for j in (0..i).rev() {
+            parts[j] = self.lower(i, j);
+            for k in (j + 1..i).filter(|&k| !self.follows[k]) {
+                parts[j] = parts[j] - self.lower(k, j) * parts[k];
+            }
+            if self.follows[j] {
+                parts[j] = S::from_f64(0.0);
+            }
+        }
+    }
+
+    /// The first joint that holds what others hold already.
+    pub fn redundancy(&self, slips: &[Slip]) -> Option<Redundancy> {
+        let first = self.follows.iter().position(|&follows| follows)?;
+        let joint = slips[first].joint;
+        let rows = (first..slips.len()).filter(|&i| self.follows[i] && slips[i].joint == joint);
+        Some(self.shared(slips, &rows.collect::<Vec<usize>>()))
+    }
+
+    /// What these rows of one joint have in common with the joints of the rows before them.
+    pub fn shared(&self, slips: &[Slip], rows: &[usize]) -> Redundancy {
+        let joint = slips[rows[0]].joint;
+        let mut found = Redundancy { joint, directions: Vec::new(), others: Vec::new() };
+        let mut parts = vec![S::from_f64(0.0); slips.len()];
+        for &i in rows {
+            found.directions.extend(Some(slips[i].direction).filter(|direction| !direction.is_empty()));
+            self.combination(i, &mut parts);
+            let own = self.diagonal[i].to_f64().abs();
+            for (j, slip) in slips[..i].iter().enumerate() {
+                let part = parts[j].to_f64() * (self.diagonal[j].to_f64().abs() / own).sqrt();
+                if part.abs() > PART && slip.joint != joint && !found.others.contains(&slip.joint) {
+                    found.others.push(slip.joint);
+                }
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn slip(joint: &'static str, direction: &'static str) -> Slip {
+        Slip { joint, direction, unit: "m/s" }
+    }
+
+    /// The lower triangle of J J^T.
+    fn triangle(rows: &[[f64; 3]]) -> Vec<f64> {
+        let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum();
+        (0..rows.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| dot(&rows[i], &rows[j])).collect()
+    }
+
+    #[test]
+    fn a_definite_matrix_of_either_sign_is_solved() {
+        let rows = [[2.0, 1.0, 0.0], [1.0, 3.0, -1.0], [0.5, 0.0, 1.0]];
+        let x = [1.0, -2.0, 3.0];
+        for sign in [1.0, -1.0] {
+            let matrix: Vec<f64> = triangle(&rows).iter().map(|entry| sign * entry).collect();
+            let entry = |i: usize, j: usize| matrix[row(i.max(j)) + i.min(j)];
+            let b: Vec<f64> = (0..3).map(|i| (0..3).map(|j| entry(i, j) * x[j]).sum()).collect();
+            let factors = Factors::of(&matrix);
+            assert!(factors.solved(&b).iter().zip(x).all(|(y, x)| (y - x).abs() < 1e-14));
+            assert_eq!(factors.redundancy(&[slip("a", ""), slip("b", ""), slip("c", "")]), None);
+        }
+    }
+
+    #[test]
+    fn rows_that_follow_are_named_with_those_they_follow_from() {
+        let slips = [slip("a", "in x"), slip("b", "in y"), slip("c", "in x"), slip("d", "in z"), slip("c", "in y")];
+        let (x, y, z) = ([1.0, 0.0, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 2.0]);
+        let twice: [f64; 3] = std::array::from_fn(|k| 0.1 * x[k] + 0.3 * y[k]);
+        let factors = Factors::of(&triangle(&[x, y, twice, z, y]));
+        let expected = Redundancy { joint: "c", directions: vec!["in x", "in y"], others: vec!["a", "b"] };
+        let found = factors.redundancy(&slips).unwrap();
+        assert_eq!(found, expected);
+        assert_eq!(
+            found.to_string(),
+            "rigid joint `c` holds in x, in y what rigid joints `a`, `b` hold already, so their reactions have no unique \
+             values"
+        );
+        // The rest is solved as if these rows were not there.
+        let solution = factors.solved(&[1.0, 0.0, 5.0, 8.0, 5.0]);
+        assert_eq!((solution[2], solution[3], solution[4]), (0.0, 2.0, 0.0));
+        assert!((solution[0] - 1.0 / 0.64).abs() < 1e-14, "{solution:?}");
+    }
+
+    #[test]
+    fn an_angle_of_a_hundred_thousandth_is_the_limit() {
+        let slips = [slip("a", ""), slip("b", "")];
+        let at = |angle: f64| Factors::of(&triangle(&[[1.0, 0.0, 0.0], [angle.cos(), angle.sin(), 0.0]]));
+        assert!(at(2e-5).redundancy(&slips).is_none());
+        assert!(at(0.5e-5).redundancy(&slips).is_some());
+        let nothing = Factors::of(&triangle(&[[0.0; 3]])).redundancy(&slips[..1]).unwrap();
+        assert_eq!(nothing.to_string(), "rigid joint `a` holds what cannot move anyway");
+    }
+}

@@ -1,0 +1,200 @@
+//! The reactions of joints: whether start velocities fit, what impulses change, whether the reactions of rigid joints have
+//! unique values.
+//!
+//! In: a system that says what its joints hold ([`Joints::held`], [`Joints::hold`]). Out: a start state that fits, or the
+//! joint that is torn apart; the joints that hold the same motion, at the start and in a run.
+//!
+//! The reactions l of rigid joints are solved from A l + b = 0, where A_ij is how much reaction j changes the rate of the
+//! flow that joint i keeps at zero: J M^-1 J^T up to the sign. An impulse obeys the same equations, with the flow in
+//! place of b: it changes the flows by A l and the momenta by what the reactions move.
+
+mod factors;
+mod independence;
+
+use nalgebra::{DVector, SVector};
+
+use crate::model::assembly::AssemblyError;
+use crate::model::capability::Joints;
+use crate::model::holding::{FITTING, Held, Redundancy, Slip, Slipping};
+use crate::model::nearest::nearest;
+use crate::model::scalar::Scalar;
+use crate::model::system::System;
+use factors::Factors;
+pub(crate) use independence::Independence;
+
+/// A start state whose joints fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Started<S, const N: usize> {
+    /// The state.
+    pub x: SVector<S, N>,
+    /// The kinetic energy that impulses have taken, J.
+    pub lost: S,
+}
+
+/// The numbers of [`Joints::hold`].
+struct Hold<S> {
+    held: Held,
+    entries: Vec<S>,
+}
+
+impl<S: Scalar> Hold<S> {
+    fn new(held: Held) -> Self {
+        Self { held, entries: vec![S::from_f64(0.0); held.entries()] }
+    }
+
+    fn read<J, const N: usize, const G: usize>(&mut self, joints: &J, t: S, x: &SVector<S, N>, negative: &[bool; G])
+    where
+        J: Joints<S, N, G>,
+    {
+        joints.hold(t, x, negative, &mut self.entries);
+    }
+
+    /// The flows of rigid motions, then of compliant ones.
+    fn flows(&self) -> &[S] {
+        &self.entries[..self.held.rigid.len() + self.held.compliant.len()]
+    }
+
+    /// The lower triangle of A by rows.
+    fn matrix(&self) -> &[S] {
+        let (first, reactions) = (self.flows().len(), self.held.rigid.len());
+        &self.entries[first..first + reactions * (reactions + 1) / 2]
+    }
+
+    /// What one unit of a reaction changes, state by state of [`Held::moved`].
+    fn moves(&self, reaction: usize) -> &[S] {
+        let width = self.held.moved.len();
+        let first = self.flows().len() + self.matrix().len() + reaction * width;
+        &self.entries[first..first + width]
+    }
+}
+
+/// The start state of a system with joints: guessed velocities such that the joints fit, then, with `impulse`, the
+/// impulses of the rigid joints. `start` gives the state for unknowns, of which those at `speeds` are velocities.
+/// Allocates.
+///
+/// # Errors
+/// [`AssemblyError::Torn`] where velocities do not fit, [`AssemblyError::Redundant`] where reactions are not unique.
+pub fn fit<Sys, S, const N: usize, const G: usize, const U: usize, const K: usize>(
+    system: &Sys,
+    unknowns: [f64; U],
+    speeds: [usize; K],
+    start: impl Fn(&[f64; U]) -> SVector<S, N>,
+    impulse: bool,
+) -> Result<Started<S, N>, AssemblyError>
+where
+    Sys: System<S, N, G> + Joints<S, N, G>,
+    S: Scalar,
+{
+    let held = system.held();
+    let state = |values: &[f64; K]| {
+        let mut all = unknowns;
+        speeds.iter().zip(values).for_each(|(&place, &value)| all[place] = value);
+        start(&all)
+    };
+    let read = |x: &SVector<S, N>| {
+        let mut hold = Hold::new(held);
+        hold.read(system, S::from_f64(0.0), x, &branches(system, x));
+        hold
+    };
+    let mut values = speeds.map(|place| unknowns[place]);
+    if K > 0 {
+        let residual = |values: &[f64; K], flows: &mut [f64]| {
+            let hold = read(&state(values));
+            flows.iter_mut().zip(hold.flows()).for_each(|(to, flow)| *to = flow.to_f64());
+        };
+        let rows = held.rigid.len() + held.compliant.len();
+        let check = |flows: &DVector<f64>| match flows.iter().position(|flow| !flow.is_finite()) {
+            Some(k) => Err(AssemblyError::Torn { largest: slipping(&held, k, flows[k]), others: Vec::new() }),
+            None => Ok(()),
+        };
+        // The flows are linear in the velocities, so the first step is the last but for rounding.
+        values = nearest(values, rows, |_| f64::INFINITY, residual, check)?.0;
+    }
+    let x = state(&values);
+    let hold = read(&x);
+    let factors = Factors::of(hold.matrix());
+    if let Some(redundancy) = factors.redundancy(held.rigid) {
+        return Err(AssemblyError::Redundant(redundancy));
+    }
+    check_fit(&hold, |slipping| impulse && slipping.is_rigid)?;
+    let started = if impulse { strike(x, &read) } else { Started { x, lost: S::from_f64(0.0) } };
+    check_fit(&read(&started.x), |slipping| !slipping.is_rigid)?;
+    Ok(started)
+}
+
+/// The branches of the switches at t = 0 and this state.
+fn branches<Sys, S, const N: usize, const G: usize>(system: &Sys, x: &SVector<S, N>) -> [bool; G]
+where
+    Sys: System<S, N, G>,
+    S: Scalar,
+{
+    let zero = S::from_f64(0.0);
+    let (mut negative, mut guards) = ([false; G], SVector::from([zero; G]));
+    // A guard may depend on another switch's branch.
+    for _ in 0..G {
+        system.guards(zero, x, &negative, &mut guards);
+        negative = guards.data.0[0].map(|guard| guard < zero);
+    }
+    negative
+}
+
+/// The state after the impulses that bring the flows of rigid joints to zero, with the energy that they take: half of
+/// impulse times flow before, as in a perfectly plastic impact. One solution is exact where momenta are linear in flows;
+/// elsewhere it is repeated while it helps.
+fn strike<S: Scalar, const N: usize>(mut x: SVector<S, N>, read: &impl Fn(&SVector<S, N>) -> Hold<S>) -> Started<S, N> {
+    let (zero, half) = (S::from_f64(0.0), S::from_f64(0.5));
+    let mut lost = zero;
+    let mut before = read(&x);
+    for _ in 0..20 {
+        let rigid = before.held.rigid.len();
+        let impulses = Factors::of(before.matrix()).solved(&before.flows()[..rigid]);
+        let mut moved = x;
+        for (reaction, &impulse) in impulses.iter().enumerate() {
+            for (&state, &by) in before.held.moved.iter().zip(before.moves(reaction)) {
+                moved[state] = moved[state] - by * impulse;
+            }
+        }
+        let after = read(&moved);
+        if fastest(&after, rigid) >= fastest(&before, rigid) {
+            break;
+        }
+        for ((&impulse, &from), &to) in impulses.iter().zip(before.flows()).zip(after.flows()) {
+            lost = lost - half * impulse * (from + to);
+        }
+        (x, before) = (moved, after);
+    }
+    Started { x, lost }
+}
+
+/// The largest of the first `rigid` flows.
+fn fastest<S: Scalar>(hold: &Hold<S>, rigid: usize) -> f64 {
+    hold.flows()[..rigid].iter().fold(0.0, |fastest, flow| fastest.max(flow.to_f64().abs()))
+}
+
+fn slipping(held: &Held, k: usize, speed: f64) -> Slipping {
+    let is_rigid = k < held.rigid.len();
+    let slip = if is_rigid { held.rigid[k] } else { held.compliant[k - held.rigid.len()] };
+    Slipping { slip, speed, is_rigid }
+}
+
+/// Finds the joints whose flows are above [`FITTING`], those apart that are `excused`.
+fn check_fit<S: Scalar>(hold: &Hold<S>, excused: impl Fn(&Slipping) -> bool) -> Result<(), AssemblyError> {
+    let mut joints: Vec<Slipping> = Vec::new();
+    for (k, flow) in hold.flows().iter().enumerate() {
+        let found = slipping(&hold.held, k, flow.to_f64());
+        if found.speed.abs() <= FITTING || excused(&found) {
+            continue;
+        }
+        match joints.iter_mut().find(|known| known.slip.joint == found.slip.joint) {
+            Some(known) if known.speed.abs() >= found.speed.abs() => {}
+            Some(known) => *known = found,
+            None => joints.push(found),
+        }
+    }
+    joints.sort_by(|a, b| b.speed.abs().total_cmp(&a.speed.abs()));
+    if joints.is_empty() {
+        return Ok(());
+    }
+    let largest = joints.remove(0);
+    Err(AssemblyError::Torn { largest, others: joints })
+}

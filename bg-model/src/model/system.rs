@@ -1,0 +1,114 @@
+//! What an integrator asks of a system, and what a run asks of a model.
+//!
+//! In: nothing. Out: the traits that `bond_graph!` implements and that a hand-written system can implement as well.
+
+use nalgebra::SVector;
+
+use crate::model::assembly::AssemblyError;
+use crate::model::capability::{Absent, Joints, Linearised, SecondOrder, Series};
+use crate::model::description::Description;
+use crate::model::origin::Origin;
+use crate::model::scalar::Scalar;
+
+/// A system of ordinary differential equations dx/dt = f(t, x) with `N` states and `G` switches.
+///
+/// A switch chooses between two branches of a law by the sign of its guard, a real function of time and state.
+/// Inside a step the branches stay as the integrator hands them over, so that f is smooth there; the integrator
+/// locates the guard's sign change and then changes the branch.
+///
+/// A system written by hand needs its rate only. What else it knows of itself it implements as a capability and hands
+/// over as `Some(self)`; what it does not know is [`Absent`].
+pub trait System<S: Scalar, const N: usize, const G: usize> {
+    /// Writes dx/dt at time `t` (s) and state `x` into `dx`. `negative[k]` says that switch `k` is in the branch of its
+    /// negative guard. Allocates nothing.
+    fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>);
+
+    /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
+    fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _guards: &mut SVector<S, G>) {}
+
+    /// Moves `x` back onto the invariants that rounding and truncation leave (orthogonal orientations). Called once
+    /// after each accepted step, before the rate at the new state is evaluated.
+    fn project(&self, _x: &mut SVector<S, N>) {}
+
+    /// The name of state `index`, for messages.
+    fn state_name(&self, _index: usize) -> &'static str {
+        "state"
+    }
+
+    /// The comparison of switch `index` and whose it is, such as ``if v < 0` of `valve``, for messages; by default none.
+    fn switch_name(&self, _index: usize) -> Option<&'static str> {
+        None
+    }
+
+    /// The first input or element, in the order of evaluation, whose value at time `t` (s) and state `x` is not finite; asked for
+    /// where a run stops. By default none is known.
+    fn not_finite(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G]) -> Option<Origin> {
+        None
+    }
+
+    /// The Jacobian; by default none is known, and implicit methods take differences of the rate.
+    #[inline]
+    fn linearised(&self) -> Option<&impl Linearised<S, N, G>> {
+        None::<&Absent>
+    }
+
+    /// The states of second order with their second derivatives; by default none are known.
+    #[inline]
+    fn second_order(&self) -> Option<&impl SecondOrder<S, N, G>> {
+        None::<&Absent>
+    }
+
+    /// The Taylor series of the states; none by default, nor of a model one of whose inputs changes with time.
+    #[inline]
+    fn series(&self) -> Option<&impl Series<S, N, G>> {
+        None::<&Absent>
+    }
+
+    /// What joints hold; nothing by default.
+    #[inline]
+    fn joints(&self) -> Option<&impl Joints<S, N, G>> {
+        None::<&Absent>
+    }
+}
+
+/// Power that crosses the boundary of a model, W.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Powers<S> {
+    /// Power that the sources (efforts, flows, modulated laws) give to the model, W; positive into the model.
+    pub supplied: S,
+    /// Power that the resistors take out of the model, W; not negative for passive laws.
+    pub dissipated: S,
+}
+
+/// A model that `bond_graph!` generated: a [`System`] that knows its start, its outputs and its energy.
+///
+/// `M` is the number of scalar outputs.
+pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: System<S, N, G> {
+    /// Elements, bonds, strokes, states, outputs and equations, as text and tables.
+    fn description(&self) -> &'static Description;
+
+    /// The start state at t = 0: loops closed, guessed velocities such that they fit the joints.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] names the joint that stays open and its gap, that is torn apart and its speed, or that holds
+    /// what others hold already.
+    fn start(&self) -> Result<SVector<S, N>, AssemblyError>;
+
+    /// The kinetic energy that the impulses of the rigid joints take at the start, J, not negative: 0 without
+    /// `start impulse;`, and where the start velocities fit. The energies of a run count from after the impulses.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    fn impulse_energy(&self) -> Result<S, AssemblyError> {
+        Ok(S::from_f64(0.0))
+    }
+
+    /// Writes the observed outputs, in the order of `description().outputs`.
+    fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], y: &mut SVector<S, M>);
+
+    /// The energy in all storage elements, J.
+    fn stored_energy(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> S;
+
+    /// The powers over the model's boundary, W: d(stored)/dt = supplied - dissipated.
+    fn powers(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> Powers<S>;
+}

@@ -1,0 +1,159 @@
+//! Branches: which one a switch takes where its guard is zero.
+//!
+//! A guard is followed for a small step of the method under a branch; the branch is right if the guard then has its
+//! sign. Where the other branch is right in this sense and this one is not, the other one is taken.
+
+use super::{CERTAIN, Watch, check_finite, clearance};
+use crate::model::system::System;
+use crate::solve::integrator::{Method, is_finite};
+use crate::solve::stepper::Stepper;
+
+/// Small steps, as parts of the next step: the first shows the guard's derivative, the others a guard whose derivative
+/// vanishes.
+const PROBES: [f64; 3] = [1e-7, 1e-5, 1e-3];
+
+impl<const G: usize> Watch<G> {
+    /// Chooses the branches at the start of the run by the signs of the guards; a guard that is zero counts as positive.
+    pub fn begin_by_sign<Sys, M, const N: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if G == 0 {
+            return;
+        }
+        // Guards may depend on the branches: repeated until they agree, at most once for each switch.
+        for _ in 0..=G {
+            let start = stepper.start;
+            self.start.value = stepper.guards(start.t, &start.x);
+            let negative = std::array::from_fn(|k| self.start.value[k] < 0.0);
+            if std::mem::replace(&mut stepper.negative, negative) == negative {
+                break;
+            }
+        }
+    }
+
+    /// Decides the branches of the guards that are exactly zero at the start of the run, by steps that are small
+    /// compared with `step` (s); where these leave the guard zero, the positive branch holds.
+    pub fn begin_by_probe<Sys, M, const N: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, step: f64)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let undecided: [bool; G] = std::array::from_fn(|k| self.start.value[k] == 0.0);
+        if undecided.contains(&true) {
+            self.choose(stepper, &undecided, [false; G], step);
+        }
+        if G > 0 {
+            self.read_start(stepper, step);
+        }
+    }
+
+    /// Decides the branches of `switches`, whose guards have come to zero at the start of the next step, by steps that
+    /// are small compared with `step` (s). Other switches whose guards that moves to the wrong side follow at once.
+    pub fn settle<Sys, M, const N: usize>(
+        &mut self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        mut switches: [bool; G],
+        step: f64,
+    ) where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let flipped = std::array::from_fn(|k| stepper.negative[k] != switches[k]);
+        self.choose(stepper, &switches, flipped, step);
+        for _ in 0..G {
+            self.read_start(stepper, step);
+            let value = self.start.value;
+            let start = stepper.start;
+            let noise = self.noise(stepper, start.t, &start.x, &value);
+            let is_pushed = |k: &usize| !switches[*k] && clearance(value[*k], stepper.negative[*k]) < -noise[*k];
+            let Some(pushed) = (0..G).find(is_pushed).filter(|_| check_finite(&value).is_ok()) else { return };
+            switches[pushed] = true;
+            stepper.negative[pushed] = value[pushed] < 0.0;
+            stepper.evaluate_start();
+        }
+        self.read_start(stepper, step);
+    }
+
+    /// Gives each of `switches` its branch in `candidate`, or the other one if only that agrees with its guard; the
+    /// rate at the start is that of the branches chosen.
+    fn choose<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        switches: &[bool; G],
+        candidate: [bool; G],
+        step: f64,
+    ) where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        for k in 0..G {
+            if switches[k] {
+                stepper.negative[k] = candidate[k];
+            }
+        }
+        stepper.evaluate_start();
+        // Twice: the second time a branch that disagrees as well goes back to the candidate.
+        for _ in 0..2 {
+            let wrong = self.wrong_branches(stepper, switches, step);
+            if !wrong.contains(&true) {
+                return;
+            }
+            stepper.negative = std::array::from_fn(|k| stepper.negative[k] != wrong[k]);
+            stepper.evaluate_start();
+        }
+    }
+
+    /// Which of `switches` are in a branch that disagrees with its guard a little later. Where the rate is no number, as that
+    /// of a root on the wrong side of its zero by rounding, all of them are.
+    fn wrong_branches<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        switches: &[bool; G],
+        step: f64,
+    ) -> [bool; G]
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if !is_finite(&stepper.start.rate) {
+            return *switches;
+        }
+        let signs = self.probe(stepper, switches, step);
+        std::array::from_fn(|k| switches[k] && signs[k].is_some_and(|negative| negative != stepper.negative[k]))
+    }
+
+    /// Whether the guards of `switches` are negative a little later under the present branches; nothing where they stay
+    /// zero.
+    fn probe<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        switches: &[bool; G],
+        step: f64,
+    ) -> [Option<bool>; G]
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let mut signs = [None; G];
+        for part in PROBES {
+            // Long enough to be seen in the time as well.
+            let h = (part * step).max(1024.0 * f64::EPSILON * stepper.start.t.abs());
+            stepper.attempt(h);
+            stepper.project();
+            let end = stepper.end;
+            let value = stepper.guards(end.t, &end.x);
+            let noise = self.noise(stepper, end.t, &end.x, &value);
+            for k in 0..G {
+                if signs[k].is_none() && value[k].abs() > CERTAIN * noise[k] {
+                    signs[k] = Some(value[k] < 0.0);
+                }
+            }
+            if (0..G).all(|k| !switches[k] || signs[k].is_some()) {
+                break;
+            }
+        }
+        signs
+    }
+}

@@ -1,0 +1,261 @@
+//! Detection: has a guard been on the wrong side during a step, and where.
+//!
+//! Both ends of the step and a quartic in between, through the guard's values and slopes at the ends and its value in
+//! the middle, are looked at in every step; the middle state is that of the cubic Hermite polynomial, so this costs
+//! three evaluations of the guards and none of the rate. Only where that raises a suspicion the dense output is asked.
+
+use nalgebra::SVector;
+
+use super::minimum::minimum;
+use super::noise::larger;
+use super::{Crossing, Reading, Watch, check_finite, clearance, read};
+use crate::model::system::System;
+use crate::solve::integrator::{Method, hermite};
+use crate::solve::stepper::Stepper;
+
+/// The number of parts of a step at whose ends the dense output is looked at.
+const PARTS: usize = 8;
+/// A clearance below this part of its variation in the step is looked at closely.
+const NEAR: f64 = 0.5;
+/// Halvings of the distance to the start of the step on the search for a point on the right side.
+const HALVINGS: usize = 40;
+
+/// A part of the step in which a guard crosses: parts of the step with their clearances.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bracket {
+    /// The end on the right side.
+    pub right: (f64, f64),
+    /// The end on the wrong side.
+    pub wrong: (f64, f64),
+}
+
+/// What is known of a guard's course in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Course {
+    /// It keeps to its side.
+    Clear,
+    /// It leaves its side right at the start.
+    WrongFromStart,
+    /// It crosses here first.
+    Crosses(Bracket),
+}
+
+impl<const G: usize> Watch<G> {
+    /// Looks for events in the step just made, whose end has been projected and whose rates are known at both ends.
+    ///
+    /// Shortens the step to the first event. Fails with the first guard that is not finite.
+    pub fn inspect<Sys, M, const N: usize>(
+        &mut self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+    ) -> Result<Option<Crossing<G>>, (usize, f64)>
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if G == 0 {
+            return Ok(None);
+        }
+        let (end, h) = (stepper.end, stepper.h);
+        self.end = read(stepper, end.t, &end.x, &end.rate, h);
+        check_finite(&self.end.value)?;
+        let mut x = SVector::zeros();
+        hermite(&stepper.start, h, &end, 0.5, &mut x);
+        let middle = stepper.guards(stepper.start.t + 0.5 * h, &x);
+        // As long as the noise is not known it counts as none: there are only more suspects.
+        if !self.suspects(stepper.negative, &middle, h).contains(&true) {
+            return Ok(None);
+        }
+        let (start, value) = (stepper.start, self.start.value);
+        self.start.noise = self.noise(stepper, start.t, &start.x, &value);
+        let value = self.end.value;
+        self.end.noise = self.noise(stepper, end.t, &end.x, &value);
+        let suspects = self.suspects(stepper.negative, &middle, h);
+        if !suspects.contains(&true) {
+            return Ok(None);
+        }
+        let courses = self.courses(stepper, &suspects);
+        Ok(self.first_crossing(stepper, &courses))
+    }
+
+    /// The guards that are on the wrong side at the end of the step or may have been in it.
+    fn suspects(&self, negative: [bool; G], middle: &SVector<f64, G>, h: f64) -> [bool; G] {
+        std::array::from_fn(|k| {
+            let is_wrong = clearance(self.end.value[k], negative[k]) < -self.end.noise[k];
+            is_wrong || self.is_near(k, negative[k], middle[k], h)
+        })
+    }
+
+    /// Whether guard `k` comes so near to zero in the step that it may dip to the wrong side and come back.
+    fn is_near(&self, k: usize, negative: bool, middle: f64, h: f64) -> bool {
+        const SAMPLES: usize = 16;
+        let noise = larger(self.start.noise[k], self.end.noise[k]);
+        let side = |value: f64| clearance(value, negative);
+        let from = if self.start.value[k].abs() <= self.start.noise[k] { 0.0 } else { side(self.start.value[k]) };
+        let (middle, to) = (side(middle), side(self.end.value[k]));
+        let (leaving, arriving) = (h * side(self.start.slope[k]), h * side(self.end.slope[k]));
+        let bulge = 16.0 * (middle - 0.5 * (from + to) - 0.125 * (leaving - arriving));
+        // Comparisons, not `f64::min`: its optimised form was seen to drop an end.
+        let smaller = |a: f64, b: f64| if b < a { b } else { a };
+        // Bernstein's coefficients enclose the quartic: far from zero that settles it.
+        let (leave, arrive) = (from + 0.25 * leaving, to - 0.25 * arriving);
+        let bend = (16.0 * middle - from - to - 4.0 * (leave + arrive)) / 6.0;
+        let enclosing = [from, leave, bend, arrive, to];
+        let low = enclosing.into_iter().fold(f64::INFINITY, smaller);
+        let high = enclosing.into_iter().fold(f64::NEG_INFINITY, larger);
+        if low > 1.01 * NEAR * (high - low) {
+            return false;
+        }
+        let quartic = |part: f64| {
+            let (rest, chord) = (1.0 - part, to - from);
+            let bend = (rest - part) * chord - rest * leaving + part * arriving;
+            rest * from + part * to - part * rest * bend + bulge * (part * rest) * (part * rest)
+        };
+        let inside = (1..SAMPLES).map(|sample| quartic(sample as f64 / SAMPLES as f64));
+        let ends = (f64::INFINITY, larger(from, to));
+        let (lowest, highest) = inside.fold(ends, |(low, high), value| (smaller(low, value), larger(high, value)));
+        let bottom = smaller(lowest, smaller(from, to));
+        highest > noise && lowest < NEAR * (highest - bottom)
+    }
+
+    /// The course of the suspects by the dense output; the other guards are clear.
+    fn courses<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        suspects: &[bool; G],
+    ) -> [Course; G]
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let mut values = [self.start.value; PARTS + 1];
+        for (part, value) in values.iter_mut().enumerate().take(PARTS).skip(1) {
+            *value = stepper.dense_guards(part as f64 / PARTS as f64);
+        }
+        values[PARTS] = self.end.value;
+        std::array::from_fn(|k| if suspects[k] { self.course(stepper, k, &values) } else { Course::Clear })
+    }
+
+    /// The course of guard `k`, whose values at the parts of the step are known.
+    fn course<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        values: &[SVector<f64, G>; PARTS + 1],
+    ) -> Course
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let clearances = values.map(|value| clearance(value[k], stepper.negative[k]));
+        let at = |part: usize| (part as f64 / PARTS as f64, clearances[part]);
+        let wrong = (1..=PARTS).map(at).find(|place| self.is_wrong(stepper, k, *place));
+        // Every minimum in front of that may reach the wrong side between two parts.
+        let negative = stepper.negative[k];
+        let falls = |reading: &Reading<G>| clearance(reading.slope[k], negative) < 0.0;
+        let is_minimum = |part: &usize| {
+            let is_below = |other: usize| clearances[*part] <= clearances[other];
+            match *part {
+                0 => falls(&self.start) && is_below(1),
+                PARTS => !falls(&self.end) && is_below(PARTS - 1),
+                inside => is_below(inside - 1) && is_below(inside + 1),
+            }
+        };
+        let is_in_front = |part: &usize| wrong.is_none_or(|wrong| at(*part).0 < wrong.0);
+        let mut minima = (0..=PARTS).filter(is_in_front).filter(is_minimum);
+        let dip = minima.find_map(|part| {
+            let lowest = self.lowest(stepper, k, at(part).0);
+            self.is_wrong(stepper, k, lowest).then_some(lowest)
+        });
+        let Some(wrong) = dip.or(wrong) else { return Course::Clear };
+        let mut in_front = (0..PARTS).rev().map(at).filter(|place| place.0 < wrong.0);
+        let right = in_front.find(|place| self.is_right(stepper, k, *place));
+        match right {
+            Some(right) => Course::Crosses(Bracket { right, wrong }),
+            None => self.bracket_near_start(stepper, k, wrong),
+        }
+    }
+
+    /// Whether the clearance of guard `k` at this part of the step is negative by more than rounding.
+    fn is_wrong<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        (part, clearance): (f64, f64),
+    ) -> bool
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        clearance < 0.0 && clearance < -self.noise_inside(stepper, k, part)
+    }
+
+    /// Whether it is positive by more than rounding.
+    fn is_right<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        (part, clearance): (f64, f64),
+    ) -> bool
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        clearance > 0.0 && clearance > self.noise_inside(stepper, k, part)
+    }
+
+    /// The rounding error of guard `k` at this part of the step, by the dense output.
+    pub(super) fn noise_inside<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        part: f64,
+    ) -> f64
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if part == 0.0 {
+            return self.start.noise[k];
+        }
+        if part == 1.0 {
+            return self.end.noise[k];
+        }
+        let (t, x) = (stepper.start.t + part * stepper.h, stepper.dense(part));
+        let value = stepper.guards(t, &x);
+        self.noise(stepper, t, &x, &value)[k]
+    }
+
+    /// The lowest clearance of guard `k` near the part `near` of the step; stops on the wrong side.
+    fn lowest<Sys, M, const N: usize>(&self, stepper: &mut Stepper<'_, Sys, M, N, G>, k: usize, near: f64) -> (f64, f64)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let width = 1.0 / PARTS as f64;
+        let (low, high) = ((near - width).max(0.0), (near + width).min(1.0));
+        let enough = -self.noise_inside(stepper, k, near);
+        minimum(low, high, enough, |part| clearance(stepper.dense_guards(part)[k], stepper.negative[k]))
+    }
+
+    /// The course of guard `k` that starts at zero and is on the wrong side at `wrong`.
+    fn bracket_near_start<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        k: usize,
+        mut wrong: (f64, f64),
+    ) -> Course
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        for _ in 0..HALVINGS {
+            let part = 0.5 * wrong.0;
+            let near = clearance(stepper.dense_guards(part)[k], stepper.negative[k]);
+            if self.is_right(stepper, k, (part, near)) {
+                return Course::Crosses(Bracket { right: (part, near), wrong });
+            }
+            wrong = (part, near);
+        }
+        Course::WrongFromStart
+    }
+}

@@ -1,0 +1,90 @@
+//! Noise: how far rounding alone may take a guard from zero.
+//!
+//! In: a point of the step. Out: how much each guard changes there if the time and the states are displaced by what rounding
+//! may have done to them. It is a matter of this point alone: of the states and of their changes in this step, not of how
+//! large a guard has been. A guard that jumps there is not noisy, so of the two directions the smaller change counts.
+
+use nalgebra::SVector;
+
+use super::Watch;
+use crate::model::system::System;
+use crate::solve::integrator::Method;
+use crate::solve::stepper::Stepper;
+
+/// How far rounding displaces a sum of some terms, in parts of the largest: the weights of methods go up to 30.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// How much more than the remainder of its last event a guard may be off.
+const MARGIN: f64 = 4.0;
+
+impl<const G: usize> Watch<G> {
+    /// How far each guard may be on the wrong side by rounding alone at time `t` (s) and state `x`, where they have this
+    /// `value`, in a step that begins where `stepper` does. Evaluates the guards twice.
+    pub(super) fn noise<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        t: f64,
+        x: &SVector<f64, N>,
+        value: &SVector<f64, G>,
+    ) -> [f64; G]
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let (start, h) = (stepper.start, stepper.h);
+        let moves: [f64; N] = std::array::from_fn(|i| {
+            ROUNDING * irregular(i + 1) * (larger(start.x[i].abs(), x[i].abs()) + (h * start.rate[i]).abs())
+        });
+        let wait = ROUNDING * larger(start.t.abs(), t.abs());
+        let mut displaced = |by: f64| stepper.guards(t + by * wait, &SVector::from_fn(|i, _| x[i] + by * moves[i]));
+        let (ahead, back) = (displaced(1.0), displaced(-1.0));
+        std::array::from_fn(|k| {
+            let (ahead, back) = ((ahead[k] - value[k]).abs(), (back[k] - value[k]).abs());
+            let change = if ahead < back { ahead } else { back };
+            // No number beside the point says nothing about it.
+            larger(MARGIN * self.remainder[k], if change.is_finite() { change } else { 0.0 })
+        })
+    }
+
+    /// Takes note of what an event at which guard `k` has this value leaves of it.
+    pub(super) fn leave(&mut self, k: usize, value: f64) {
+        self.remainder[k] = larger(self.remainder[k], value.abs());
+    }
+
+    /// Forgets what the last events have left of guards that are far from zero at the end of the step.
+    pub(super) fn forget(&mut self) {
+        for k in 0..G {
+            if self.end.value[k].abs() > super::CERTAIN * MARGIN * self.remainder[k] {
+                self.remainder[k] = 0.0;
+            }
+        }
+    }
+}
+
+/// A factor for the state of this number, of size 1/2 to 1: of irregular sizes and signs, so that what states have in common
+/// does not cancel. Source of the sequence: multiples of the golden ratio (Knuth, The Art of Computer Programming 3,
+/// section 6.4).
+fn irregular(number: usize) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let fraction = (number as f64 * GOLDEN).fract();
+    if fraction < 0.5 { -0.5 - fraction } else { fraction }
+}
+
+/// The larger number; `b` where `a` is none.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::irregular;
+
+    #[test]
+    fn factors_are_of_both_signs_and_of_sizes_from_a_half_to_one() {
+        let factors: Vec<f64> = (1..=64).map(irregular).collect();
+        assert!(factors.iter().all(|factor| (0.5..=1.0).contains(&factor.abs())));
+        let positive = factors.iter().filter(|factor| **factor > 0.0).count();
+        assert!((28..=36).contains(&positive), "{positive}");
+        // The sum of two neighbours, as in a difference of two equal states, does not vanish.
+        assert!(factors.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 0.05), "{factors:?}");
+    }
+}

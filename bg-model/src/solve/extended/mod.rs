@@ -1,0 +1,268 @@
+//! Reference solutions: a system integrated in any [`Scalar`], such as [`crate::scalar::DoubleDouble`], far beyond the
+//! accuracy of the integrators for runs.
+//!
+//! In: a system, its start, a span, an accuracy, instants. Out: the state at the instants, told to an observer, and at the
+//! end. Method: Gragg's midpoint rule extrapolated after Bulirsch and Stoer ([`Accuracy::columns`] columns, order twice
+//! that) with steps by the estimated error. Steps end at the instants and at the switchings, so nothing is interpolated;
+//! a switching is located by steps of other sizes until the guard vanishes to rounding. Explicit: a stiff system costs
+//! as many steps as its stability takes.
+
+mod branch;
+mod extrapolation;
+mod guard;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::SVector;
+use thiserror::Error;
+
+use crate::model::scalar::Scalar;
+use crate::model::system::System;
+use crate::solve::failure::switch_text;
+use crate::solve::simulation::Span;
+use extrapolation::Extrapolation;
+use guard::{Course, Watch};
+
+/// How exactly to integrate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// The columns of the extrapolation, 2 to 20; the order is twice as high. Rate evaluations of a step: their square + 1.
+    pub columns: usize,
+    /// The error estimated for a step, at most this times 1 + |x| in each state's SI unit.
+    pub tolerance: f64,
+}
+
+/// A change of branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event<S> {
+    /// When, s.
+    pub t: S,
+    /// The switch that changed its branch.
+    pub switch: usize,
+}
+
+/// Where a run has come to, and what it took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finish<S, const N: usize, const G: usize> {
+    /// State at the end.
+    pub x: SVector<S, N>,
+    /// The branches of the switches at the end.
+    pub negative: [bool; G],
+    /// The changes of branches, in the order of time.
+    pub events: Vec<Event<S>>,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected steps, and those tried to locate events.
+    pub rejected: u64,
+    /// Evaluations of the rate function.
+    pub rate_evaluations: u64,
+}
+
+/// Why a run stopped.
+#[derive(Clone, PartialEq, Error)]
+pub enum Fault {
+    /// The instants, the span or the accuracy cannot be.
+    #[error("{0}")]
+    BadInput(&'static str),
+    /// The tolerance calls for a smaller step than rounding allows, or a number is not finite.
+    #[error("the step fell to {h:e} s at t = {t} s")]
+    StepTooSmall {
+        /// Time, s.
+        t: f64,
+        /// The step, s.
+        h: f64,
+    },
+    /// A switch changes its branch again and again at one instant.
+    #[error("{} changes its branch without end at t = {t} s", switch_text(.name, *.switch))]
+    EventsAccumulate {
+        /// The switch.
+        switch: usize,
+        /// Its name, such as ``if v < 0` of `valve``; empty where it has none.
+        name: &'static str,
+        /// Time, s.
+        t: f64,
+    },
+}
+
+debug_is_display!(Fault);
+
+/// Parts of the span: the first step, the step from which on nothing is looked at more closely, the smallest step.
+const FIRST: f64 = 1e-6;
+const CLOSEST: f64 = 1e-12;
+const SMALLEST: f64 = 1e-24;
+/// Events in a row, each nearer to the last one than [`CLOSEST`], that end a run.
+const CROWD: usize = 100;
+
+/// Integrates `system` from `start` at `span.t0` to `span.t_end`; gives time, state and branches at each of the `instants`
+/// (s, ascending, in the span) to `observe`. The start is projected onto the system's invariants first. Branches at the
+/// start follow from the guards' signs; a guard that is exactly zero is decided by its sign a little later.
+///
+/// # Errors
+/// [`Fault`].
+pub fn integrate<S, Sys, const N: usize, const G: usize>(
+    system: &Sys,
+    start: &SVector<S, N>,
+    span: Span,
+    accuracy: Accuracy,
+    instants: &[f64],
+    mut observe: impl FnMut(S, &SVector<S, N>, &[bool; G]),
+) -> Result<Finish<S, N, G>, Fault>
+where
+    S: Scalar,
+    Sys: System<S, N, G>,
+{
+    check(span, accuracy, instants)?;
+    let mut run = Run::new(system, start, span, accuracy);
+    run.begin();
+    for &instant in instants {
+        run.advance(instant)?;
+        observe(run.t, &run.x, &run.negative);
+    }
+    run.advance(span.t_end)?;
+    let Run { x, negative, events, steps, rejected, rate_evaluations, .. } = run;
+    Ok(Finish { x, negative, events, steps, rejected, rate_evaluations })
+}
+
+fn check(span: Span, accuracy: Accuracy, instants: &[f64]) -> Result<(), Fault> {
+    let is_ordered = instants.is_sorted()
+        && instants.first().is_none_or(|first| *first >= span.t0)
+        && instants.last().is_none_or(|last| *last <= span.t_end);
+    if !(span.t0.is_finite() && span.t_end.is_finite() && span.t0 <= span.t_end) {
+        Err(Fault::BadInput("the span must be finite and must not end before its start"))
+    } else if !is_ordered {
+        Err(Fault::BadInput("the instants must ascend and be in the span"))
+    } else if !(2..=20).contains(&accuracy.columns) || accuracy.tolerance <= 0.0 || accuracy.tolerance.is_nan() {
+        Err(Fault::BadInput("2 to 20 columns and a tolerance above 0 are possible"))
+    } else {
+        Ok(())
+    }
+}
+
+/// A run under way.
+struct Run<'a, S, Sys, const N: usize, const G: usize> {
+    system: &'a Sys,
+    accuracy: Accuracy,
+    /// The length of the span, s.
+    length: f64,
+    t: S,
+    x: SVector<S, N>,
+    negative: [bool; G],
+    /// The size of the next step, s.
+    step: f64,
+    method: Extrapolation<S, N>,
+    watch: Watch<S, G>,
+    events: Vec<Event<S>>,
+    steps: u64,
+    rejected: u64,
+    rate_evaluations: u64,
+}
+
+impl<'a, S, Sys, const N: usize, const G: usize> Run<'a, S, Sys, N, G>
+where
+    S: Scalar,
+    Sys: System<S, N, G>,
+{
+    fn new(system: &'a Sys, start: &SVector<S, N>, span: Span, accuracy: Accuracy) -> Self {
+        let length = span.t_end - span.t0;
+        Self {
+            system,
+            accuracy,
+            length,
+            t: S::from_f64(span.t0),
+            x: *start,
+            negative: [false; G],
+            step: FIRST * length,
+            method: Extrapolation::new(accuracy.columns),
+            watch: Watch::new(accuracy.tolerance),
+            events: Vec::new(),
+            steps: 0,
+            rejected: 0,
+            rate_evaluations: 0,
+        }
+    }
+
+    /// Steps until `target` (s) is reached exactly.
+    fn advance(&mut self, target: f64) -> Result<(), Fault> {
+        let target = S::from_f64(target);
+        while self.t < target {
+            let rest = target - self.t;
+            // Equal parts: no step is much shorter than the others.
+            let parts = (rest.to_f64() / self.step).ceil().max(1.0);
+            let h = rest / S::from_f64(parts);
+            self.check_step(h)?;
+            let error = self.attempt(h);
+            if error > 1.0 || error.is_nan() {
+                self.shorten(h, self.factor(error));
+                continue;
+            }
+            match self.watch.course(&self.negative) {
+                Course::Unclear if h.to_f64() > CLOSEST * self.length => self.shorten(h, 0.5),
+                Course::WrongFromStart => {
+                    let before = self.negative;
+                    self.switch(self.watch.wrong(&before))?;
+                    if self.negative == before {
+                        // The branch is right, so the step is too long for the guard's course.
+                        self.shorten(h, 0.1);
+                    }
+                }
+                Course::Crosses(crossing) => {
+                    let (h, switches) = self.locate(h, crossing);
+                    self.accept(self.t + h);
+                    self.switch(switches)?;
+                }
+                Course::Clear | Course::Unclear => {
+                    self.accept(if parts == 1.0 { target } else { self.t + h });
+                    self.step = h.to_f64() * self.factor(error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Tries a step of size `h` (s) and looks at the guards on its way and at its projected end; gives the estimated error
+    /// over the tolerance.
+    fn attempt(&mut self, h: S) -> f64 {
+        let Self { system, negative, watch, rate_evaluations, .. } = self;
+        let rate = |t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>| {
+            *rate_evaluations += 1;
+            system.rate(t, x, negative, dx);
+        };
+        let guards = |t: S, x: &SVector<S, N>| {
+            let mut value = SVector::from_element(S::from_f64(0.0));
+            system.guards(t, x, negative, &mut value);
+            value
+        };
+        watch.begin_step(guards(self.t, &self.x), h);
+        self.method.attempt(self.t, &self.x, h, rate, |t, x| watch.pass(guards(t, x)));
+        let error = self.method.error(&self.x, self.accuracy.tolerance);
+        self.system.project(&mut self.method.end);
+        self.watch.end_step(guards(self.t + h, &self.method.end));
+        error
+    }
+
+    /// By how much the step may grow, or has to shrink, for an error over the tolerance.
+    fn factor(&self, error: f64) -> f64 {
+        // The estimate is that of the last but one column.
+        let order = 2 * self.accuracy.columns - 1;
+        let factor = 0.9 * libm::pow(error, -1.0 / order as f64);
+        if factor.is_nan() { 0.1 } else { factor.clamp(0.1, 4.0) }
+    }
+
+    /// Rejects a step of size `h` (s): the next one has this part of it.
+    fn shorten(&mut self, h: S, part: f64) {
+        self.rejected += 1;
+        self.step = h.to_f64() * part;
+    }
+
+    /// Takes the last attempt over, which has come to the time `t` (s).
+    fn accept(&mut self, t: S) {
+        self.steps += 1;
+        self.t = t;
+        self.x = self.method.end;
+    }
+
+    fn check_step(&self, h: S) -> Result<(), Fault> {
+        let is_seen = h.to_f64() > SMALLEST * self.length && self.t + h > self.t;
+        if is_seen { Ok(()) } else { Err(Fault::StepTooSmall { t: self.t.to_f64(), h: h.to_f64() }) }
+    }
+}

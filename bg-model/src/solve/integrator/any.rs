@@ -1,0 +1,103 @@
+//! A method chosen at run time.
+//!
+//! In: one of the methods. Out: its steps. Only the one type reaches the driver, so a program that offers many methods
+//! compiles the driver once for each model and not once for each pair.
+
+use nalgebra::SVector;
+
+use super::{
+    Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2, Scale,
+    StepControl, Taylor,
+};
+
+macro_rules! any {
+    ($($name:ident)*) => {
+        /// One of the methods of this crate.
+        #[derive(Clone, Debug)]
+        #[allow(missing_docs, reason = "the variants have the methods' names")]
+        pub enum AnyMethod<const N: usize> {
+            $($name(Box<$name<N>>),)*
+        }
+
+        $(impl<const N: usize> From<$name<N>> for AnyMethod<N> {
+            fn from(method: $name<N>) -> Self {
+                Self::$name(Box::new(method))
+            }
+        })*
+    };
+}
+
+any!(Auto Bs5 Cfmr7 Dop853 Gauss6 Nystrom Radau5 Radau9 Rk4 Rodas5p Ros2 Taylor);
+
+/// Hands on to the method inside.
+macro_rules! inside {
+    ($any:expr, $method:ident => $then:expr) => {
+        match $any {
+            AnyMethod::Auto($method) => $then,
+            AnyMethod::Bs5($method) => $then,
+            AnyMethod::Cfmr7($method) => $then,
+            AnyMethod::Dop853($method) => $then,
+            AnyMethod::Gauss6($method) => $then,
+            AnyMethod::Nystrom($method) => $then,
+            AnyMethod::Radau5($method) => $then,
+            AnyMethod::Radau9($method) => $then,
+            AnyMethod::Rk4($method) => $then,
+            AnyMethod::Rodas5p($method) => $then,
+            AnyMethod::Ros2($method) => $then,
+            AnyMethod::Taylor($method) => $then,
+        }
+    };
+}
+
+impl<const N: usize> Method<N> for AnyMethod<N> {
+    fn name(&self) -> &'static str {
+        inside!(self, method => method.name())
+    }
+
+    fn control(&self) -> StepControl {
+        inside!(self, method => method.control())
+    }
+
+    fn needs_series(&self) -> bool {
+        inside!(self, method => method.needs_series())
+    }
+
+    fn attempt(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        inside!(self, method => method.attempt(flow, start, h, scale, end))
+    }
+
+    fn advance(&mut self) {
+        inside!(self, method => method.advance());
+    }
+
+    fn restart(&mut self) {
+        inside!(self, method => method.restart());
+    }
+
+    fn changes(&self) -> &[Change] {
+        inside!(self, method => method.changes())
+    }
+
+    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+        inside!(self, method => method.largest_error(start, scale, end))
+    }
+
+    fn faulty_rate(&self) -> Option<(usize, f64)> {
+        inside!(self, method => method.faulty_rate())
+    }
+
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+        inside!(self, method => method.prepare_dense(flow, start, h, end));
+    }
+
+    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        inside!(self, method => method.dense(start, h, end, theta, x));
+    }
+}

@@ -1,0 +1,253 @@
+//! Explicit Runge-Kutta methods with an error estimate and a dense output: one core for all tableaus.
+//!
+//! In: a tableau and a step. Out: the state after it with an error estimate from embedded methods, and on request the
+//! states in between. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, sections
+//! II.1, II.4 and II.6; the tableaus name theirs.
+
+mod bs5;
+mod cfmr7;
+mod dop853;
+#[cfg(test)]
+mod estimate;
+#[cfg(test)]
+mod order;
+#[cfg(test)]
+mod vectors;
+
+use std::marker::PhantomData;
+
+use nalgebra::SVector;
+use pulp::Arch;
+
+pub use bs5::BogackiShampine;
+pub use cfmr7::CalvoFrancoMontijanoRandez;
+pub use dop853::DormandPrince;
+
+use super::carry::Carry;
+use super::dense::{FROM_ENDS, Polynomial};
+use super::tolerances::{index_of_largest, largest};
+use super::vectors::{Vectorised, attempt_in};
+use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
+
+/// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
+/// for.
+pub type Bs5<const N: usize> = Explicit<BogackiShampine, N>;
+
+/// The method of order 7(5) for oscillating solutions of Calvo, Franco, Montijano and Randez: nine rates a step, none more
+/// for its dense output of order 5.
+pub type Cfmr7<const N: usize> = Explicit<CalvoFrancoMontijanoRandez, N>;
+
+/// The method of order 8(5,3) of Dormand and Prince: twelve rates a step, three more if its dense output of order 7 is
+/// asked for.
+pub type Dop853<const N: usize> = Explicit<DormandPrince, N>;
+
+/// The non-zero weights of a linear combination of stages: each with its stage, in ascending order.
+pub type Row = &'static [(usize, f64)];
+
+/// The coefficients of a method.
+///
+/// Stages are counted from 0, the rate at the start of the step. Stage [`Tableau::END`] is the rate at its end; what comes
+/// behind serves the dense output only.
+pub trait Tableau {
+    /// The method's name.
+    const NAME: &'static str;
+    /// The power of the step with which the norm of the error estimate falls.
+    const ERROR_ORDER: f64;
+    /// The stage at the end of the step.
+    const END: usize;
+    /// The stages' instants, as parts of the step.
+    const C: &'static [f64];
+    /// The states at which the stages are evaluated.
+    const A: &'static [Row];
+    /// The state at the end of the step.
+    const B: Row = Self::A[Self::END];
+    /// The difference to the embedded method; without the stage at the end of the step, which is known only after it.
+    const ERROR: Row;
+    /// A second embedded method of lower order; empty if there is none.
+    const SECOND: Row = &[];
+    /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one is
+    /// small; empty if there is none.
+    const LATE: Row = &[];
+    /// Whether the states are summed up with what rounding has kept from them, which pays at small tolerances.
+    const IS_COMPENSATED: bool = false;
+    /// The coefficients of the dense output from the fourth on: see `super::dense`.
+    const DENSE: &'static [Row];
+}
+
+/// The most stages of a method, and the most coefficients of its dense output.
+const STAGES: usize = 16;
+const COEFFICIENTS: usize = 7;
+
+/// The rates of all stages.
+type Stages<const N: usize> = [SVector<f64, N>; STAGES];
+
+/// The explicit method of tableau `T`.
+#[derive(Clone, Debug)]
+pub struct Explicit<T, const N: usize> {
+    /// The stages' rates.
+    k: Stages<N>,
+    /// The dense output's coefficients.
+    polynomial: Polynomial<N, COEFFICIENTS>,
+    /// What rounding has kept from the states.
+    carry: Carry<N>,
+    /// The machine's vectors.
+    arch: Arch,
+    tableau: PhantomData<T>,
+}
+
+impl<T, const N: usize> Explicit<T, N> {
+    /// The method, its work space empty.
+    #[must_use]
+    pub fn new() -> Self {
+        let k = [SVector::zeros(); STAGES];
+        Self { k, polynomial: Polynomial::zero(), carry: Carry::new(), arch: Arch::new(), tableau: PhantomData }
+    }
+}
+
+impl<T, const N: usize> Default for Explicit<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Entry `i` of the linear combination of the stages `k`, summed in the order of the stages.
+#[inline(always)]
+fn combine<const N: usize>(row: Row, k: &Stages<N>, i: usize) -> f64 {
+    // Adding to -0 changes nothing, not even the sign of a zero.
+    row.iter().fold(-0.0, |sum, (stage, weight)| sum + weight * k[*stage].data.0[0][i])
+}
+
+impl<T: Tableau, const N: usize> Explicit<T, N> {
+    /// Evaluates the stages from `first` up to `behind`. Their sums are written out, so that each finds its weights as
+    /// constants; the rate stands there once, which is less to compile and takes no longer.
+    #[inline(always)]
+    fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, first: usize, behind: usize) {
+        for stage in first..behind {
+            let mut x = start.x;
+            macro_rules! written_out {
+                ($($stage:literal)*) => {
+                    match stage {
+                        $( $stage if $stage < T::A.len() => self.add_stages::<$stage>(h, &mut x), )*
+                        _ => unreachable!("a tableau has fewer stages than there is room for"),
+                    }
+                };
+            }
+            written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
+            flow.rate(start.t + T::C[stage] * h, &x, &mut self.k[stage]);
+        }
+    }
+
+    /// Adds to the state `x` at the start of the step what leads to the one of a stage.
+    #[inline(always)]
+    fn add_stages<const STAGE: usize>(&self, h: f64, x: &mut SVector<f64, N>) {
+        for (i, x) in x.data.0[0].iter_mut().enumerate() {
+            *x += h * combine(T::A[STAGE], &self.k, i);
+        }
+    }
+
+    /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
+    fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
+        std::array::from_fn(|i| (combine(row, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs())
+    }
+
+    /// Writes the state at the end of the step and gives the norm of its error.
+    ///
+    /// The norm: h e1, with the largest e1 of the scaled differences to the embedded method. With a second one, whose
+    /// largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer, Norsett, Wanner, section II.10).
+    #[inline(always)]
+    fn finish_step(&mut self, start: &Point<N>, h: f64, scale: &Scale<N>, end: &mut SVector<f64, N>) -> f64 {
+        let (mut first, mut second) = ([0.0; N], [0.0; N]);
+        for i in 0..N {
+            let from = start.x.data.0[0][i];
+            let slope = combine(T::B, &self.k, i);
+            let change = h * slope;
+            let to = if T::IS_COMPENSATED { self.carry.add(i, from, change) } else { from + change };
+            let allowed = scale.allowed(i, from, to);
+            end.data.0[0][i] = to;
+            first[i] = (combine(T::ERROR, &self.k, i) / allowed).abs();
+            if !T::SECOND.is_empty() {
+                second[i] = ((slope - combine(T::SECOND, &self.k, i)) / allowed).abs();
+            }
+        }
+        let first = largest(&first);
+        if T::SECOND.is_empty() {
+            return h.abs() * first;
+        }
+        let second = largest(&second);
+        let both = first * first + 0.01 * second * second;
+        // Both differences vanish exactly at a state of rest.
+        if both == 0.0 { 0.0 } else { h.abs() * first * first / both.sqrt() }
+    }
+}
+
+impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
+    #[inline(always)]
+    fn attempt_inlined(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        self.k[0] = start.rate;
+        self.evaluate(flow, start, h, 1, T::END);
+        self.finish_step(start, h, scale, end)
+    }
+}
+
+impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
+    fn name(&self) -> &'static str {
+        T::NAME
+    }
+
+    fn control(&self) -> StepControl {
+        StepControl::Stabilised { order: T::ERROR_ORDER }
+    }
+
+    fn attempt(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
+        if T::LATE.is_empty() || norm > 1.0 {
+            return norm;
+        }
+        flow.rate(start.t + h, end, &mut self.k[T::END]);
+        let late = h.abs() * largest(&self.errors(T::LATE, start, scale, end));
+        if late > norm { late } else { norm }
+    }
+
+    fn advance(&mut self) {
+        self.carry.advance();
+    }
+
+    fn restart(&mut self) {
+        self.carry.restart();
+    }
+
+    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+        let errors = self.errors(T::ERROR, start, scale, end);
+        index_of_largest::<N>(|i| errors[i])
+    }
+
+    fn faulty_rate(&self) -> Option<(usize, f64)> {
+        self.k[1..T::END].iter().find_map(first_not_finite)
+    }
+
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+        self.k[T::END] = end.rate;
+        self.evaluate(flow, start, h, T::END + 1, T::A.len());
+        let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
+        self.polynomial.set(start, h, end, |m, i, _| h * combine(row(m), &self.k, i));
+    }
+
+    fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        const { assert!(FROM_ENDS + T::DENSE.len() <= COEFFICIENTS) };
+        self.polynomial.evaluate(FROM_ENDS + T::DENSE.len(), start, theta, x);
+    }
+}

@@ -1,0 +1,73 @@
+//! The Jacobian for a step, also where a law has an infinite derivative.
+//!
+//! In: a flow and a step from a point. Out: its derivatives there, in the order of its sparsity. Where one of them is no
+//! number, as that of a square root at zero, a difference over the step stands in for it. An implicit method only needs a
+//! Jacobian that makes its iteration converge; of a Rosenbrock method the error estimate shows what is amiss.
+
+use nalgebra::SVector;
+
+use crate::solve::integrator::{Flow, Point, Scale};
+
+/// The derivatives of a rate at one point.
+#[derive(Clone, Debug)]
+pub(in crate::solve::integrator) struct Jacobian<const N: usize> {
+    /// df/dx in the order of the flow's sparsity.
+    pub entries: Vec<f64>,
+    /// df/dt, per s.
+    pub slope: SVector<f64, N>,
+}
+
+impl<const N: usize> Jacobian<N> {
+    /// Nothing yet; room is made at the first evaluation.
+    pub fn new() -> Self {
+        Self { entries: Vec::new(), slope: SVector::zeros() }
+    }
+
+    /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known.
+    pub fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+        self.entries.resize(flow.sparsity().len(N), 0.0);
+        flow.jacobian(start.t, &start.x, &mut self.entries, &mut self.slope);
+        if !self.is_finite() {
+            self.replace_faulty(flow, start, h, scale);
+        }
+    }
+
+    /// Whether all derivatives are finite.
+    pub fn is_finite(&self) -> bool {
+        self.entries.iter().chain(self.slope.iter()).fold(true, |finite, value| finite & value.is_finite())
+    }
+
+    /// Replaces each derivative that is not finite by a difference: of a state over as much as it changes in the step, and at
+    /// least what its tolerance allows, of the time over the step.
+    fn replace_faulty(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+        let sparsity = flow.sparsity();
+        let mut rate = SVector::zeros();
+        for column in 0..N {
+            let change = h * start.rate[column];
+            let reach = change.abs().max(scale.allowed(column, start.x[column], 0.0)).copysign(change);
+            // The law may have no value on one side.
+            for by in [reach, -reach] {
+                let is_faulty = |k: &usize, entry: f64| sparsity.place(*k, N).1 == column && !entry.is_finite();
+                if !(0..self.entries.len()).any(|k| is_faulty(&k, self.entries[k])) {
+                    break;
+                }
+                let mut ahead = start.x;
+                ahead[column] += by;
+                flow.rate(start.t, &ahead, &mut rate);
+                let distance = ahead[column] - start.x[column];
+                for (k, entry) in self.entries.iter_mut().enumerate().filter(|(k, entry)| is_faulty(k, **entry)) {
+                    let row = sparsity.place(k, N).0;
+                    *entry = (rate[row] - start.rate[row]) / distance;
+                }
+            }
+        }
+        if self.slope.iter().any(|slope| !slope.is_finite()) {
+            flow.rate(start.t + h, &start.x, &mut rate);
+            for (slope, (after, before)) in self.slope.iter_mut().zip(rate.iter().zip(start.rate.iter())) {
+                if !slope.is_finite() {
+                    *slope = (after - before) / h;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Integration methods: how one step is made.
+//!
+//! In: a flow dx/dt = f(t, x) with its switches frozen, the step's start and its size. Out: the state at the end of the
+//! step with an error estimate, and on request the states in between. What steps are tried, accepted and recorded is the
+//! driver's business ([`crate::simulation`]).
+//!
+//! All methods calculate in `f64`. A method's coefficients are rounded to `f64`, so a wider number type would gain
+//! nothing. Every sum has a fixed order and nothing is fused: debug and release builds give the same bytes.
+
+mod any;
+mod auto;
+mod carry;
+mod choice;
+mod collocation;
+mod dense;
+mod explicit;
+mod gauss;
+mod hermite;
+mod linear;
+mod nystrom;
+mod radau;
+mod rk4;
+mod rosenbrock;
+mod taylor;
+mod tolerances;
+mod vectors;
+
+use nalgebra::SVector;
+
+use crate::model::capability::{Absent, Elimination, SecondOrder, Series};
+use crate::model::linear::{Sparsity, differences};
+pub use any::AnyMethod;
+pub use auto::{Auto, Change};
+pub use choice::{Integrator, UnknownIntegrator};
+pub use explicit::{
+    BogackiShampine, Bs5, CalvoFrancoMontijanoRandez, Cfmr7, Dop853, DormandPrince, Explicit, Row, Tableau,
+};
+pub use gauss::Gauss6;
+pub(crate) use hermite::hermite;
+pub use nystrom::Nystrom;
+pub use radau::{Radau, Radau5, Radau9};
+pub use rk4::Rk4;
+pub use rosenbrock::{Rodas5p, Ros2};
+pub use taylor::Taylor;
+pub(crate) use tolerances::rounding;
+pub use tolerances::{Absolute, Scale, Tolerances};
+
+/// A smooth flow: a system with its switches frozen. Only the rate has to be written; capabilities are those of a system
+/// without switches.
+pub trait Flow<const N: usize> {
+    /// Writes dx/dt at time `t` (s) and state `x` into `dx`.
+    fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>);
+
+    /// Where the Jacobian df/dx can differ from zero.
+    fn sparsity(&self) -> Sparsity {
+        Sparsity::Full
+    }
+
+    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`; by default by differences.
+    fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
+        differences(|t, x: &SVector<f64, N>, dx: &mut SVector<f64, N>| self.rate(t, x, dx), t, x, entries, slope);
+    }
+
+    /// The elimination made for the sparsity.
+    fn elimination(&self) -> Option<&impl Elimination<f64, N>> {
+        None::<&Absent>
+    }
+
+    /// The states of second order.
+    fn second_order(&self) -> Option<impl SecondOrder<f64, N, 0>> {
+        None::<Absent>
+    }
+
+    /// The Taylor series of the states.
+    fn series(&self) -> Option<impl Series<f64, N, 0>> {
+        None::<Absent>
+    }
+
+    /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small pivot.
+    fn count_factorisation(&self, _is_fallback: bool) {}
+}
+
+/// A point of a trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<const N: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// State.
+    pub x: SVector<f64, N>,
+    /// dx/dt at `t` and `x`.
+    pub rate: SVector<f64, N>,
+}
+
+impl<const N: usize> Point<N> {
+    /// The point at time `t` (s) and state `x`, its rate not yet known: zero.
+    #[must_use]
+    pub fn at(t: f64, x: SVector<f64, N>) -> Self {
+        Self { t, x, rate: SVector::zeros() }
+    }
+}
+
+/// How a method's steps are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepControl {
+    /// Steps of a fixed size.
+    Fixed {
+        /// The step, s.
+        step: f64,
+    },
+    /// Steps by the error estimate.
+    Adaptive {
+        /// The power of the step with which the error norm of a small step falls.
+        order: f64,
+    },
+    /// Steps by the error estimates of this step and the one before, which keeps them from swinging where stability limits
+    /// them.
+    Stabilised {
+        /// As above.
+        order: f64,
+    },
+    /// Steps by the error estimates of this step and the one before, kept where they would grow by less than a fifth, so
+    /// that one factorisation serves several of them.
+    Predictive {
+        /// As above.
+        order: f64,
+    },
+}
+
+impl StepControl {
+    /// The power of the step with which the error norm of a small step falls; none where steps are fixed.
+    #[must_use]
+    pub fn order(&self) -> Option<f64> {
+        match self {
+            Self::Fixed { .. } => None,
+            Self::Adaptive { order } | Self::Stabilised { order } | Self::Predictive { order } => Some(*order),
+        }
+    }
+}
+
+/// A one-step method with its work space. It holds the stages of the last attempt; a step allocates nothing.
+pub trait Method<const N: usize> {
+    /// The method's name.
+    fn name(&self) -> &'static str;
+
+    /// How its steps are to be chosen.
+    fn control(&self) -> StepControl;
+
+    /// Whether it needs the Taylor series of the system ([`System::series`](crate::system::System::series)).
+    fn needs_series(&self) -> bool {
+        false
+    }
+
+    /// Tries a step of size `h` (s) from `start`, whose rate is known, and writes the state reached into `end`.
+    ///
+    /// Gives the norm of the error estimate: up to 1 the step satisfies the tolerances. A fixed-step method gives 0. Not
+    /// a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
+    fn attempt(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64;
+
+    /// The last attempt was accepted: its end, perhaps projected, is the start of the next.
+    fn advance(&mut self) {}
+
+    /// What was known of the flow no longer holds: a run begins, or a switch has changed its branch.
+    fn restart(&mut self) {}
+
+    /// When another method took over, of a method that chooses between several.
+    fn changes(&self) -> &[Change] {
+        &[]
+    }
+
+    /// The state with the largest error in the last attempt; the first one where there is no estimate.
+    fn largest_error(&self, _start: &Point<N>, _scale: &Scale<N>, _end: &SVector<f64, N>) -> usize {
+        0
+    }
+
+    /// The first state whose rate was not finite in a stage of the last attempt, and that rate.
+    fn faulty_rate(&self) -> Option<(usize, f64)>;
+
+    /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
+    /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be nothing to
+    /// prepare.
+    fn prepare_dense(&mut self, _flow: &impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
+
+    /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
+    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>);
+}
+
+/// The first entry that is not finite, and its value.
+pub(crate) fn first_not_finite<const N: usize>(x: &SVector<f64, N>) -> Option<(usize, f64)> {
+    x.iter().copied().enumerate().find(|(_, value)| !value.is_finite())
+}
+
+/// Whether all entries are finite.
+pub(crate) fn is_finite<const N: usize>(x: &SVector<f64, N>) -> bool {
+    // What is finite times 0 is 0, all of whose bits are 0; anything else times 0 is no number. Vectors do this side by side.
+    x.data.0[0].iter().fold(0, |bits, value| bits | (value.abs() * 0.0).to_bits()) == 0
+}

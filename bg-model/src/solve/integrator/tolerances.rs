@@ -1,0 +1,133 @@
+//! Tolerances: how large the error of a step may be.
+//!
+//! In: what the user asks for. Out: the scale that every state's error is measured by, and norms by that scale.
+
+use nalgebra::SVector;
+
+use super::{Flow, Point};
+
+/// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerances<const N: usize> {
+    /// The part that grows with the state; from [`Tolerances::SMALLEST_RELATIVE`].
+    pub relative: f64,
+    /// The part that does not.
+    pub absolute: Absolute<N>,
+}
+
+/// An absolute tolerance, positive.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Absolute<const N: usize> {
+    /// The same for all states, each in its own unit.
+    Scalar(f64),
+    /// One for each state, in its unit.
+    PerState(SVector<f64, N>),
+}
+
+impl<const N: usize> Tolerances<N> {
+    /// The smallest relative tolerance that makes sense in `f64`: ten times the rounding unit, as in Hairer's programs.
+    pub const SMALLEST_RELATIVE: f64 = 10.0 * f64::EPSILON;
+
+    /// The same absolute tolerance for all states.
+    #[must_use]
+    pub const fn new(relative: f64, absolute: f64) -> Self {
+        Self { relative, absolute: Absolute::Scalar(absolute) }
+    }
+}
+
+impl<const N: usize> Default for Tolerances<N> {
+    /// 1e-8 relative and a tenth of it absolute, which serves best on the hacksaw (`docs/integrators.md`).
+    fn default() -> Self {
+        Self::new(1e-8, 1e-9)
+    }
+}
+
+/// Tolerances, one for each state: what errors are divided by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scale<const N: usize> {
+    /// The relative tolerance.
+    pub relative: f64,
+    /// The absolute tolerance of every state.
+    pub absolute: SVector<f64, N>,
+}
+
+impl<const N: usize> From<&Tolerances<N>> for Scale<N> {
+    fn from(tolerances: &Tolerances<N>) -> Self {
+        let absolute = match &tolerances.absolute {
+            Absolute::Scalar(absolute) => SVector::repeat(*absolute),
+            Absolute::PerState(absolute) => *absolute,
+        };
+        Self { relative: tolerances.relative, absolute }
+    }
+}
+
+impl<const N: usize> Scale<N> {
+    /// The allowed error of state `i` between the values `a` and `b`.
+    #[inline(always)]
+    #[must_use]
+    pub fn allowed(&self, i: usize, a: f64, b: f64) -> f64 {
+        let (a, b) = (a.abs(), b.abs());
+        self.absolute.data.0[0][i] + self.relative * if a > b { a } else { b }
+    }
+
+    /// The state at `start` whose rate is the largest part of its allowed error.
+    pub(crate) fn fastest(&self, start: &Point<N>) -> usize {
+        index_of_largest::<N>(|i| start.rate[i].abs() / self.allowed(i, start.x[i], 0.0))
+    }
+
+    /// The largest `|v_i|` divided by the allowed error at state `x`.
+    #[must_use]
+    pub fn norm(&self, v: &SVector<f64, N>, x: &SVector<f64, N>) -> f64 {
+        largest::<N>(&std::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i], 0.0)))
+    }
+}
+
+/// The largest of some numbers that are not negative; a NaN is passed over, it shows in the state itself.
+///
+/// The maximum norm, and not a mean, so that states which repeat others or stay constant do not change the steps.
+pub(super) fn largest<const N: usize>(of: &[f64; N]) -> f64 {
+    // Several maxima side by side, for none to wait for another; of all orders the result is the same.
+    const LANES: usize = 8;
+    let larger = |largest: f64, value: f64| if value > largest { value } else { largest };
+    let mut lanes = [0.0; LANES];
+    for (i, &value) in of.iter().enumerate() {
+        lanes[i % LANES] = larger(lanes[i % LANES], value);
+    }
+    lanes.into_iter().fold(0.0, larger)
+}
+
+/// The largest change of each rate at `start` where every state is rounded up or down, in some patterns: what rounding may add to the
+/// rates. Not negative. Takes four rates.
+pub(crate) fn rounding<const N: usize>(flow: &impl Flow<N>, start: &Point<N>) -> SVector<f64, N> {
+    const PATTERNS: usize = 4;
+    // Up or down without a pattern that states of one kind might share: the multiples of the golden ratio lie evenly.
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let mut largest = SVector::zeros();
+    for pattern in 0..PATTERNS {
+        let sign = |i: usize| if (GOLDEN * (PATTERNS * i + pattern) as f64).fract() < 0.5 { 1.0 } else { -1.0 };
+        let rounded = SVector::from_fn(|i, _| start.x[i] * (1.0 + sign(i) * f64::EPSILON));
+        let mut rate = SVector::zeros();
+        flow.rate(start.t, &rounded, &mut rate);
+        largest = (rate - start.rate).abs().sup(&largest);
+    }
+    largest
+}
+
+/// The index below `N` with the largest error, of equal ones the first.
+pub(super) fn index_of_largest<const N: usize>(error: impl Fn(usize) -> f64) -> usize {
+    (0..N).fold(0, |largest, i| if error(i) > error(largest) { i } else { largest })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_allowed_error_takes_the_larger_end() {
+        let scale =
+            Scale::from(&Tolerances::<2> { relative: 0.1, absolute: Absolute::PerState(SVector::from([1.0, 2.0])) });
+        assert_eq!(scale.allowed(0, -30.0, 20.0), 4.0);
+        assert_eq!(scale.allowed(1, 0.0, -20.0), 4.0);
+        assert_eq!(scale.norm(&SVector::from([4.0, 1.0]), &SVector::from([10.0, 20.0])), 2.0);
+    }
+}

@@ -1,0 +1,32 @@
+//! Observers: who is told what a run gives.
+
+use nalgebra::SVector;
+
+use crate::solve::statistics::Statistics;
+
+/// Is told what a run gives, in the order of time. Every method does nothing by default.
+pub trait Observer<const N: usize, const G: usize> {
+    /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there.
+    fn sample(&mut self, _t: f64, _x: &SVector<f64, N>, _negative: &[bool; G]) {}
+
+    /// Switch `switch` has changed its branch at `t` (s) and state `x`; `negative` are the branches after that.
+    fn event(&mut self, _t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {}
+
+    /// A step was accepted that leads to `t` (s), on the way to `t_end` (s).
+    fn step(&mut self, _t: f64, _t_end: f64, _statistics: &Statistics) {}
+}
+
+impl<const N: usize, const G: usize> Observer<N, G> for () {}
+
+/// An observer that hands every sample to a closure of time (s), state and branches.
+#[derive(Clone, Debug)]
+pub struct EachSample<F>(pub F);
+
+impl<F, const N: usize, const G: usize> Observer<N, G> for EachSample<F>
+where
+    F: FnMut(f64, &SVector<f64, N>, &[bool; G]),
+{
+    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+        (self.0)(t, x, negative);
+    }
+}

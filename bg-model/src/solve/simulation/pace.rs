@@ -1,0 +1,251 @@
+//! The pace: which step is tried next.
+//!
+//! In: the error norms of the steps tried. Out: the end of the next step. Source: the step-size control of Hairer's
+//! `dop853.f` with its estimate of the first step (function HINIT). Stabilised control: the proportional-integral one of
+//! K. Gustafsson (Hairer, Wanner II, section IV.2), with beta = 0.4 / order, without which a tenth of all steps is rejected
+//! where stability limits them. Predictive control: Gustafsson's for implicit methods, as in Hairer's `radau5.f` (Hairer,
+//! Wanner II, section IV.8, equation (8.25)).
+
+use nalgebra::SVector;
+
+use super::settings::{Settings, Span};
+use crate::solve::integrator::{Flow, Point, Scale, StepControl};
+
+/// The part of the step that would just satisfy the tolerances.
+const SAFETY: f64 = 0.9;
+/// Limits of the ratio of a step to the one before.
+const RATIO: [f64; 2] = [0.333, 6.0];
+/// The ratio after an attempt that gave no number.
+const RETREAT: f64 = 0.1;
+/// The ratio after an iteration that did not converge.
+const HALF: f64 = 0.5;
+/// A predictive control keeps a step that would grow by less than this ratio.
+const HOLD: f64 = 1.2;
+/// The part of a stabilised control that looks at the step before.
+const DAMPING: f64 = 0.4;
+/// The least logarithm of an error norm that is taken for that of the step before, which is that of 0.01.
+const LEAST: f64 = -2.0 * std::f64::consts::LN_10;
+/// A step that would leave less than this part of itself to the end is stretched to it.
+const STRETCH: f64 = 0.01;
+
+/// Chooses steps.
+#[derive(Debug)]
+pub(super) struct Pace {
+    control: StepControl,
+    span: Span,
+    largest: f64,
+    /// The step to try, s.
+    step: f64,
+    /// Whether the last attempt was rejected.
+    rejected: bool,
+    /// The last accepted step, s, and the logarithm of its error norm.
+    accepted: Option<(f64, f64)>,
+    /// Fixed steps end at t0 + grid * step.
+    grid: u64,
+    /// The longest of the next fixed step after one that was rejected, s.
+    short: f64,
+}
+
+impl Pace {
+    pub fn new<const N: usize>(control: StepControl, span: Span, settings: &Settings<N>) -> Self {
+        let asked = match control {
+            StepControl::Fixed { step } => step,
+            _ => settings.first_step.unwrap_or(span.t_end - span.t0),
+        };
+        let largest = settings.largest_step;
+        Self {
+            control,
+            span,
+            largest,
+            step: asked.min(largest),
+            rejected: false,
+            accepted: None,
+            grid: 1,
+            short: f64::INFINITY,
+        }
+    }
+
+    /// The size of the next step if nothing is in its way, s.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// The same, but not longer than the run, s: a step that was asked for may be, or be infinite.
+    pub fn reach(&self) -> f64 {
+        self.step.min(self.span.length())
+    }
+
+    /// Whether steps are chosen by the error.
+    pub fn is_adaptive(&self) -> bool {
+        self.control.order().is_some()
+    }
+
+    /// Steps are chosen as the method wants it from now on.
+    pub fn follow(&mut self, control: StepControl) {
+        self.control = control;
+    }
+
+    /// Takes an estimate of the first step, s; one that rounding does not allow is raised, and left to the error estimate.
+    pub fn begin(&mut self, step: f64) {
+        self.step = step.max(2.0 * self.least(self.span.t0)).min(self.largest);
+    }
+
+    /// The end of the next step from `t` (s).
+    pub fn next_end(&mut self, t: f64) -> f64 {
+        let t_end = self.span.t_end;
+        if self.is_adaptive() {
+            let stretched = t + (1.0 + STRETCH) * self.step >= t_end;
+            return if stretched && t_end - t <= (1.0 + 1e-9) * self.largest { t_end } else { t + self.step };
+        }
+        let end_of = |grid: u64| self.span.t0 + grid as f64 * self.step;
+        while end_of(self.grid) <= t {
+            self.grid += 1;
+        }
+        // A sliver that rounding leaves at the end belongs to the last step; a billionth of the step is no error.
+        let end = if end_of(self.grid) >= t_end - 1e-9 * self.step { t_end } else { end_of(self.grid) };
+        end.min(t + self.short)
+    }
+
+    /// The step `h` (s) to `t` (s) satisfied the tolerances with the error norm `error`. The next one is at least tried with
+    /// a size that rounding allows.
+    pub fn accept(&mut self, t: f64, h: f64, error: f64) {
+        if self.is_adaptive() {
+            let next = h * self.ratio_after(h, error);
+            let next = if self.rejected { next.min(h) } else { next };
+            self.step = next.max(2.0 * self.least(t)).min(self.largest);
+        }
+        self.short = f64::INFINITY;
+        self.rejected = false;
+    }
+
+    /// The step `h` (s) did not satisfy the tolerances; `error` is not a number where the step gave none, infinite where
+    /// an iteration did not converge.
+    pub fn reject(&mut self, h: f64, error: f64) {
+        self.rejected = true;
+        let next = h * match error {
+            _ if error.is_nan() => RETREAT,
+            f64::INFINITY => HALF,
+            _ => self.ratio(libm::log(error)).min(SAFETY),
+        };
+        if self.is_adaptive() {
+            self.step = next;
+        } else {
+            self.short = next;
+        }
+    }
+
+    /// Whether the step to try from `t` (s) is too small to be told apart from rounding.
+    pub fn is_lost(&self, t: f64) -> bool {
+        self.step.min(self.short) <= self.least(t)
+    }
+
+    /// The largest step from `t` (s) that is lost in rounding, s.
+    fn least(&self, t: f64) -> f64 {
+        let span = self.span.t_end - self.span.t0;
+        16.0 * f64::EPSILON * t.abs().max(f64::EPSILON * span)
+    }
+
+    /// The ratio after a step whose error norm has this logarithm: an exponential, where powers of the norms of this step and the
+    /// one before would take a tenth of the hacksaw's time.
+    fn ratio(&self, logarithm: f64) -> f64 {
+        let Some(order) = self.control.order() else { return 1.0 };
+        (SAFETY * libm::exp(-logarithm / order)).clamp(RATIO[0], RATIO[1])
+    }
+
+    /// The ratio after the accepted step `h` (s).
+    fn ratio_after(&mut self, h: f64, error: f64) -> f64 {
+        let now = libm::log(error);
+        match self.control {
+            StepControl::Fixed { .. } | StepControl::Adaptive { .. } => self.ratio(now),
+            StepControl::Stabilised { .. } => {
+                let before = self.accept_norm(h, now).map_or(0.0, |(_, before)| before);
+                self.ratio((1.0 - 0.75 * DAMPING) * now - DAMPING * before)
+            }
+            StepControl::Predictive { .. } => {
+                let ratio = self.ratio(now);
+                let ratio = match self.accept_norm(h, now) {
+                    Some((h_before, before)) => ratio.min(h / h_before * self.ratio(2.0 * now - before)),
+                    None => ratio,
+                };
+                if (1.0..=HOLD).contains(&ratio) { 1.0 } else { ratio.max(RATIO[0]) }
+            }
+        }
+    }
+
+    /// Notes the step `h` (s) and the logarithm of its error norm; gives those of the step before.
+    fn accept_norm(&mut self, h: f64, logarithm: f64) -> Option<(f64, f64)> {
+        self.accepted.replace((h, if logarithm > LEAST { logarithm } else { LEAST }))
+    }
+}
+
+/// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.
+pub(super) fn first_step<const N: usize>(
+    flow: &impl Flow<N>,
+    start: &Point<N>,
+    scale: &Scale<N>,
+    order: f64,
+    longest: f64,
+) -> f64 {
+    // The factors are those of HINIT; where it takes 1e-6 for a state at rest, this part of the longest step is taken.
+    const AT_REST: f64 = 1e-6;
+    let rates = scale.norm(&start.rate, &start.x);
+    let states = scale.norm(&start.x, &start.x);
+    let is_at_rest = rates <= 1e-5 || states <= 1e-5;
+    let guess = if is_at_rest { AT_REST * longest } else { states / rates * 0.01 }.min(longest);
+    let ahead = start.x + start.rate * guess;
+    let mut rate: SVector<f64, N> = SVector::zeros();
+    flow.rate(start.t + guess, &ahead, &mut rate);
+    let bend = scale.norm(&(rate - start.rate), &start.x) / guess;
+    let steepest = bend.max(rates);
+    let step =
+        if steepest <= 1e-15 { (AT_REST * longest).max(guess * 1e-3) } else { libm::pow(0.01 / steepest, 1.0 / order) };
+    let step = step.min(100.0 * guess).min(longest);
+    if step > 0.0 { step } else { AT_REST * longest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pace of a run of 100 s from a first step of 1 s.
+    fn pace(control: StepControl, largest_step: f64) -> Pace {
+        let settings = Settings::<1> { first_step: Some(1.0), largest_step, ..Settings::default() };
+        Pace::new(control, Span { t0: 0.0, t_end: 100.0 }, &settings)
+    }
+
+    /// `dop853.f` and `radau5.f`: the step after a rejected one is not longer than it.
+    #[test]
+    fn a_step_does_not_grow_after_a_rejection() {
+        let order = 5.0;
+        let controls =
+            [StepControl::Adaptive { order }, StepControl::Stabilised { order }, StepControl::Predictive { order }];
+        for control in controls {
+            let mut pace = pace(control, f64::INFINITY);
+            pace.reject(1.0, 32.0);
+            let h = pace.step();
+            assert!((h - 0.45).abs() < 1e-15, "{control:?}: {h}");
+            pace.accept(h, h, 1e-12);
+            assert_eq!(pace.step(), h, "{control:?}");
+            pace.accept(2.0 * h, h, 1e-12);
+            assert!(pace.step() > 1.5 * h, "{control:?}: {}", pace.step());
+        }
+    }
+
+    /// A rest of up to a hundredth of a step is added to the last one, but not beyond the largest step.
+    #[test]
+    fn the_last_step_is_stretched_up_to_the_largest() {
+        let control = StepControl::Adaptive { order: 5.0 };
+        assert_eq!(pace(control, f64::INFINITY).next_end(98.995), 100.0);
+        assert_eq!(pace(control, 1.0).next_end(98.995), 99.995);
+        assert_eq!(pace(control, 1.0).next_end(99.0), 100.0);
+        assert_eq!(pace(control, 1.01).next_end(98.995), 100.0);
+    }
+
+    #[test]
+    fn a_first_step_beyond_the_end_reaches_as_far_as_the_run() {
+        let settings = Settings::<1> { first_step: Some(f64::INFINITY), ..Settings::default() };
+        let span = Span { t0: 1.0, t_end: 3.0 };
+        let mut pace = Pace::new(StepControl::Adaptive { order: 5.0 }, span, &settings);
+        assert_eq!((pace.reach(), pace.next_end(1.0)), (2.0, 3.0));
+    }
+}

@@ -1,0 +1,139 @@
+//! One step of a system by a method: the attempt, the projection, the rate at its end and the states in between.
+
+mod frozen;
+
+use nalgebra::SVector;
+
+use crate::model::origin::Origin;
+use crate::model::system::System;
+use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_finite};
+use crate::solve::statistics::Statistics;
+use frozen::Frozen;
+
+/// A system, a method and the step between two points that is being made.
+#[derive(Debug)]
+pub(crate) struct Stepper<'a, Sys, M, const N: usize, const G: usize> {
+    pub system: &'a Sys,
+    pub method: &'a mut M,
+    pub scale: Scale<N>,
+    /// The branches that hold during the step.
+    pub negative: [bool; G],
+    pub statistics: Statistics,
+    /// Where the step starts; the rate is known.
+    pub start: Point<N>,
+    /// Where the last attempt led.
+    pub end: Point<N>,
+    /// The size of the last attempt, s. More precise than the difference of the two times.
+    pub h: f64,
+    dense_is_ready: bool,
+}
+
+impl<'a, Sys, M, const N: usize, const G: usize> Stepper<'a, Sys, M, N, G>
+where
+    Sys: System<f64, N, G>,
+    M: Method<N>,
+{
+    pub fn new(system: &'a Sys, method: &'a mut M, scale: Scale<N>, start: Point<N>) -> Self {
+        let statistics = Statistics::default();
+        let negative = [false; G];
+        Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false }
+    }
+
+    /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
+    pub fn split(&mut self) -> (&mut M, Frozen<'_, Sys, G>, &Point<N>, &mut Point<N>, &Scale<N>) {
+        let flow = Frozen::new(self.system, &self.negative, &mut self.statistics);
+        (self.method, flow, &self.start, &mut self.end, &self.scale)
+    }
+
+    /// Tries a step of size `h` (s); gives its error norm.
+    pub fn attempt(&mut self, h: f64) -> f64 {
+        self.h = h;
+        self.dense_is_ready = false;
+        let (method, flow, start, end, scale) = self.split();
+        end.t = start.t + h;
+        method.attempt(&flow, start, h, scale, &mut end.x)
+    }
+
+    /// Moves the end of the step back onto the invariants.
+    pub fn project(&mut self) {
+        self.system.project(&mut self.end.x);
+    }
+
+    /// Evaluates the rate at the end of the step.
+    pub fn evaluate_end(&mut self) {
+        let (_, flow, _, end, _) = self.split();
+        let Point { t, x, rate } = end;
+        flow.rate(*t, x, rate);
+    }
+
+    /// Evaluates the rate at the start of the step, whose branches may be new.
+    pub fn evaluate_start(&mut self) {
+        self.method.restart();
+        self.statistics.rate_evaluations += 1;
+        let Point { t, x, rate } = &mut self.start;
+        self.system.rate(*t, x, &self.negative, rate);
+    }
+
+    /// The first state whose rate has a derivative at the start of the step that is not finite, and that derivative; none
+    /// where no derivative has been asked for.
+    pub fn faulty_derivative(&self) -> Option<(usize, f64)> {
+        let mut statistics = self.statistics;
+        if statistics.jacobian_evaluations == 0 {
+            return None;
+        }
+        let flow = Frozen::new(self.system, &self.negative, &mut statistics);
+        let sparsity = flow.sparsity();
+        let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], SVector::zeros());
+        flow.jacobian(self.start.t, &self.start.x, &mut entries, &mut slope);
+        let is_faulty = |(_, value): &(usize, f64)| !value.is_finite();
+        let entry = entries.into_iter().enumerate().find(is_faulty).map(|(k, value)| (sparsity.place(k, N).0, value));
+        entry.or_else(|| first_not_finite(&slope))
+    }
+
+    /// The input or element that gives a number that is not finite at the start of the last attempt or on the way to its end, or for
+    /// `at_least` (s), as far as the system can tell: the way is that of the rate at the start.
+    pub fn origin(&self, at_least: f64) -> Option<Origin> {
+        const PARTS: u32 = 16;
+        let Point { t, x, rate } = self.start;
+        let way = self.h.max(at_least);
+        let ahead = (1..=PARTS).map(|part| way * f64::from(part) / f64::from(PARTS));
+        let on_the_way = ahead.map(|ahead| (t + ahead, x + rate * ahead));
+        let mut points = std::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
+        points.find_map(|(t, x)| is_finite(&x).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())
+    }
+
+    /// The end of the step becomes the start of the next one.
+    pub fn advance(&mut self) {
+        self.method.advance();
+        self.start = self.end;
+    }
+
+    /// The guards at time `t` (s) and state `x`.
+    pub fn guards(&mut self, t: f64, x: &SVector<f64, N>) -> SVector<f64, G> {
+        let mut guards = SVector::zeros();
+        self.statistics.guard_evaluations += 1;
+        self.system.guards(t, x, &self.negative, &mut guards);
+        guards
+    }
+
+    /// The state at the part `theta` of the step, not projected. The rates at both ends must be known.
+    pub fn dense(&mut self, theta: f64) -> SVector<f64, N> {
+        if !self.dense_is_ready {
+            let before = self.statistics.rate_evaluations;
+            let h = self.h;
+            let (method, flow, start, end, _) = self.split();
+            method.prepare_dense(&flow, start, h, end);
+            self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
+            self.dense_is_ready = true;
+        }
+        let mut x = SVector::zeros();
+        self.method.dense(&self.start, self.h, &self.end, theta, &mut x);
+        x
+    }
+
+    /// The guards at the part `theta` of the step, by the dense output.
+    pub fn dense_guards(&mut self, theta: f64) -> SVector<f64, G> {
+        let x = self.dense(theta);
+        self.guards(self.start.t + theta * self.h, &x)
+    }
+}
