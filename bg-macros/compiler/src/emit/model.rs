@@ -330,7 +330,9 @@ impl Emission<'_> {
                 let index = Literal::usize_unsuffixed(index as usize);
                 return quote!(u[#index]);
             }
-            Symbol::Atom(index) => format_ident!("atom_{index}"),
+            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Loop => {
+                unreachable!("a model's equations contain no {symbol:?}")
+            }
             Symbol::Slope(index) => format_ident!("slope_{}", self.model.equations.inputs[index as usize].name.text),
             Symbol::Rate(index) => {
                 let index = Literal::usize_unsuffixed(index as usize);

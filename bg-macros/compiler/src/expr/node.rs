@@ -19,8 +19,16 @@ pub enum Symbol {
     Input(u32),
     /// A start value that the assembly solves for.
     Unknown(u32),
-    /// An opaque quantity, used in proofs.
-    Atom(u32),
+    /// A component of the variable of a law, of which the law is to be linear.
+    Law(u32),
+    /// A component of a storage's own state, in calculations about its law.
+    Storage(u32),
+    /// A component of the flow of a junction, in proofs about poses.
+    Flow(u32),
+    /// A component of the reaction of a residual sink.
+    Multiplier(u32),
+    /// A variable of an algebraic loop, which has no value.
+    Loop,
     /// The derivative of an input with respect to time.
     Slope(u32),
     /// The rate of a state.

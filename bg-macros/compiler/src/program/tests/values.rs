@@ -147,7 +147,7 @@ fn random_graphs() {
                 parameters: &parameters,
                 inputs: &inputs,
                 unknowns: &unknowns,
-                atoms: &[],
+                storage: &[],
                 slopes: &[],
                 rates: &[],
                 negative: &negative,

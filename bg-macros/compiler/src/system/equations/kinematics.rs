@@ -1,6 +1,6 @@
 //! The proof that a displacement given by the poses is the integral of its bond's flow.
 //!
-//! In: C elements with `at E`. Out: nothing, or a fault. Method: the flows of the tracked junctions become atoms; then
+//! In: C elements with `at E`. Out: nothing, or a fault. Method: the flows of the tracked junctions become symbols; then
 //! dE/dt by the chain rule and the bond's flow are polynomials in them and in the poses, compared term by term.
 
 use std::collections::BTreeMap;
@@ -11,9 +11,6 @@ use super::value::Value;
 use crate::expr::{Symbol, derivative, same_polynomial};
 use crate::fault::Fault;
 use crate::graph::{NodeId, Storage};
-
-/// Atoms that stand for flows start here, apart from those of laws and states.
-const FLOW_ATOMS: u32 = 64;
 
 impl Signals<'_> {
     /// Proves every given displacement.
@@ -26,11 +23,11 @@ impl Signals<'_> {
         if nodes.is_empty() {
             return;
         }
-        let mut next = FLOW_ATOMS;
+        let mut next = 0;
         for track in &graph.tracks {
             if !self.given_flows.contains_key(&track.junction) {
-                let atoms = (next..next + 3).map(|k| self.pool.symbol(Symbol::Atom(k))).collect();
-                self.given_flows.insert(track.junction, Value(atoms));
+                let flow = (next..next + 3).map(|k| self.pool.symbol(Symbol::Flow(k))).collect();
+                self.given_flows.insert(track.junction, Value(flow));
                 next += 3;
             }
         }
@@ -42,7 +39,7 @@ impl Signals<'_> {
         self.forget();
     }
 
-    /// The rates of all poses in terms of the atoms.
+    /// The rates of all poses in terms of these flows.
     fn track_seeds(&mut self) -> BTreeMap<Symbol, crate::expr::Id> {
         let mut seeds = BTreeMap::new();
         for (storage, first, _) in self.layout.clone() {

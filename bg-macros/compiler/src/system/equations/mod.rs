@@ -99,7 +99,7 @@ pub struct State {
 pub struct Reaction {
     /// What it holds: the flow to be kept at zero.
     pub slip: Slip,
-    /// The effort, an atom.
+    /// The effort.
     pub multiplier: Symbol,
     /// Its integral as the poses have it, where they do.
     pub gap: Option<Id>,
@@ -164,7 +164,11 @@ impl StateEquations {
             Symbol::Parameter(index) => self.parameters[index as usize].name.text.clone(),
             Symbol::Input(index) => self.inputs[index as usize].name.text.clone(),
             Symbol::Unknown(index) => format!("unknown_{}", index + 1),
-            Symbol::Atom(index) => format!("atom_{index}"),
+            Symbol::Law(index) => format!("law_{index}"),
+            Symbol::Storage(index) => format!("storage_{index}"),
+            Symbol::Flow(index) => format!("flow_{index}"),
+            Symbol::Multiplier(index) => format!("multiplier_{index}"),
+            Symbol::Loop => "loop".to_owned(),
             Symbol::Slope(index) => format!("{}'", self.inputs[index as usize].name.text),
             Symbol::Rate(index) => format!("{}'", self.states[index as usize].name),
         }

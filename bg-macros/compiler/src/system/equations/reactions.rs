@@ -1,6 +1,6 @@
 //! Reactions of rigid joints: efforts that are not given but keep a flow at zero.
 //!
-//! In: residual sinks. Out: [`Reaction`]s over atoms, to be solved for where the rates are known.
+//! In: residual sinks. Out: [`Reaction`]s over multipliers, to be solved for where the rates are known.
 //! Source: the residual sink of Borutzky, Bond Graph Methodology (2010), section 4.
 
 use super::signals::Signals;
@@ -8,9 +8,6 @@ use super::value::Value;
 use super::{Reaction, Slip};
 use crate::expr::{Id, Symbol};
 use crate::graph::NodeId;
-
-/// Multipliers are the atoms from here on, apart from those of proofs.
-pub(super) const MULTIPLIERS: u32 = 1 << 16;
 
 impl Signals<'_> {
     /// The unknown effort of a residual sink.
@@ -21,8 +18,7 @@ impl Signals<'_> {
     }
 
     fn multipliers(&self, node: NodeId, components: usize) -> impl Iterator<Item = Symbol> + use<> {
-        let first = MULTIPLIERS + self.reactions[&node];
-        (first..).take(components).map(Symbol::Atom)
+        (self.reactions[&node]..).take(components).map(Symbol::Multiplier)
     }
 
     /// Every residual sink's multipliers with the flows they keep at zero.

@@ -15,9 +15,6 @@ use crate::graph::causality::{CausalGraph, End};
 use crate::graph::{BondGraph, BondId, NodeId, NodeKind, Shape, Storage};
 use crate::source::ast::{ElementKind, TrackKind};
 
-/// Stands for a variable of an algebraic loop, so that what else is wrong can be found.
-const LOOP: Symbol = Symbol::Atom(u32::MAX);
-
 /// A memo of bond variables and lets.
 #[derive(Clone, Debug)]
 pub(super) struct Memo {
@@ -223,7 +220,8 @@ impl<'a> Signals<'a> {
             Entry::Entered => {
                 self.loops.need(own, by);
                 self.loops.circle(own, self.circle(variable, bond));
-                let unknown = self.pool.symbol(LOOP);
+                // So that what else is wrong can be found.
+                let unknown = self.pool.symbol(Symbol::Loop);
                 return Value(vec![unknown; self.graph.bond(bond).cardinality]);
             }
             Entry::Open => {}
@@ -266,7 +264,7 @@ impl<'a> Signals<'a> {
 
     /// Whether a value needs one of an algebraic loop, which is not known.
     pub(super) fn is_in_a_loop(&self, value: &Value) -> bool {
-        self.pool.symbols(&value.0).contains(&LOOP)
+        self.pool.symbols(&value.0).contains(&Symbol::Loop)
     }
 
     /// Forgets what bonds carry, and the loops found in that: they are found again.

@@ -161,7 +161,7 @@ fn outputs(of: &StateEquations, parameters: &[f64], unknowns: &[f64]) -> Vec<Vec
                 parameters,
                 inputs: &inputs,
                 unknowns,
-                atoms: &[],
+                storage: &[],
                 slopes: &[],
                 rates: &[],
                 negative,
