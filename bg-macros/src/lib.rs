@@ -105,6 +105,7 @@ use proc_macro::TokenStream;
 /// ```text
 /// element = KIND NAME ["(" ["effort" | "flow"] NAME ")"] "=" EXPRESSION { clause } ";"
 /// clause  = "in" EXPRESSION | "at" EXPRESSION | "start" EXPRESSION | "energy" EXPRESSION
+///         | "of" JOINT [("along" | "about") AXIS]
 /// ```
 ///
 /// Without a variable the law is linear in the expression. With one, `R bearing(w) = ...`, the expression is the law
@@ -136,6 +137,9 @@ use proc_macro::TokenStream;
 ///   determine and that is to stay zero ([rigid joints](#rigid-joints)). FLOW may depend on parameters,
 ///   states and `t`, not on an input, whose rate is not known. The power of a sink whose FLOW is not 0 counts as
 ///   supplied.
+/// - `of JOINT` (only rSe): the sink is part of this joint, whose gaps `close` states; messages name the joint, and
+///   `along x` or `about x` the direction of a scalar sink. A sink of no joint is named by itself, and its GAP is closed
+///   at the start.
 /// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
 /// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
 ///   may be left out; the energy is then 0 at state 0. A given one is held against the law: its derivative must be the

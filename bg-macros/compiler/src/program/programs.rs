@@ -88,7 +88,8 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let starting = starting(equations);
     let fallible = roots(&equations.fallible, |law| law.value);
     let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
-    let required = ["required", "required_at_start"].map(|name| required(equations, name));
+    let required = [("required", false), ("required_at_start", true)]
+        .map(|(name, is_of_start)| required(equations, name, is_of_start));
     Programs { running, jacobian, second_order, holding, starting, required, not_finite }
 }
 
@@ -159,9 +160,9 @@ fn starting(equations: &mut StateEquations) -> Starting {
 }
 
 /// In the pool of the requirements.
-fn required(equations: &mut StateEquations, name: &str) -> Option<Program<1>> {
+fn required(equations: &mut StateEquations, name: &str, is_of_start: bool) -> Option<Program<1>> {
     let requirements = &mut equations.requirements;
-    let values: Vec<Id> = requirements.of(name == "required_at_start").map(|requirement| requirement.value).collect();
+    let values: Vec<Id> = requirements.of(is_of_start).map(|requirement| requirement.value).collect();
     (!values.is_empty()).then(|| alone(&mut requirements.pool, name, &values))
 }
 

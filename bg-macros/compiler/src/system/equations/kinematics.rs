@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::EquationFault;
 use super::signals::Signals;
 use super::value::Value;
-use crate::expr::{Symbol, derivative, same_polynomial};
+use crate::expr::{Id, Symbol, derivative, same_polynomial};
 use crate::fault::Fault;
 use crate::graph::{NodeId, Storage};
 
@@ -32,15 +32,14 @@ impl Signals<'_> {
             }
         }
         let seeds = self.track_seeds();
-        for node in nodes {
-            self.prove(node, &seeds);
-        }
+        let faults: Vec<Fault> = nodes.into_iter().filter_map(|node| self.prove(node, &seeds)).collect();
         self.given_flows.clear();
         self.forget();
+        self.faults = faults;
     }
 
     /// The rates of all poses in terms of these flows.
-    fn track_seeds(&mut self) -> BTreeMap<Symbol, crate::expr::Id> {
+    fn track_seeds(&mut self) -> BTreeMap<Symbol, Id> {
         let mut seeds = BTreeMap::new();
         for (storage, first, _) in self.layout.clone() {
             let Storage::Track(index) = storage else { continue };
@@ -53,18 +52,17 @@ impl Signals<'_> {
         seeds
     }
 
-    fn prove(&mut self, node: NodeId, seeds: &BTreeMap<Symbol, crate::expr::Id>) {
+    fn prove(&mut self, node: NodeId, seeds: &BTreeMap<Symbol, Id>) -> Option<Fault> {
         let graph = self.graph;
-        let Some(term) = graph.element(node).and_then(|element| element.displacement.as_ref()) else { return };
+        let term = graph.element(node)?.displacement.as_ref()?;
         let displacement = self.evaluate(term, None);
         let bond = graph.node(node).bonds[0];
         let flow = self.flow(bond);
         let flow = flow.scale(&mut self.pool, graph.sign(bond, node));
         let rates = derivative(&mut self.pool, &displacement.0, seeds);
         let proved = rates.iter().zip(&flow.0).all(|(&rate, &flow)| same_polynomial(&mut self.pool, rate, flow));
-        if !proved && !self.is_in_a_loop(&flow) {
-            let name = graph.node(node).name.text.clone();
-            self.faults.push(Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name }));
-        }
+        let name = graph.node(node).name.text.clone();
+        let is_wrong = !proved && !self.is_in_a_loop(&flow);
+        is_wrong.then(|| Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name }))
     }
 }

@@ -43,6 +43,8 @@ pub struct StateEquations {
     pub parameters: Vec<Parameter>,
     /// Inputs; `Symbol::Input` counts them.
     pub inputs: Vec<Input>,
+    /// The names of the positions and orientations that origins count.
+    pub tracks: Vec<String>,
     /// States; `Symbol::State` counts them.
     pub states: Vec<State>,
     /// First guess of each unknown of the assembly, from parameters; `Symbol::Unknown` counts them.

@@ -36,7 +36,7 @@ impl Signals<'_> {
             let gap: Option<Vec<Id>> = element.displacement.as_ref().map(|gap| self.evaluate(gap, None).0);
             let multipliers = self.multipliers(node, excess.0.len());
             for (k, (multiplier, &flow)) in multipliers.zip(&excess.0).enumerate() {
-                let joint = self.joint_of(node).to_owned();
+                let joint = self.holder(node).to_owned();
                 let (direction, unit) = (self.direction_of(node, k), graph.bond(bond).flow_unit());
                 let gap = gap.as_ref().map(|gap| gap[k]);
                 reactions.push(Reaction { slip: Slip { joint, direction, unit, flow }, multiplier, gap });

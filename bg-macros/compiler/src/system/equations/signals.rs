@@ -13,7 +13,7 @@ use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::causality::{CausalGraph, End};
 use crate::graph::{BondGraph, BondId, NodeId, NodeKind, Shape, Storage};
-use crate::source::ast::{ElementKind, TrackKind};
+use crate::source::ast::{ElementKind, Role, TrackKind};
 
 /// A memo of bond variables and lets.
 #[derive(Clone, Debug)]
@@ -38,13 +38,6 @@ impl Memo {
     }
 }
 
-/// Which of a bond's two variables.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Variable {
-    Effort,
-    Flow,
-}
-
 /// The derivation in progress.
 pub(super) struct Signals<'a> {
     pub(super) causal: &'a CausalGraph,
@@ -65,7 +58,7 @@ pub(super) struct Signals<'a> {
     pub(super) fallible: Vec<FallibleLaw>,
     /// What is known of the lets.
     pub(super) natures: Vec<Option<Nature>>,
-    path: Vec<(Variable, BondId)>,
+    path: Vec<(Role, BondId)>,
     loops: Loops,
     pub(super) faults: Vec<Fault>,
 }
@@ -123,6 +116,7 @@ impl<'a> Signals<'a> {
             pool: self.pool,
             parameters: self.graph.parameters.clone(),
             inputs: self.graph.inputs.clone(),
+            tracks: self.graph.tracks.iter().map(|track| track.name.text.clone()).collect(),
             states: self.states,
             guesses,
             speeds,
@@ -193,23 +187,23 @@ impl<'a> Signals<'a> {
 
     /// The effort of a bond.
     pub(super) fn effort(&mut self, bond: BondId) -> Value {
-        self.variable(Variable::Effort, bond)
+        self.variable(Role::Effort, bond)
     }
 
     /// The flow of a bond.
     pub(super) fn flow(&mut self, bond: BondId) -> Value {
-        self.variable(Variable::Flow, bond)
+        self.variable(Role::Flow, bond)
     }
 
-    fn entry(&mut self, variable: Variable, bond: BondId) -> &mut Entry {
+    fn entry(&mut self, variable: Role, bond: BondId) -> &mut Entry {
         match variable {
-            Variable::Effort => &mut self.memo.efforts[bond.0],
-            Variable::Flow => &mut self.memo.flows[bond.0],
+            Role::Effort => &mut self.memo.efforts[bond.0],
+            Role::Flow => &mut self.memo.flows[bond.0],
         }
     }
 
-    fn variable(&mut self, variable: Variable, bond: BondId) -> Value {
-        let number = |(variable, bond): (Variable, BondId)| 2 * bond.0 + usize::from(variable == Variable::Flow);
+    fn variable(&mut self, variable: Role, bond: BondId) -> Value {
+        let number = |(variable, bond): (Role, BondId)| 2 * bond.0 + usize::from(variable == Role::Flow);
         let own = number((variable, bond));
         let by = self.path.last().copied().map(number);
         match self.entry(variable, bond).clone() {
@@ -236,8 +230,8 @@ impl<'a> Signals<'a> {
         };
         let owner = std::mem::take(&mut self.owner);
         let value = match variable {
-            Variable::Effort => self.given_effort(other, bond),
-            Variable::Flow => self.given_flow(stroke_node, bond),
+            Role::Effort => self.given_effort(other, bond),
+            Role::Flow => self.given_flow(stroke_node, bond),
         };
         self.owner = owner;
         self.path.pop();
@@ -247,7 +241,7 @@ impl<'a> Signals<'a> {
     }
 
     /// The loop that ends where it began: at this variable.
-    fn circle(&self, variable: Variable, bond: BondId) -> Fault {
+    fn circle(&self, variable: Role, bond: BondId) -> Fault {
         let start = self.path.iter().position(|&step| step == (variable, bond)).unwrap_or(0);
         let mut nodes: Vec<NodeId> = Vec::new();
         for &(_, bond) in &self.path[start..] {
@@ -267,11 +261,11 @@ impl<'a> Signals<'a> {
         self.pool.symbols(&value.0).contains(&Symbol::Loop)
     }
 
-    /// Forgets what bonds carry, and the loops found in that: they are found again.
+    /// Forgets what bonds carry and the faults found in that: they are found again.
     pub(super) fn forget(&mut self) {
         self.memo = Memo::new(self.graph);
         self.loops = Loops::new(2 * self.graph.bonds.len());
-        self.faults.retain(|fault| fault.code != "BG0501");
+        self.faults.clear();
     }
 
     /// The effort that a node gives on one of its bonds.
@@ -281,7 +275,7 @@ impl<'a> Signals<'a> {
                 Some(strong) => self.effort(strong),
                 None => Value::zero(&mut self.pool, self.graph.bond(bond).cardinality),
             },
-            NodeKind::One => self.balance(node, bond, Variable::Effort),
+            NodeKind::One => self.balance(node, bond, Role::Effort),
             NodeKind::Element(element) => {
                 let effort = self.element_effort(node, element, bond);
                 self.note_fallible(node, element, &effort);
@@ -294,7 +288,7 @@ impl<'a> Signals<'a> {
     fn given_flow(&mut self, node: NodeId, bond: BondId) -> Value {
         match &self.graph.node(node).kind {
             NodeKind::One => self.junction_flow(node),
-            NodeKind::Zero => self.balance(node, bond, Variable::Flow),
+            NodeKind::Zero => self.balance(node, bond, Role::Flow),
             NodeKind::Element(element) => {
                 let flow = self.element_flow(node, element, bond);
                 self.note_fallible(node, element, &flow);
@@ -315,7 +309,7 @@ impl<'a> Signals<'a> {
     }
 
     /// The variable of a junction's strong bond from the balance of the others.
-    fn balance(&mut self, node: NodeId, bond: BondId, variable: Variable) -> Value {
+    fn balance(&mut self, node: NodeId, bond: BondId, variable: Role) -> Value {
         let own = self.graph.sign(bond, node);
         let others = self.graph.node(node).bonds.iter().copied().filter(|&other| other != bond);
         let terms: Vec<(Value, f64)> =
@@ -370,7 +364,7 @@ impl<'a> Signals<'a> {
         let mut closed = Vec::new();
         for close in &graph.closes {
             let unit = if close.dimension == crate::graph::units::Dimension::NONE { "rad" } else { "m" };
-            closed.push((close.joint.text.clone(), unit.to_owned(), self.evaluate(&close.gap, None).0));
+            closed.push((graph.joint(close.joint).to_owned(), unit.to_owned(), self.evaluate(&close.gap, None).0));
         }
         closed.extend(self.gaps_of_sinks());
         let mut gaps = Vec::new();

@@ -32,8 +32,7 @@ pub(super) fn integrate(equations: &mut StateEquations, report: &mut Report) {
         let angle = equations.pool.symbol(Symbol::State(index(cosine)));
         images.insert(cosine, equations.pool.call(Function::Cos, &[angle]));
         images.insert(sine, equations.pool.call(Function::Sin, &[angle]));
-        let component = &equations.states[cosine].name;
-        let name = format!("{}.angle", component.rsplit_once('_').map_or(component.as_str(), |(track, _)| track));
+        let name = format!("{}.angle", equations.tracks[track]);
         let state = State { name, unit: "rad".to_owned(), origin: Origin::Angle(track), start, rate };
         report.rename(cosine, state.clone());
         equations.states[cosine] = state;
