@@ -48,7 +48,7 @@ pub(super) fn share_addends(statics: &mut Statics, graph: &mut Graph, roots: &[V
     let order = graph.post_order(roots);
     let mut sums = Vec::new();
     for core in order {
-        if let Core::Sum(terms) = &graph.cores[core as usize] {
+        if let Core::Sum(terms) = &graph.cores[core] {
             sums.push(Sum { core, terms: terms.clone() });
         }
     }
@@ -59,7 +59,7 @@ pub(super) fn share_addends(statics: &mut Statics, graph: &mut Graph, roots: &[V
     search.enter();
     search.run();
     for Sum { core, terms } in search.sums {
-        search.graph.cores[core as usize] = Core::Sum(terms);
+        search.graph.cores[core] = Core::Sum(terms);
     }
 }
 
@@ -187,7 +187,7 @@ impl Search<'_, '_, '_> {
     fn replace(&mut self, pair: Pair, places: &[Place]) {
         let terms = [Value { coefficient: pair.2, core: pair.0 }, Value { coefficient: pair.3, core: pair.1 }];
         let inner = self.graph.sum(self.statics, terms.to_vec());
-        if let Core::Sum(terms) = self.graph.cores[inner.core as usize].clone() {
+        if let Core::Sum(terms) = self.graph.cores[inner.core].clone() {
             terms.into_iter().for_each(|term| self.count(term, 1));
         }
         if let Some(members) = self.members.get_mut(inner.core as usize) {

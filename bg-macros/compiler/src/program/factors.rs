@@ -8,10 +8,9 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use super::graph::number;
 use super::plan::{Cell, Plan};
 use super::rebuild::LONGEST;
-use super::table::Table;
+use super::table::{Table, number};
 
 /// Two factors: ascending if they are multiplied (`true`), dividend and divisor otherwise.
 type Pair = (u32, u32, bool);
@@ -33,7 +32,7 @@ struct Search<'p> {
 pub(super) fn share_factors(plan: &mut Plan) {
     let mut products = Vec::new();
     for cell in plan.post_order() {
-        if let Cell::Product(factors) = &plan.cells[cell as usize] {
+        if let Cell::Product(factors) = &plan.cells[cell] {
             products.push((cell, factors.clone()));
         }
     }
@@ -45,7 +44,7 @@ pub(super) fn share_factors(plan: &mut Plan) {
     let mut products = search.products;
     share_divisors(plan, &mut products);
     for (cell, factors) in products {
-        plan.cells[cell as usize] = Cell::Product(factors);
+        plan.cells[cell] = Cell::Product(factors);
     }
 }
 
@@ -129,7 +128,7 @@ impl Search<'_> {
             (false, false) if first < second => vec![(first, 1), (second, -1)],
             (false, false) => vec![(second, -1), (first, 1)],
         };
-        let inner = self.plan.intern(Cell::Product(factors));
+        let inner = self.plan.cells.intern(Cell::Product(factors));
         if let Some(members) = self.members.get_mut(inner as usize) {
             *members += number(places.len());
         }
@@ -196,7 +195,7 @@ fn share_divisors(plan: &mut Plan, products: &mut [(u32, Vec<(u32, i32)>)]) {
         if users.len() < RECIPROCAL {
             continue;
         }
-        let reciprocal = plan.intern(Cell::Product(divisor));
+        let reciprocal = plan.cells.intern(Cell::Product(divisor));
         for at in users {
             let (cell, factors) = &mut products[at];
             if *cell != reciprocal {
