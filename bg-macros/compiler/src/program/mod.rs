@@ -14,6 +14,7 @@ mod factor;
 mod factors;
 mod flat;
 mod graph;
+mod greedy;
 pub mod pairs;
 mod plan;
 mod programs;

@@ -5,6 +5,7 @@
 
 use super::factor::{Grouping, Sharing};
 use super::graph::{Core, Graph, ONE, Value};
+use super::greedy::LONGEST;
 use super::statics::Statics;
 use super::table::Table;
 
@@ -128,9 +129,6 @@ pub(super) fn pair_counts(graph: &Graph, order: &[u32]) -> Table<(u32, u32), u32
     }
     counts
 }
-
-/// The number of neighbours with which a term or factor forms pairs.
-pub(super) const LONGEST: usize = 32;
 
 /// The old cores of new ones, for what was counted in the old graph.
 #[derive(Debug, Default)]
