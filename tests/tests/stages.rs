@@ -24,7 +24,7 @@ const WHOLE: [&str; 9] = [
     "nonlinear_storage",
 ];
 
-/// The names of the stages behind the source.
+/// The names of the stages after the source.
 const ALL: [&str; 7] = ["expanded", "resolved", "causal", "equations", "program", "jacobian", "elimination"];
 
 /// Every stage but the program, whose lists of values in three dimensions are longer than a reader follows.

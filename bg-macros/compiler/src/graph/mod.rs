@@ -3,7 +3,6 @@
 //! In: `ast` of bond-graph words. Out: [`BondGraph`]. No longer occurs: names, missing ports, unknown cardinalities, units.
 
 pub mod causality;
-mod connect;
 mod domains;
 mod fault;
 mod resolve;
@@ -12,9 +11,11 @@ mod typing;
 pub mod units;
 
 use crate::graph::units::{Dimension, Domain};
-use crate::source::ast::{Direction, ElementKind, Name, Role, TrackKind};
-use crate::source::clause::Clause;
+use crate::source::ast::Name;
 
+pub use crate::source::ast::{Axis, BinaryOperator, Comparison, Direction, ElementKind, Role, TrackKind};
+pub use crate::source::clause::{Allowed, Clause};
+pub use causality::{CausalGraph, End};
 pub use fault::GraphFault;
 pub use resolve::resolve;
 pub use term::{Builtin, Operation, Reference, Term, TermKind};

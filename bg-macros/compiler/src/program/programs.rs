@@ -6,9 +6,7 @@
 use super::pairs::{Paired, pair};
 use super::{Counts, Program, Request, Routine, schedule};
 use crate::expr::{Id, Pool};
-use crate::system::equations::StateEquations;
-use crate::system::jacobian::Jacobian;
-use crate::system::second_order::SecondOrder;
+use crate::system::{Jacobian, SecondOrder, StateEquations};
 
 /// Longer rates are not inlined into an integrator's step: they would only fill the cache.
 const INLINED: usize = 400;
@@ -39,7 +37,7 @@ pub struct Running {
     pub constants: Routine,
     /// The rates of all states.
     pub rate: Routine,
-    /// The rates with operations done two at a time, where that pays.
+    /// The rates in pairs of operations, where that pays.
     pub paired_rate: Option<Paired>,
     /// The guards of all switches.
     pub guards: Routine,
@@ -63,7 +61,7 @@ pub struct SecondOrderPrograms {
     /// The rates with second derivatives in their places, where rates are inlined: otherwise rates and second derivatives, one
     /// after the other, take as long.
     pub forces: Option<Routine>,
-    /// The forces with operations done two at a time, where that pays.
+    /// The forces in pairs of operations, where that pays.
     pub paired_forces: Option<Paired>,
 }
 
@@ -142,7 +140,7 @@ fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondO
     SecondOrderPrograms { constants, second_derivatives, forces: Some(forces), paired_forces }
 }
 
-/// In a pool of its own, so that it has no say in the order of the other functions' operations.
+/// In a pool of its own, so that it has no influence on the order of the other functions' operations.
 fn holding(equations: &StateEquations) -> Option<Program<1>> {
     let entries = equations.holding.entries();
     (!equations.holding.is_empty()).then(|| alone(&mut equations.pool.clone(), "hold", &entries))

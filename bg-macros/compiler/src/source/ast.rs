@@ -127,7 +127,7 @@ pub struct Let {
     pub clause: Option<Clause>,
 }
 
-/// A unit as written, `kg*m^2/s`: factors with their exponents (negative behind a `/`). `1` has none.
+/// A unit as written, `kg*m^2/s`: factors with their exponents (negative after a `/`). `1` has none.
 #[derive(Clone, Debug)]
 pub struct Unit {
     /// Unit symbol and exponent, in the order written.
@@ -194,7 +194,7 @@ pub struct Element {
     pub name: Name,
     /// `(w)` or `(effort e)`: the law is an expression of this variable. Without it the law is linear in a parameter.
     pub variable: Option<LawVariable>,
-    /// The law behind `=`; for a transformer or gyrator its modulus.
+    /// The law after `=`; for a transformer or gyrator its modulus.
     pub law: Expression,
     /// `in R`: the law's tensor turns with this orientation.
     pub frame: Option<Expression>,

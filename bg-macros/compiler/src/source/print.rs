@@ -11,7 +11,7 @@ use crate::source::ast::{
     LawVariable, Let, Name, Observation, Operation, Parameter, Part, Point, Rigid, Role, Scene, Shape, Source, Spring,
     Track, Unit,
 };
-use crate::source::syntax::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
+use crate::source::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
 
 /// The longest list that stays on one line, in columns; three levels of indentation keep it within 120.
 const LINE: usize = 108;

@@ -1,7 +1,7 @@
 //! The exact derivatives of the rates.
 //!
 //! In: [`StateEquations`]. Out: the places where df/dx can differ from zero, each with its expression, and df/dt, in a
-//! [`Jacobian`] with a pool of its own, so that no other function's order of operations hangs on it. An entry that is
+//! [`Jacobian`] with a pool of its own, so that no other function's order of operations depends on it. An entry that is
 //! identically zero has no place.
 //! Method: forward accumulation, one sweep for each state (Griewank & Walther 2008, Evaluating Derivatives, ch. 3). What
 //! the rates share, such as the force in a joint, is differentiated once for all rows, as equal expressions are one node.

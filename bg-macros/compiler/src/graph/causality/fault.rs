@@ -1,7 +1,6 @@
 //! What can go wrong with causal strokes.
 
 use crate::fault::Explain;
-use crate::source::ast::{ElementKind, Role};
 
 /// A fault of causality.
 #[derive(Clone, Debug)]
@@ -13,6 +12,7 @@ pub enum CausalFault {
     OneWay { symbol: &'static str, name: String, needs: &'static str, by: String },
 }
 
+use crate::graph::{ElementKind, Role};
 use CausalFault as F;
 
 impl Explain for CausalFault {

@@ -8,8 +8,7 @@ use std::collections::VecDeque;
 use super::completion::{Lack, complete};
 use super::{CausalFault as F, End, across, end_at, is_junction, strong_end};
 use crate::fault::{Fault, Staged};
-use crate::graph::{BondGraph, BondId, Element, Law, NodeId, NodeKind};
-use crate::source::ast::{ElementKind, Role};
+use crate::graph::{BondGraph, BondId, Element, ElementKind, Law, NodeId, NodeKind, Role};
 
 /// Why a bond has its stroke.
 #[derive(Clone, Copy, Debug)]

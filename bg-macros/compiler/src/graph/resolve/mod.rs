@@ -2,6 +2,7 @@
 //!
 //! In: one `ast::Graph` of bond-graph words. Out: a [`BondGraph`] that every later stage can trust.
 
+mod connect;
 mod dependencies;
 
 use std::collections::BTreeMap;
@@ -12,7 +13,7 @@ use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::typing::Shape;
 use super::{
     BondGraph, Close, Element, GraphFault, Held, Input, Integral, JointId, Law, Let, Node, NodeId, NodeKind,
-    Observation, Parameter, Storage, Track, connect, domains,
+    Observation, Parameter, Storage, Track, domains,
 };
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
 use crate::graph::units::{self, Dimension, Domain};

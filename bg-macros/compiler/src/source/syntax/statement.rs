@@ -8,13 +8,13 @@ use super::{
     SyntaxFault,
     cursor::{Cursor, Parsed, Place},
     token::TokenKind,
-    words::{ELEMENTS, ROLES, TRACKS, value_of},
 };
 use crate::fault::near_miss;
 use crate::source::ast::{
     Bound, Close, Direction, Element, ElementKind, Expression, ExpressionKind, Held, Input, Item, Junction,
     JunctionKind, LawVariable, Let, Name, Parameter, Track, TrackKind, Unit,
 };
+use crate::source::words::{ELEMENTS, ROLES, TRACKS, value_of};
 
 /// The block of a graph.
 pub(super) const GRAPH: Place = Place {
@@ -208,7 +208,7 @@ fn binding(cursor: &mut Cursor) -> Parsed<Let> {
     Ok(Let { name, unit, value, clause: None })
 }
 
-/// Whether a name is ahead that is no slip of a statement's word, and behind it a symbol where `->` could be meant.
+/// Whether a name is ahead that is no slip of a statement's word, and after it a symbol where `->` could be meant.
 fn is_broken_chain(cursor: &Cursor, word: &str) -> bool {
     let is_symbol = matches!(cursor.ahead(1), Some(TokenKind::Symbol(symbol)) if *symbol != ":");
     is_symbol

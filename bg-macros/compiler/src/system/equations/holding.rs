@@ -8,8 +8,7 @@ use super::Kind;
 use super::signals::Signals;
 use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute, substitute_switched};
 use crate::graph::units::Dimension;
-use crate::graph::{Held, JointId, NodeId};
-use crate::source::ast::{Axis, Direction, ElementKind};
+use crate::graph::{Axis, Direction, ElementKind, Held, JointId, NodeId};
 
 /// A motion that a joint holds.
 #[derive(Clone, Debug)]

@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 
 use super::EquationFault;
 use super::signals::Signals;
-use super::value::Value;
 use crate::expr::{Id, Symbol, derivative, same_polynomial};
 use crate::fault::Fault;
 use crate::graph::{NodeId, Storage};
+use crate::system::Value;
 
 impl Signals<'_> {
     /// Proves every given displacement.

@@ -6,11 +6,10 @@ use std::collections::BTreeMap;
 
 use super::EquationFault;
 use super::signals::Signals;
-use super::value::Value;
 use crate::expr::{Id, Symbol, derivative, substitute};
 use crate::fault::Fault;
-use crate::graph::{BondId, Element, Law, NodeId, Storage, Term};
-use crate::source::ast::{ElementKind, Role};
+use crate::graph::{BondId, Element, ElementKind, Law, NodeId, Role, Storage, Term};
+use crate::system::Value;
 
 impl Signals<'_> {
     /// The effort that an element gives on a bond.

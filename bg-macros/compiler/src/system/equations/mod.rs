@@ -20,19 +20,16 @@ mod terms;
 #[cfg(test)]
 mod tests;
 mod text;
-mod value;
 
 use crate::expr::{Id, Pool, Symbol, text as expression_text};
 use crate::fault::Staged;
-use crate::graph::causality::CausalGraph;
-use crate::graph::{Input, Parameter};
+use crate::graph::{CausalGraph, Input, Parameter};
 use crate::system::requirements::Requirements;
 
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
 pub use origin::{Kind, Origin};
-pub use value::Value;
 
 /// The model as scalar expressions over one pool.
 #[derive(Clone, Debug)]

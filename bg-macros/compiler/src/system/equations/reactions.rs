@@ -4,10 +4,10 @@
 //! Source: the residual sink of Borutzky, Bond Graph Methodology (2010), section 4.
 
 use super::signals::Signals;
-use super::value::Value;
 use super::{Reaction, Slip};
 use crate::expr::{Id, Symbol};
 use crate::graph::NodeId;
+use crate::system::Value;
 
 impl Signals<'_> {
     /// The unknown effort of a residual sink.

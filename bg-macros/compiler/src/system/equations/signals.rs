@@ -7,13 +7,13 @@ use std::collections::BTreeMap;
 
 use super::fallible::Nature;
 use super::loops::Loops;
-use super::value::Value;
 use super::{EquationFault, FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
-use crate::graph::causality::{CausalGraph, End};
-use crate::graph::{BondGraph, BondId, NodeId, NodeKind, Shape, Storage};
-use crate::source::ast::{ElementKind, Role, TrackKind};
+use crate::graph::{
+    BondGraph, BondId, CausalGraph, ElementKind, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
+};
+use crate::system::Value;
 
 /// A memo of bond variables and lets.
 #[derive(Clone, Debug)]

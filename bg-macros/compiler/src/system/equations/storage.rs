@@ -7,11 +7,10 @@ use std::collections::BTreeMap;
 use super::EquationFault;
 use super::Origin;
 use super::signals::Signals;
-use super::value::Value;
 use crate::expr::{Id, Node, Symbol, antiderivative, derivative, substitute};
 use crate::fault::Fault;
-use crate::graph::{BondGraph, Element, Law, NodeId, Storage};
-use crate::source::ast::{ElementKind, TrackKind};
+use crate::graph::{BondGraph, Element, ElementKind, Law, NodeId, Storage, TrackKind};
+use crate::system::Value;
 
 /// Name and unit of a storage's states.
 pub(super) fn describe(graph: &BondGraph, storage: Storage) -> (String, String) {

@@ -4,10 +4,11 @@
 
 use super::Switch;
 use super::signals::Signals;
-use super::value::Value;
 use crate::expr::{Function, Id, Symbol};
-use crate::graph::{Builtin, NodeId, NodeKind, Reference, Storage, Term, TermKind};
-use crate::source::ast::{BinaryOperator, Comparison, ElementKind};
+use crate::graph::{
+    BinaryOperator, Builtin, Comparison, ElementKind, NodeId, NodeKind, Reference, Storage, Term, TermKind,
+};
+use crate::system::Value;
 
 impl Signals<'_> {
     /// The value of a term; `variable` is that of the law it stands in.

@@ -3,9 +3,7 @@
 //! In: the derivation's graph. Out: one line for every bond variable, one for every state.
 
 use super::signals::Signals;
-use crate::graph::causality::End;
-use crate::graph::{BondId, Law, NodeId, NodeKind, Storage};
-use crate::source::ast::{ElementKind, Role, TrackKind};
+use crate::graph::{BondId, ElementKind, End, Law, NodeId, NodeKind, Role, Storage, TrackKind};
 
 /// All lines: for every bond its effort and its flow, then the rates.
 pub(super) fn equations(signals: &Signals<'_>) -> Vec<String> {

@@ -113,7 +113,7 @@ impl Candidates {
     }
 
     /// Whether a state is negative beside its class: by its start value, or by its rate if it starts at zero. A state
-    /// that starts at zero and has no rate is as good as its negative.
+    /// that starts at zero and has no rate equals its negative.
     fn sign(&self, pool: &mut Pool, state: usize, rate: Id) -> bool {
         let (start, negative) = self.starts[state];
         if pool.is_zero(start) { unsigned(pool, rate).1 } else { negative }

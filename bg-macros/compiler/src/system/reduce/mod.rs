@@ -7,6 +7,7 @@
 mod affine;
 mod angle;
 mod equal;
+pub mod expectation;
 mod invariant;
 mod live;
 mod reaction;
@@ -196,7 +197,7 @@ impl StateEquations {
         for (law, value) in self.fallible.iter_mut().zip(after) {
             law.value = value;
         }
-        // What is held comes after, so that it has no say in the order of the rates' nodes.
+        // What is held comes after, so that it has no influence on the order of the rates' nodes.
         self.holding.replace(&mut pool, replace, branch);
         self.pool = pool;
     }

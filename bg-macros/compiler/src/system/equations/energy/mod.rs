@@ -46,7 +46,7 @@ enum Wrong {
 }
 
 impl Signals<'_> {
-    /// Holds the user's energy against the law.
+    /// Compares the user's energy with the law.
     pub(super) fn check_energy(&mut self, node: NodeId, element: &Element, term: &Term) {
         let switches = self.switches.len();
         let components = self.graph.bond(self.graph.node(node).bonds[0]).cardinality;
