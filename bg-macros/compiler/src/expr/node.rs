@@ -35,6 +35,26 @@ pub enum Symbol {
     Rate(u32),
 }
 
+impl Symbol {
+    /// The symbol of this index, such as `Symbol::numbered(Symbol::State, 3)`.
+    #[must_use]
+    pub fn numbered(symbol: fn(u32) -> Self, index: usize) -> Self {
+        symbol(u32::try_from(index).expect("fewer than 2^32 symbols"))
+    }
+
+    /// The symbol of a state.
+    #[must_use]
+    pub fn state(index: usize) -> Self {
+        Self::numbered(Self::State, index)
+    }
+
+    /// The index of the state that this is.
+    #[must_use]
+    pub fn as_state(self) -> Option<usize> {
+        if let Self::State(index) = self { Some(index as usize) } else { None }
+    }
+}
+
 /// An elementary function.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[expect(missing_docs, reason = "the names are those of the functions")]

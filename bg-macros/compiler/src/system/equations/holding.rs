@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use super::Kind;
 use super::signals::Signals;
-use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute, substitute_switched};
+use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute_switched};
 use crate::graph::units::Dimension;
 use crate::graph::{Axis, Direction, ElementKind, Held, JointId, NodeId};
 
@@ -137,7 +137,6 @@ impl Signals<'_> {
             return Vec::new();
         }
         let seeds = self.rate_seeds(&[]);
-        let starts: Vec<Id> = self.states.iter().map(|state| state.start).collect();
         let mut slips = Vec::new();
         for close in &graph.closes {
             if self.is_rigid(close.joint) {
@@ -154,10 +153,7 @@ impl Signals<'_> {
             }
         }
         let flows: Vec<Id> = slips.iter().map(|(_, slip)| slip.flow).collect();
-        let at_start = substitute(&mut self.pool, &flows, &|symbol| match symbol {
-            Symbol::State(index) => starts.get(index as usize).copied(),
-            _ => None,
-        });
+        let at_start = self.at_start(&flows);
         let is_guessed = |id: Id| {
             let symbols = self.pool.symbols(&[id]);
             symbols.into_iter().any(|symbol| matches!(symbol, Symbol::Unknown(k) if speeds.contains(&(k as usize))))
@@ -241,6 +237,14 @@ mod tests {
             assert_eq!(held(&equations), expected);
             assert_eq!(equations.gaps.len(), 4);
         }
+    }
+
+    #[test]
+    fn only_a_residual_sink_is_part_of_a_joint() {
+        let text = "graph G { 1 v: translation; I m = 2; C k = 3 of pin; v -> m; v -> k; }";
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        let faults = pipeline::derive(&source.graphs[0]).expect_err("a C is no residual sink");
+        assert_eq!((faults[0].code, faults.len()), ("BG0326", 1));
     }
 
     #[test]

@@ -46,7 +46,7 @@ impl Signals<'_> {
             let flow = self.given_flows[&self.graph.tracks[index].junction].clone();
             let rate = self.track_rate(storage, &flow);
             for (k, id) in rate.0.into_iter().enumerate() {
-                seeds.insert(Symbol::State(u32::try_from(first + k).expect("fewer than 2^32 states")), id);
+                seeds.insert(Symbol::state(first + k), id);
             }
         }
         seeds

@@ -2,11 +2,9 @@
 //!
 //! In: constitutive laws. Out: the effort or flow of a bond as the law has it.
 
-use std::collections::BTreeMap;
-
 use super::EquationFault;
 use super::signals::Signals;
-use crate::expr::{Id, Symbol, derivative, substitute};
+use crate::expr::{Id, Symbol, partial, substitute};
 use crate::fault::Fault;
 use crate::graph::{BondId, Element, ElementKind, Law, NodeId, Role, Storage, Term};
 use crate::system::Value;
@@ -155,12 +153,9 @@ impl Signals<'_> {
         let symbols: Vec<Symbol> = (0..).take(components).map(Symbol::Law).collect();
         let variable = Value(symbols.iter().map(|&symbol| self.pool.symbol(symbol)).collect());
         let value = self.evaluate(term, Some(&variable));
-        let one = self.pool.one();
         let zero = self.pool.zero();
-        let columns: Vec<Value> = symbols
-            .iter()
-            .map(|&symbol| Value(derivative(&mut self.pool, &value.0, &BTreeMap::from([(symbol, one)]))))
-            .collect();
+        let columns: Vec<Value> =
+            symbols.iter().map(|&symbol| Value(partial(&mut self.pool, &value.0, symbol))).collect();
         let is_variable = |symbol: &Symbol| symbols.contains(symbol);
         let all: Vec<Id> = columns.iter().flat_map(|column| column.0.clone()).collect();
         let constant = !self.pool.symbols(&all).iter().any(is_variable);

@@ -10,6 +10,7 @@ use super::loops::Loops;
 use super::{EquationFault, FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
+use crate::graph::units::Dimension;
 use crate::graph::{
     BondGraph, BondId, CausalGraph, ElementKind, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
 };
@@ -168,7 +169,7 @@ impl<'a> Signals<'a> {
         self.first_integral = self.states.len();
         let zero = self.pool.zero();
         for (index, integral) in self.graph.integrals.iter().enumerate() {
-            let unit = integral.dimension.times(crate::graph::units::Dimension::SECOND).to_string();
+            let unit = integral.dimension.times(Dimension::SECOND).to_string();
             let name = integral.name.clone();
             self.states.push(State { name, unit, origin: Origin::Integral(index), start: zero, rate: zero });
         }
@@ -182,7 +183,7 @@ impl<'a> Signals<'a> {
 
     /// The symbol of a state.
     pub(super) fn state_symbol(&mut self, index: usize) -> Id {
-        self.pool.symbol(Symbol::State(u32::try_from(index).expect("fewer than 2^32 states")))
+        self.pool.symbol(Symbol::state(index))
     }
 
     /// The effort of a bond.
@@ -353,23 +354,24 @@ impl<'a> Signals<'a> {
         graph.guesses.iter().map(|guess| self.evaluate(guess, None).0[0]).collect()
     }
 
+    /// Expressions at t = 0, over parameters and unknowns.
+    pub(super) fn at_start(&mut self, of: &[Id]) -> Vec<Id> {
+        let start = |symbol: Symbol| symbol.as_state().map(|state| self.states[state].start);
+        substitute(&mut self.pool, of, &start)
+    }
+
     /// The gaps at t = 0, over parameters and unknowns.
     fn gaps(&mut self) -> Vec<Gap> {
         let graph = self.graph;
-        let starts: Vec<Id> = self.states.iter().map(|state| state.start).collect();
-        let at_start = |symbol| match symbol {
-            Symbol::State(index) => starts.get(index as usize).copied(),
-            _ => None,
-        };
         let mut closed = Vec::new();
         for close in &graph.closes {
-            let unit = if close.dimension == crate::graph::units::Dimension::NONE { "rad" } else { "m" };
+            let unit = if close.dimension == Dimension::NONE { "rad" } else { "m" };
             closed.push((graph.joint(close.joint).to_owned(), unit.to_owned(), self.evaluate(&close.gap, None).0));
         }
         closed.extend(self.gaps_of_sinks());
         let mut gaps = Vec::new();
         for (joint, unit, values) in closed {
-            let values = substitute(&mut self.pool, &values, &at_start);
+            let values = self.at_start(&values);
             let components = if values.len() == 1 { &[""][..] } else { &["x", "y", "z"] };
             for (component, value) in components.iter().zip(values) {
                 gaps.push(Gap { joint: joint.clone(), component, unit: unit.clone(), value });

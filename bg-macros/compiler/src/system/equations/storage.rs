@@ -230,8 +230,7 @@ impl Signals<'_> {
         for index in 0..self.states.len() {
             let symbol = self.state_symbol(index);
             if !held.contains(&symbol) {
-                let index = u32::try_from(index).expect("fewer than 2^32 states");
-                seeds.insert(Symbol::State(index), self.states[index as usize].rate);
+                seeds.insert(Symbol::state(index), self.states[index].rate);
             }
         }
         seeds

@@ -57,8 +57,8 @@ impl Signals<'_> {
         }
     }
 
-    fn numbered(&mut self, index: usize, symbol: impl Fn(u32) -> Symbol) -> Id {
-        self.pool.symbol(symbol(u32::try_from(index).expect("fewer than 2^32 symbols")))
+    fn numbered(&mut self, index: usize, symbol: fn(u32) -> Symbol) -> Id {
+        self.pool.symbol(Symbol::numbered(symbol, index))
     }
 
     fn reference(&mut self, reference: Reference, variable: Option<&Value>) -> Value {

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::{Fate, Report, for_scene, index, solve_reactions};
+use super::{Fate, Report, for_scene, solve_reactions};
 use crate::expr::{Environment, Id, Symbol, evaluate};
 use crate::fault::Faults;
 use crate::random::Random;
@@ -266,7 +266,7 @@ fn parameters_that_no_one_tunes_become_numbers_and_the_others_keep_their_order()
     let some = scene(graph, "tune { c, a }");
     let rates: Vec<Id> = some.reduced.states.iter().map(|state| state.rate).collect();
     let symbols = some.reduced.pool.symbols(&rates);
-    assert!(symbols.contains(&Symbol::Parameter(index(1))) && !symbols.contains(&Symbol::Parameter(index(2))));
+    assert!(symbols.contains(&Symbol::Parameter(1)) && !symbols.contains(&Symbol::Parameter(2)));
     some.agrees();
 }
 

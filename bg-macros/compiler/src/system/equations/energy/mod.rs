@@ -6,12 +6,10 @@
 //! or the branches exclude each other, values are compared: the derivative at [`POINTS`] points and between all switches found
 //! along [`LINES`] lines, the energy on both sides of each. Parameters take their defaults and values near these.
 
-use std::collections::BTreeMap;
-
 use super::EquationFault;
 use super::signals::Signals;
 use crate::expr::{
-    Branch, Environment, Id, Pool, Symbol, derivative, evaluate, same_polynomial, substitute, substitute_switched,
+    Branch, Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute, substitute_switched,
 };
 use crate::fault::Fault;
 use crate::graph::{BondGraph, Element, NodeId, Parameter, Term};
@@ -53,10 +51,9 @@ impl Signals<'_> {
         let (own, variable) = self.own_symbols(components);
         let law = self.storage_law(node, element, &variable);
         let energy = self.evaluate(term, Some(&variable)).0[0];
-        let one = self.pool.one();
         let mut pairs = Vec::new();
         for (&component, &expected) in own.iter().zip(&law.0) {
-            let slope = derivative(&mut self.pool, &[energy], &BTreeMap::from([(component, one)]))[0];
+            let slope = partial(&mut self.pool, &[energy], component)[0];
             pairs.extend([slope, expected]);
         }
         let guards: Vec<Id> = self.switches.iter().map(|switch| switch.guard).collect();
@@ -153,8 +150,7 @@ impl Check<'_> {
     fn zero_of_guard(&mut self, switch: usize) -> Option<Id> {
         let &[state] = &self.state[..] else { return None };
         let guard = self.guards[switch];
-        let one = self.pool.one();
-        let slope = derivative(&mut self.pool, &[guard], &BTreeMap::from([(state, one)]))[0];
+        let slope = partial(&mut self.pool, &[guard], state)[0];
         if self.pool.symbols(&[slope]).contains(&state) || self.pool.has_select(&[guard]) {
             return None;
         }
