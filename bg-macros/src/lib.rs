@@ -105,6 +105,7 @@ use proc_macro::TokenStream;
 /// ```text
 /// element = KIND NAME ["(" ["effort" | "flow"] NAME ")"] "=" EXPRESSION { clause } ";"
 /// clause  = "in" EXPRESSION | "at" EXPRESSION | "start" EXPRESSION | "energy" EXPRESSION
+///         | "of" JOINT [("along" | "about") AXIS]
 /// ```
 ///
 /// Without a variable the law is linear in the expression. With one, `R bearing(w) = ...`, the expression is the law
@@ -136,9 +137,12 @@ use proc_macro::TokenStream;
 ///   determine and that is to stay zero ([rigid joints](#rigid-joints)). FLOW may depend on parameters,
 ///   states and `t`, not on an input, whose rate is not known. The power of a sink whose FLOW is not 0 counts as
 ///   supplied.
+/// - `of JOINT` (only rSe): the sink is part of this joint, whose gaps `close` states; messages name the joint, and
+///   `along x` or `about x` the direction of a scalar sink. A sink of no joint is named by itself, and its GAP is closed
+///   at the start.
 /// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
 /// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
-///   may be left out; the energy is then 0 at state 0. A given one is held against the law: its derivative must be the
+///   may be left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the
 ///   law (BG0504), and it must not jump where a comparison with the state switches the law (BG0506). Where law and
 ///   energy are polynomials in each branch, and each branch ends at a state that a linear comparison gives, both are
 ///   proved. Other functions, and branches that exclude each other, are checked by values: the derivative at 64 points
@@ -256,7 +260,7 @@ use proc_macro::TokenStream;
 ///
 /// Coherent SI only, so that no factor ever enters: `kg m s A K mol cd rad Hz N Pa J W C V F Ohm S Wb T H sr lm kat`,
 /// joined by `*` and `/`, with whole powers: `kg*m^2/s`, `1/s`; `1` is a pure number. Each `/` is for the one factor
-/// behind it: `N*m*s/rad`, `W/m^2/K`. `rad` and `sr` are pure numbers, as in the SI, so a torque and an energy have the
+/// after it: `N*m*s/rad`, `W/m^2/K`. `rad` and `sr` are pure numbers, as in the SI, so a torque and an energy have the
 /// same unit.
 ///
 /// Every law, bond, start value and output is checked; a fault names the two units that disagree. A bare number takes
@@ -365,7 +369,7 @@ use proc_macro::TokenStream;
 /// hold five directions twice. Each pivot is compared with the diagonal entry of A it came from; below a part of 1e-10
 /// `Model::start` gives an error, `AssemblyError::Redundant`, with the joint, its directions and the joints that hold
 /// them already. Make one of them compliant, or let it hold less. A run looks again after every accepted step. It ends
-/// with `Cause::Redundant` where the mechanism comes to a singular pose or passes over one inside a step, as a
+/// with `Cause::Redundant` where the mechanism reaches a singular pose or passes over one inside a step, as a
 /// parallelogram does that comes to lie flat: there the joints leave open how it goes on.
 ///
 /// ## `spring`, `contact`
@@ -531,7 +535,7 @@ use proc_macro::TokenStream;
 /// | reduction | what is proved |
 /// |---|---|
 /// | parameters folded | nothing: a parameter that is not tuned is its default. A switch whose guard has become a number is decided |
-/// | constant states | that the rates of all of them, and what `project` gives them, vanish or stay while all of them have their start values: the greatest such set, found by dropping what does not hold until nothing does. By induction in time they keep their values. A start value that hangs on a `guess` is not taken for constant |
+/// | constant states | that the rates of all of them, and what `project` gives them, vanish or stay while all of them have their start values: the greatest such set, found by dropping what does not hold until nothing does. By induction in time they keep their values. A start value that depends on a `guess` is not taken for constant |
 /// | equal states | that states with the same start value up to sign have the same rate up to sign, while all the equalities hold: classes are split until none splits |
 /// | reactions solved | nothing: this is where the multipliers of rigid joints are solved for, on what is left |
 /// | affine states | that the rate of a displacement or integral is a combination, with fixed numbers, of the rates of other displacements, integrals, positions and orientations: the difference vanishes as a polynomial. It then is its start value plus what the others have changed |
@@ -642,7 +646,7 @@ use proc_macro::TokenStream;
 /// `>=`; below zero the first branch holds. Equal comparisons share a switch. Within a step every switch keeps its
 /// branch, so that the law is smooth there. Where a guard changes its sign, the step is repeated, shortened to that
 /// instant, with real steps of the method until the guard is zero to rounding; then the branch is decided by the
-/// guard's sign just behind the event. A comparison that depends on parameters only has a switch, too, which never
+/// guard's sign just after the event. A comparison that depends on parameters only has a switch, too, which never
 /// changes.
 ///
 /// # Energy

@@ -153,7 +153,7 @@ impl Sample {
             parameters: &self.parameters,
             inputs: &self.inputs,
             unknowns: &unknowns,
-            atoms: &[],
+            storage: &[],
             slopes: &[],
             rates: &[],
             negative: &self.negative,

@@ -12,7 +12,7 @@ pub trait Explain {
     fn code(&self) -> &'static str;
     /// What is wrong, naming the things involved.
     fn message(&self) -> String;
-    /// One action that mends it.
+    /// One action that fixes it.
     fn help(&self) -> String;
 }
 
@@ -25,7 +25,7 @@ pub struct Fault {
     pub code: &'static str,
     /// What is wrong.
     pub message: String,
-    /// One action that mends it.
+    /// One action that fixes it.
     pub help: String,
 }
 

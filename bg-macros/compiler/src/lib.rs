@@ -1,4 +1,4 @@
-//! The compiler behind `bond_graph!`: tokens of a multibond graph to tokens of flat Rust.
+//! The compiler of `bond_graph!`: tokens of a multibond graph to tokens of flat Rust.
 //!
 //! Each floor builds on those below it only; [`pipeline`] calls their stages in order, and a test holds the floors.
 //!

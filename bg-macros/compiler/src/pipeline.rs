@@ -14,9 +14,8 @@ use crate::source::ast::{Graph, Source};
 use crate::source::scene::{self, Variant};
 use crate::source::{mechanism, names};
 use crate::system::equations::{self, StateEquations};
-use crate::system::expectation;
 use crate::system::jacobian::{self, Jacobian};
-use crate::system::reduce::{self, Report};
+use crate::system::reduce::{self, Report, expectation};
 use crate::system::second_order::{self, SecondOrder};
 
 /// A graph's results as far as its state equations.

@@ -19,6 +19,12 @@ pub fn derivative(pool: &mut Pool, of: &[Id], seeds: &BTreeMap<Symbol, Id>) -> V
     of.iter().map(|id| tangents.get(id).copied().unwrap_or(pool.zero())).collect()
 }
 
+/// The partial derivatives of the nodes by one symbol.
+pub fn partial(pool: &mut Pool, of: &[Id], wrt: Symbol) -> Vec<Id> {
+    let seeds = BTreeMap::from([(wrt, pool.one())]);
+    derivative(pool, of, &seeds)
+}
+
 /// The partial derivatives of one node by each of the symbols.
 pub fn gradient(pool: &mut Pool, of: Id, wrt: &[Symbol]) -> Vec<Id> {
     let nodes = pool.reachable(&[of]);
@@ -84,8 +90,7 @@ fn slopes_of_selects(pool: &mut Pool, nodes: &[Id], active: &HashSet<Id>, wrt: &
         return slopes;
     }
     for &symbol in wrt {
-        let seeds = BTreeMap::from([(symbol, pool.one())]);
-        for (id, slope) in selects.iter().zip(derivative(pool, &selects, &seeds)) {
+        for (id, slope) in selects.iter().zip(partial(pool, &selects, symbol)) {
             slopes.entry(*id).or_default().push(slope);
         }
     }

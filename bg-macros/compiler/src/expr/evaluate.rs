@@ -17,8 +17,8 @@ pub struct Environment<'a> {
     pub inputs: &'a [f64],
     /// Start values that the assembly solves for.
     pub unknowns: &'a [f64],
-    /// Opaque quantities.
-    pub atoms: &'a [f64],
+    /// A storage's own state, by its components.
+    pub storage: &'a [f64],
     /// Derivatives of the inputs with respect to time.
     pub slopes: &'a [f64],
     /// Rates of the states.
@@ -35,9 +35,10 @@ impl Environment<'_> {
             Symbol::Parameter(index) => self.parameters[index as usize],
             Symbol::Input(index) => self.inputs[index as usize],
             Symbol::Unknown(index) => self.unknowns[index as usize],
-            Symbol::Atom(index) => self.atoms[index as usize],
+            Symbol::Storage(index) => self.storage[index as usize],
             Symbol::Slope(index) => self.slopes[index as usize],
             Symbol::Rate(index) => self.rates[index as usize],
+            Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Loop => panic!("no value of {symbol:?}"),
         }
     }
 }
@@ -109,7 +110,7 @@ mod tests {
             Symbol::Parameter(0),
             Symbol::Input(0),
             Symbol::Unknown(0),
-            Symbol::Atom(0),
+            Symbol::Storage(0),
             Symbol::Slope(0),
         ];
         let [t, x, p, u, k, a, s] = symbols.map(|symbol| pool.symbol(symbol));
@@ -124,7 +125,7 @@ mod tests {
             parameters: &[8.0],
             inputs: &[4.0],
             unknowns: &[1.0],
-            atoms: &[1.0],
+            storage: &[1.0],
             slopes: &[-7.0],
             rates: &[11.0],
             negative: &[false, true],

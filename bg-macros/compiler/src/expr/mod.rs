@@ -19,7 +19,7 @@ mod sum;
 mod text;
 
 pub use antiderivative::antiderivative;
-pub use calculus::{derivative, gradient};
+pub use calculus::{derivative, gradient, partial};
 pub use evaluate::{Environment, apply, evaluate};
 pub use node::{Function, Id, Node, Number, Symbol};
 pub use polynomial::{Monomials, monomials, same_polynomial};

@@ -19,12 +19,40 @@ pub enum Symbol {
     Input(u32),
     /// A start value that the assembly solves for.
     Unknown(u32),
-    /// An opaque quantity, used in proofs.
-    Atom(u32),
+    /// A component of the variable of a law, of which the law is to be linear.
+    Law(u32),
+    /// A component of a storage's own state, in calculations about its law.
+    Storage(u32),
+    /// A component of the flow of a junction, in proofs about poses.
+    Flow(u32),
+    /// A component of the reaction of a residual sink.
+    Multiplier(u32),
+    /// A variable of an algebraic loop, which has no value.
+    Loop,
     /// The derivative of an input with respect to time.
     Slope(u32),
     /// The rate of a state.
     Rate(u32),
+}
+
+impl Symbol {
+    /// The symbol of this index, such as `Symbol::numbered(Symbol::State, 3)`.
+    #[must_use]
+    pub fn numbered(symbol: fn(u32) -> Self, index: usize) -> Self {
+        symbol(u32::try_from(index).expect("fewer than 2^32 symbols"))
+    }
+
+    /// The symbol of a state.
+    #[must_use]
+    pub fn state(index: usize) -> Self {
+        Self::numbered(Self::State, index)
+    }
+
+    /// The index of the state that this is.
+    #[must_use]
+    pub fn as_state(self) -> Option<usize> {
+        if let Self::State(index) = self { Some(index as usize) } else { None }
+    }
 }
 
 /// An elementary function.

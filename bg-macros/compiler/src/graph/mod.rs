@@ -3,7 +3,6 @@
 //! In: `ast` of bond-graph words. Out: [`BondGraph`]. No longer occurs: names, missing ports, unknown cardinalities, units.
 
 pub mod causality;
-mod connect;
 mod domains;
 mod fault;
 mod resolve;
@@ -12,15 +11,17 @@ mod typing;
 pub mod units;
 
 use crate::graph::units::{Dimension, Domain};
-use crate::source::ast::{ElementKind, Name, Role, TrackKind};
-use crate::source::clause::Clause;
+use crate::source::ast::Name;
 
+pub use crate::source::ast::{Axis, BinaryOperator, Comparison, Direction, ElementKind, Role, TrackKind};
+pub use crate::source::clause::{Allowed, Clause};
+pub use causality::{CausalGraph, End};
 pub use fault::GraphFault;
 pub use resolve::resolve;
 pub use term::{Builtin, Operation, Reference, Term, TermKind};
 pub use typing::Shape;
 
-/// A resolved multibond graph. Indices of its tables are typed by their names: `NodeId`, `BondId`.
+/// A resolved multibond graph. Indices of its tables are typed by their names: `NodeId`, `BondId`, `JointId`.
 #[derive(Clone, Debug)]
 pub struct BondGraph {
     /// The generated type's name.
@@ -43,6 +44,8 @@ pub struct BondGraph {
     pub tracks: Vec<Track>,
     /// The state-carrying items in the order of declaration.
     pub storages: Vec<Storage>,
+    /// The names of the joints that have gaps or residual sinks.
+    pub joints: Vec<String>,
     /// Gaps for the assembly of the start.
     pub closes: Vec<Close>,
     /// Whether impulses make start velocities fit rigid joints.
@@ -62,6 +65,10 @@ pub struct NodeId(pub usize);
 /// Index of a bond.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Hash)]
 pub struct BondId(pub usize);
+
+/// Index of a joint.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Hash)]
+pub struct JointId(pub usize);
 
 /// What carries states, in the order of declaration.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -159,6 +166,17 @@ pub struct Element {
     pub start: Option<Term>,
     /// The stored energy of a nonlinear law.
     pub energy: Option<Term>,
+    /// What a residual sink of a joint holds.
+    pub held: Option<Held>,
+}
+
+/// The joint that a residual sink is part of, and the direction in which a scalar one holds it.
+#[derive(Clone, Copy, Debug)]
+pub struct Held {
+    /// The joint.
+    pub joint: JointId,
+    /// The direction.
+    pub direction: Option<Direction>,
 }
 
 /// A constitutive law.
@@ -264,7 +282,7 @@ pub struct Track {
 #[derive(Clone, Debug)]
 pub struct Close {
     /// The joint.
-    pub joint: Name,
+    pub joint: JointId,
     /// The gap.
     pub gap: Term,
     /// Scalar or vector.
@@ -302,6 +320,12 @@ impl BondGraph {
     #[must_use]
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.0]
+    }
+
+    /// The name of a joint.
+    #[must_use]
+    pub fn joint(&self, id: JointId) -> &str {
+        &self.joints[id.0]
     }
 
     /// A bond.
@@ -361,33 +385,5 @@ impl NodeKind {
             Self::One => "1",
             Self::Element(element) => element.kind.symbol(),
         }
-    }
-}
-
-impl ElementKind {
-    /// The field's symbol.
-    #[must_use]
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Se => "Se",
-            Self::Sf => "Sf",
-            Self::I => "I",
-            Self::C => "C",
-            Self::R => "R",
-            Self::Tf => "TF",
-            Self::Gy => "GY",
-            Self::MSe => "MSe",
-            Self::MSf => "MSf",
-            Self::RSe => "rSe",
-            Self::Mtf => "MTF",
-            Self::Mgy => "MGY",
-            Self::Mr => "MR",
-        }
-    }
-
-    /// Whether it has two ports.
-    #[must_use]
-    pub fn is_two_port(self) -> bool {
-        matches!(self, Self::Tf | Self::Gy | Self::Mtf | Self::Mgy)
     }
 }

@@ -182,7 +182,7 @@ impl Term {
         }
     }
 
-    /// The references in the expression itself (not behind its lets), in the order of reading.
+    /// The references in the expression itself (not in its lets), in the order of reading.
     pub fn references(&self, found: &mut Vec<Reference>) {
         self.visit(&mut |part| {
             if let TermKind::Reference(reference) = part.kind {

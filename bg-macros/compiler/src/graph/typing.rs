@@ -41,7 +41,7 @@ impl Shape {
         }
     }
 
-    /// The names of the components behind a quantity's name: none, `_x`.., `_11`..
+    /// The names of the components after a quantity's name: none, `_x`.., `_11`..
     #[must_use]
     pub fn suffixes(self) -> &'static [&'static str] {
         match self {

@@ -2,14 +2,10 @@
 //!
 //! In: a [`Graph`]. Out: the same graph, in which each pair of terms that several sums have up to a factor is a sum of its
 //! own; the order of the cores no longer is children first.
-//! Method: Hosangadi, Fallah, Kastner 2006 (Optimizing polynomial expressions by algebraic factorization and common
-//! subexpression elimination), greedy two-term elimination; the pair with the largest saving first.
-
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+//! Method: greedy elimination (`greedy`).
 
 use super::graph::{Core, Graph, ONE, Value};
-use super::rebuild::LONGEST;
+use super::greedy::{Elimination, LONGEST, Seen, eliminate};
 use super::statics::Statics;
 use super::table::Table;
 use crate::expr::Id;
@@ -23,16 +19,13 @@ struct Sum {
     terms: Vec<Value>,
 }
 
-struct Search<'g, 's, 'p> {
+struct Sums<'g, 's, 'p> {
     graph: &'g mut Graph,
     statics: &'s mut Statics<'p>,
-    sums: Vec<Sum>,
-    places: Table<Pair, Vec<u32>>,
-    queue: BinaryHeap<(i64, Reverse<Pair>)>,
+    all: Vec<Sum>,
+    seen: Seen<Pair>,
     /// How many sums contain this coefficient's magnitude times this core.
     scaled: Table<(Id, u32), i64>,
-    /// In how many sums each core was at first; a core of one sum forms no common pair. Cores beyond the end are new.
-    members: Vec<u32>,
 }
 
 /// A pair in one sum.
@@ -48,98 +41,39 @@ pub(super) fn share_addends(statics: &mut Statics, graph: &mut Graph, roots: &[V
     let order = graph.post_order(roots);
     let mut sums = Vec::new();
     for core in order {
-        if let Core::Sum(terms) = &graph.cores[core as usize] {
+        if let Core::Sum(terms) = &graph.cores[core] {
             sums.push(Sum { core, terms: terms.clone() });
         }
     }
-    let mut members = vec![0; graph.cores.len()];
-    sums.iter().flat_map(|sum| &sum.terms).for_each(|term| members[term.core as usize] += 1);
-    let (places, queue, scaled) = (Table::default(), BinaryHeap::new(), Table::default());
-    let mut search = Search { graph, statics, sums, places, queue, scaled, members };
-    search.enter();
-    search.run();
-    for Sum { core, terms } in search.sums {
-        search.graph.cores[core as usize] = Core::Sum(terms);
+    let members = sums.iter().flat_map(|sum| &sum.terms).map(|term| term.core);
+    let seen = Seen::new(members, graph.cores.len());
+    let mut search = Sums { graph, statics, all: sums, seen, scaled: Table::default() };
+    let found = search.pairs();
+    eliminate(&mut search, found);
+    for Sum { core, terms } in search.all {
+        search.graph.cores[core] = Core::Sum(terms);
     }
 }
 
-impl Search<'_, '_, '_> {
-    fn enter(&mut self) {
-        let mut found = Vec::new();
-        for sum in 0..self.sums.len() {
-            let terms = self.sums[sum].terms.clone();
-            for (at, &first) in terms.iter().enumerate() {
-                self.count(first, 1);
-                for &second in terms[at + 1..].iter().take(LONGEST) {
-                    self.note(sum, first, second, &mut found);
-                }
-            }
-        }
-        self.enqueue(found);
-    }
+impl Elimination for Sums<'_, '_, '_> {
+    type Pair = Pair;
+    type Place = Place;
 
-    fn run(&mut self) {
-        while let Some((stated, Reverse(pair))) = self.queue.pop() {
-            let places = self.verified(pair);
-            let saving = self.saving(pair, &places);
-            if saving < 1 {
-                continue;
-            }
-            if saving < stated {
-                self.queue.push((saving, Reverse(pair)));
-                continue;
-            }
-            self.replace(pair, &places);
-        }
-    }
-
-    /// Notes the pair of these terms; `found` gets it when it occurs a second time or more.
-    fn note(&mut self, sum: usize, first: Value, second: Value, found: &mut Vec<Pair>) {
-        let single = |term: Value| self.members.get(term.core as usize).is_some_and(|&sums| sums < 2);
-        if single(first) || single(second) {
-            return;
-        }
-        for (pair, _) in pairs(self.statics, first, second).into_iter().flatten() {
-            let places = self.places.entry(pair).or_default();
-            places.push(u32::try_from(sum).expect("fewer than 2^32 sums"));
-            if places.len() > 1 {
-                found.push(pair);
-            }
-        }
-    }
-
-    fn enqueue(&mut self, mut found: Vec<Pair>) {
-        found.sort_unstable();
-        found.dedup();
-        for pair in found {
-            let places = self.verified(pair);
-            let saving = self.saving(pair, &places);
-            if saving > 0 {
-                self.queue.push((saving, Reverse(pair)));
-            }
-        }
-    }
-
-    /// Where the pair still is.
-    fn verified(&mut self, pair: Pair) -> Vec<Place> {
-        let mut verified = Vec::new();
-        let mut sums = self.places.get(&pair).cloned().unwrap_or_default();
-        sums.sort_unstable();
-        sums.dedup();
-        for sum in sums {
-            let terms = &self.sums[sum as usize].terms;
+    fn places(&mut self, pair: Pair) -> Vec<Place> {
+        let mut places = Vec::new();
+        for sum in self.seen.lines(pair) {
+            let terms = &self.all[sum].terms;
             let term = |core| terms.binary_search_by_key(&core, |term: &Value| term.core).ok().map(|at| terms[at]);
             let (Some(first), Some(second)) = (term(pair.0), term(pair.1)) else { continue };
             for (found, factor) in pairs(self.statics, first, second).into_iter().flatten() {
                 if found == pair {
-                    verified.push(Place { sum: sum as usize, factor, first, second });
+                    places.push(Place { sum, factor, first, second });
                 }
             }
         }
-        verified
+        places
     }
 
-    /// The operations that a sum of this pair saves.
     fn saving(&mut self, pair: Pair, places: &[Place]) -> i64 {
         let Some(count) = i64::try_from(places.len()).ok().filter(|&count| count > 1) else { return 0 };
         let inner = [(pair.2, pair.0), (pair.3, pair.1)];
@@ -169,6 +103,54 @@ impl Search<'_, '_, '_> {
         count - 1 + freed - i64::try_from(after.len()).unwrap_or(0)
     }
 
+    fn replace(&mut self, pair: Pair, places: &[Place]) -> Vec<Pair> {
+        let terms = [Value { coefficient: pair.2, core: pair.0 }, Value { coefficient: pair.3, core: pair.1 }];
+        let inner = self.graph.sum(self.statics, terms.to_vec());
+        if let Core::Sum(terms) = self.graph.cores[inner.core].clone() {
+            terms.into_iter().for_each(|term| self.count(term, 1));
+        }
+        self.seen.add_lines(inner.core, places.len());
+        let mut found = Vec::new();
+        for place in places {
+            if self.all[place.sum].core == inner.core {
+                continue;
+            }
+            self.count(place.first, -1);
+            self.count(place.second, -1);
+            let coefficient = self.statics.times(place.factor, inner.coefficient);
+            self.exchange(place, Value { coefficient, core: inner.core }, &mut found);
+        }
+        found
+    }
+}
+
+impl Sums<'_, '_, '_> {
+    fn pairs(&mut self) -> Vec<Pair> {
+        let mut found = Vec::new();
+        for sum in 0..self.all.len() {
+            let terms = self.all[sum].terms.clone();
+            for (at, &first) in terms.iter().enumerate() {
+                self.count(first, 1);
+                for &second in terms[at + 1..].iter().take(LONGEST) {
+                    self.note(sum, first, second, &mut found);
+                }
+            }
+        }
+        found
+    }
+
+    /// Notes the pair of these terms; `found` gets it when it occurs a second time or more.
+    fn note(&mut self, sum: usize, first: Value, second: Value, found: &mut Vec<Pair>) {
+        if self.seen.is_single(first.core) || self.seen.is_single(second.core) {
+            return;
+        }
+        for (pair, _) in pairs(self.statics, first, second).into_iter().flatten() {
+            if self.seen.note(pair, sum) > 1 {
+                found.push(pair);
+            }
+        }
+    }
+
     /// The magnitude of a coefficient and its core, if that is a multiplication.
     fn scaled_term(&mut self, coefficient: Id, core: u32) -> Option<(Id, u32)> {
         if core == ONE || self.statics.is_unit(coefficient) {
@@ -183,31 +165,8 @@ impl Search<'_, '_, '_> {
         }
     }
 
-    /// Replaces the pair by a sum of its own.
-    fn replace(&mut self, pair: Pair, places: &[Place]) {
-        let terms = [Value { coefficient: pair.2, core: pair.0 }, Value { coefficient: pair.3, core: pair.1 }];
-        let inner = self.graph.sum(self.statics, terms.to_vec());
-        if let Core::Sum(terms) = self.graph.cores[inner.core as usize].clone() {
-            terms.into_iter().for_each(|term| self.count(term, 1));
-        }
-        if let Some(members) = self.members.get_mut(inner.core as usize) {
-            *members += u32::try_from(places.len()).unwrap_or(u32::MAX);
-        }
-        let mut found = Vec::new();
-        for place in places {
-            if self.sums[place.sum].core == inner.core {
-                continue;
-            }
-            self.count(place.first, -1);
-            self.count(place.second, -1);
-            let coefficient = self.statics.times(place.factor, inner.coefficient);
-            self.exchange(place, Value { coefficient, core: inner.core }, &mut found);
-        }
-        self.enqueue(found);
-    }
-
     fn exchange(&mut self, place: &Place, mut new: Value, found: &mut Vec<Pair>) {
-        let terms = &mut self.sums[place.sum].terms;
+        let terms = &mut self.all[place.sum].terms;
         terms.retain(|term| term.core != place.first.core && term.core != place.second.core);
         let at = terms.partition_point(|term| term.core < new.core);
         if terms.get(at).is_some_and(|term| term.core == new.core) {
@@ -216,7 +175,7 @@ impl Search<'_, '_, '_> {
             new.coefficient = self.statics.pool.add(old.coefficient, new.coefficient);
         }
         self.count(new, 1);
-        let terms = &mut self.sums[place.sum].terms;
+        let terms = &mut self.all[place.sum].terms;
         let near = at.saturating_sub(LONGEST)..(at + LONGEST).min(terms.len());
         let neighbours = terms[near].to_vec();
         terms.insert(at, new);

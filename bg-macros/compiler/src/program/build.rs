@@ -43,7 +43,7 @@ impl Sweep<'_, '_> {
             Node::Number(_) => fixed,
             Node::Symbol(Symbol::Parameter(_)) if self.parameters == Parameters::Static => fixed,
             Node::Symbol(symbol) => {
-                Value { coefficient: self.statics.one, core: self.graph.intern(Core::Symbol(*symbol)) }
+                Value { coefficient: self.statics.one, core: self.graph.cores.intern(Core::Symbol(*symbol)) }
             }
             Node::Sum { terms, .. } if terms.iter().all(|term| self.is_static(term.0)) => fixed,
             Node::Product(factors) if factors.iter().all(|factor| self.is_static(factor.0)) => fixed,

@@ -2,16 +2,13 @@
 //!
 //! In: a [`Plan`]. Out: the same plan, in which each pair of factors that several products have, or one product has more
 //! than once, is a product of its own; a divisor of many products is one reciprocal.
-//! Method: Hosangadi, Fallah, Kastner 2006, greedy two-term elimination on monomials, most frequent pair first; powers are
-//! pairs of equal factors, so that they are taken by squaring.
+//! Method: greedy elimination (`greedy`) on monomials, most frequent pair first; powers are pairs of equal factors, so that
+//! they are taken by squaring.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
-use super::graph::number;
+use super::greedy::{Elimination, LONGEST, Seen, eliminate};
 use super::plan::{Cell, Plan};
-use super::rebuild::LONGEST;
-use super::table::Table;
 
 /// Two factors: ascending if they are multiplied (`true`), dividend and divisor otherwise.
 type Pair = (u32, u32, bool);
@@ -20,108 +17,58 @@ type Pair = (u32, u32, bool);
 /// two multiplications, which is no fewer operations.
 const RECIPROCAL: usize = 3;
 
-struct Search<'p> {
+struct Products<'p> {
     plan: &'p mut Plan,
-    products: Vec<(u32, Vec<(u32, i32)>)>,
-    places: Table<Pair, Vec<u32>>,
-    queue: BinaryHeap<(u32, Reverse<Pair>)>,
-    /// In how many products each cell was at first; cells beyond the end are new.
-    members: Vec<u32>,
+    /// Each product with its factors.
+    all: Vec<(u32, Vec<(u32, i32)>)>,
+    seen: Seen<Pair>,
 }
 
 /// Makes products of the pairs of factors that occur more than once.
 pub(super) fn share_factors(plan: &mut Plan) {
     let mut products = Vec::new();
     for cell in plan.post_order() {
-        if let Cell::Product(factors) = &plan.cells[cell as usize] {
+        if let Cell::Product(factors) = &plan.cells[cell] {
             products.push((cell, factors.clone()));
         }
     }
-    let mut members = vec![0; plan.cells.len()];
-    products.iter().flat_map(|product| &product.1).for_each(|factor| members[factor.0 as usize] += 1);
-    let mut search = Search { plan, products, places: Table::default(), queue: BinaryHeap::new(), members };
-    search.enter();
-    search.run();
-    let mut products = search.products;
+    let members = products.iter().flat_map(|product| &product.1).map(|factor| factor.0);
+    let seen = Seen::new(members, plan.cells.len());
+    let mut search = Products { plan, all: products, seen };
+    let found = search.pairs();
+    eliminate(&mut search, found);
+    let mut products = search.all;
     share_divisors(plan, &mut products);
     for (cell, factors) in products {
-        plan.cells[cell as usize] = Cell::Product(factors);
+        plan.cells[cell] = Cell::Product(factors);
     }
 }
 
-impl Search<'_> {
-    fn enter(&mut self) {
-        let mut found = Vec::new();
-        for product in 0..self.products.len() {
-            let factors = self.products[product].1.clone();
-            for (at, &first) in factors.iter().enumerate() {
-                for &second in factors[at..].iter().take(LONGEST) {
-                    self.note(product, first, second, &mut found);
-                }
-            }
-        }
-        self.enqueue(found);
-    }
+impl Elimination for Products<'_> {
+    type Pair = Pair;
+    /// The product, and how many times the pair is in it.
+    type Place = (usize, u32);
 
-    fn run(&mut self) {
-        while let Some((stated, Reverse(pair))) = self.queue.pop() {
-            let places = self.verified(pair);
-            let count = places.iter().map(|place| place.1).sum();
-            if count < 2 {
-                continue;
-            }
-            if count < stated {
-                self.queue.push((count, Reverse(pair)));
-                continue;
-            }
-            self.replace(pair, &places);
-        }
-    }
-
-    fn note(&mut self, product: usize, first: (u32, i32), second: (u32, i32), found: &mut Vec<Pair>) {
-        let Some((pair, times)) = pair(first, second) else { return };
-        let single = |cell: u32| self.members.get(cell as usize).is_some_and(|&products| products < 2);
-        if times < 2 && (single(pair.0) || single(pair.1)) {
-            return;
-        }
-        let places = self.places.entry(pair).or_default();
-        places.push(number(product));
-        if places.len() > 1 || times > 1 {
-            found.push(pair);
-        }
-    }
-
-    fn enqueue(&mut self, mut found: Vec<Pair>) {
-        found.sort_unstable();
-        found.dedup();
-        for pair in found {
-            let count = self.verified(pair).iter().map(|place| place.1).sum();
-            if count > 1 {
-                self.queue.push((count, Reverse(pair)));
-            }
-        }
-    }
-
-    /// The products in which the pair still is, and how many times.
-    fn verified(&self, wanted: Pair) -> Vec<(usize, u32)> {
-        let mut verified = Vec::new();
-        let mut products = self.places.get(&wanted).cloned().unwrap_or_default();
-        products.sort_unstable();
-        products.dedup();
-        for product in products {
-            let factors = &self.products[product as usize].1;
+    fn places(&mut self, wanted: Pair) -> Vec<(usize, u32)> {
+        let mut places = Vec::new();
+        for product in self.seen.lines(wanted) {
+            let factors = &self.all[product].1;
             let find = |cell| factors.iter().find(|factor| factor.0 == cell).copied();
             let (Some(first), Some(second)) = (find(wanted.0), find(wanted.1)) else { continue };
             if let Some((found, times)) = pair(first, second)
                 && found == wanted
             {
-                verified.push((product as usize, times));
+                places.push((product, times));
             }
         }
-        verified
+        places
     }
 
-    fn replace(&mut self, pair: Pair, places: &[(usize, u32)]) {
+    fn saving(&mut self, _: Pair, places: &[(usize, u32)]) -> i64 {
+        places.iter().map(|&(_, times)| i64::from(times)).sum::<i64>() - 1
+    }
+
+    fn replace(&mut self, pair: Pair, places: &[(usize, u32)]) -> Vec<Pair> {
         let (first, second, multiplied) = pair;
         let factors = match (first == second, multiplied) {
             (true, _) => vec![(first, 2)],
@@ -129,21 +76,45 @@ impl Search<'_> {
             (false, false) if first < second => vec![(first, 1), (second, -1)],
             (false, false) => vec![(second, -1), (first, 1)],
         };
-        let inner = self.plan.intern(Cell::Product(factors));
-        if let Some(members) = self.members.get_mut(inner as usize) {
-            *members += number(places.len());
-        }
+        let inner = self.plan.cells.intern(Cell::Product(factors));
+        self.seen.add_lines(inner, places.len());
         let mut found = Vec::new();
         for &(product, times) in places {
-            if self.products[product].0 != inner {
+            if self.all[product].0 != inner {
                 self.exchange(product, pair, times, inner, &mut found);
             }
         }
-        self.enqueue(found);
+        found
+    }
+}
+
+impl Products<'_> {
+    fn pairs(&mut self) -> Vec<Pair> {
+        let mut found = Vec::new();
+        for product in 0..self.all.len() {
+            let factors = self.all[product].1.clone();
+            for (at, &first) in factors.iter().enumerate() {
+                for &second in factors[at..].iter().take(LONGEST) {
+                    self.note(product, first, second, &mut found);
+                }
+            }
+        }
+        found
+    }
+
+    /// Notes the pair of these factors; `found` gets it when it occurs a second time or more.
+    fn note(&mut self, product: usize, first: (u32, i32), second: (u32, i32), found: &mut Vec<Pair>) {
+        let Some((pair, times)) = pair(first, second) else { return };
+        if times < 2 && (self.seen.is_single(pair.0) || self.seen.is_single(pair.1)) {
+            return;
+        }
+        if self.seen.note(pair, product) > 1 || times > 1 {
+            found.push(pair);
+        }
     }
 
     fn exchange(&mut self, product: usize, pair: Pair, times: u32, inner: u32, found: &mut Vec<Pair>) {
-        let factors = &mut self.products[product].1;
+        let factors = &mut self.all[product].1;
         let mut direction = 1;
         let times = times.cast_signed();
         for factor in factors.iter_mut() {
@@ -196,7 +167,7 @@ fn share_divisors(plan: &mut Plan, products: &mut [(u32, Vec<(u32, i32)>)]) {
         if users.len() < RECIPROCAL {
             continue;
         }
-        let reciprocal = plan.intern(Cell::Product(divisor));
+        let reciprocal = plan.cells.intern(Cell::Product(divisor));
         for at in users {
             let (cell, factors) = &mut products[at];
             if *cell != reciprocal {

@@ -2,19 +2,18 @@
 //!
 //! In: a [`Plan`]. Out: a [`Routine`] whose assignments stand in depth-first order from the results, and the constants that
 //! it uses, in a table.
-//! Method: long sums and products are combined in pairs, the two operands that are ready first at first (Huffman 1952, with
+//! Method: long sums and products are combined in pairs, the two operands that are ready first (Huffman 1952, with
 //! the depth as weight), which gives the shortest chain of dependent operations.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::graph::number;
 use super::plan::{Cell, Plan, Signed};
 use super::signs::Signs;
 use super::statics::Statics;
-use super::table::Table;
+use super::table::{Store, number};
 use super::{Assignment, Counts, Operand, Operation, Routine};
-use crate::expr::{Function, Id, Symbol};
+use crate::expr::{Id, Symbol};
 
 /// Where a value is.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -24,47 +23,24 @@ enum Place {
     Step(u32),
 }
 
-/// One operation.
-#[derive(Clone, PartialEq, Eq, Hash, Debug)]
-enum Step {
-    Add(Place, Place),
-    Subtract(Place, Place),
-    Multiply(Place, Place),
-    Divide(Place, Place),
-    Negate(Place),
-    Call(Function, Vec<Place>),
-    Select(u32, Place, Place),
-}
-
-/// The constants of a program in the order of their numbers.
-#[derive(Debug, Default)]
-pub(super) struct Constants {
-    /// The constants.
-    pub(super) ids: Vec<Id>,
-    index: Table<Id, u32>,
-}
-
-impl Constants {
-    fn operand(&mut self, statics: &Statics, id: Id) -> Operand {
-        if let Some(value) = statics.pool.as_number(id) {
-            return Operand::Number(value);
-        }
-        let next = number(self.ids.len());
-        let index = *self.index.entry(id).or_insert(next);
-        if index == next {
-            self.ids.push(id);
-        }
-        Operand::Constant(index)
+impl Place {
+    fn step(self) -> Option<u32> {
+        if let Self::Step(step) = self { Some(step) } else { None }
     }
 }
+
+/// One operation.
+type Step = Operation<Place>;
+
+/// The constants of a program in the order of their numbers.
+pub(super) type Constants = Store<Id>;
 
 /// The routine of a plan.
 pub(super) fn flatten(statics: &mut Statics, plan: &Plan, name: &str, constants: &mut Constants) -> Routine {
     let order = plan.post_order();
     let signs = Signs::new(plan, &order);
     let places = vec![Place::Static(statics.one); plan.cells.len()];
-    let mut lowering =
-        Lowering { statics, plan, signs, places, steps: Vec::new(), depths: Vec::new(), index: Table::default() };
+    let mut lowering = Lowering { statics, plan, signs, places, steps: Store::default(), depths: Vec::new() };
     for cell in order {
         let place = lowering.cell(cell);
         lowering.places[cell as usize] = place;
@@ -79,15 +55,14 @@ struct Lowering<'l, 'p> {
     plan: &'l Plan,
     signs: Signs,
     places: Vec<Place>,
-    steps: Vec<Step>,
+    steps: Store<Step>,
     depths: Vec<u32>,
-    index: Table<Step, u32>,
 }
 
 impl Lowering<'_, '_> {
     fn cell(&mut self, cell: u32) -> Place {
         let plan = self.plan;
-        match &plan.cells[cell as usize] {
+        match &plan.cells[cell] {
             Cell::Static(id) => Place::Static(*id),
             Cell::Symbol(symbol) => Place::Symbol(*symbol),
             Cell::Sum(terms) => self.sum(cell, terms),
@@ -98,7 +73,7 @@ impl Lowering<'_, '_> {
             }
             Cell::Select { switch, negative, positive } => {
                 let (negative, positive) = (self.wanted(*negative), self.wanted(*positive));
-                self.step(Step::Select(*switch, negative, positive))
+                self.step(Step::Select { switch: *switch, negative, positive })
             }
         }
     }
@@ -160,7 +135,7 @@ impl Lowering<'_, '_> {
         self.step(Step::Divide(dividend, divisor))
     }
 
-    /// Combines items in pairs, the two that are ready first at first.
+    /// Combines items in pairs, the two that are ready first.
     fn combine(
         &mut self,
         items: Vec<(bool, Place)>,
@@ -182,7 +157,7 @@ impl Lowering<'_, '_> {
     }
 
     fn depth(&self, place: Place) -> u32 {
-        if let Place::Step(step) = place { self.depths[step as usize] } else { 0 }
+        place.step().map_or(0, |step| self.depths[step as usize])
     }
 
     fn step(&mut self, step: Step) -> Place {
@@ -191,78 +166,33 @@ impl Lowering<'_, '_> {
             Step::Multiply(left, right) => Step::Multiply(left.min(right), left.max(right)),
             ref other => other.clone(),
         };
-        if let Some(&known) = self.index.get(&key) {
-            return Place::Step(known);
+        let depth = step.operands().into_iter().map(|operand| self.depth(operand)).max().unwrap_or(0);
+        let index = self.steps.intern_as(key, step);
+        if self.depths.len() < self.steps.len() {
+            self.depths.push(depth + 1);
         }
-        let mut depth = 0;
-        step.operands(|operand| depth = depth.max(self.depth(operand)));
-        let index = number(self.steps.len());
-        self.steps.push(step);
-        self.depths.push(depth + 1);
-        self.index.insert(key, index);
         Place::Step(index)
-    }
-}
-
-impl Step {
-    fn operands(&self, mut visit: impl FnMut(Place)) {
-        match self {
-            Self::Add(left, right)
-            | Self::Subtract(left, right)
-            | Self::Multiply(left, right)
-            | Self::Divide(left, right)
-            | Self::Select(_, left, right) => {
-                visit(*left);
-                visit(*right);
-            }
-            Self::Negate(operand) => visit(*operand),
-            Self::Call(_, operands) => operands.iter().for_each(|&operand| visit(operand)),
-        }
-    }
-
-    fn operation(&self, mut operand: impl FnMut(Place) -> Operand) -> Operation {
-        match self {
-            Self::Add(left, right) => Operation::Add(operand(*left), operand(*right)),
-            Self::Subtract(left, right) => Operation::Subtract(operand(*left), operand(*right)),
-            Self::Multiply(left, right) => Operation::Multiply(operand(*left), operand(*right)),
-            Self::Divide(left, right) => Operation::Divide(operand(*left), operand(*right)),
-            Self::Negate(only) => Operation::Negate(operand(*only)),
-            Self::Call(function, all) => Operation::Call(*function, all.iter().map(|&place| operand(place)).collect()),
-            Self::Select(switch, negative, positive) => {
-                let (negative, positive) = (operand(*negative), operand(*positive));
-                Operation::Select { switch: *switch, negative, positive }
-            }
-        }
     }
 }
 
 /// The steps under the results as assignments, in depth-first order.
 fn number_steps(
     statics: &Statics,
-    steps: &[Step],
+    steps: &Store<Step>,
     results: &[Place],
     name: &str,
     constants: &mut Constants,
 ) -> Routine {
     let mut targets: Vec<Option<u32>> = vec![None; steps.len()];
     let mut assignments = Vec::new();
-    let mut pending: Vec<(Place, bool)> = results.iter().rev().map(|&result| (result, false)).collect();
-    while let Some((place, finished)) = pending.pop() {
-        let Place::Step(step) = place else { continue };
-        if targets[step as usize].is_some() {
-            continue;
-        }
-        if finished {
-            let operation = steps[step as usize].operation(|place| operand(statics, constants, &targets, place));
-            let target = number(assignments.len());
-            targets[step as usize] = Some(target);
-            assignments.push(Assignment { target, operation });
-        } else {
-            pending.push((place, true));
-            let first = pending.len();
-            steps[step as usize].operands(|operand| pending.push((operand, false)));
-            pending[first..].reverse();
-        }
+    let order = steps.post_order(results.iter().copied().filter_map(Place::step), |step, visit| {
+        step.operands().into_iter().filter_map(Place::step).for_each(visit);
+    });
+    for step in order {
+        let operation = steps[step].map(|place| operand(statics, constants, &targets, place));
+        let target = number(assignments.len());
+        targets[step as usize] = Some(target);
+        assignments.push(Assignment { target, operation });
     }
     let results = results.iter().map(|&place| operand(statics, constants, &targets, place)).collect();
     let counts = Counts::of(&assignments);
@@ -271,7 +201,9 @@ fn number_steps(
 
 fn operand(statics: &Statics, constants: &mut Constants, targets: &[Option<u32>], place: Place) -> Operand {
     match place {
-        Place::Static(id) => constants.operand(statics, id),
+        Place::Static(id) => {
+            statics.pool.as_number(id).map_or_else(|| Operand::Constant(constants.intern(id)), Operand::Number)
+        }
         Place::Symbol(symbol) => Operand::Symbol(symbol),
         Place::Step(step) => Operand::Temporary(targets[step as usize].expect("operands are assigned first")),
     }

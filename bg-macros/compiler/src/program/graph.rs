@@ -2,10 +2,10 @@
 //!
 //! In: values in any form. Out: cores in normal form: sums have no common coefficient and begin with a plus, products
 //! have no coefficient and no products within; equal cores are stored once.
-//! Method: hash-consing (Ershov 1958); a common coefficient is divided out only where that divides by numbers alone.
+//! Method: hash-consing (`table`); a common coefficient is divided out only where that divides by numbers alone.
 
 use super::statics::Statics;
-use super::table::Table;
+use super::table::Store;
 use crate::expr::{Function, Id, MOST_EXPONENT, Symbol};
 
 /// coefficient * core.
@@ -48,8 +48,7 @@ pub(super) const ONE: u32 = 0;
 #[derive(Debug)]
 pub(super) struct Graph {
     /// The cores by index.
-    pub(super) cores: Vec<Core>,
-    index: Table<Core, u32>,
+    pub(super) cores: Store<Core>,
 }
 
 impl Core {
@@ -70,25 +69,14 @@ impl Core {
 impl Graph {
     /// A graph with the core of static values.
     pub(super) fn new() -> Self {
-        let mut graph = Self { cores: Vec::new(), index: Table::default() };
-        graph.intern(Core::One);
-        graph
-    }
-
-    /// The index of this core.
-    pub(super) fn intern(&mut self, core: Core) -> u32 {
-        if let Some(&known) = self.index.get(&core) {
-            return known;
-        }
-        let index = number(self.cores.len());
-        self.cores.push(core.clone());
-        self.index.insert(core, index);
-        index
+        let mut cores = Store::default();
+        cores.intern(Core::One);
+        Self { cores }
     }
 
     /// The factors of a core.
     pub(super) fn factors(&self, core: u32) -> &[(u32, i32)] {
-        match &self.cores[core as usize] {
+        match &self.cores[core] {
             Core::Product(factors) => factors,
             _ => &[],
         }
@@ -96,7 +84,7 @@ impl Graph {
 
     /// The factors of a core as a list: none of the number 1, the core itself if it is no product.
     pub(super) fn factor_list(&self, core: u32) -> Vec<(u32, i32)> {
-        match &self.cores[core as usize] {
+        match &self.cores[core] {
             Core::One => Vec::new(),
             Core::Product(factors) => factors.clone(),
             _ => vec![(core, 1)],
@@ -117,7 +105,7 @@ impl Graph {
         match merged[..] {
             [] => ONE,
             [(core, 1)] => core,
-            _ => self.intern(Core::Product(merged)),
+            _ => self.cores.intern(Core::Product(merged)),
         }
     }
 
@@ -130,7 +118,7 @@ impl Graph {
                 let power = statics.pool.powi(value.coefficient, exponent);
                 coefficient = statics.times(coefficient, power);
             }
-            match &self.cores[value.core as usize] {
+            match &self.cores[value.core] {
                 Core::One => {}
                 Core::Product(inner) if has_small_powers(inner, exponent) => {
                     factors.extend(inner.iter().map(|&(core, inner)| (core, inner * exponent)));
@@ -163,11 +151,11 @@ impl Graph {
                 |term: &Value| Some(Value { coefficient: statics.exact(term.coefficient, content)?, ..*term });
             let divided: Option<Vec<Value>> = terms.iter().map(divided).collect();
             let Some(divided) = divided else {
-                return Value { coefficient: statics.one, core: self.intern(Core::Sum(terms)) };
+                return Value { coefficient: statics.one, core: self.cores.intern(Core::Sum(terms)) };
             };
             terms = divided;
         }
-        Value { coefficient: content, core: self.intern(Core::Sum(terms)) }
+        Value { coefficient: content, core: self.cores.intern(Core::Sum(terms)) }
     }
 
     /// A function's value; odd and even functions lose their argument's minus.
@@ -179,7 +167,7 @@ impl Graph {
             arguments[0].coefficient = magnitude;
             coefficient = statics.signed(negative && odd, coefficient);
         }
-        Value { coefficient, core: self.intern(Core::Call(function, arguments)) }
+        Value { coefficient, core: self.cores.intern(Core::Call(function, arguments)) }
     }
 
     /// One of two values; what they have in common as coefficient goes outside.
@@ -196,25 +184,12 @@ impl Graph {
                 .map(|branch| Value { coefficient: statics.signed(true, branch.coefficient), core: branch.core });
         }
         let [negative, positive] = branches;
-        Value { coefficient, core: self.intern(Core::Select { switch, negative, positive }) }
+        Value { coefficient, core: self.cores.intern(Core::Select { switch, negative, positive }) }
     }
 
     /// All cores under these values, children first, in depth-first order from the values in order.
     pub(super) fn post_order(&self, roots: &[Value]) -> Vec<u32> {
-        let mut seen = vec![false; self.cores.len()];
-        let mut order = Vec::new();
-        let mut pending: Vec<(u32, bool)> = roots.iter().rev().map(|root| (root.core, false)).collect();
-        while let Some((core, finished)) = pending.pop() {
-            if finished {
-                order.push(core);
-            } else if !std::mem::replace(&mut seen[core as usize], true) {
-                pending.push((core, true));
-                let first = pending.len();
-                self.cores[core as usize].children(|child| pending.push((child, false)));
-                pending[first..].reverse();
-            }
-        }
-        order
+        self.cores.post_order(roots.iter().map(|root| root.core), |core, visit| core.children(visit))
     }
 
     /// How often each core is used by the cores under these values and by the values themselves.
@@ -224,7 +199,7 @@ impl Graph {
             uses[root.core as usize] += 1;
         }
         for &core in order {
-            self.cores[core as usize].children(|child| uses[child as usize] += 1);
+            self.cores[core].children(|child| uses[child as usize] += 1);
         }
         uses
     }
@@ -234,11 +209,6 @@ impl Graph {
 fn has_small_powers(factors: &[(u32, i32)], exponent: i32) -> bool {
     exponent == 1
         || factors.iter().all(|&(_, inner)| inner.checked_mul(exponent).is_some_and(|e| e.abs() <= MOST_EXPONENT))
-}
-
-/// An index as stored.
-pub(super) fn number(index: usize) -> u32 {
-    u32::try_from(index).expect("a routine has fewer than 2^32 nodes")
 }
 
 /// Terms sorted by core, those of one core added up, zeros left out.

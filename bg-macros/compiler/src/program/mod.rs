@@ -14,6 +14,7 @@ mod factor;
 mod factors;
 mod flat;
 mod graph;
+mod greedy;
 pub mod pairs;
 mod plan;
 mod programs;
@@ -100,28 +101,28 @@ pub enum Operand {
 }
 
 /// What an assignment evaluates.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Operation {
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Operation<T = Operand> {
     /// The sum of both.
-    Add(Operand, Operand),
+    Add(T, T),
     /// The first minus the second.
-    Subtract(Operand, Operand),
+    Subtract(T, T),
     /// The product of both.
-    Multiply(Operand, Operand),
+    Multiply(T, T),
     /// The first over the second.
-    Divide(Operand, Operand),
+    Divide(T, T),
     /// The operand with the other sign.
-    Negate(Operand),
+    Negate(T),
     /// A function of the operands.
-    Call(Function, Vec<Operand>),
+    Call(Function, Vec<T>),
     /// One of two operands, both evaluated.
     Select {
         /// The switch's index.
         switch: u32,
         /// The value where the switch's guard is negative.
-        negative: Operand,
+        negative: T,
         /// The value elsewhere.
-        positive: Operand,
+        positive: T,
     },
 }
 
@@ -164,10 +165,10 @@ impl Counts {
     }
 }
 
-impl Operation {
+impl<T: Copy> Operation<T> {
     /// The operands in order.
     #[must_use]
-    pub fn operands(&self) -> Vec<Operand> {
+    pub fn operands(&self) -> Vec<T> {
         match self {
             Self::Add(left, right)
             | Self::Subtract(left, right)
@@ -176,6 +177,23 @@ impl Operation {
             | Self::Select { negative: left, positive: right, .. } => vec![*left, *right],
             Self::Negate(operand) => vec![*operand],
             Self::Call(_, operands) => operands.clone(),
+        }
+    }
+
+    /// The operation on other operands, each made of one of these, in order.
+    pub fn map<U>(&self, mut to: impl FnMut(T) -> U) -> Operation<U> {
+        match *self {
+            Self::Add(left, right) => Operation::Add(to(left), to(right)),
+            Self::Subtract(left, right) => Operation::Subtract(to(left), to(right)),
+            Self::Multiply(left, right) => Operation::Multiply(to(left), to(right)),
+            Self::Divide(left, right) => Operation::Divide(to(left), to(right)),
+            Self::Negate(only) => Operation::Negate(to(only)),
+            Self::Call(function, ref all) => {
+                Operation::Call(function, all.iter().map(|&operand| to(operand)).collect())
+            }
+            Self::Select { switch, negative, positive } => {
+                Operation::Select { switch, negative: to(negative), positive: to(positive) }
+            }
         }
     }
 }
@@ -198,7 +216,7 @@ pub fn schedule<const R: usize>(pool: &mut Pool, requests: [Request; R]) -> Prog
         routine.results = request.roots.iter().map(|root| routine.results[place(root)]).collect();
         routine
     });
-    let plan = plan(&mut statics, &table.ids, Parameters::Dynamic);
+    let plan = plan(&mut statics, &table.items, Parameters::Dynamic);
     let constants = flat::flatten(&mut statics, &plan, "constants", &mut Constants::default());
     Program { constants, routines }
 }

@@ -4,10 +4,10 @@
 //! products are shared.
 //! Method: one sweep; a coefficient in front of a sum that is used once and multiplies each of its terms goes into them.
 
-use super::graph::{Core, Graph, ONE, Value, number};
+use super::graph::{Core, Graph, ONE, Value};
 use super::rebuild::has_unit;
 use super::statics::Statics;
-use super::table::Table;
+use super::table::Store;
 use crate::expr::{Function, Id, Symbol};
 
 /// A cell, negated or not.
@@ -47,10 +47,9 @@ pub(super) enum Cell {
 #[derive(Debug)]
 pub(super) struct Plan {
     /// The cells by index.
-    pub(super) cells: Vec<Cell>,
+    pub(super) cells: Store<Cell>,
     /// The results.
     pub(super) roots: Vec<Signed>,
-    index: Table<Cell, u32>,
 }
 
 impl Cell {
@@ -88,7 +87,7 @@ impl Plan {
     /// The plan of a graph's roots.
     pub(super) fn new(statics: &mut Statics, graph: &Graph, roots: &[Value]) -> Self {
         let order = graph.post_order(roots);
-        let plan = Self { cells: Vec::new(), roots: Vec::new(), index: Table::default() };
+        let plan = Self { cells: Store::default(), roots: Vec::new() };
         let uses = graph.uses(&order, roots);
         let mut sweep = Sweep { graph, uses, plan, cells: vec![0; graph.cores.len()], statics };
         for core in order {
@@ -98,33 +97,10 @@ impl Plan {
         Self { roots, ..sweep.plan }
     }
 
-    /// The index of this cell.
-    pub(super) fn intern(&mut self, cell: Cell) -> u32 {
-        if let Some(&known) = self.index.get(&cell) {
-            return known;
-        }
-        let index = number(self.cells.len());
-        self.cells.push(cell.clone());
-        self.index.insert(cell, index);
-        index
-    }
-
     /// The cells under the roots, operands first, in depth-first order.
     pub(super) fn post_order(&self) -> Vec<u32> {
-        let mut seen = vec![false; self.cells.len()];
-        let mut order = Vec::new();
-        let mut pending: Vec<(u32, bool)> = self.roots.iter().rev().map(|root| (root.cell, false)).collect();
-        while let Some((cell, finished)) = pending.pop() {
-            if finished {
-                order.push(cell);
-            } else if !std::mem::replace(&mut seen[cell as usize], true) {
-                pending.push((cell, true));
-                let first = pending.len();
-                self.cells[cell as usize].operands(|operand| pending.push((operand.cell, false)));
-                pending[first..].reverse();
-            }
-        }
-        order
+        let roots = self.roots.iter().map(|root| root.cell);
+        self.cells.post_order(roots, |cell, visit| cell.operands(|operand| visit(operand.cell)))
     }
 
     /// The plan's cost, in multiplications.
@@ -132,7 +108,7 @@ impl Plan {
         // A division occupies the unit four to five times as long as a multiplication (Agner Fog, instruction tables,
         // divsd against mulsd, Skylake to Zen 4).
         const DIVISION: usize = 4;
-        self.post_order().into_iter().map(|cell| self.cells[cell as usize].cost(DIVISION)).sum()
+        self.post_order().into_iter().map(|cell| self.cells[cell].cost(DIVISION)).sum()
     }
 }
 
@@ -147,7 +123,7 @@ struct Sweep<'g, 's, 'p> {
 impl Sweep<'_, '_, '_> {
     fn enter(&mut self, core: u32) {
         let graph = self.graph;
-        let cell = match &graph.cores[core as usize] {
+        let cell = match &graph.cores[core] {
             // These become cells where they are used, as they may merge with a coefficient there.
             Core::One | Core::Product(_) => return,
             Core::Symbol(symbol) => Cell::Symbol(*symbol),
@@ -160,7 +136,7 @@ impl Sweep<'_, '_, '_> {
             }
             Core::Sum(terms) => Cell::Sum(terms.iter().map(|&term| self.operand(term)).collect()),
         };
-        self.cells[core as usize] = self.plan.intern(cell);
+        self.cells[core as usize] = self.plan.cells.intern(cell);
     }
 
     fn operand(&mut self, value: Value) -> Signed {
@@ -171,7 +147,7 @@ impl Sweep<'_, '_, '_> {
     /// The cell of `magnitude * core`.
     fn scaled(&mut self, magnitude: Id, core: u32) -> u32 {
         if core == ONE {
-            return self.plan.intern(Cell::Static(magnitude));
+            return self.plan.cells.intern(Cell::Static(magnitude));
         }
         let mut factors = self.graph.factor_list(core);
         if magnitude == self.statics.one
@@ -193,11 +169,11 @@ impl Sweep<'_, '_, '_> {
                     factors.retain(|factor| factor.0 != old);
                     factors.push((cell, 1));
                 }
-                None => factors.push((self.plan.intern(Cell::Static(magnitude)), 1)),
+                None => factors.push((self.plan.cells.intern(Cell::Static(magnitude)), 1)),
             }
         }
         factors.sort_unstable();
-        self.plan.intern(Cell::Product(factors))
+        self.plan.cells.intern(Cell::Product(factors))
     }
 
     /// A factor of the core that is a sum, and the cell of the magnitude times that sum, where this needs no
@@ -208,14 +184,14 @@ impl Sweep<'_, '_, '_> {
             return None;
         }
         for (sum, exponent) in graph.factor_list(core) {
-            let Core::Sum(terms) = &graph.cores[sum as usize] else { continue };
+            let Core::Sum(terms) = &graph.cores[sum] else { continue };
             if exponent == 1 && self.uses[sum as usize] == 1 && !has_unit(self.statics, terms) {
                 let mut operands = Vec::with_capacity(terms.len());
                 for &Value { coefficient, core } in terms {
                     let coefficient = self.statics.times(magnitude, coefficient);
                     operands.push(self.operand(Value { coefficient, core }));
                 }
-                return Some((sum, self.plan.intern(Cell::Sum(operands))));
+                return Some((sum, self.plan.cells.intern(Cell::Sum(operands))));
             }
         }
         None

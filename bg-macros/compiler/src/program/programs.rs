@@ -6,9 +6,7 @@
 use super::pairs::{Paired, pair};
 use super::{Counts, Program, Request, Routine, schedule};
 use crate::expr::{Id, Pool};
-use crate::system::equations::StateEquations;
-use crate::system::jacobian::Jacobian;
-use crate::system::second_order::SecondOrder;
+use crate::system::{Jacobian, SecondOrder, StateEquations};
 
 /// Longer rates are not inlined into an integrator's step: they would only fill the cache.
 const INLINED: usize = 400;
@@ -39,7 +37,7 @@ pub struct Running {
     pub constants: Routine,
     /// The rates of all states.
     pub rate: Routine,
-    /// The rates with operations done two at a time, where that pays.
+    /// The rates in pairs of operations, where that pays.
     pub paired_rate: Option<Paired>,
     /// The guards of all switches.
     pub guards: Routine,
@@ -63,7 +61,7 @@ pub struct SecondOrderPrograms {
     /// The rates with second derivatives in their places, where rates are inlined: otherwise rates and second derivatives, one
     /// after the other, take as long.
     pub forces: Option<Routine>,
-    /// The forces with operations done two at a time, where that pays.
+    /// The forces in pairs of operations, where that pays.
     pub paired_forces: Option<Paired>,
 }
 
@@ -88,7 +86,8 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let starting = starting(equations);
     let fallible = roots(&equations.fallible, |law| law.value);
     let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
-    let required = ["required", "required_at_start"].map(|name| required(equations, name));
+    let required = [("required", false), ("required_at_start", true)]
+        .map(|(name, is_of_start)| required(equations, name, is_of_start));
     Programs { running, jacobian, second_order, holding, starting, required, not_finite }
 }
 
@@ -141,7 +140,7 @@ fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondO
     SecondOrderPrograms { constants, second_derivatives, forces: Some(forces), paired_forces }
 }
 
-/// In a pool of its own, so that it has no say in the order of the other functions' operations.
+/// In a pool of its own, so that it has no influence on the order of the other functions' operations.
 fn holding(equations: &StateEquations) -> Option<Program<1>> {
     let entries = equations.holding.entries();
     (!equations.holding.is_empty()).then(|| alone(&mut equations.pool.clone(), "hold", &entries))
@@ -159,9 +158,9 @@ fn starting(equations: &mut StateEquations) -> Starting {
 }
 
 /// In the pool of the requirements.
-fn required(equations: &mut StateEquations, name: &str) -> Option<Program<1>> {
+fn required(equations: &mut StateEquations, name: &str, is_of_start: bool) -> Option<Program<1>> {
     let requirements = &mut equations.requirements;
-    let values: Vec<Id> = requirements.of(name == "required_at_start").map(|requirement| requirement.value).collect();
+    let values: Vec<Id> = requirements.of(is_of_start).map(|requirement| requirement.value).collect();
     (!values.is_empty()).then(|| alone(&mut requirements.pool, name, &values))
 }
 

@@ -5,6 +5,7 @@
 
 use super::factor::{Grouping, Sharing};
 use super::graph::{Core, Graph, ONE, Value};
+use super::greedy::LONGEST;
 use super::statics::Statics;
 use super::table::Table;
 
@@ -48,9 +49,9 @@ struct Sweep<'s, 'p> {
 impl Sweep<'_, '_> {
     fn value(&mut self, core: u32) -> Value {
         let graph = self.graph;
-        match &graph.cores[core as usize] {
+        match &graph.cores[core] {
             leaf @ (Core::One | Core::Symbol(_)) => {
-                Value { coefficient: self.statics.one, core: self.target.intern(leaf.clone()) }
+                Value { coefficient: self.statics.one, core: self.target.cores.intern(leaf.clone()) }
             }
             Core::Call(function, arguments) => {
                 let arguments = arguments.iter().map(|&argument| self.mapped(argument)).collect();
@@ -82,7 +83,7 @@ impl Sweep<'_, '_> {
         let mut result = Vec::with_capacity(terms.len());
         let mut pending: Vec<Value> = terms.iter().rev().copied().collect();
         while let Some(term) = pending.pop() {
-            match &graph.cores[term.core as usize] {
+            match &graph.cores[term.core] {
                 Core::Sum(inner) if self.inlined[term.core as usize] => {
                     for &Value { coefficient, core } in inner.iter().rev() {
                         pending.push(Value { coefficient: self.statics.times(term.coefficient, coefficient), core });
@@ -99,9 +100,9 @@ impl Sweep<'_, '_> {
 fn inlined(statics: &Statics, graph: &Graph, order: &[u32], uses: &[u32]) -> Vec<bool> {
     let mut inlined = vec![false; graph.cores.len()];
     for &core in order {
-        let Core::Sum(terms) = &graph.cores[core as usize] else { continue };
+        let Core::Sum(terms) = &graph.cores[core] else { continue };
         for term in terms {
-            let Core::Sum(inner) = &graph.cores[term.core as usize] else { continue };
+            let Core::Sum(inner) = &graph.cores[term.core] else { continue };
             let free = statics.is_unit(term.coefficient) || !has_unit(statics, inner);
             inlined[term.core as usize] = uses[term.core as usize] == 1 && free;
         }
@@ -128,9 +129,6 @@ pub(super) fn pair_counts(graph: &Graph, order: &[u32]) -> Table<(u32, u32), u32
     }
     counts
 }
-
-/// The number of neighbours with which a term or factor forms pairs.
-pub(super) const LONGEST: usize = 32;
 
 /// The old cores of new ones, for what was counted in the old graph.
 #[derive(Debug, Default)]

@@ -43,7 +43,7 @@ impl Signs {
 
     fn sign(&self, plan: &Plan, cell: u32) -> bool {
         let turned = self.turned[cell as usize];
-        match &plan.cells[cell as usize] {
+        match &plan.cells[cell] {
             Cell::Sum(terms) => {
                 let negative = terms.iter().filter(|&&term| self.of(term)).count();
                 let free = terms.iter().any(|term| is_static(plan, term.cell));
@@ -67,7 +67,7 @@ impl Signs {
             }
         };
         for &cell in order {
-            if let cell @ (Cell::Call(..) | Cell::Select { .. }) = &plan.cells[cell as usize] {
+            if let cell @ (Cell::Call(..) | Cell::Select { .. }) = &plan.cells[cell] {
                 cell.operands(&mut want);
             }
         }
@@ -104,7 +104,7 @@ impl Signs {
 
 /// Whether a cell's sign costs nothing.
 fn is_static(plan: &Plan, cell: u32) -> bool {
-    matches!(plan.cells[cell as usize], Cell::Static(_))
+    matches!(plan.cells[cell], Cell::Static(_))
 }
 
 /// The sums and products that may give this cell its sign, the nearest first.
@@ -112,10 +112,10 @@ fn turnable(plan: &Plan, cell: u32) -> Vec<u32> {
     let mut found = vec![cell];
     let mut at = 0;
     while at < found.len() && found.len() < TRIALS {
-        let cell = &plan.cells[found[at] as usize];
+        let cell = &plan.cells[found[at]];
         if matches!(cell, Cell::Sum(_) | Cell::Product(_)) {
             cell.operands(|operand| {
-                let turnable = matches!(plan.cells[operand.cell as usize], Cell::Sum(_) | Cell::Product(_));
+                let turnable = matches!(plan.cells[operand.cell], Cell::Sum(_) | Cell::Product(_));
                 if turnable && !found.contains(&operand.cell) {
                     found.push(operand.cell);
                 }

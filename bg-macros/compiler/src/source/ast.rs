@@ -127,7 +127,7 @@ pub struct Let {
     pub clause: Option<Clause>,
 }
 
-/// A unit as written, `kg*m^2/s`: factors with their exponents (negative behind a `/`). `1` has none.
+/// A unit as written, `kg*m^2/s`: factors with their exponents (negative after a `/`). `1` has none.
 #[derive(Clone, Debug)]
 pub struct Unit {
     /// Unit symbol and exponent, in the order written.
@@ -177,6 +177,14 @@ pub enum ElementKind {
     Mr,
 }
 
+impl ElementKind {
+    /// Whether it has two ports.
+    #[must_use]
+    pub fn is_two_port(self) -> bool {
+        matches!(self, Self::Tf | Self::Gy | Self::Mtf | Self::Mgy)
+    }
+}
+
 /// An element with its constitutive law.
 #[derive(Clone, Debug)]
 pub struct Element {
@@ -186,7 +194,7 @@ pub struct Element {
     pub name: Name,
     /// `(w)` or `(effort e)`: the law is an expression of this variable. Without it the law is linear in a parameter.
     pub variable: Option<LawVariable>,
-    /// The law behind `=`; for a transformer or gyrator its modulus.
+    /// The law after `=`; for a transformer or gyrator its modulus.
     pub law: Expression,
     /// `in R`: the law's tensor turns with this orientation.
     pub frame: Option<Expression>,
@@ -196,6 +204,34 @@ pub struct Element {
     pub start: Option<Expression>,
     /// `energy E`: the stored energy of a nonlinear law.
     pub energy: Option<Expression>,
+    /// `of JOINT along x`: what a residual sink holds.
+    pub held: Option<Held>,
+}
+
+impl Element {
+    /// An element with a linear law and no clause.
+    #[must_use]
+    pub fn new(kind: ElementKind, name: Name, law: Expression) -> Self {
+        Self { kind, name, variable: None, law, frame: None, displacement: None, start: None, energy: None, held: None }
+    }
+}
+
+/// The joint that a residual sink is part of, and the motion that it holds there.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// The joint.
+    pub joint: Name,
+    /// The direction of a scalar sink.
+    pub direction: Option<Direction>,
+}
+
+/// A direction of relative motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Translation along an axis.
+    Along(Axis),
+    /// Rotation about an axis.
+    About(Axis),
 }
 
 /// The variable of a nonlinear law.
@@ -214,6 +250,17 @@ pub struct LawVariable {
 pub enum Role {
     Effort,
     Flow,
+}
+
+impl Role {
+    /// The other variable of a bond.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Effort => Self::Flow,
+            Self::Flow => Self::Effort,
+        }
+    }
 }
 
 /// What a track follows.
@@ -393,6 +440,21 @@ pub enum Axis {
     X,
     Y,
     Z,
+}
+
+impl Axis {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// The next axis in cyclic order.
+    #[must_use]
+    pub fn next(self) -> Self {
+        match self {
+            Self::X => Self::Y,
+            Self::Y => Self::Z,
+            Self::Z => Self::X,
+        }
+    }
 }
 
 /// A joint's freedoms.

@@ -9,3 +9,4 @@ pub mod names;
 pub mod print;
 pub mod scene;
 pub mod syntax;
+mod words;

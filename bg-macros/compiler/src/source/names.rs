@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use crate::fault::{Explain, Fault, Faults, Staged};
 use crate::source::ast::{Graph, Item, Name, Scene, Source};
 
-/// What the names of a model's structs have behind the model's own.
+/// What the names of a model's structs have after the model's own.
 pub(crate) const PARAMETERS: &str = "Parameters";
 pub(crate) const INPUTS: &str = "Inputs";
 

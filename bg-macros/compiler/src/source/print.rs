@@ -6,11 +6,12 @@
 use std::fmt::{Display, Formatter, Result};
 
 use crate::source::ast::{
-    AxisLaw, Body, Bound, Choice, Close, Contact, Drive, Element, Ends, Expectation, Expression, ExpressionKind, Graph,
-    Gravity, Ground, Input, Item, Joint, JointKind, Junction, JunctionKind, LawVariable, Let, Name, Observation,
-    Operation, Parameter, Part, Point, Rigid, Scene, Shape, Source, Spring, Track, Unit,
+    Axis, AxisLaw, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends, Expectation,
+    Expression, ExpressionKind, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind, Junction, JunctionKind,
+    LawVariable, Let, Name, Observation, Operation, Parameter, Part, Point, Rigid, Role, Scene, Shape, Source, Spring,
+    Track, Unit,
 };
-use crate::source::syntax::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
+use crate::source::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
 
 /// The longest list that stays on one line, in columns; three levels of indentation keep it within 120.
 const LINE: usize = 108;
@@ -208,14 +209,48 @@ impl Display for Element {
             clause("start", self.start.as_ref()),
             clause("energy", self.energy.as_ref()),
         ];
-        write!(f, "{};", clauses.concat())
+        let held = self.held.as_ref().map_or_else(String::new, |held| format!(" of {held}"));
+        write!(f, "{}{held};", clauses.concat())
+    }
+}
+
+impl Display for Held {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        write!(f, "{}", self.joint)?;
+        match self.direction {
+            Some(Direction::Along(axis)) => write!(f, " along {}", axis.letter()),
+            Some(Direction::About(axis)) => write!(f, " about {}", axis.letter()),
+            None => Ok(()),
+        }
+    }
+}
+
+impl ElementKind {
+    /// The field's symbol.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        word_of(&ELEMENTS, &self)
+    }
+}
+
+impl Axis {
+    /// The axis' letter.
+    #[must_use]
+    pub fn letter(self) -> &'static str {
+        word_of(&AXES, &self)
+    }
+}
+
+impl Display for Role {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        f.write_str(word_of(&ROLES, self))
     }
 }
 
 impl Display for LawVariable {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match &self.role {
-            Some(role) => write!(f, "({} {})", word_of(&ROLES, role), self.name),
+            Some(role) => write!(f, "({} {})", role, self.name),
             None => write!(f, "({})", self.name),
         }
     }

@@ -1,14 +1,14 @@
 //! The exact derivatives of the rates.
 //!
 //! In: [`StateEquations`]. Out: the places where df/dx can differ from zero, each with its expression, and df/dt, in a
-//! [`Jacobian`] with a pool of its own, so that no other function's order of operations hangs on it. An entry that is
+//! [`Jacobian`] with a pool of its own, so that no other function's order of operations depends on it. An entry that is
 //! identically zero has no place.
 //! Method: forward accumulation, one sweep for each state (Griewank & Walther 2008, Evaluating Derivatives, ch. 3). What
 //! the rates share, such as the force in a joint, is differentiated once for all rows, as equal expressions are one node.
 
 use std::collections::BTreeMap;
 
-use crate::expr::{Id, Pool, Symbol, derivative};
+use crate::expr::{Id, Pool, Symbol, derivative, partial};
 use crate::system::equations::StateEquations;
 
 /// df/dx and df/dt as expressions.
@@ -52,19 +52,17 @@ impl Jacobian {
 pub fn differentiate(equations: &StateEquations) -> Jacobian {
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let mut pool = equations.pool.clone();
-    let one = pool.one();
     let mut entries = Vec::new();
     for column in 0..rates.len() {
-        let state = Symbol::State(u32::try_from(column).expect("fewer than 2^32 states"));
-        let values = derivative(&mut pool, &rates, &BTreeMap::from([(state, one)]));
+        let values = partial(&mut pool, &rates, Symbol::state(column));
         let entry = |(row, value)| Entry { row, column, value };
         entries.extend(values.into_iter().enumerate().map(entry).filter(|entry| !pool.is_zero(entry.value)));
     }
     entries.sort_by_key(|entry| (entry.row, entry.column));
-    let mut seeds = BTreeMap::from([(Symbol::Time, one)]);
+    let mut seeds = BTreeMap::from([(Symbol::Time, pool.one())]);
     for index in 0..equations.inputs.len() {
-        let index = u32::try_from(index).expect("fewer than 2^32 inputs");
-        seeds.insert(Symbol::Input(index), pool.symbol(Symbol::Slope(index)));
+        let [input, slope] = [Symbol::Input, Symbol::Slope].map(|symbol| Symbol::numbered(symbol, index));
+        seeds.insert(input, pool.symbol(slope));
     }
     let slopes = derivative(&mut pool, &rates, &seeds);
     Jacobian { pool, entries, slopes }

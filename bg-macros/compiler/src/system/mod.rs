@@ -3,8 +3,13 @@
 //! In: a graph with its strokes. Out: the state equations, what a scene needs of them, their derivatives.
 
 pub mod equations;
-pub mod expectation;
 pub mod jacobian;
 pub mod reduce;
 pub mod requirements;
 pub mod second_order;
+mod value;
+
+pub use equations::StateEquations;
+pub use jacobian::Jacobian;
+pub use second_order::SecondOrder;
+pub use value::Value;

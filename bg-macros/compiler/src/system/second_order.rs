@@ -2,7 +2,7 @@
 //!
 //! In: [`StateEquations`]. Out: the same with their states arranged; then the displacements and orientations that follow the
 //! momenta, each with d2x/dt2 as a function of the states and their rates, in a [`SecondOrder`] with a pool of its own. In a bond graph
-//! these are the kinematics: where things are follows from how they move. What a resistor moves, as a spring behind a damper, is
+//! these are the kinematics: where things are follows from how they move. What a resistor moves, as a spring in series with a damper, is
 //! of first order.
 
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ pub struct SecondOrder {
 }
 
 /// Puts states of second order side by side, and of these and the others together what is of one kind and unit. Sums over states
-/// then have one weight for many; what comes in twos, as x and y, stays at even places, for pairs, if odd numbers come behind.
+/// then have one weight for many; what comes in twos, as x and y, stays at even places, for pairs, if odd numbers come after.
 /// Integrals that only watch come last.
 pub fn arrange(equations: &mut StateEquations) {
     let states = &equations.states;
@@ -100,7 +100,7 @@ mod tests {
     use crate::pipeline;
     use crate::source::syntax;
 
-    /// Two masses on springs, a spring and a damper, one behind the other, between them, and a flywheel beside.
+    /// Two masses on springs, a spring and a damper in series between them, and a flywheel beside.
     const GRAPH: &str = "graph G {
         param k: N/m = 3; param c: N*s/m = 2; param j: kg*m^2 = 5;
         1 wheel: rotation; I flywheel = j start 2; C twist(q) = 7 * q; wheel -> flywheel; wheel -> twist;
@@ -116,7 +116,7 @@ mod tests {
         pipeline::derive(&source.graphs[0]).expect("equations").equations
     }
 
-    /// Each state's rate, where the states have the values that stand behind their names.
+    /// Each state's rate, where the states have the values that stand after their names.
     fn rates(equations: &StateEquations, values: &BTreeMap<String, f64>) -> BTreeMap<String, f64> {
         let states: Vec<f64> = equations.states.iter().map(|state| values[&state.name]).collect();
         let ids: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();

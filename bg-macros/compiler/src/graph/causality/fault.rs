@@ -6,12 +6,13 @@ use crate::fault::Explain;
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum CausalFault {
-    Conflict { junction: String, variable: &'static str, first: (String, String), second: (String, String) },
-    Underdetermined { junction: String, variable: &'static str },
-    Derivative { symbol: &'static str, name: String, by: String },
+    Conflict { junction: String, variable: Role, first: (String, String), second: (String, String) },
+    Underdetermined { junction: String, variable: Role },
+    Derivative { kind: ElementKind, name: String, by: String, by_inertia: bool },
     OneWay { symbol: &'static str, name: String, needs: &'static str, by: String },
 }
 
+use crate::graph::{ElementKind, Role};
 use CausalFault as F;
 
 impl Explain for CausalFault {
@@ -34,7 +35,8 @@ impl Explain for CausalFault {
             F::Underdetermined { junction, variable } => {
                 format!("causal conflict: no bond is left to determine the {variable} of `{junction}`")
             }
-            F::Derivative { symbol, name, by } => {
+            F::Derivative { kind, name, by, .. } => {
+                let symbol = kind.symbol();
                 format!("{symbol} `{name}` would be in derivative causality: its state is already determined by {by}")
             }
             F::OneWay { symbol, name, needs, by } => {
@@ -47,19 +49,19 @@ impl Explain for CausalFault {
 
     fn help(&self) -> String {
         match self {
-            F::Conflict { variable: "effort", .. } => {
+            F::Conflict { variable: Role::Effort, .. } => {
                 "put a 1-junction with an R between one of the two and the junction".to_owned()
             }
             F::Conflict { .. } => {
                 "put a 0-junction with an R or a C between one of the two and the junction".to_owned()
             }
-            F::Underdetermined { junction, variable: "effort" } => format!("bond a C or an R to `{junction}`"),
+            F::Underdetermined { junction, variable: Role::Effort } => format!("bond a C or an R to `{junction}`"),
             F::Underdetermined { junction, .. } => format!("bond an I or an R to `{junction}`"),
-            F::Derivative { symbol: "I", name, by } => {
+            F::Derivative { kind: ElementKind::I, name, by_inertia, .. } => {
                 let compliant = format!(
                     "let a C and an R (a compliant coupling) sit between them, `1 -> 0 -> C` in front of `{name}`"
                 );
-                if by.starts_with("I ") {
+                if *by_inertia {
                     format!(
                         "{compliant}, or hold them together exactly with a residual sink, `rSe rigid = 0` at the 0-junction of \
                          `.. -> 0 -> 1 -> {name}`, or merge the two inertias into one I"

@@ -14,8 +14,7 @@ mod procedure;
 mod tests;
 
 use crate::fault::Staged;
-use crate::graph::{BondGraph, BondId, NodeId, NodeKind};
-use crate::source::ast::ElementKind;
+use crate::graph::{BondGraph, BondId, ElementKind, NodeId, NodeKind};
 
 pub use fault::CausalFault;
 
@@ -50,12 +49,6 @@ pub struct CausalGraph {
 }
 
 impl CausalGraph {
-    /// Whether the node receives the effort of the bond (its end has the stroke).
-    #[must_use]
-    pub fn receives_effort(&self, node: NodeId, bond: BondId) -> bool {
-        end_at(&self.graph, bond, node) == self.strokes[bond.0]
-    }
-
     /// The strong bond of a junction: the one that determines the common variable.
     #[must_use]
     pub fn strong_bond(&self, node: NodeId) -> Option<BondId> {

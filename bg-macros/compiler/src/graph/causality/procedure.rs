@@ -8,8 +8,7 @@ use std::collections::VecDeque;
 use super::completion::{Lack, complete};
 use super::{CausalFault as F, End, across, end_at, is_junction, strong_end};
 use crate::fault::{Fault, Staged};
-use crate::graph::{BondGraph, BondId, Law, NodeId, NodeKind};
-use crate::source::ast::{ElementKind, Role};
+use crate::graph::{BondGraph, BondId, Element, ElementKind, Law, NodeId, NodeKind, Role};
 
 /// Why a bond has its stroke.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +77,7 @@ impl<'a> Procedure<'a> {
         let nodes = || (0..self.graph.nodes.len()).map(NodeId);
         let fixed: Vec<NodeId> = nodes().filter(|&node| self.is_source(node)).collect();
         let one_way: Vec<NodeId> = nodes().filter(|&node| self.is_one_way(node)).collect();
-        let storages: Vec<NodeId> = nodes().filter(|&node| self.is_storage(node)).collect();
+        let storages: Vec<NodeId> = nodes().filter(|&node| self.storage(node).is_some()).collect();
         for node in fixed.into_iter().chain(one_way).chain(storages) {
             let before = self.trail.len();
             if let Err(fault) = self.ask(node) {
@@ -144,15 +143,16 @@ impl<'a> Procedure<'a> {
         self.graph.element(node).is_some_and(|element| matches!(element.kind, K::Se | K::MSe | K::Sf | K::MSf | K::RSe))
     }
 
-    fn is_storage(&self, node: NodeId) -> bool {
-        self.graph.element(node).is_some_and(|element| matches!(element.kind, ElementKind::I | ElementKind::C))
+    /// The kind of a storage.
+    fn storage(&self, node: NodeId) -> Option<ElementKind> {
+        let kind = self.graph.element(node)?.kind;
+        matches!(kind, ElementKind::I | ElementKind::C).then_some(kind)
     }
 
     /// Nonlinear resistors and matrix transformers work in one direction only.
     fn is_one_way(&self, node: NodeId) -> bool {
-        self.graph.element(node).is_some_and(|element| {
-            matches!(element.law, Law::Of { .. }) && !matches!(element.kind, ElementKind::I | ElementKind::C)
-        })
+        let has_variable = |element: &Element| matches!(element.law, Law::Of { .. });
+        self.graph.element(node).is_some_and(has_variable) && self.storage(node).is_none()
     }
 
     fn wish(&self, node: NodeId) -> Wish {
@@ -184,15 +184,16 @@ impl<'a> Procedure<'a> {
     fn refusal(&self, node: NodeId, bond: BondId) -> Fault {
         let definition = self.graph.node(node);
         let (symbol, name) = (definition.kind.symbol(), definition.name.text.clone());
-        let by = self.root(bond);
-        let fault = if self.is_storage(node) {
-            F::Derivative { symbol, name, by }
+        let by = self.root_text(bond);
+        let fault = if let Some(kind) = self.storage(node) {
+            let by_inertia = self.root(bond).and_then(|root| self.storage(root)) == Some(ElementKind::I);
+            F::Derivative { kind, name, by, by_inertia }
         } else if self.is_source(node) {
             let other = self.graph.bond(bond).other(node);
             let forcing = if let Some(Reason::Bond(other)) = self.reasons[bond.0] { other } else { bond };
             F::Conflict {
                 junction: self.graph.node(other).name.text.clone(),
-                variable: if self.wish(node) == Wish::GiveEffort { "effort" } else { "flow" },
+                variable: if self.wish(node) == Wish::GiveEffort { Role::Effort } else { Role::Flow },
                 first: (self.bond_text(forcing), by),
                 second: (self.bond_text(bond), self.label(node)),
             }
@@ -283,15 +284,15 @@ impl<'a> Procedure<'a> {
         let bonds = &self.graph.node(node).bonds;
         let mut both = [one, other];
         both.sort_by_key(|bond| bonds.iter().position(|known| known == bond));
-        let [first, second] = both.map(|bond| (self.bond_text(bond), self.root(bond)));
+        let [first, second] = both.map(|bond| (self.bond_text(bond), self.root_text(bond)));
         self.conflict(node, first, second)
     }
 
     /// Two implications meet on one bond with opposite strokes.
     fn clash(&self, bond: BondId, reason: Reason) -> Fault {
-        let first = self.root(bond);
+        let first = self.root_text(bond);
         let second = match reason {
-            Reason::Bond(other) => self.root(other),
+            Reason::Bond(other) => self.root_text(other),
             Reason::Node(node) => self.label(node),
         };
         let ends = self.graph.bond(bond);
@@ -322,8 +323,8 @@ impl<'a> Procedure<'a> {
     }
 
     /// What the bonds of a junction have in common.
-    fn common(&self, node: NodeId) -> &'static str {
-        if matches!(self.graph.node(node).kind, NodeKind::Zero) { "effort" } else { "flow" }
+    fn common(&self, node: NodeId) -> Role {
+        if matches!(self.graph.node(node).kind, NodeKind::Zero) { Role::Effort } else { Role::Flow }
     }
 
     fn bond_text(&self, bond: BondId) -> String {
@@ -337,14 +338,17 @@ impl<'a> Procedure<'a> {
     }
 
     /// The node whose request led, step by step, to the stroke of this bond.
-    fn root(&self, bond: BondId) -> String {
+    fn root(&self, bond: BondId) -> Option<NodeId> {
         let mut current = bond;
         loop {
-            match self.reasons[current.0] {
-                Some(Reason::Bond(previous)) => current = previous,
-                Some(Reason::Node(node)) => return self.label(node),
-                None => return self.bond_text(bond),
+            match self.reasons[current.0]? {
+                Reason::Bond(previous) => current = previous,
+                Reason::Node(node) => return Some(node),
             }
         }
+    }
+
+    fn root_text(&self, bond: BondId) -> String {
+        self.root(bond).map_or_else(|| self.bond_text(bond), |node| self.label(node))
     }
 }

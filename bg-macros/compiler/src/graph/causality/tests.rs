@@ -1,4 +1,4 @@
-//! Strokes and their faults on small graphs; on random ones they are held against all assignments in the suites.
+//! Strokes and their faults on small graphs; on random ones they are compared with all assignments in the suites.
 
 use super::{CausalGraph, End, assign};
 use crate::fault::Staged;

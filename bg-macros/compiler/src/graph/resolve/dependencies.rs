@@ -1,4 +1,4 @@
-//! What a resolved graph's expressions may depend on, and what its outputs come to.
+//! What a resolved graph's expressions may depend on, and the shapes and units of its outputs.
 //!
 //! In: terms with references. Out: faults of circles, modulation and start values; shapes and units of outputs.
 
@@ -116,7 +116,7 @@ impl Resolver {
         self.deep_references(term, &|definition| definition.clause.as_ref().is_none_or(is_open))
     }
 
-    /// All references of a term, those behind the lets included that `opens` wants to look into.
+    /// All references of a term, with those in the lets that `opens` wants to look into.
     fn deep_references(&self, term: &Term, opens: &dyn Fn(&Let) -> bool) -> Vec<Reference> {
         let mut found = Vec::new();
         term.references(&mut found);

@@ -2,6 +2,7 @@
 //!
 //! In: one `ast::Graph` of bond-graph words. Out: a [`BondGraph`] that every later stage can trust.
 
+mod connect;
 mod dependencies;
 
 use std::collections::BTreeMap;
@@ -11,8 +12,8 @@ use proc_macro2::Span;
 use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::typing::Shape;
 use super::{
-    BondGraph, Close, Element, GraphFault, Input, Integral, Law, Let, Node, NodeId, NodeKind, Observation, Parameter,
-    Storage, Track, connect, domains,
+    BondGraph, Close, Element, GraphFault, Held, Input, Integral, JointId, Law, Let, Node, NodeId, NodeKind,
+    Observation, Parameter, Storage, Track, domains,
 };
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
 use crate::graph::units::{self, Dimension, Domain};
@@ -93,6 +94,7 @@ impl Resolver {
             bonds: Vec::new(),
             tracks: Vec::new(),
             storages: Vec::new(),
+            joints: Vec::new(),
             closes: Vec::new(),
             impulse: false,
             observations: Vec::new(),
@@ -241,7 +243,8 @@ impl Resolver {
                 Item::Close(close) => {
                     let gap = self.term(&close.gap, Place::Plain);
                     let (shape, dimension) = (Shape::Scalar, Dimension::NONE);
-                    self.graph.closes.push(Close { joint: close.joint.clone(), gap, shape, dimension });
+                    let joint = self.joint(&close.joint);
+                    self.graph.closes.push(Close { joint, gap, shape, dimension });
                 }
                 Item::Impulse(_) => self.graph.impulse = true,
                 Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
@@ -288,9 +291,20 @@ impl Resolver {
             self.graph.storages.push(Storage::Element(id));
         }
         let text = law_text(element);
-        let element_node = Element { kind, law, text, frame, displacement, start, energy };
+        let held = element.held.as_ref().map(|held| Held { joint: self.joint(&held.joint), direction: held.direction });
+        let element_node = Element { kind, law, text, frame, displacement, start, energy, held };
         let node = Node { name: element.name.clone(), kind: NodeKind::Element(element_node), bonds: Vec::new() };
         self.graph.nodes.push(node);
+    }
+
+    /// The joint of this name, declared by what mentions it first.
+    fn joint(&mut self, name: &Name) -> JointId {
+        let joints = &mut self.graph.joints;
+        let known = joints.iter().position(|known| *known == name.text);
+        JointId(known.unwrap_or_else(|| {
+            joints.push(name.text.clone());
+            joints.len() - 1
+        }))
     }
 
     /// A clause that its kind of element does not have is a fault.
@@ -302,6 +316,7 @@ impl Resolver {
             ("energy", element.energy.is_some(), matches!(kind, K::I | K::C)),
             ("at", element.displacement.is_some(), matches!(kind, K::C | K::RSe)),
             ("in", element.frame.is_some(), kind == K::I),
+            ("of", element.held.is_some(), kind == K::RSe),
         ];
         for (clause, given, fits) in clauses {
             if given && !fits {

@@ -3,14 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::*;
+use crate::random::Random;
 
-/// Knuth's linear congruential generator MMIX (The Art of Computer Programming, volume 2, section 3.3.4).
-struct Source(u64);
+struct Source(Random);
 
 impl Source {
     fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        usize::try_from(self.0 >> 33).expect("31 bits fit") % end
+        self.0.below(end)
     }
 
     fn number(&mut self) -> f64 {
@@ -53,7 +52,7 @@ fn solve(elimination: &Elimination, slots: &[f64], b: &mut [f64]) {
 
 /// A random Jacobian with small entries, so that no pivot of I - J is.
 fn draw(seed: u64) -> (usize, Vec<(usize, usize)>, Vec<f64>) {
-    let mut source = Source(seed);
+    let mut source = Source(Random::new(seed));
     let n = 1 + source.below(14);
     let places = source.places(n);
     let entries = places.iter().map(|_| source.number() / (2 * n) as f64).collect();
@@ -72,7 +71,7 @@ fn steps_solve_the_system() {
     for seed in 0..400 {
         let (n, places, entries) = draw(seed);
         let elimination = plan(n, &places);
-        let mut source = Source(seed + 1000);
+        let mut source = Source(Random::new(seed + 1000));
         let b: Vec<f64> = (0..n).map(|_| source.number()).collect();
         for c in [0.0, 0.7, 1.0] {
             let slots = factors(&elimination, c, &entries);

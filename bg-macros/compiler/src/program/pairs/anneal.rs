@@ -97,7 +97,7 @@ struct Values<'n> {
     states: Range<usize>,
     /// By operation: its first two operands.
     operands: Vec<[usize; 2]>,
-    /// By value: the operations that use it. The number behind the states has none.
+    /// By value: the operations that use it. The number after the states has none.
     users: Vec<&'n [usize]>,
 }
 

@@ -1,4 +1,4 @@
-//! Two operations at a time: straight-line code for vectors of two numbers.
+//! Pairs of operations: straight-line code for vectors of two numbers.
 //!
 //! In: a [`Routine`]. Out: a [`Paired`] with the same results, each rounded as before; only the sign of a zero may differ.
 //! Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind whose operands belong together

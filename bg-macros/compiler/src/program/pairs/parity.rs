@@ -11,7 +11,7 @@ pub(super) struct Parity {
     rows: Vec<(usize, Row)>,
 }
 
-/// A sum of unknowns, and whether it is odd: the bit behind those of the unknowns.
+/// A sum of unknowns, and whether it is odd: the bit after those of the unknowns.
 type Row = Vec<u64>;
 
 impl Parity {

@@ -1,4 +1,4 @@
-//! Operation counts of examples that can be checked by hand.
+//! Operation counts of small examples, which a reader can check.
 
 use super::*;
 use crate::expr::Function;

@@ -1,4 +1,4 @@
-//! Tests of the schedule: values against the interpreter of expressions, and operation counts of examples by hand.
+//! Tests of the schedule: values against the interpreter of expressions, and operation counts of hand-written examples.
 
 mod counts;
 mod values;

@@ -81,14 +81,9 @@ impl Expansion<'_> {
                 _ => (format!("{label}_damper"), None),
             };
             self.items.push(Item::Element(Element {
-                kind: law.kind,
-                name: Name { text: element.clone(), span: law.span },
                 variable: law.variable.clone(),
-                law: law.law.clone(),
-                frame: None,
                 displacement,
-                start: None,
-                energy: None,
+                ..Element::new(law.kind, Name { text: element.clone(), span: law.span }, law.law.clone())
             }));
             self.text(law.span, &format!("{label} -> {element};"));
         }
@@ -157,16 +152,7 @@ impl Expansion<'_> {
             (false, false) => ElementKind::Sf,
             (false, true) => ElementKind::MSf,
         };
-        self.items.push(Item::Element(Element {
-            kind,
-            name: drive.name.clone(),
-            variable: None,
-            law: drive.value.clone(),
-            frame: None,
-            displacement: None,
-            start: None,
-            energy: None,
-        }));
+        self.items.push(Item::Element(Element::new(kind, drive.name.clone(), drive.value.clone())));
     }
 
     fn drive_joint(&mut self, drive: &Drive, axis: &str, domain: &str) {

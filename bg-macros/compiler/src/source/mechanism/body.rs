@@ -2,8 +2,8 @@
 //!
 //! In: `ast::Body`. Out: bond-graph words. Momenta and the tensor are in inertial axes; the tensor turns with the body.
 
-use super::{AXES, Expansion, MechanismFault, ORIGIN, is_among, is_vector, unknown_point};
-use crate::source::ast::{Body, Expression, ExpressionKind, Name, Part, Shape};
+use super::{Expansion, MechanismFault, ORIGIN, is_among, is_vector, unknown_point};
+use crate::source::ast::{Axis, Body, Expression, ExpressionKind, Name, Part, Shape};
 use crate::source::clause::{Allowed, Clause, Given};
 
 impl Expansion<'_> {
@@ -36,7 +36,7 @@ impl Expansion<'_> {
                  let {name}.angle: rad = atan2({name}.x_axis.y, {name}.x_axis.x);"
             ),
         );
-        for (axis, unit) in AXES.into_iter().zip(["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"]) {
+        for (axis, unit) in Axis::ALL.into_iter().zip(["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"]) {
             self.text(span, &format!("let {name}.{}_axis: 1 = {name}.orientation * {unit};", axis.letter()));
         }
         if self.has_gravity {
@@ -156,7 +156,7 @@ impl Expansion<'_> {
                 self.bind(&format!("{label}.length"), "m", length, size("length", 1));
                 let across = format!("(3 * {label}.radius * {label}.radius + {label}.length * {label}.length) / 12");
                 let along = format!("{label}.radius * {label}.radius / 2");
-                let moments = AXES.map(|k| if k == *axis { along.clone() } else { across.clone() }).join(", ");
+                let moments = Axis::ALL.map(|k| if k == *axis { along.clone() } else { across.clone() }).join(", ");
                 self.text(
                     span,
                     &format!(

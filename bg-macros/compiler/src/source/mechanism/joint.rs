@@ -7,7 +7,7 @@
 //! are direction cosines of the two bodies' axes, which the poses determine.
 
 use super::attachment::stiff;
-use super::{AXES, End, Expansion, MechanismFault, is_vector};
+use super::{End, Expansion, MechanismFault, is_vector};
 use crate::source::ast::{Axis, Expression, ExpressionKind, Item, Joint, JointKind};
 use crate::source::clause::{Allowed, Clause, Given};
 
@@ -127,7 +127,9 @@ impl Expansion<'_> {
             if joint.rigid {
                 self.text(
                     span,
-                    &format!("rSe {name}.reaction = [0, 0, 0] at {name}.gap; {name}.slip -> {name}.reaction;"),
+                    &format!(
+                        "rSe {name}.reaction = [0, 0, 0] at {name}.gap of {name}; {name}.slip -> {name}.reaction;"
+                    ),
                 );
                 return;
             }
@@ -143,7 +145,7 @@ impl Expansion<'_> {
         // In the first body's axes the relative velocity is that of its point under the second end.
         self.force_junction(span, name, (a, b), (a.arm_to(&b.position), b.arm.clone()));
         self.text(span, &format!("let {name}.gap: m = {} - {};", b.position, a.position));
-        for axis in AXES.into_iter().filter(|&axis| Some(axis) != slide) {
+        for axis in Axis::ALL.into_iter().filter(|&axis| Some(axis) != slide) {
             let letter = axis.letter();
             let label = format!("{name}.{letter}");
             let direction = format!("{}.{letter}_axis", a.body);
@@ -159,7 +161,13 @@ impl Expansion<'_> {
                 self.text(span, &format!("close {name} = {label}_offset;"));
             }
             if joint.rigid {
-                self.text(span, &format!("rSe {label}_reaction = 0 at {label}_offset; {label} -> {label}_reaction;"));
+                self.text(
+                    span,
+                    &format!(
+                        "rSe {label}_reaction = 0 at {label}_offset of {name} along {letter};
+                         {label} -> {label}_reaction;"
+                    ),
+                );
                 continue;
             }
             let stiffness = of_axis(joint.stiffness.as_ref(), &format!("{name}.stiffness"), axis);
@@ -247,7 +255,9 @@ impl Expansion<'_> {
                 &format!(
                     "1 {label}: rotation; MTF {label}_axis(w) = dot({direction}, w);
                      {name}.twist -> {label}_axis -> {label};
-                     rSe {label}_reaction = 0 at {displacement}; {label} -> {label}_reaction;"
+                     rSe {label}_reaction = 0 at {displacement} of {name} about {};
+                     {label} -> {label}_reaction;",
+                    axis.letter()
                 ),
             );
             return;
@@ -343,12 +353,12 @@ fn held_rotations(kind: JointKind, a: &str, b: &str) -> Vec<HeldRotation> {
             vec![about(i, j, k, "-"), about(j, i, k, "")]
         }
         JointKind::Universal(first, second) => {
-            let third = AXES.into_iter().find(|axis| ![first, second].contains(axis)).unwrap_or(Axis::Z);
+            let third = Axis::ALL.into_iter().find(|axis| ![first, second].contains(axis)).unwrap_or(Axis::Z);
             let sign = if third.next() == first { "-" } else { "" };
             vec![about(third, first, second, sign)]
         }
         JointKind::Prismatic(_) | JointKind::Fixed => {
-            AXES.into_iter().map(|i| about(i, i.next(), i.next().next(), "-")).collect()
+            Axis::ALL.into_iter().map(|i| about(i, i.next(), i.next().next(), "-")).collect()
         }
     }
 }

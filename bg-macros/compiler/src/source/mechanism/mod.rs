@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Group, Span, TokenStream, TokenTree};
 
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
-use crate::source::ast::{Axis, Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name, Point};
+use crate::source::ast::{Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name, Point};
 use crate::source::clause::{Clause, Given};
 use crate::source::syntax;
 
@@ -290,31 +290,6 @@ fn part_name(item: &Item) -> Option<&Name> {
 /// Whether an expression is written as three components.
 fn is_vector(expression: &Expression) -> bool {
     matches!(expression.kind, crate::source::ast::ExpressionKind::Vector(_))
-}
-
-/// All three axes.
-const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
-
-impl Axis {
-    /// The axis' letter.
-    #[must_use]
-    pub fn letter(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Z => "z",
-        }
-    }
-
-    /// The next axis in cyclic order.
-    #[must_use]
-    pub fn next(self) -> Self {
-        match self {
-            Self::X => Self::Y,
-            Self::Y => Self::Z,
-            Self::Z => Self::X,
-        }
-    }
 }
 
 /// The items of a template, every token at `span`.

@@ -1,4 +1,4 @@
-//! Walks over the tokens of one block, notes faults, and finds the next statement behind one.
+//! Walks over the tokens of one block, notes faults, and finds the next statement after one.
 //!
 //! In: one level of tokens. Out: names, groups and the ends of statements, for the modules that know the grammar. A
 //! reader that fails has noted its fault, once; the statement's driver skips to the end of the statement (panic mode
@@ -47,7 +47,7 @@ pub(super) struct Cursor<'f> {
     /// The closing brace; the last token of the macro call.
     close: Span,
     place: &'static Place,
-    /// How deeply the expression at hand is nested.
+    /// How deeply the current expression is nested.
     pub depth: usize,
     faults: &'f RefCell<Faults>,
 }
@@ -80,8 +80,8 @@ impl<'f> Cursor<'f> {
         self.tokens.get(self.at).map_or(self.close, |token| token.span)
     }
 
-    /// Where the token behind stands.
-    pub fn behind(&self) -> Span {
+    /// Where the last token that was read stands.
+    pub fn last_span(&self) -> Span {
         self.at.checked_sub(1).and_then(|last| self.tokens.get(last)).map_or(self.close, |token| token.span)
     }
 
@@ -232,7 +232,7 @@ impl Cursor<'_> {
         self.dotted(first, start)
     }
 
-    /// The rest of a name behind its first word.
+    /// The rest of a name after its first word.
     pub fn dotted(&mut self, mut text: String, start: Span) -> Parsed<Name> {
         let mut end = start;
         while self.eat(".").is_some() {
@@ -288,7 +288,7 @@ impl Cursor<'_> {
 
 /// Statements.
 impl Cursor<'_> {
-    /// Reads entry for entry to the block's end; behind a faulty one it goes on with the next.
+    /// Reads entry for entry to the block's end; after a faulty one it goes on with the next.
     pub fn statements(&mut self, mut statement: impl FnMut(&mut Self) -> Parsed<()>) {
         while !self.ended() {
             if self.eat_separator() {
@@ -311,8 +311,8 @@ impl Cursor<'_> {
         }
         if self.ended() || self.starts_statement() {
             let last = self.at.checked_sub(1).and_then(|last| self.tokens.get(last));
-            let behind = last.map_or_else(String::new, |token| token.kind.described());
-            self.note(self.behind(), &SyntaxFault::MissingSemicolon { behind });
+            let text = last.map_or_else(String::new, |token| token.kind.described());
+            self.note(self.last_span(), &SyntaxFault::MissingSemicolon { last: text });
             return;
         }
         self.unexpected(&if expected.is_empty() { "`;`".to_owned() } else { format!("{expected} or `;`") });
@@ -330,7 +330,7 @@ impl Cursor<'_> {
         self.eat(";").is_some() || (self.place.list && self.eat(",").is_some())
     }
 
-    /// Skips to the statement's end: behind its `;`, or behind its block.
+    /// Skips to the statement's end: after its `;`, or after its block.
     fn skip_statement(&mut self) {
         let head = match self.tokens.get(self.head).map(|token| &token.kind) {
             Some(TokenKind::Word(word)) => word.as_str(),

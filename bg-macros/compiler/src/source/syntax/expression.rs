@@ -10,10 +10,10 @@ use super::{
     SyntaxFault,
     cursor::{Cursor, Parsed, Place, is_reserved},
     token::TokenKind,
-    words::{COMPARISONS, OPERATORS, strength, value_of},
 };
 use crate::fault::near_miss;
 use crate::source::ast::{BinaryOperator, Choice, Comparison, Expression, ExpressionKind, Operation};
+use crate::source::words::{COMPARISONS, OPERATORS, strength, value_of};
 
 /// The greatest height of an expression's tree, far beyond any law that a human writes.
 pub const DEEPEST: usize = 200;
@@ -244,7 +244,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// `operand`, behind which no `^` may stand.
+    /// `operand`, after which no `^` may stand.
     fn without_power(&self, operand: Tall) -> Parsed<Tall> {
         let Some(TokenKind::Symbol(operator @ ("^" | "**"))) = self.peek() else { return Ok(operand) };
         let base = operand.expression.to_string();

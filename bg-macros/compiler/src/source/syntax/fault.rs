@@ -30,7 +30,7 @@ pub enum SyntaxFault {
     /// A statement without its `;`.
     MissingSemicolon {
         /// The statement's last token.
-        behind: String,
+        last: String,
     },
     /// `^` or `**` in an expression.
     Power {
@@ -55,7 +55,7 @@ pub enum SyntaxFault {
     },
     /// `if a < b < c`, `if a < b && c < d`.
     SecondComparison {
-        /// The operator behind the first comparison.
+        /// The operator after the first comparison.
         operator: &'static str,
     },
     /// `if a == b`, `if a != b`.
@@ -77,7 +77,7 @@ pub enum SyntaxFault {
         /// The words that do.
         known: &'static [&'static str],
     },
-    /// A word that needs an axis behind it has none.
+    /// A word that needs an axis after it has none.
     MissingAxis {
         /// The word: `revolute`, `along`.
         of: String,
@@ -165,7 +165,7 @@ impl Explain for SyntaxFault {
         match self {
             Self::UnknownStatement { place, word, .. } => format!("`{word}` begins no statement of {place}"),
             Self::Unexpected { found, expected } => format!("found {found}, expected {expected}"),
-            Self::MissingSemicolon { behind } => format!("the statement that ends with {behind} has no `;`"),
+            Self::MissingSemicolon { last } => format!("the statement that ends with {last} has no `;`"),
             Self::Power { operator, .. } => format!("found `{operator}`, which is no operator of an expression"),
             Self::NotAUnit { found } => format!("found {found} in a unit, expected symbols such as in `kg*m^2/s`"),
             Self::IfWithoutElse => "this `if` has no `else`, so that it has no value where its condition fails".into(),
@@ -173,14 +173,14 @@ impl Explain for SyntaxFault {
                 format!("found `{operator}` in a value, expected it only between `if` and `{{`")
             }
             Self::SecondComparison { operator } => {
-                format!("found `{operator}` behind a comparison, expected `{{`: an `if` compares once")
+                format!("found `{operator}` after a comparison, expected `{{`: an `if` compares once")
             }
             Self::Equality { operator } => format!("found `{operator}`, expected `<`, `<=`, `>` or `>=`"),
             Self::Duplicate { clause } => format!("found a second {clause}, expected one"),
             Self::UnknownKind { what, word, known } => {
                 format!("found `{word}`, expected {what}: {}", listed(known))
             }
-            Self::MissingAxis { of, found } => format!("found {found} behind `{of}`, expected an axis"),
+            Self::MissingAxis { of, found } => format!("found {found} after `{of}`, expected an axis"),
             Self::MissingUnit { what, name } => format!("the {what} `{name}` has no unit"),
             Self::MissingDefault { name } => format!("the parameter `{name}` has no default"),
             Self::DottedName { what, name, .. } => format!("found `{name}`, expected a name without dots for {what}"),
@@ -205,10 +205,10 @@ impl Explain for SyntaxFault {
                 suggested(word, known)
             }
             Self::Unexpected { found, expected } => likeliest(found, expected),
-            Self::MissingSemicolon { behind } => format!("write `;` behind {behind}"),
+            Self::MissingSemicolon { last } => format!("write `;` after {last}"),
             Self::Power { base, exponent, .. } => format!("write `pow({base}, {exponent})`"),
             Self::NotAUnit { .. } => "write unit symbols joined by `*` and `/`, with whole powers, or `1`".into(),
-            Self::IfWithoutElse => "write `else { ... }` behind its block".into(),
+            Self::IfWithoutElse => "write `else { ... }` after its block".into(),
             Self::ComparisonOutsideIf { .. } => "write `if a < b { 1 } else { 0 }`".into(),
             Self::SecondComparison { operator: "||" } => {
                 "chain a second `if`: `if a < b { e } else if c < d { e } else { f }`".into()
@@ -218,9 +218,9 @@ impl Explain for SyntaxFault {
             }
             Self::Equality { .. } => "compare with `<`, `<=`, `>` or `>=`".into(),
             Self::Duplicate { clause } => format!("remove one {clause}"),
-            Self::MissingAxis { of, .. } => format!("write `x`, `y` or `z` behind `{of}`"),
-            Self::MissingUnit { name, .. } => format!("write its unit behind its name, such as `{name}: N*m`"),
-            Self::MissingDefault { .. } => "write `= NUMBER` behind its unit".into(),
+            Self::MissingAxis { of, .. } => format!("write `x`, `y` or `z` after `{of}`"),
+            Self::MissingUnit { name, .. } => format!("write its unit after its name, such as `{name}: N*m`"),
+            Self::MissingDefault { .. } => "write `= NUMBER` after its unit".into(),
             Self::DottedName { instead, .. } => format!("write `{instead}`"),
             Self::ReservedName { name } if name == "_" => "write a word as its name".into(),
             Self::ReservedName { name } => format!("write another name, such as `{}_`", name.trim_start_matches("r#")),

@@ -8,12 +8,12 @@ use super::{
     SyntaxFault,
     cursor::{Cursor, Parsed, Place},
     statement::OPERATOR,
-    words::{AXES, DRIVES, value_of, word_of},
 };
 use crate::source::ast::{
     Axis, AxisLaw, Contact, Drive, DriveKind, ElementKind, Ends, Expression, Gravity, Ground, Item, Joint, JointKind,
     Point, Spring,
 };
+use crate::source::words::{AXES, DRIVES, value_of, word_of};
 
 /// The block of the ground.
 const GROUND: Place = Place { name: "`ground`", words: &["point"], list: false };
@@ -177,7 +177,7 @@ impl Cursor<'_> {
         })
     }
 
-    /// The axis behind the word `of`, which stands at `span`.
+    /// The axis after the word `of`, which stands at `span`.
     pub fn axis(&mut self, of: &str, span: Span) -> Parsed<Axis> {
         let axis = self.word().and_then(|word| value_of(&AXES, word));
         let Some(axis) = axis else {

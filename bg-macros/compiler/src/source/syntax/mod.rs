@@ -1,6 +1,6 @@
 //! Reads the tokens of a macro call as the tree of [`crate::source::ast`].
 //!
-//! In: a [`TokenStream`]. Out: a [`Source`], or every fault of syntax at once. Tokens no longer occur behind it.
+//! In: a [`TokenStream`]. Out: a [`Source`], or every fault of syntax at once. No longer occurs: tokens.
 //! Method: recursive descent over statements that begin with a word of their own, precedence climbing for expressions;
 //! a faulty statement is noted and skipped.
 
@@ -22,7 +22,6 @@ mod scene;
 mod statement;
 mod token;
 mod unit;
-pub(crate) mod words;
 
 #[cfg(test)]
 mod tests;

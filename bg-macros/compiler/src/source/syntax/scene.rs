@@ -169,7 +169,7 @@ fn observation(entry: &mut Cursor) -> Parsed<Observation> {
     Ok(Observation { name, unit, value: entry.expression()? })
 }
 
-/// Whether a name with `:` or `=` behind it is ahead.
+/// Whether a name with `:` or `=` after it is ahead.
 fn starts_named(entry: &Cursor) -> bool {
     let mut distance = 0;
     while entry.word_ahead(distance).is_some() {

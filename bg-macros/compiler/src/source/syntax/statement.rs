@@ -8,13 +8,13 @@ use super::{
     SyntaxFault,
     cursor::{Cursor, Parsed, Place},
     token::TokenKind,
-    words::{ELEMENTS, ROLES, TRACKS, value_of},
 };
 use crate::fault::near_miss;
 use crate::source::ast::{
-    Bound, Close, Element, ElementKind, Expression, ExpressionKind, Input, Item, Junction, JunctionKind, LawVariable,
-    Let, Name, Parameter, Track, TrackKind, Unit,
+    Bound, Close, Direction, Element, ElementKind, Expression, ExpressionKind, Held, Input, Item, Junction,
+    JunctionKind, LawVariable, Let, Name, Parameter, Track, TrackKind, Unit,
 };
+use crate::source::words::{ELEMENTS, ROLES, TRACKS, value_of};
 
 /// The block of a graph.
 pub(super) const GRAPH: Place = Place {
@@ -208,7 +208,7 @@ fn binding(cursor: &mut Cursor) -> Parsed<Let> {
     Ok(Let { name, unit, value, clause: None })
 }
 
-/// Whether a name is ahead that is no slip of a statement's word, and behind it a symbol where `->` could be meant.
+/// Whether a name is ahead that is no slip of a statement's word, and after it a symbol where `->` could be meant.
 fn is_broken_chain(cursor: &Cursor, word: &str) -> bool {
     let is_symbol = matches!(cursor.ahead(1), Some(TokenKind::Symbol(symbol)) if *symbol != ":");
     is_symbol
@@ -260,7 +260,7 @@ fn cardinality(cursor: &mut Cursor) -> Parsed<usize> {
     Ok(cardinality)
 }
 
-/// `R NAME(w) = LAW in R start E;`
+/// `R NAME(w) = LAW in R start E;`, `rSe NAME = 0 at GAP of JOINT along x;`
 fn element(cursor: &mut Cursor, kind: ElementKind) -> Parsed<Element> {
     if cursor.word_ahead(1).is_none() {
         cursor.advance();
@@ -271,14 +271,19 @@ fn element(cursor: &mut Cursor, kind: ElementKind) -> Parsed<Element> {
     let variable = cursor.law_variable()?;
     cursor.expect("=")?;
     let law = cursor.expression()?;
-    let mut element = Element { kind, name, variable, law, frame: None, displacement: None, start: None, energy: None };
+    let mut element = Element { variable, ..Element::new(kind, name, law) };
     while clause(cursor, &mut element)? {}
     cursor.end_statement("an operator, `in`, `at`, `start`, `energy`");
     Ok(element)
 }
 
-/// One clause behind a law; false when none is ahead.
+/// One clause after a law; false when none is ahead.
 fn clause(cursor: &mut Cursor, element: &mut Element) -> Parsed<bool> {
+    if let Some(span) = cursor.eat_word("of") {
+        let held = held(cursor)?;
+        cursor.fill(&mut element.held, held, "of", span);
+        return Ok(true);
+    }
     let (word, slot) = match cursor.word() {
         Some("in") => ("in", &mut element.frame),
         Some("at") => ("at", &mut element.displacement),
@@ -290,6 +295,19 @@ fn clause(cursor: &mut Cursor, element: &mut Element) -> Parsed<bool> {
     let value = cursor.expression()?;
     cursor.fill(slot, value, word, span);
     Ok(true)
+}
+
+/// `JOINT along x`, after `of`.
+fn held(cursor: &mut Cursor) -> Parsed<Held> {
+    let joint = cursor.name("the joint")?;
+    let direction = if let Some(span) = cursor.eat_word("along") {
+        Some(Direction::Along(cursor.axis("along", span)?))
+    } else if let Some(span) = cursor.eat_word("about") {
+        Some(Direction::About(cursor.axis("about", span)?))
+    } else {
+        None
+    };
+    Ok(Held { joint, direction })
 }
 
 impl Cursor<'_> {

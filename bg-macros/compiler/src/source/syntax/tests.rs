@@ -58,7 +58,7 @@ fn grouped(expression: &Expression) -> String {
     match &expression.kind {
         ExpressionKind::Negate(operand) => format!("(-{})", grouped(operand)),
         ExpressionKind::Chain(first, rest) => rest.iter().fold(grouped(first), |left, operation| {
-            let symbol = super::words::word_of(&super::words::OPERATORS, &operation.operator);
+            let symbol = crate::source::words::word_of(&crate::source::words::OPERATORS, &operation.operator);
             format!("({left}{symbol}{})", grouped(&operation.operand))
         }),
         _ => expression.to_string(),

@@ -81,7 +81,7 @@ fn without_invisible_delimiters(mut tree: TokenTree) -> TokenTree {
     tree
 }
 
-/// The symbol that `first` and a `second` character right behind it make.
+/// The symbol that `first` and a `second` character right after it make.
 fn paired(first: Option<&Token>, second: char) -> Option<&'static str> {
     let Some(TokenKind::Symbol(first)) = first.map(|token| &token.kind) else { return None };
     PAIRS.into_iter().find(|pair| pair.starts_with(first) && first.len() == 1 && pair.ends_with(second))

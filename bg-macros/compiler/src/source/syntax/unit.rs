@@ -1,6 +1,6 @@
 //! Units: `kg*m^2/s`, `1/s`, `1`.
 //!
-//! In: the tokens behind a `:`. Out: a [`Unit`]; whether its symbols are known is for a later stage.
+//! In: the tokens after a `:`. Out: a [`Unit`]; whether its symbols are known is for a later stage.
 
 use super::{
     SyntaxFault,
@@ -10,7 +10,7 @@ use super::{
 use crate::source::ast::{Name, Unit};
 
 impl Cursor<'_> {
-    /// A unit; each `/` is for the one factor behind it.
+    /// A unit; each `/` is for the one factor after it.
     pub fn unit(&mut self) -> Parsed<Unit> {
         let start = self.span();
         let mut end = start;
@@ -19,18 +19,18 @@ impl Cursor<'_> {
             self.advance();
         } else {
             factors.push(self.unit_factor(1)?);
-            end = self.behind();
+            end = self.last_span();
         }
         while let Some(sign) = self.unit_separator() {
             self.advance();
             factors.push(self.unit_factor(sign)?);
-            end = self.behind();
+            end = self.last_span();
         }
         self.end_unit()?;
         Ok(Unit { factors, span: joined(start, end) })
     }
 
-    /// The sign that the separator ahead gives to the exponent behind it.
+    /// The sign that the separator ahead gives to the exponent after it.
     fn unit_separator(&self) -> Option<i32> {
         match self.peek() {
             Some(TokenKind::Symbol("*")) => Some(1),

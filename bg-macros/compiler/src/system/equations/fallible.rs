@@ -6,10 +6,9 @@
 //! that changes in a run. What depends on parameters only is the same in all of it.
 
 use super::signals::Signals;
-use super::value::Value;
 use crate::expr::Id;
-use crate::graph::{Builtin, Element, Law, NodeId, Reference, Term, TermKind};
-use crate::source::ast::{BinaryOperator, ElementKind};
+use crate::graph::{BinaryOperator, Builtin, Element, ElementKind, Law, NodeId, Reference, Term, TermKind};
+use crate::system::Value;
 
 /// What an element gives, one component.
 #[derive(Clone, Debug)]

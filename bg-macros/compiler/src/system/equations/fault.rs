@@ -68,7 +68,7 @@ impl Explain for EquationFault {
                 members.first().map_or("one of them", String::as_str)
             ),
             F::NotLinear { .. } => "write it as a factor times the variable, or as `dot`, `cross` of it".to_owned(),
-            F::NoEnergy { .. } => "give it behind the law, `energy E`".to_owned(),
+            F::NoEnergy { .. } => "give it after the law, `energy E`".to_owned(),
             F::EnergyOfOtherLaw { .. } => "correct the energy, or leave it out".to_owned(),
             F::EnergyJumps { .. } => {
                 "add a constant to the energy of one branch, so that both give the same at the switch".to_owned()

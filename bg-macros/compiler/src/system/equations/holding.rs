@@ -6,9 +6,9 @@ use std::collections::BTreeSet;
 
 use super::Kind;
 use super::signals::Signals;
-use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute, substitute_switched};
-use crate::graph::NodeId;
-use crate::source::ast::ElementKind;
+use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute_switched};
+use crate::graph::units::Dimension;
+use crate::graph::{Axis, Direction, ElementKind, Held, JointId, NodeId};
 
 /// A motion that a joint holds.
 #[derive(Clone, Debug)]
@@ -103,26 +103,30 @@ fn filter<T>(items: &mut Vec<T>, kept: &[bool]) {
 }
 
 impl Signals<'_> {
-    /// The joint of a residual sink: the one to be closed whose name the sink's begins with, or the sink itself.
-    pub(super) fn joint_of(&self, sink: NodeId) -> &str {
-        let name = &self.graph.node(sink).name.text;
-        let joints = self.graph.closes.iter().map(|close| close.joint.text.as_str());
-        let of_sink =
-            |joint: &&str| name.strip_prefix(*joint).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
-        joints.filter(of_sink).max_by_key(|joint| joint.len()).unwrap_or(name)
+    /// What a residual sink is part of.
+    fn held(&self, sink: NodeId) -> Option<Held> {
+        self.graph.element(sink).and_then(|element| element.held)
     }
 
-    /// Whether a joint to be closed has residual sinks.
-    pub(super) fn is_rigid(&self, joint: &str) -> bool {
-        self.reactions.keys().any(|&sink| self.joint_of(sink) == joint)
+    /// The name of a residual sink's joint; of one that belongs to none, its own.
+    pub(super) fn holder(&self, sink: NodeId) -> &str {
+        let own = &self.graph.node(sink).name.text;
+        self.held(sink).map_or(own, |held| self.graph.joint(held.joint))
+    }
+
+    /// Whether a joint has residual sinks.
+    fn is_rigid(&self, joint: JointId) -> bool {
+        self.reactions.keys().any(|&sink| self.held(sink).is_some_and(|held| held.joint == joint))
     }
 
     /// The direction of a component of a residual sink's bond, in words.
     pub(super) fn direction_of(&self, sink: NodeId, component: usize) -> String {
-        let node = self.graph.node(sink);
-        let bond = self.graph.bond(node.bonds[0]);
-        let axis = if bond.cardinality == 3 { Some(["x", "y", "z"][component]) } else { named_axis(&node.name.text) };
-        in_words(axis.unwrap_or_default(), &bond.flow_unit())
+        let bond = self.graph.bond(self.graph.node(sink).bonds[0]);
+        if bond.cardinality == 3 {
+            let turns = bond.flow() == Dimension::NONE.per(Dimension::SECOND);
+            return in_words(Some(direction(component, turns)));
+        }
+        in_words(self.held(sink).and_then(|held| held.direction))
     }
 
     /// The motions of the compliant joints that a guessed velocity changes at the start.
@@ -133,34 +137,30 @@ impl Signals<'_> {
             return Vec::new();
         }
         let seeds = self.rate_seeds(&[]);
-        let starts: Vec<Id> = self.states.iter().map(|state| state.start).collect();
         let mut slips = Vec::new();
         for close in &graph.closes {
-            if self.is_rigid(&close.joint.text) {
+            if self.is_rigid(close.joint) {
                 continue;
             }
             let gap = self.evaluate(&close.gap, None);
             let flows = derivative(&mut self.pool, &gap.0, &seeds);
-            let unit = if close.dimension == crate::graph::units::Dimension::NONE { "rad/s" } else { "m/s" };
-            for (component, flow) in flows.iter().enumerate() {
-                let axis = if flows.len() == 1 { "" } else { ["x", "y", "z"][component] };
-                let (joint, unit) = (close.joint.text.clone(), unit.to_owned());
-                slips.push(Slip { joint, direction: in_words(axis, &unit), unit, flow: *flow });
+            let turns = close.dimension == Dimension::NONE;
+            let unit = if turns { "rad/s" } else { "m/s" };
+            for (component, &flow) in flows.iter().enumerate() {
+                let direction = in_words((flows.len() > 1).then(|| direction(component, turns)));
+                let (joint, unit) = (graph.joint(close.joint).to_owned(), unit.to_owned());
+                slips.push((close.joint, Slip { joint, direction, unit, flow }));
             }
         }
-        let flows: Vec<Id> = slips.iter().map(|slip| slip.flow).collect();
-        let at_start = substitute(&mut self.pool, &flows, &|symbol| match symbol {
-            Symbol::State(index) => starts.get(index as usize).copied(),
-            _ => None,
-        });
+        let flows: Vec<Id> = slips.iter().map(|(_, slip)| slip.flow).collect();
+        let at_start = self.at_start(&flows);
         let is_guessed = |id: Id| {
             let symbols = self.pool.symbols(&[id]);
             symbols.into_iter().any(|symbol| matches!(symbol, Symbol::Unknown(k) if speeds.contains(&(k as usize))))
         };
-        let moved: BTreeSet<String> =
-            slips.iter().zip(at_start).filter(|(_, id)| is_guessed(*id)).map(|(slip, _)| slip.joint.clone()).collect();
-        slips.retain(|slip| moved.contains(&slip.joint));
-        slips
+        let guessed = slips.iter().zip(at_start).filter(|(_, id)| is_guessed(*id));
+        let moved: BTreeSet<JointId> = guessed.map(|((joint, _), _)| *joint).collect();
+        slips.into_iter().filter(|(joint, _)| moved.contains(joint)).map(|(_, slip)| slip).collect()
     }
 
     /// The unknowns of the start that are velocities: momenta depend on them, displacements and poses do not.
@@ -179,9 +179,9 @@ impl Signals<'_> {
         let graph = self.graph;
         let mut gaps = Vec::new();
         for sink in self.elements(|kind| kind == ElementKind::RSe) {
-            let joint = self.joint_of(sink).to_owned();
+            let (joint, held) = (self.holder(sink).to_owned(), self.held(sink));
             let Some(gap) = graph.element(sink).and_then(|element| element.displacement.as_ref()) else { continue };
-            if graph.closes.iter().all(|close| close.joint.text != joint) {
+            if graph.closes.iter().all(|close| held.is_none_or(|held| held.joint != close.joint)) {
                 let unit = graph.bond(graph.node(sink).bonds[0]).displacement_unit();
                 gaps.push((joint, unit, self.evaluate(gap, None).0));
             }
@@ -190,16 +190,74 @@ impl Signals<'_> {
     }
 }
 
-/// The axis that stands in a scalar sink's name, as in `pin.tilt_x_reaction`.
-fn named_axis(sink: &str) -> Option<&'static str> {
-    let name = sink.strip_suffix("_reaction")?;
-    ["x", "y", "z"].into_iter().find(|axis| name.strip_suffix(axis).is_some_and(|rest| rest.ends_with(['.', '_'])))
+/// The direction of a vector's component.
+fn direction(component: usize, turns: bool) -> Direction {
+    let axis = Axis::ALL[component];
+    if turns { Direction::About(axis) } else { Direction::Along(axis) }
 }
 
-fn in_words(axis: &str, unit: &str) -> String {
-    match (axis, unit) {
-        ("", _) => String::new(),
-        (_, "rad/s") => format!("about {axis}"),
-        _ => format!("in {axis}"),
+fn in_words(direction: Option<Direction>) -> String {
+    match direction {
+        Some(Direction::Along(axis)) => format!("in {}", axis.letter()),
+        Some(Direction::About(axis)) => format!("about {}", axis.letter()),
+        None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::pipeline;
+    use crate::source::syntax;
+    use crate::system::equations::StateEquations;
+
+    /// The equations of a graph, and of its bond-graph words as text.
+    fn equations(items: &str) -> [StateEquations; 2] {
+        let derived = |text: &str| {
+            let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+            pipeline::derive(&source.graphs[0]).expect("equations")
+        };
+        let first = derived(&format!("graph G {{ {items} }}"));
+        let second = derived(&first.expanded.to_string());
+        [first, second].map(|derived| derived.equations)
+    }
+
+    fn held(equations: &StateEquations) -> Vec<(&str, &str)> {
+        let slips = equations.reactions.iter().map(|reaction| &reaction.slip);
+        slips.map(|slip| (slip.joint.as_str(), slip.direction.as_str())).collect()
+    }
+
+    #[test]
+    fn a_rigid_joint_is_known_as_one_in_its_bond_graph_words() {
+        let both = equations(
+            "ground { point O = [0, 0, 0]; } body bob { mass 2; inertia [1, 2, 3]; point top = [0, 1, 0]; }
+             joint pin: cylindrical z (ground.O -> bob.top) { rigid; }",
+        );
+        for equations in both {
+            let expected = [("pin", "in x"), ("pin", "in y"), ("pin", "about x"), ("pin", "about y")];
+            assert_eq!(held(&equations), expected);
+            assert_eq!(equations.gaps.len(), 4);
+        }
+    }
+
+    #[test]
+    fn only_a_residual_sink_is_part_of_a_joint() {
+        let text = "graph G { 1 v: translation; I m = 2; C k = 3 of pin; v -> m; v -> k; }";
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        let faults = pipeline::derive(&source.graphs[0]).expect_err("a C is no residual sink");
+        assert_eq!((faults[0].code, faults.len()), ("BG0326", 1));
+    }
+
+    #[test]
+    fn a_sink_is_of_the_joint_that_it_says_whatever_its_name() {
+        let link = "1 v[3]: translation; position x of v start [0, 0.1, 0]; I m = 2; v -> m; v -> pin.hold;
+            close pin = x; rSe pin.hold = [0, 0, 0] at x";
+        for equations in equations(&format!("{link};")) {
+            assert_eq!(held(&equations)[1], ("pin.hold", "in y"));
+            assert_eq!(equations.gaps.len(), 6, "the sink closes its own gap");
+        }
+        for equations in equations(&format!("{link} of pin;")) {
+            assert_eq!(held(&equations)[1], ("pin", "in y"));
+            assert_eq!(equations.gaps.len(), 3);
+        }
     }
 }

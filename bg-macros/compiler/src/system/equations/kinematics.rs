@@ -1,19 +1,16 @@
 //! The proof that a displacement given by the poses is the integral of its bond's flow.
 //!
-//! In: C elements with `at E`. Out: nothing, or a fault. Method: the flows of the tracked junctions become atoms; then
+//! In: C elements with `at E`. Out: nothing, or a fault. Method: the flows of the tracked junctions become symbols; then
 //! dE/dt by the chain rule and the bond's flow are polynomials in them and in the poses, compared term by term.
 
 use std::collections::BTreeMap;
 
 use super::EquationFault;
 use super::signals::Signals;
-use super::value::Value;
-use crate::expr::{Symbol, derivative, same_polynomial};
+use crate::expr::{Id, Symbol, derivative, same_polynomial};
 use crate::fault::Fault;
 use crate::graph::{NodeId, Storage};
-
-/// Atoms that stand for flows start here, apart from those of laws and states.
-const FLOW_ATOMS: u32 = 64;
+use crate::system::Value;
 
 impl Signals<'_> {
     /// Proves every given displacement.
@@ -26,48 +23,46 @@ impl Signals<'_> {
         if nodes.is_empty() {
             return;
         }
-        let mut next = FLOW_ATOMS;
+        let mut next = 0;
         for track in &graph.tracks {
             if !self.given_flows.contains_key(&track.junction) {
-                let atoms = (next..next + 3).map(|k| self.pool.symbol(Symbol::Atom(k))).collect();
-                self.given_flows.insert(track.junction, Value(atoms));
+                let flow = (next..next + 3).map(|k| self.pool.symbol(Symbol::Flow(k))).collect();
+                self.given_flows.insert(track.junction, Value(flow));
                 next += 3;
             }
         }
         let seeds = self.track_seeds();
-        for node in nodes {
-            self.prove(node, &seeds);
-        }
+        let faults: Vec<Fault> = nodes.into_iter().filter_map(|node| self.prove(node, &seeds)).collect();
         self.given_flows.clear();
         self.forget();
+        self.faults = faults;
     }
 
-    /// The rates of all poses in terms of the atoms.
-    fn track_seeds(&mut self) -> BTreeMap<Symbol, crate::expr::Id> {
+    /// The rates of all poses in terms of these flows.
+    fn track_seeds(&mut self) -> BTreeMap<Symbol, Id> {
         let mut seeds = BTreeMap::new();
         for (storage, first, _) in self.layout.clone() {
             let Storage::Track(index) = storage else { continue };
             let flow = self.given_flows[&self.graph.tracks[index].junction].clone();
             let rate = self.track_rate(storage, &flow);
             for (k, id) in rate.0.into_iter().enumerate() {
-                seeds.insert(Symbol::State(u32::try_from(first + k).expect("fewer than 2^32 states")), id);
+                seeds.insert(Symbol::state(first + k), id);
             }
         }
         seeds
     }
 
-    fn prove(&mut self, node: NodeId, seeds: &BTreeMap<Symbol, crate::expr::Id>) {
+    fn prove(&mut self, node: NodeId, seeds: &BTreeMap<Symbol, Id>) -> Option<Fault> {
         let graph = self.graph;
-        let Some(term) = graph.element(node).and_then(|element| element.displacement.as_ref()) else { return };
+        let term = graph.element(node)?.displacement.as_ref()?;
         let displacement = self.evaluate(term, None);
         let bond = graph.node(node).bonds[0];
         let flow = self.flow(bond);
         let flow = flow.scale(&mut self.pool, graph.sign(bond, node));
         let rates = derivative(&mut self.pool, &displacement.0, seeds);
         let proved = rates.iter().zip(&flow.0).all(|(&rate, &flow)| same_polynomial(&mut self.pool, rate, flow));
-        if !proved && !self.is_in_a_loop(&flow) {
-            let name = graph.node(node).name.text.clone();
-            self.faults.push(Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name }));
-        }
+        let name = graph.node(node).name.text.clone();
+        let is_wrong = !proved && !self.is_in_a_loop(&flow);
+        is_wrong.then(|| Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name }))
     }
 }

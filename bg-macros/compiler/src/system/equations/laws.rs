@@ -2,15 +2,12 @@
 //!
 //! In: constitutive laws. Out: the effort or flow of a bond as the law has it.
 
-use std::collections::BTreeMap;
-
 use super::EquationFault;
 use super::signals::Signals;
-use super::value::Value;
-use crate::expr::{Id, Symbol, derivative, substitute};
+use crate::expr::{Id, Symbol, partial, substitute};
 use crate::fault::Fault;
-use crate::graph::{BondId, Element, Law, NodeId, Storage, Term};
-use crate::source::ast::{ElementKind, Role};
+use crate::graph::{BondId, Element, ElementKind, Law, NodeId, Role, Storage, Term};
+use crate::system::Value;
 
 impl Signals<'_> {
     /// The effort that an element gives on a bond.
@@ -153,24 +150,16 @@ impl Signals<'_> {
 
     /// The columns of the matrix of a law that is linear in its variable of `components` components.
     fn matrix_of(&mut self, node: NodeId, element: &Element, term: &Term, components: usize) -> Vec<Value> {
-        let atoms: Vec<(Symbol, Id)> = (0..components)
-            .map(|k| {
-                let symbol = Symbol::Atom(u32::try_from(k).expect("at most three components"));
-                (symbol, self.pool.symbol(symbol))
-            })
-            .collect();
-        let variable = Value(atoms.iter().map(|&(_, id)| id).collect());
+        let symbols: Vec<Symbol> = (0..).take(components).map(Symbol::Law).collect();
+        let variable = Value(symbols.iter().map(|&symbol| self.pool.symbol(symbol)).collect());
         let value = self.evaluate(term, Some(&variable));
-        let one = self.pool.one();
         let zero = self.pool.zero();
-        let columns: Vec<Value> = atoms
-            .iter()
-            .map(|&(symbol, _)| Value(derivative(&mut self.pool, &value.0, &BTreeMap::from([(symbol, one)]))))
-            .collect();
-        let is_atom = |symbol: Symbol| atoms.iter().any(|&(atom, _)| atom == symbol);
+        let columns: Vec<Value> =
+            symbols.iter().map(|&symbol| Value(partial(&mut self.pool, &value.0, symbol))).collect();
+        let is_variable = |symbol: &Symbol| symbols.contains(symbol);
         let all: Vec<Id> = columns.iter().flat_map(|column| column.0.clone()).collect();
-        let constant = self.pool.symbols(&all).into_iter().all(|symbol| !is_atom(symbol));
-        let at_zero = substitute(&mut self.pool, &value.0, &|symbol| is_atom(symbol).then_some(zero));
+        let constant = !self.pool.symbols(&all).iter().any(is_variable);
+        let at_zero = substitute(&mut self.pool, &value.0, &|symbol| is_variable(&symbol).then_some(zero));
         if !(constant && at_zero.iter().all(|&id| self.pool.is_zero(id))) {
             let definition = self.graph.node(node);
             let (symbol, name) = (element.kind.symbol(), definition.name.text.clone());

@@ -20,19 +20,16 @@ mod terms;
 #[cfg(test)]
 mod tests;
 mod text;
-mod value;
 
 use crate::expr::{Id, Pool, Symbol, text as expression_text};
 use crate::fault::Staged;
-use crate::graph::causality::CausalGraph;
-use crate::graph::{Input, Parameter};
+use crate::graph::{CausalGraph, Input, Parameter};
 use crate::system::requirements::Requirements;
 
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
 pub use origin::{Kind, Origin};
-pub use value::Value;
 
 /// The model as scalar expressions over one pool.
 #[derive(Clone, Debug)]
@@ -43,6 +40,8 @@ pub struct StateEquations {
     pub parameters: Vec<Parameter>,
     /// Inputs; `Symbol::Input` counts them.
     pub inputs: Vec<Input>,
+    /// The names of the positions and orientations that origins count.
+    pub tracks: Vec<String>,
     /// States; `Symbol::State` counts them.
     pub states: Vec<State>,
     /// First guess of each unknown of the assembly, from parameters; `Symbol::Unknown` counts them.
@@ -99,7 +98,7 @@ pub struct State {
 pub struct Reaction {
     /// What it holds: the flow to be kept at zero.
     pub slip: Slip,
-    /// The effort, an atom.
+    /// The effort.
     pub multiplier: Symbol,
     /// Its integral as the poses have it, where they do.
     pub gap: Option<Id>,
@@ -164,7 +163,11 @@ impl StateEquations {
             Symbol::Parameter(index) => self.parameters[index as usize].name.text.clone(),
             Symbol::Input(index) => self.inputs[index as usize].name.text.clone(),
             Symbol::Unknown(index) => format!("unknown_{}", index + 1),
-            Symbol::Atom(index) => format!("atom_{index}"),
+            Symbol::Law(index) => format!("law_{index}"),
+            Symbol::Storage(index) => format!("storage_{index}"),
+            Symbol::Flow(index) => format!("flow_{index}"),
+            Symbol::Multiplier(index) => format!("multiplier_{index}"),
+            Symbol::Loop => "loop".to_owned(),
             Symbol::Slope(index) => format!("{}'", self.inputs[index as usize].name.text),
             Symbol::Rate(index) => format!("{}'", self.states[index as usize].name),
         }

@@ -1,16 +1,13 @@
 //! Reactions of rigid joints: efforts that are not given but keep a flow at zero.
 //!
-//! In: residual sinks. Out: [`Reaction`]s over atoms, to be solved for where the rates are known.
+//! In: residual sinks. Out: [`Reaction`]s over multipliers, to be solved for where the rates are known.
 //! Source: the residual sink of Borutzky, Bond Graph Methodology (2010), section 4.
 
 use super::signals::Signals;
-use super::value::Value;
 use super::{Reaction, Slip};
 use crate::expr::{Id, Symbol};
 use crate::graph::NodeId;
-
-/// Multipliers are the atoms from here on, apart from those of proofs.
-pub(super) const MULTIPLIERS: u32 = 1 << 16;
+use crate::system::Value;
 
 impl Signals<'_> {
     /// The unknown effort of a residual sink.
@@ -21,8 +18,7 @@ impl Signals<'_> {
     }
 
     fn multipliers(&self, node: NodeId, components: usize) -> impl Iterator<Item = Symbol> + use<> {
-        let first = MULTIPLIERS + self.reactions[&node];
-        (first..).take(components).map(Symbol::Atom)
+        (self.reactions[&node]..).take(components).map(Symbol::Multiplier)
     }
 
     /// Every residual sink's multipliers with the flows they keep at zero.
@@ -40,7 +36,7 @@ impl Signals<'_> {
             let gap: Option<Vec<Id>> = element.displacement.as_ref().map(|gap| self.evaluate(gap, None).0);
             let multipliers = self.multipliers(node, excess.0.len());
             for (k, (multiplier, &flow)) in multipliers.zip(&excess.0).enumerate() {
-                let joint = self.joint_of(node).to_owned();
+                let joint = self.holder(node).to_owned();
                 let (direction, unit) = (self.direction_of(node, k), graph.bond(bond).flow_unit());
                 let gap = gap.as_ref().map(|gap| gap[k]);
                 reactions.push(Reaction { slip: Slip { joint, direction, unit, flow }, multiplier, gap });

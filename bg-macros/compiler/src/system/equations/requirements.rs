@@ -3,12 +3,12 @@
 //! In: the resolved graph. Out: [`Requirements`] over a pool of their own.
 
 use super::signals::Signals;
-use super::value::Value;
-use crate::graph::causality::{CausalGraph, End};
 use crate::graph::units::Dimension;
-use crate::graph::{BondGraph, Builtin, Law, NodeId, Reference, Term, TermKind};
-use crate::source::ast::{BinaryOperator, ElementKind, TrackKind};
-use crate::source::clause::Allowed;
+use crate::graph::{
+    Allowed, BinaryOperator, BondGraph, Builtin, CausalGraph, ElementKind, End, Law, NodeId, Reference, Term, TermKind,
+    TrackKind,
+};
+use crate::system::Value;
 use crate::system::requirements::{Requirements, Subject};
 
 /// A term of which something is asked.

@@ -7,16 +7,14 @@ use std::collections::BTreeMap;
 
 use super::fallible::Nature;
 use super::loops::Loops;
-use super::value::Value;
 use super::{EquationFault, FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
-use crate::graph::causality::{CausalGraph, End};
-use crate::graph::{BondGraph, BondId, NodeId, NodeKind, Shape, Storage};
-use crate::source::ast::{ElementKind, TrackKind};
-
-/// Stands for a variable of an algebraic loop, so that what else is wrong can be found.
-const LOOP: Symbol = Symbol::Atom(u32::MAX);
+use crate::graph::units::Dimension;
+use crate::graph::{
+    BondGraph, BondId, CausalGraph, ElementKind, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
+};
+use crate::system::Value;
 
 /// A memo of bond variables and lets.
 #[derive(Clone, Debug)]
@@ -41,13 +39,6 @@ impl Memo {
     }
 }
 
-/// Which of a bond's two variables.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Variable {
-    Effort,
-    Flow,
-}
-
 /// The derivation in progress.
 pub(super) struct Signals<'a> {
     pub(super) causal: &'a CausalGraph,
@@ -68,7 +59,7 @@ pub(super) struct Signals<'a> {
     pub(super) fallible: Vec<FallibleLaw>,
     /// What is known of the lets.
     pub(super) natures: Vec<Option<Nature>>,
-    path: Vec<(Variable, BondId)>,
+    path: Vec<(Role, BondId)>,
     loops: Loops,
     pub(super) faults: Vec<Fault>,
 }
@@ -126,6 +117,7 @@ impl<'a> Signals<'a> {
             pool: self.pool,
             parameters: self.graph.parameters.clone(),
             inputs: self.graph.inputs.clone(),
+            tracks: self.graph.tracks.iter().map(|track| track.name.text.clone()).collect(),
             states: self.states,
             guesses,
             speeds,
@@ -177,7 +169,7 @@ impl<'a> Signals<'a> {
         self.first_integral = self.states.len();
         let zero = self.pool.zero();
         for (index, integral) in self.graph.integrals.iter().enumerate() {
-            let unit = integral.dimension.times(crate::graph::units::Dimension::SECOND).to_string();
+            let unit = integral.dimension.times(Dimension::SECOND).to_string();
             let name = integral.name.clone();
             self.states.push(State { name, unit, origin: Origin::Integral(index), start: zero, rate: zero });
         }
@@ -191,28 +183,28 @@ impl<'a> Signals<'a> {
 
     /// The symbol of a state.
     pub(super) fn state_symbol(&mut self, index: usize) -> Id {
-        self.pool.symbol(Symbol::State(u32::try_from(index).expect("fewer than 2^32 states")))
+        self.pool.symbol(Symbol::state(index))
     }
 
     /// The effort of a bond.
     pub(super) fn effort(&mut self, bond: BondId) -> Value {
-        self.variable(Variable::Effort, bond)
+        self.variable(Role::Effort, bond)
     }
 
     /// The flow of a bond.
     pub(super) fn flow(&mut self, bond: BondId) -> Value {
-        self.variable(Variable::Flow, bond)
+        self.variable(Role::Flow, bond)
     }
 
-    fn entry(&mut self, variable: Variable, bond: BondId) -> &mut Entry {
+    fn entry(&mut self, variable: Role, bond: BondId) -> &mut Entry {
         match variable {
-            Variable::Effort => &mut self.memo.efforts[bond.0],
-            Variable::Flow => &mut self.memo.flows[bond.0],
+            Role::Effort => &mut self.memo.efforts[bond.0],
+            Role::Flow => &mut self.memo.flows[bond.0],
         }
     }
 
-    fn variable(&mut self, variable: Variable, bond: BondId) -> Value {
-        let number = |(variable, bond): (Variable, BondId)| 2 * bond.0 + usize::from(variable == Variable::Flow);
+    fn variable(&mut self, variable: Role, bond: BondId) -> Value {
+        let number = |(variable, bond): (Role, BondId)| 2 * bond.0 + usize::from(variable == Role::Flow);
         let own = number((variable, bond));
         let by = self.path.last().copied().map(number);
         match self.entry(variable, bond).clone() {
@@ -223,7 +215,8 @@ impl<'a> Signals<'a> {
             Entry::Entered => {
                 self.loops.need(own, by);
                 self.loops.circle(own, self.circle(variable, bond));
-                let unknown = self.pool.symbol(LOOP);
+                // So that what else is wrong can be found.
+                let unknown = self.pool.symbol(Symbol::Loop);
                 return Value(vec![unknown; self.graph.bond(bond).cardinality]);
             }
             Entry::Open => {}
@@ -238,8 +231,8 @@ impl<'a> Signals<'a> {
         };
         let owner = std::mem::take(&mut self.owner);
         let value = match variable {
-            Variable::Effort => self.given_effort(other, bond),
-            Variable::Flow => self.given_flow(stroke_node, bond),
+            Role::Effort => self.given_effort(other, bond),
+            Role::Flow => self.given_flow(stroke_node, bond),
         };
         self.owner = owner;
         self.path.pop();
@@ -249,7 +242,7 @@ impl<'a> Signals<'a> {
     }
 
     /// The loop that ends where it began: at this variable.
-    fn circle(&self, variable: Variable, bond: BondId) -> Fault {
+    fn circle(&self, variable: Role, bond: BondId) -> Fault {
         let start = self.path.iter().position(|&step| step == (variable, bond)).unwrap_or(0);
         let mut nodes: Vec<NodeId> = Vec::new();
         for &(_, bond) in &self.path[start..] {
@@ -266,14 +259,14 @@ impl<'a> Signals<'a> {
 
     /// Whether a value needs one of an algebraic loop, which is not known.
     pub(super) fn is_in_a_loop(&self, value: &Value) -> bool {
-        self.pool.symbols(&value.0).contains(&LOOP)
+        self.pool.symbols(&value.0).contains(&Symbol::Loop)
     }
 
-    /// Forgets what bonds carry, and the loops found in that: they are found again.
+    /// Forgets what bonds carry and the faults found in that: they are found again.
     pub(super) fn forget(&mut self) {
         self.memo = Memo::new(self.graph);
         self.loops = Loops::new(2 * self.graph.bonds.len());
-        self.faults.retain(|fault| fault.code != "BG0501");
+        self.faults.clear();
     }
 
     /// The effort that a node gives on one of its bonds.
@@ -283,7 +276,7 @@ impl<'a> Signals<'a> {
                 Some(strong) => self.effort(strong),
                 None => Value::zero(&mut self.pool, self.graph.bond(bond).cardinality),
             },
-            NodeKind::One => self.balance(node, bond, Variable::Effort),
+            NodeKind::One => self.balance(node, bond, Role::Effort),
             NodeKind::Element(element) => {
                 let effort = self.element_effort(node, element, bond);
                 self.note_fallible(node, element, &effort);
@@ -296,7 +289,7 @@ impl<'a> Signals<'a> {
     fn given_flow(&mut self, node: NodeId, bond: BondId) -> Value {
         match &self.graph.node(node).kind {
             NodeKind::One => self.junction_flow(node),
-            NodeKind::Zero => self.balance(node, bond, Variable::Flow),
+            NodeKind::Zero => self.balance(node, bond, Role::Flow),
             NodeKind::Element(element) => {
                 let flow = self.element_flow(node, element, bond);
                 self.note_fallible(node, element, &flow);
@@ -317,7 +310,7 @@ impl<'a> Signals<'a> {
     }
 
     /// The variable of a junction's strong bond from the balance of the others.
-    fn balance(&mut self, node: NodeId, bond: BondId, variable: Variable) -> Value {
+    fn balance(&mut self, node: NodeId, bond: BondId, variable: Role) -> Value {
         let own = self.graph.sign(bond, node);
         let others = self.graph.node(node).bonds.iter().copied().filter(|&other| other != bond);
         let terms: Vec<(Value, f64)> =
@@ -361,23 +354,24 @@ impl<'a> Signals<'a> {
         graph.guesses.iter().map(|guess| self.evaluate(guess, None).0[0]).collect()
     }
 
+    /// Expressions at t = 0, over parameters and unknowns.
+    pub(super) fn at_start(&mut self, of: &[Id]) -> Vec<Id> {
+        let start = |symbol: Symbol| symbol.as_state().map(|state| self.states[state].start);
+        substitute(&mut self.pool, of, &start)
+    }
+
     /// The gaps at t = 0, over parameters and unknowns.
     fn gaps(&mut self) -> Vec<Gap> {
         let graph = self.graph;
-        let starts: Vec<Id> = self.states.iter().map(|state| state.start).collect();
-        let at_start = |symbol| match symbol {
-            Symbol::State(index) => starts.get(index as usize).copied(),
-            _ => None,
-        };
         let mut closed = Vec::new();
         for close in &graph.closes {
-            let unit = if close.dimension == crate::graph::units::Dimension::NONE { "rad" } else { "m" };
-            closed.push((close.joint.text.clone(), unit.to_owned(), self.evaluate(&close.gap, None).0));
+            let unit = if close.dimension == Dimension::NONE { "rad" } else { "m" };
+            closed.push((graph.joint(close.joint).to_owned(), unit.to_owned(), self.evaluate(&close.gap, None).0));
         }
         closed.extend(self.gaps_of_sinks());
         let mut gaps = Vec::new();
         for (joint, unit, values) in closed {
-            let values = substitute(&mut self.pool, &values, &at_start);
+            let values = self.at_start(&values);
             let components = if values.len() == 1 { &[""][..] } else { &["x", "y", "z"] };
             for (component, value) in components.iter().zip(values) {
                 gaps.push(Gap { joint: joint.clone(), component, unit: unit.clone(), value });

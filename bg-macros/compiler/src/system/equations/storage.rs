@@ -7,14 +7,10 @@ use std::collections::BTreeMap;
 use super::EquationFault;
 use super::Origin;
 use super::signals::Signals;
-use super::value::Value;
 use crate::expr::{Id, Node, Symbol, antiderivative, derivative, substitute};
 use crate::fault::Fault;
-use crate::graph::{BondGraph, Element, Law, NodeId, Storage};
-use crate::source::ast::{ElementKind, TrackKind};
-
-/// Atoms that stand for a storage's own state start here, apart from those of linear laws.
-const STATE_ATOMS: u32 = 32;
+use crate::graph::{BondGraph, Element, ElementKind, Law, NodeId, Storage, TrackKind};
+use crate::system::Value;
 
 /// Name and unit of a storage's states.
 pub(super) fn describe(graph: &BondGraph, storage: Storage) -> (String, String) {
@@ -141,32 +137,32 @@ impl Signals<'_> {
         }
     }
 
-    /// Atoms in the place of a storage's own state.
-    pub(super) fn state_atoms(&mut self, components: usize) -> (Vec<Symbol>, Value) {
-        let atoms: Vec<Symbol> = (STATE_ATOMS..).take(components).map(Symbol::Atom).collect();
-        let value = Value(atoms.iter().map(|&atom| self.pool.symbol(atom)).collect());
-        (atoms, value)
+    /// Symbols in the place of a storage's own state.
+    pub(super) fn own_symbols(&mut self, components: usize) -> (Vec<Symbol>, Value) {
+        let symbols: Vec<Symbol> = (0..).take(components).map(Symbol::Storage).collect();
+        let value = Value(symbols.iter().map(|&symbol| self.pool.symbol(symbol)).collect());
+        (symbols, value)
     }
 
     /// The integral of a scalar law over its variable.
     fn found_energy(&mut self, node: NodeId, element: &Element, state: &Value) -> Id {
         let switches = self.switches.len();
-        let (atoms, variable) = self.state_atoms(state.0.len());
+        let (own, variable) = self.own_symbols(state.0.len());
         let law = self.storage_law(node, element, &variable);
-        // Switches over atoms are of this calculation only; a law with any has no integral here. The antiderivative would
+        // Switches over the storage's own symbols are of this calculation only; a law with any has no integral here. The antiderivative would
         // not see that a value depends on the variable by way of a guard alone.
         let is_own =
             |id: &Id| matches!(self.pool.node(*id), Node::Select { switch, .. } if *switch as usize >= switches);
         let is_free = law.0.len() == 1 && !self.pool.reachable(&law.0).iter().any(is_own);
         self.switches.truncate(switches);
-        let found = if is_free { antiderivative(&mut self.pool, law.0[0], atoms[0]) } else { None };
+        let found = if is_free { antiderivative(&mut self.pool, law.0[0], own[0]) } else { None };
         let Some(found) = found else {
             let definition = self.graph.node(node);
             let (symbol, name) = (element.kind.symbol(), definition.name.text.clone());
             self.fault_once(Fault::new(element.law.term().span, &EquationFault::NoEnergy { symbol, name }));
             return self.pool.zero();
         };
-        substitute(&mut self.pool, &[found], &|symbol| (symbol == atoms[0]).then_some(state.0[0]))[0]
+        substitute(&mut self.pool, &[found], &|symbol| (symbol == own[0]).then_some(state.0[0]))[0]
     }
 
     /// Reports a fault unless it is known.
@@ -202,13 +198,13 @@ impl Signals<'_> {
         derivative(&mut self.pool, &[energy], &seeds)[0]
     }
 
-    /// Of a C whose displacement the poses determine: the displacement is held as atoms while the rest changes.
+    /// Of a C whose displacement the poses determine: the displacement is held constant while the rest changes.
     fn modulation_of_displaced(&mut self, node: NodeId, element: &Element) -> Id {
         let state = self.element_state(node);
         let switches = self.switches.len();
-        let (atoms, variable) = self.state_atoms(state.0.len());
+        let (own, variable) = self.own_symbols(state.0.len());
         let law = self.storage_law(node, element, &variable);
-        let is_own = |symbol: &Symbol| atoms.contains(symbol) || matches!(symbol, Symbol::Parameter(_));
+        let is_own = |symbol: &Symbol| own.contains(symbol) || matches!(symbol, Symbol::Parameter(_));
         let is_modulated = !self.pool.symbols(&law.0).iter().all(is_own);
         let is_linear = !matches!(element.law, Law::Of { .. }) && self.switches.len() == switches;
         self.switches.truncate(switches);
@@ -224,7 +220,7 @@ impl Signals<'_> {
         let energy = self.pool.scale(0.5, product);
         let seeds = self.rate_seeds(&[]);
         let change = derivative(&mut self.pool, &[energy], &seeds);
-        let find = |symbol| atoms.iter().position(|&atom| atom == symbol).map(|k| state.0[k]);
+        let find = |symbol| own.iter().position(|&known| known == symbol).map(|k| state.0[k]);
         substitute(&mut self.pool, &change, &find)[0]
     }
 
@@ -234,8 +230,7 @@ impl Signals<'_> {
         for index in 0..self.states.len() {
             let symbol = self.state_symbol(index);
             if !held.contains(&symbol) {
-                let index = u32::try_from(index).expect("fewer than 2^32 states");
-                seeds.insert(Symbol::State(index), self.states[index as usize].rate);
+                seeds.insert(Symbol::state(index), self.states[index].rate);
             }
         }
         seeds

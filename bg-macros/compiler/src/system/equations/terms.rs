@@ -4,10 +4,11 @@
 
 use super::Switch;
 use super::signals::Signals;
-use super::value::Value;
 use crate::expr::{Function, Id, Symbol};
-use crate::graph::{Builtin, NodeId, NodeKind, Reference, Storage, Term, TermKind};
-use crate::source::ast::{BinaryOperator, Comparison, ElementKind};
+use crate::graph::{
+    BinaryOperator, Builtin, Comparison, ElementKind, NodeId, NodeKind, Reference, Storage, Term, TermKind,
+};
+use crate::system::Value;
 
 impl Signals<'_> {
     /// The value of a term; `variable` is that of the law it stands in.
@@ -56,8 +57,8 @@ impl Signals<'_> {
         }
     }
 
-    fn numbered(&mut self, index: usize, symbol: impl Fn(u32) -> Symbol) -> Id {
-        self.pool.symbol(symbol(u32::try_from(index).expect("fewer than 2^32 symbols")))
+    fn numbered(&mut self, index: usize, symbol: fn(u32) -> Symbol) -> Id {
+        self.pool.symbol(Symbol::numbered(symbol, index))
     }
 
     fn reference(&mut self, reference: Reference, variable: Option<&Value>) -> Value {

@@ -3,9 +3,7 @@
 //! In: the derivation's graph. Out: one line for every bond variable, one for every state.
 
 use super::signals::Signals;
-use crate::graph::causality::End;
-use crate::graph::{BondId, Law, NodeId, NodeKind, Storage};
-use crate::source::ast::{ElementKind, TrackKind};
+use crate::graph::{BondId, ElementKind, End, Law, NodeId, NodeKind, Role, Storage, TrackKind};
 
 /// All lines: for every bond its effort and its flow, then the rates.
 pub(super) fn equations(signals: &Signals<'_>) -> Vec<String> {
@@ -17,8 +15,12 @@ pub(super) fn equations(signals: &Signals<'_>) -> Vec<String> {
             End::From => (ends.from, ends.to),
             End::To => (ends.to, ends.from),
         };
-        lines.push(format!("{} = {}", variable(signals, 'e', bond), given(signals, gives, bond, 'e')));
-        lines.push(format!("{} = {}", variable(signals, 'f', bond), given(signals, receives, bond, 'f')));
+        lines.push(format!(
+            "{} = {}",
+            variable(signals, Role::Effort, bond),
+            given(signals, gives, bond, Role::Effort)
+        ));
+        lines.push(format!("{} = {}", variable(signals, Role::Flow, bond), given(signals, receives, bond, Role::Flow)));
     }
     lines.extend(signals.layout.iter().map(|&(storage, ..)| rate(signals, storage)));
     lines
@@ -28,24 +30,31 @@ fn name(signals: &Signals<'_>, node: NodeId) -> String {
     signals.graph.node(node).name.text.clone()
 }
 
-/// `e[a -> b]` or `f[a -> b]`.
-fn variable(signals: &Signals<'_>, letter: char, bond: BondId) -> String {
-    let ends = signals.graph.bond(bond);
-    format!("{letter}[{} -> {}]", name(signals, ends.from), name(signals, ends.to))
+fn letter(role: Role) -> char {
+    match role {
+        Role::Effort => 'e',
+        Role::Flow => 'f',
+    }
 }
 
-fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, letter: char) -> String {
+/// `e[a -> b]` or `f[a -> b]`.
+fn variable(signals: &Signals<'_>, role: Role, bond: BondId) -> String {
+    let ends = signals.graph.bond(bond);
+    format!("{}[{} -> {}]", letter(role), name(signals, ends.from), name(signals, ends.to))
+}
+
+fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, role: Role) -> String {
     let definition = signals.graph.node(node);
     match &definition.kind {
         NodeKind::Zero | NodeKind::One => {
-            let common = if matches!(definition.kind, NodeKind::Zero) { 'e' } else { 'f' };
-            if letter == common {
+            let common = if matches!(definition.kind, NodeKind::Zero) { Role::Effort } else { Role::Flow };
+            if role == common {
                 return signals
                     .causal
                     .strong_bond(node)
-                    .map_or_else(|| "0".to_owned(), |strong| variable(signals, letter, strong));
+                    .map_or_else(|| "0".to_owned(), |strong| variable(signals, role, strong));
             }
-            balance(signals, node, bond, letter)
+            balance(signals, node, bond, role)
         }
         NodeKind::Element(element) => {
             let others: Vec<String> = definition
@@ -62,28 +71,25 @@ fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, letter: char) -> Str
                 ElementKind::C => format!(" of {}.q", definition.name.text),
                 ElementKind::I => format!(" of {}.p", definition.name.text),
                 ElementKind::R | ElementKind::Mr => {
-                    let other = if letter == 'e' { 'f' } else { 'e' };
-                    format!(" of {}", variable(signals, other, bond))
+                    format!(" of {}", variable(signals, role.other(), bond))
                 }
                 ElementKind::Gy | ElementKind::Mgy => {
-                    let other = if letter == 'e' { 'f' } else { 'e' };
-                    format!(" of {other}{}", others.concat())
+                    format!(" of {}{}", letter(role.other()), others.concat())
                 }
-                ElementKind::Tf | ElementKind::Mtf => format!(" of {letter}{}", others.concat()),
+                ElementKind::Tf | ElementKind::Mtf => format!(" of {}{}", letter(role), others.concat()),
             };
             let form = match &element.law {
                 Law::Stiffness(_) => "stiffness ",
                 Law::Compliance(_) => "compliance ",
                 _ => "",
             };
-            let text = element.text.trim_start_matches("= ");
-            format!("{} `{}`: {form}{text}{of}", element.kind.symbol(), definition.name.text)
+            format!("{} `{}`: {form}{}{of}", element.kind.symbol(), definition.name.text, element.text)
         }
     }
 }
 
 /// The signed sum of the other bonds' variables.
-fn balance(signals: &Signals<'_>, node: NodeId, bond: BondId, letter: char) -> String {
+fn balance(signals: &Signals<'_>, node: NodeId, bond: BondId, role: Role) -> String {
     let own = signals.graph.sign(bond, node);
     let mut text = String::new();
     for &other in signals.graph.node(node).bonds.iter().filter(|&&other| other != bond) {
@@ -94,7 +100,7 @@ fn balance(signals: &Signals<'_>, node: NodeId, bond: BondId, letter: char) -> S
             (false, true) => " + ",
             (false, false) => " - ",
         });
-        text.push_str(&variable(signals, letter, other));
+        text.push_str(&variable(signals, role, other));
     }
     if text.is_empty() { "0".to_owned() } else { text }
 }
@@ -105,9 +111,9 @@ fn rate(signals: &Signals<'_>, storage: Storage) -> String {
             let definition = signals.graph.node(node);
             let bond = definition.bonds[0];
             let compliance = signals.graph.element(node).is_some_and(|element| element.kind == ElementKind::C);
-            let (state, letter) = if compliance { ("q", 'f') } else { ("p", 'e') };
+            let (state, role) = if compliance { ("q", Role::Flow) } else { ("p", Role::Effort) };
             let sign = if compliance && signals.graph.sign(bond, node) < 0.0 { "-" } else { "" };
-            format!("d({}.{state})/dt = {sign}{}", definition.name.text, variable(signals, letter, bond))
+            format!("d({}.{state})/dt = {sign}{}", definition.name.text, variable(signals, role, bond))
         }
         Storage::Track(index) => {
             let track = &signals.graph.tracks[index];

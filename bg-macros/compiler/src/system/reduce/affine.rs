@@ -8,7 +8,6 @@
 use std::collections::BTreeMap;
 
 use super::report::{Fate, Report, show};
-use super::{index, state_of};
 use crate::expr::{Id, Monomials, Symbol, monomials, same_polynomial};
 use crate::system::equations::{Kind, StateEquations};
 
@@ -29,7 +28,7 @@ pub(super) fn recover(equations: &mut StateEquations, report: &mut Report) {
             images.insert(state, image);
         }
     }
-    equations.replace(&|symbol| state_of(symbol).and_then(|state| images.get(&state).copied()));
+    equations.replace(&|symbol| symbol.as_state().and_then(|state| images.get(&state).copied()));
     let kept: Vec<bool> = (0..equations.states.len()).map(|state| !images.contains_key(&state)).collect();
     super::live::keep_states(equations, report, &kept);
 }
@@ -38,7 +37,7 @@ pub(super) fn recover(equations: &mut StateEquations, report: &mut Report) {
 fn affine(equations: &mut StateEquations, state: usize, combination: &Combination) -> Id {
     let mut terms = vec![(equations.states[state].start, 1.0)];
     for (&other, &coefficient) in combination {
-        let symbol = equations.pool.symbol(Symbol::State(index(other)));
+        let symbol = equations.pool.symbol(Symbol::state(other));
         terms.extend([(symbol, coefficient), (equations.states[other].start, -coefficient)]);
     }
     equations.pool.linear(0.0, &terms)

@@ -7,7 +7,6 @@
 use std::collections::BTreeMap;
 
 use super::report::{Fate, Report, show};
-use super::{index, state_of};
 use crate::expr::{Function, Id, Node, Pool, Symbol, same_polynomial};
 use crate::system::equations::{Origin, State, StateEquations};
 
@@ -29,11 +28,10 @@ pub(super) fn integrate(equations: &mut StateEquations, report: &mut Report) {
     let mut images: BTreeMap<usize, Id> = BTreeMap::new();
     let mut kept = vec![true; equations.states.len()];
     for Turn { track, cosine, sine, start, rate } in turns {
-        let angle = equations.pool.symbol(Symbol::State(index(cosine)));
+        let angle = equations.pool.symbol(Symbol::state(cosine));
         images.insert(cosine, equations.pool.call(Function::Cos, &[angle]));
         images.insert(sine, equations.pool.call(Function::Sin, &[angle]));
-        let component = &equations.states[cosine].name;
-        let name = format!("{}.angle", component.rsplit_once('_').map_or(component.as_str(), |(track, _)| track));
+        let name = format!("{}.angle", equations.tracks[track]);
         let state = State { name, unit: "rad".to_owned(), origin: Origin::Angle(track), start, rate };
         report.rename(cosine, state.clone());
         equations.states[cosine] = state;
@@ -42,7 +40,7 @@ pub(super) fn integrate(equations: &mut StateEquations, report: &mut Report) {
         report.say(sine, Fate::Recovered(text));
         kept[sine] = false;
     }
-    equations.replace(&|symbol| state_of(symbol).and_then(|state| images.get(&state).copied()));
+    equations.replace(&|symbol| symbol.as_state().and_then(|state| images.get(&state).copied()));
     super::live::keep_states(equations, report, &kept);
 }
 
@@ -65,7 +63,7 @@ fn pairs(equations: &StateEquations) -> Vec<(usize, usize, usize)> {
 
 /// The turn of a cosine and a sine, where start and rates prove that they are one.
 fn proved(equations: &mut StateEquations, track: usize, cosine: usize, sine: usize) -> Option<Turn> {
-    let [c, s] = [cosine, sine].map(|state| Symbol::State(index(state)));
+    let [c, s] = [cosine, sine].map(Symbol::state);
     let (cosine_rate, sine_rate) = (equations.states[cosine].rate, equations.states[sine].rate);
     let start = start(&mut equations.pool, equations.states[cosine].start, equations.states[sine].start)?;
     let pool = &mut equations.pool;

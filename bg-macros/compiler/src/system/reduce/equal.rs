@@ -9,8 +9,7 @@
 use std::collections::BTreeMap;
 
 use super::report::{Fate, Report};
-use super::state_of;
-use crate::expr::{Id, Node, Pool, substitute};
+use crate::expr::{Id, Node, Pool, Symbol, substitute};
 use crate::system::equations::StateEquations;
 
 /// Merges equal states.
@@ -26,7 +25,7 @@ pub(super) fn merge(equations: &mut StateEquations, report: &mut Report) {
             report.say(state, Fate::Equal(format!("{sign}{}", equations.states[first].name)));
         }
     }
-    equations.replace(&|symbol| state_of(symbol).map(|state| images[state]));
+    equations.replace(&|symbol| symbol.as_state().map(|state| images[state]));
     super::live::keep_states(equations, report, &kept);
 }
 
@@ -35,7 +34,7 @@ type Classes = Vec<(usize, bool)>;
 
 fn state_symbols(equations: &mut StateEquations) -> Vec<Id> {
     let states = equations.states.len();
-    (0..states).map(|state| equations.pool.symbol(crate::expr::Symbol::State(super::index(state)))).collect()
+    (0..states).map(|state| equations.pool.symbol(Symbol::state(state))).collect()
 }
 
 /// Every state in terms of the first of its class.
@@ -51,7 +50,7 @@ fn classes(equations: &mut StateEquations) -> Classes {
     // Every round splits a class or is the last; signs that will not settle prove nothing.
     for _ in 0..2 * symbols.len() + 2 {
         let image = images(pool, &symbols, &current);
-        let at = |symbol| state_of(symbol).map(|state| image[state]);
+        let at = |symbol: Symbol| symbol.as_state().map(|state| image[state]);
         let rates = substitute(pool, &candidates.rates, &at);
         let projections = substitute(pool, &candidates.projections, &at);
         let next = group(symbols.len(), |state| {
@@ -95,7 +94,7 @@ impl Candidates {
                     *image = zero;
                 }
             }
-            let rates = substitute(pool, &self.rates, &|symbol| state_of(symbol).map(|state| image[state]));
+            let rates = substitute(pool, &self.rates, &|symbol| symbol.as_state().map(|state| image[state]));
             let mut found = false;
             for (key, rate) in keys.iter_mut().zip(rates) {
                 if key.is_none() && !pool.is_zero(rate) {
@@ -113,7 +112,7 @@ impl Candidates {
     }
 
     /// Whether a state is negative beside its class: by its start value, or by its rate if it starts at zero. A state
-    /// that starts at zero and has no rate is as good as its negative.
+    /// that starts at zero and has no rate equals its negative.
     fn sign(&self, pool: &mut Pool, state: usize, rate: Id) -> bool {
         let (start, negative) = self.starts[state];
         if pool.is_zero(start) { unsigned(pool, rate).1 } else { negative }

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 
 use super::report::{Fate, Report, show};
-use super::{is_constant, settle_switches, state_of};
+use super::{is_constant, settle_switches};
 use crate::expr::{Id, Symbol, substitute};
 use crate::system::equations::StateEquations;
 
@@ -21,7 +21,7 @@ pub(super) fn fold(equations: &mut StateEquations, report: &mut Report) {
     }
     let (constant, idle) = constant;
     let zero = equations.pool.zero();
-    equations.replace(&|symbol| match state_of(symbol) {
+    equations.replace(&|symbol| match symbol.as_state() {
         Some(state) => constant[state].then_some(starts[state]),
         None => idle.contains(&symbol).then_some(zero),
     });
@@ -48,7 +48,7 @@ fn constants(equations: &mut StateEquations) -> (Vec<bool>, BTreeSet<Symbol>) {
     let pool = &mut equations.pool;
     let mut assumed: Vec<bool> = starts.iter().map(|&start| is_constant(pool, start)).collect();
     loop {
-        let at = |symbol| match state_of(symbol) {
+        let at = |symbol: Symbol| match symbol.as_state() {
             Some(state) => assumed[state].then_some(starts[state]),
             None => idle.contains(&symbol).then_some(zero),
         };

@@ -4,8 +4,8 @@
 //! Method: everything that an output depends on is live; so is what the rate, the projection or a switch of something
 //! live depends on.
 
+use super::keep_switches;
 use super::report::{Fate, Report};
-use super::{index, keep_switches, state_of};
 use crate::expr::{Branch, Id, Node, Pool, Symbol};
 use crate::system::equations::{Kind, StateEquations};
 
@@ -73,7 +73,7 @@ fn quadratures(equations: &StateEquations) -> Vec<usize> {
     let rates = equations.states.iter().map(|state| state.rate);
     let guards = equations.switches.iter().map(|switch| switch.guard);
     let used = equations.pool.symbols(&rates.chain(guards).collect::<Vec<_>>());
-    let is_used = |state: usize| used.contains(&Symbol::State(index(state)));
+    let is_used = |state: usize| used.contains(&Symbol::state(state));
     (0..equations.states.len())
         .filter(|&state| equations.states[state].origin.kind() == Kind::Integral && !is_used(state))
         .collect()
@@ -92,7 +92,7 @@ fn forget_energies(equations: &mut StateEquations, live: &[bool], switches: &[bo
 /// Whether an expression needs no state and no switch that goes.
 fn is_known(pool: &Pool, id: Id, live: &[bool], switches: &[bool]) -> bool {
     pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
-        Node::Symbol(symbol) => state_of(*symbol).is_none_or(|state| live[state]),
+        Node::Symbol(symbol) => symbol.as_state().is_none_or(|state| live[state]),
         Node::Select { switch, .. } => switches[*switch as usize],
         _ => true,
     })
@@ -117,8 +117,8 @@ pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, k
     }
     equations.holding.renumber(&|state| is_kept(state).then(|| numbers[state]));
     equations.bonds.clear();
-    let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::State(index(number)))).collect();
-    equations.replace(&|symbol| state_of(symbol).map(|state| symbols[state]));
+    let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::state(number))).collect();
+    equations.replace(&|symbol| symbol.as_state().map(|state| symbols[state]));
     report.keep(kept);
 }
 

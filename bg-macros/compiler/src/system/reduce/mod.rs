@@ -7,6 +7,7 @@
 mod affine;
 mod angle;
 mod equal;
+pub mod expectation;
 mod invariant;
 mod live;
 mod reaction;
@@ -97,7 +98,7 @@ fn fold_parameters(equations: &mut StateEquations, wanted: &Wanted) {
     for (parameter, &is_tuned) in equations.parameters.iter().zip(&wanted.tuned) {
         images.push(if is_tuned {
             kept.push(parameter.clone());
-            equations.pool.symbol(Symbol::Parameter(index(kept.len() - 1)))
+            equations.pool.symbol(Symbol::numbered(Symbol::Parameter, kept.len() - 1))
         } else {
             equations.pool.number(parameter.default)
         });
@@ -136,16 +137,6 @@ fn keep_switches(equations: &mut StateEquations, branches: &[Branch]) {
     let kept = |switch: usize| matches!(branches[switch], Branch::Kept(_));
     let switches = std::mem::take(&mut equations.switches);
     equations.switches = switches.into_iter().enumerate().filter(|(k, _)| kept(*k)).map(|(_, s)| s).collect();
-}
-
-/// An index as symbols carry it.
-fn index(of: usize) -> u32 {
-    u32::try_from(of).expect("fewer than 2^32 symbols")
-}
-
-/// The index of a state symbol.
-fn state_of(symbol: Symbol) -> Option<usize> {
-    if let Symbol::State(state) = symbol { Some(state as usize) } else { None }
 }
 
 /// Whether an expression depends on parameters and numbers only.
@@ -196,7 +187,7 @@ impl StateEquations {
         for (law, value) in self.fallible.iter_mut().zip(after) {
             law.value = value;
         }
-        // What is held comes after, so that it has no say in the order of the rates' nodes.
+        // What is held comes after, so that it has no influence on the order of the rates' nodes.
         self.holding.replace(&mut pool, replace, branch);
         self.pool = pool;
     }

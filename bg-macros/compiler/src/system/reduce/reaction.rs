@@ -8,8 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use super::index;
-use crate::expr::{Branch, Id, Pool, Symbol, derivative, substitute};
+use crate::expr::{Branch, Id, Pool, Symbol, derivative, partial, substitute};
 use crate::system::equations::{Kind, Reaction, State, StateEquations};
 
 /// Rate at which a remaining gap decays, 1/s: slow beside the motion of a step, fast beside its growth by truncation.
@@ -40,7 +39,7 @@ fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<
     let pool = &mut equations.pool;
     let mut seeds: BTreeMap<Symbol, Id> = BTreeMap::from([(Symbol::Time, pool.one())]);
     for (state, definition) in equations.states.iter().enumerate() {
-        seeds.insert(Symbol::State(index(state)), definition.rate);
+        seeds.insert(Symbol::state(state), definition.rate);
     }
     let flows: Vec<Id> = reactions.iter().map(|reaction| reaction.slip.flow).collect();
     let rates = derivative(pool, &flows, &seeds);
@@ -57,14 +56,10 @@ fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<
 
 /// The momenta whose rates depend on multipliers, and how.
 fn moves(pool: &mut Pool, states: &[State], reactions: &[Reaction]) -> Vec<(usize, Vec<Id>)> {
-    let one = pool.one();
     let momenta: Vec<usize> =
         (0..states.len()).filter(|&state| states[state].origin.kind() == Kind::Momentum).collect();
     let rates: Vec<Id> = momenta.iter().map(|&state| states[state].rate).collect();
-    let columns: Vec<Vec<Id>> = reactions
-        .iter()
-        .map(|reaction| derivative(pool, &rates, &BTreeMap::from([(reaction.multiplier, one)])))
-        .collect();
+    let columns: Vec<Vec<Id>> = reactions.iter().map(|reaction| partial(pool, &rates, reaction.multiplier)).collect();
     let row = |k: usize| columns.iter().map(|column| column[k]).collect::<Vec<Id>>();
     let rows = momenta.into_iter().enumerate().map(|(k, state)| (state, row(k)));
     rows.filter(|(_, row)| row.iter().any(|&id| !pool.is_zero(id))).collect()
@@ -80,13 +75,10 @@ struct Linear {
 impl Linear {
     /// The coefficients of expressions that are linear in the multipliers.
     fn of(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Self {
-        let one = pool.one();
         let zero = pool.zero();
         let is_multiplier = |symbol: Symbol| reactions.iter().any(|reaction| reaction.multiplier == symbol);
-        let columns: Vec<Vec<Id>> = reactions
-            .iter()
-            .map(|reaction| derivative(pool, expressions, &BTreeMap::from([(reaction.multiplier, one)])))
-            .collect();
+        let columns: Vec<Vec<Id>> =
+            reactions.iter().map(|reaction| partial(pool, expressions, reaction.multiplier)).collect();
         let matrix = (0..reactions.len()).map(|i| (0..=i).map(|j| columns[j][i]).collect()).collect();
         let constant = substitute(pool, expressions, &|symbol| is_multiplier(symbol).then_some(zero));
         Self { matrix, constant }

@@ -3,13 +3,14 @@
 
 use std::fmt::Write;
 
-use super::{Fate, Report, for_scene, index, solve_reactions};
+use super::{Fate, Report, for_scene, solve_reactions};
 use crate::expr::{Environment, Id, Symbol, evaluate};
 use crate::fault::Faults;
+use crate::random::Random;
 use crate::source::scene::{Variant, variants};
 use crate::source::syntax;
 use crate::system::equations::StateEquations;
-use crate::system::expectation::wanted;
+use crate::system::reduce::expectation::wanted;
 use crate::{pipeline, program};
 
 mod networks;
@@ -115,7 +116,7 @@ impl Scene {
 
     /// The same to a part `bound` of an output's size.
     pub fn agrees_to(&self, bound: f64) {
-        let mut draw = Draw(self.report.fates.len() as u64);
+        let mut draw = Draw(Random::new(self.report.fates.len() as u64));
         for _ in 0..3 {
             let (difference, _) = self.difference(&mut draw);
             assert!(difference < bound, "{difference:e}\n{}", self.report);
@@ -161,7 +162,7 @@ fn outputs(of: &StateEquations, parameters: &[f64], unknowns: &[f64]) -> Vec<Vec
                 parameters,
                 inputs: &inputs,
                 unknowns,
-                atoms: &[],
+                storage: &[],
                 slopes: &[],
                 rates: &[],
                 negative,
@@ -194,14 +195,13 @@ fn outputs(of: &StateEquations, parameters: &[f64], unknowns: &[f64]) -> Vec<Vec
     rows
 }
 
-/// Numbers that look random and are the same every time: linear congruential generator (Knuth, TAOCP 2, sec. 3.3.4, MMIX).
-pub(super) struct Draw(pub u64);
+/// What a network is drawn from.
+pub(super) struct Draw(pub Random);
 
 impl Draw {
     /// A whole number below `end`.
     pub fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % end
+        self.0.below(end)
     }
 
     /// A number between -1 and 1.
@@ -266,7 +266,7 @@ fn parameters_that_no_one_tunes_become_numbers_and_the_others_keep_their_order()
     let some = scene(graph, "tune { c, a }");
     let rates: Vec<Id> = some.reduced.states.iter().map(|state| state.rate).collect();
     let symbols = some.reduced.pool.symbols(&rates);
-    assert!(symbols.contains(&Symbol::Parameter(index(1))) && !symbols.contains(&Symbol::Parameter(index(2))));
+    assert!(symbols.contains(&Symbol::Parameter(1)) && !symbols.contains(&Symbol::Parameter(2)));
     some.agrees();
 }
 

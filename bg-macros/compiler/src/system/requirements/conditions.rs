@@ -8,8 +8,8 @@
 
 use super::fault::Kind;
 use crate::expr::{Function, Id, Pool};
-use crate::source::clause::Allowed;
-use crate::system::equations::Value;
+use crate::graph::Allowed;
+use crate::system::Value;
 
 /// How much of a symmetric matrix' diagonal its two halves may differ by, for those that are calculated.
 const SYMMETRY: f64 = 1e-9;

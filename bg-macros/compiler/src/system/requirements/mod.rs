@@ -12,9 +12,8 @@ use proc_macro2::Span;
 
 use crate::expr::{Environment, Id, Pool, Signs, Symbol, evaluate, signs, substitute};
 use crate::fault::{Fault, Staged};
-use crate::graph::Parameter;
-use crate::source::clause::Allowed;
-use crate::system::equations::Value;
+use crate::graph::{Allowed, Parameter};
+use crate::system::Value;
 
 pub use fault::RequirementFault;
 

@@ -96,7 +96,7 @@ fn unexpected_tokens_name_what_could_stand_there() {
 
 #[test]
 fn a_missing_semicolon_is_at_the_last_token_and_costs_no_statement() {
-    let fault = "2:7 BG0103 the statement that ends with `coil` has no `;` | write `;` behind `coil`";
+    let fault = "2:7 BG0103 the statement that ends with `coil` has no `;` | write `;` after `coil`";
     check(&[("I L = coil", fault), ("I L = coil\nR Ra = 2;", fault), ("I L = coil\na -> b;", fault)]);
     let (source, _) = parse_leniently(tokens("graph G { I L = coil R Ra = 2; a -> b 1 c; input v: V param p: m = 1 }"));
     assert_eq!(source.graphs[0].items.len(), 6);
@@ -111,7 +111,7 @@ fn expressions_have_neither_powers_nor_comparisons() {
             "let a = if b < c { 1 };",
             "2:9 BG0106 this `if` has no `else`, so that it has no value where its condition fails | write `else { \
             ... }` \
-             behind its block",
+             after its block",
         ),
         ("let a = if b < c { 1 } els { 2 };", "2:24 BG0102 found `els`, expected `else` | write `else`"),
         (
@@ -121,13 +121,13 @@ fn expressions_have_neither_powers_nor_comparisons() {
         ),
         (
             "let a = if a < b < c { 1 } else { 2 };",
-            "2:18 BG0108 found `<` behind a comparison, expected `{`: an `if` compares once | nest a second `if`: `if \
+            "2:18 BG0108 found `<` after a comparison, expected `{`: an `if` compares once | nest a second `if`: `if \
             a < b { \
              if c < d { e } else { f } } else { f }`",
         ),
         (
             "let a = if a < b || c < d { 1 } else { 2 };",
-            "2:18 BG0108 found `||` behind a comparison, expected `{`: an `if` compares once | chain a second `if`: \
+            "2:18 BG0108 found `||` after a comparison, expected `{`: an `if` compares once | chain a second `if`: \
             `if a < b \
              { e } else if c < d { e } else { f }`",
         ),
@@ -175,19 +175,19 @@ fn a_clause_stands_once() {
 
 #[test]
 fn what_is_left_out_is_named() {
-    let axis = "write `x`, `y` or `z` behind";
+    let axis = "write `x`, `y` or `z` after";
     check(&[
         (
             "joint j: revolute (a -> b);",
-            &format!("2:10 BG0112 found `( ... )` behind `revolute`, expected an axis | {axis} `revolute`"),
+            &format!("2:10 BG0112 found `( ... )` after `revolute`, expected an axis | {axis} `revolute`"),
         ),
         (
             "joint j: universal y w (a -> b);",
-            &format!("2:22 BG0112 found `w` behind `universal y`, expected an axis | {axis} `universal y`"),
+            &format!("2:22 BG0112 found `w` after `universal y`, expected an axis | {axis} `universal y`"),
         ),
-        ("param a = 3;", "2:7 BG0113 the parameter `a` has no unit | write its unit behind its name, such as `a: N*m`"),
-        ("input v;", "2:7 BG0113 the input `v` has no unit | write its unit behind its name, such as `v: N*m`"),
-        ("param a: m;", "2:10 BG0114 the parameter `a` has no default | write `= NUMBER` behind its unit"),
+        ("param a = 3;", "2:7 BG0113 the parameter `a` has no unit | write its unit after its name, such as `a: N*m`"),
+        ("input v;", "2:7 BG0113 the input `v` has no unit | write its unit after its name, such as `v: N*m`"),
+        ("param a: m;", "2:10 BG0114 the parameter `a` has no default | write `= NUMBER` after its unit"),
     ]);
 }
 

@@ -41,6 +41,8 @@ fn canonical_statements_print_as_they_are_written() {
         "0 pin.slip[3]: translation;",
         "R bearing(w) = 0.001 * w;",
         "R diode(effort u) = if u < 0 { 0 } else if u <= 1 { u } else { 1 } in R at x start 1 energy w;",
+        "rSe pin.hold = 0 at q of pin along x;",
+        "rSe hold = [0, 0, 0] of a.b;",
         "a -> b.c -> d;",
         "position x of pin.slip start [0, 1, 2];",
         "orientation turn of star;",

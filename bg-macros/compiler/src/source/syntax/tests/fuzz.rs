@@ -3,18 +3,8 @@
 use proc_macro2::{Delimiter, Group, Literal, Punct, Spacing, TokenStream, TokenTree};
 
 use super::{EXAMPLE, bare, shown, tokens};
+use crate::random::Random;
 use crate::source::syntax::{DEEPEST, MOST_NESTED, parse, parse_leniently};
-
-/// Knuth's linear congruential generator MMIX (The Art of Computer Programming, volume 2, section 3.3.4).
-struct Random(u64);
-
-impl Random {
-    /// A number below `bound`, of the high bits.
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        usize::try_from(self.0 >> 33).expect("31 bits fit") % bound.max(1)
-    }
-}
 
 /// The trees of `stream` with a few of them dropped, doubled, exchanged or replaced, at every level.
 fn disordered(stream: TokenStream, random: &mut Random, words: &[TokenTree], rarity: usize) -> TokenStream {
@@ -63,7 +53,7 @@ fn tokens_in_disorder_never_panic() {
     words.push(Literal::f64_unsuffixed(-1.5).into());
     words.extend("#!^&|@$?%'".chars().map(|mark| TokenTree::from(Punct::new(mark, Spacing::Joint))));
     let graphs = statements_alone();
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let mut accepted = 0;
     for round in 0..20_000 {
         // A whole example now and then; a single statement, which may well stay valid, otherwise.

@@ -1,18 +1,15 @@
 //! Whether the energy that a user gives is that of the law.
 //!
-//! In: law and energy of a C or I over atoms in the place of its state. Out: a fault, or none. The derivative of the energy must be the
+//! In: law and energy of a C or I over symbols in the place of its state. Out: a fault, or none. The derivative of the energy must be the
 //! law in every branch, and the energy must not jump where a branch ends. Method: both are proved as polynomial identities,
 //! the second at the zero of a guard that is linear in the state. Where that shows nothing, because the functions are others
 //! or the branches exclude each other, values are compared: the derivative at [`POINTS`] points and between all switches found
 //! along [`LINES`] lines, the energy on both sides of each. Parameters take their defaults and values near these.
 
-use std::collections::BTreeMap;
-
 use super::EquationFault;
-use super::reactions::MULTIPLIERS;
 use super::signals::Signals;
 use crate::expr::{
-    Branch, Environment, Id, Pool, Symbol, derivative, evaluate, same_polynomial, substitute, substitute_switched,
+    Branch, Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute, substitute_switched,
 };
 use crate::fault::Fault;
 use crate::graph::{BondGraph, Element, NodeId, Parameter, Term};
@@ -47,24 +44,23 @@ enum Wrong {
 }
 
 impl Signals<'_> {
-    /// Holds the user's energy against the law.
+    /// Compares the user's energy with the law.
     pub(super) fn check_energy(&mut self, node: NodeId, element: &Element, term: &Term) {
         let switches = self.switches.len();
         let components = self.graph.bond(self.graph.node(node).bonds[0]).cardinality;
-        let (atoms, variable) = self.state_atoms(components);
+        let (own, variable) = self.own_symbols(components);
         let law = self.storage_law(node, element, &variable);
         let energy = self.evaluate(term, Some(&variable)).0[0];
-        let one = self.pool.one();
         let mut pairs = Vec::new();
-        for (&atom, &expected) in atoms.iter().zip(&law.0) {
-            let slope = derivative(&mut self.pool, &[energy], &BTreeMap::from([(atom, one)]))[0];
+        for (&component, &expected) in own.iter().zip(&law.0) {
+            let slope = partial(&mut self.pool, &[energy], component)[0];
             pairs.extend([slope, expected]);
         }
         let guards: Vec<Id> = self.switches.iter().map(|switch| switch.guard).collect();
-        let (guards, pairs) = (self.without_multipliers(&guards), self.without_multipliers(&pairs));
-        let energy = self.without_multipliers(&[energy])[0];
+        let (guards, pairs) = (self.with_values(&guards), self.with_values(&pairs));
+        let energy = self.with_values(&[energy])[0];
         self.switches.truncate(switches);
-        let mut check = Check { pool: self.pool.clone(), graph: self.graph, atoms, guards, pairs, energy };
+        let mut check = Check { pool: self.pool.clone(), graph: self.graph, state: own, guards, pairs, energy };
         let Some(wrong) = check.wrong() else { return };
         let definition = self.graph.node(node);
         let (symbol, name) = (definition.kind.symbol(), definition.name.text.clone());
@@ -76,11 +72,11 @@ impl Signals<'_> {
         self.fault_once(Fault::new(term.span, &fault));
     }
 
-    /// The expressions with a number in the place of every reaction.
-    fn without_multipliers(&mut self, of: &[Id]) -> Vec<Id> {
+    /// The expressions with a number in the place of every reaction and of every variable of a faulty loop or law.
+    fn with_values(&mut self, of: &[Id]) -> Vec<Id> {
         let number = self.pool.number(0.83);
-        let is_multiplier = |symbol| matches!(symbol, Symbol::Atom(index) if index >= MULTIPLIERS);
-        substitute(&mut self.pool, of, &|symbol| is_multiplier(symbol).then_some(number))
+        let has_none = |symbol| matches!(symbol, Symbol::Multiplier(_) | Symbol::Loop | Symbol::Law(_));
+        substitute(&mut self.pool, of, &|symbol| has_none(symbol).then_some(number))
     }
 }
 
@@ -88,8 +84,8 @@ impl Signals<'_> {
 struct Check<'g> {
     pool: Pool,
     graph: &'g BondGraph,
-    /// The state.
-    atoms: Vec<Symbol>,
+    /// The storage's own state.
+    state: Vec<Symbol>,
     guards: Vec<Id>,
     /// Derivative of the energy and law, component by component.
     pairs: Vec<Id>,
@@ -107,7 +103,7 @@ impl Check<'_> {
 
     /// The switches of the state: those whose guards depend on it.
     fn own_switches(&self) -> Vec<usize> {
-        let is_own = |guard: Id| self.pool.symbols(&[guard]).iter().any(|symbol| self.atoms.contains(symbol));
+        let is_own = |guard: Id| self.pool.symbols(&[guard]).iter().any(|symbol| self.state.contains(symbol));
         (0..self.guards.len()).filter(|&switch| is_own(self.guards[switch])).collect()
     }
 
@@ -143,24 +139,23 @@ impl Check<'_> {
             substitute_switched(&mut self.pool, &[self.energy], &|_| None, &branch)[0]
         });
         let Some(all) = self.branches(&both, &others) else { return false };
-        let atom = self.atoms[0];
+        let state = self.state[0];
         all.iter().all(|sides| {
-            let at = substitute(&mut self.pool, sides, &|symbol| (symbol == atom).then_some(zero));
+            let at = substitute(&mut self.pool, sides, &|symbol| (symbol == state).then_some(zero));
             same_polynomial(&mut self.pool, at[0], at[1])
         })
     }
 
     /// The state at which the guard is zero.
     fn zero_of_guard(&mut self, switch: usize) -> Option<Id> {
-        let &[atom] = &self.atoms[..] else { return None };
+        let &[state] = &self.state[..] else { return None };
         let guard = self.guards[switch];
-        let one = self.pool.one();
-        let slope = derivative(&mut self.pool, &[guard], &BTreeMap::from([(atom, one)]))[0];
-        if self.pool.symbols(&[slope]).contains(&atom) || self.pool.has_select(&[guard]) {
+        let slope = partial(&mut self.pool, &[guard], state)[0];
+        if self.pool.symbols(&[slope]).contains(&state) || self.pool.has_select(&[guard]) {
             return None;
         }
         let zero = self.pool.zero();
-        let offset = substitute(&mut self.pool, &[guard], &|symbol| (symbol == atom).then_some(zero))[0];
+        let offset = substitute(&mut self.pool, &[guard], &|symbol| (symbol == state).then_some(zero))[0];
         let quotient = self.pool.div(offset, slope);
         Some(self.pool.neg(quotient))
     }
@@ -171,7 +166,7 @@ impl Check<'_> {
         let mut finite = 0;
         for point in 0..POINTS {
             let sample = Sample::new(self.graph, &mut random, point >= POINTS / 4);
-            let state: Vec<f64> = self.atoms.iter().map(|_| sized(&mut random, -6.0, 3.0)).collect();
+            let state: Vec<f64> = self.state.iter().map(|_| sized(&mut random, -6.0, 3.0)).collect();
             match self.agree(&sample, &state) {
                 Some(true) => finite += 1,
                 Some(false) => return Some(Wrong::Derivative),
@@ -186,9 +181,9 @@ impl Check<'_> {
         }
         (0..LINES).find_map(|line| {
             let sample = Sample::new(self.graph, &mut random, line >= LINES / 4);
-            let direction: Vec<f64> = match self.atoms[..] {
+            let direction: Vec<f64> = match self.state[..] {
                 [_] => vec![1.0],
-                _ => self.atoms.iter().map(|_| 2.0 * random.unit() - 1.0).collect(),
+                _ => self.state.iter().map(|_| 2.0 * random.unit() - 1.0).collect(),
             };
             self.along(&sample, &direction, own)
         })
@@ -231,12 +226,6 @@ impl Check<'_> {
 
     /// Values at a state, with the branches that the guards say, but that of one switch as given.
     fn values(&self, sample: &Sample, state: &[f64], of: &[Id], forced: Option<(usize, bool)>) -> Vec<f64> {
-        let mut atoms = Vec::new();
-        for (&atom, &value) in self.atoms.iter().zip(state) {
-            let Symbol::Atom(index) = atom else { continue };
-            atoms.resize(index as usize, 0.31);
-            atoms.push(value);
-        }
         let mut negative = vec![false; self.guards.len()];
         let values = |negative: &[bool], roots: &[Id]| {
             let environment = Environment {
@@ -245,7 +234,7 @@ impl Check<'_> {
                 parameters: &sample.parameters,
                 inputs: &sample.inputs,
                 unknowns: &sample.unknowns,
-                atoms: &atoms,
+                storage: state,
                 slopes: &[],
                 rates: &[],
                 negative,

@@ -6,6 +6,7 @@
 use std::fmt::Write;
 
 use super::{Draw, attempt, word};
+use crate::random::Random;
 
 /// The words of a domain: of a junction, then units of mass, stiffness and resistance, and their like.
 struct Words {
@@ -132,7 +133,7 @@ fn reduced_networks_move_as_the_literal_ones() {
     let mut worst = 0.0_f64;
     let mut graphs = 0;
     for seed in 0..240 {
-        let mut draw = Draw(0x5eed_0000 + 7919 * seed);
+        let mut draw = Draw(Random::new(0x5eed_0000 + 7919 * seed));
         let (text, clauses) = network(&mut draw);
         let scene = match attempt(&text, &clauses) {
             Ok(scene) => scene,

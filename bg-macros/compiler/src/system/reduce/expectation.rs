@@ -2,10 +2,10 @@
 //!
 //! In: a scene, the parameters, the report of the reduction. Out: what the reduction is to keep, or faults.
 
+use super::{Fate, Report, Wanted};
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::graph::Parameter;
 use crate::source::ast::{Expectation, Scene};
-use crate::system::reduce::{Fate, Report, Wanted};
 
 /// How many states a message lists.
 const LISTED: usize = 40;

@@ -4,11 +4,11 @@
 
 use std::collections::BTreeMap;
 
-use super::resolve::Entity;
-use super::typing::is_junction;
-use super::{Bond, BondGraph, BondId, GraphFault, Law, Node, NodeId, NodeKind};
+use super::Entity;
 use crate::fault::{Fault, near_miss};
+use crate::graph::typing::is_junction;
 use crate::graph::units::Dimension;
+use crate::graph::{Bond, BondGraph, BondId, GraphFault, Law, Node, NodeId, NodeKind};
 use crate::source::ast::{ElementKind, Name};
 
 /// The bonds of `chains`; nodes learn theirs.
