@@ -1,4 +1,4 @@
-//! Makes the references of the hacksaw's hard cases anew: `tests/src/hard_hacksaw/references.csv`.
+//! Makes the references of the hacksaw's hard cases anew: `tests/hard_hacksaw/cases/references.csv`.
 //!
 //! `cargo run --release -p bond-graph-tests --example hard_references`
 
@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/hard_hacksaw/references.csv");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("hard_hacksaw/cases/references.csv");
     let text = bond_graph_tests::hard_hacksaw::references::make(|name| eprintln!("{name}"))?;
     std::fs::write(path, text)?;
     Ok(())

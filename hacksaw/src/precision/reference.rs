@@ -247,7 +247,7 @@ mod tests {
     const INDEPENDENT: &str = include_str!("../../reference/independent.csv");
 
     /// The project's reference solution, made by a Taylor integrator in double precision: 51 instants, 72 columns.
-    const SHARED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/tests/golden/hacksaw_paper.csv"));
+    const SHARED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/golden/hacksaw_paper.csv"));
 
     /// The largest difference from `reference` in columns whose names begin with `kind`, at all instants of `theirs`.
     fn largest_difference(theirs: &Trajectory, reference: &Trajectory, kind: char) -> f64 {

@@ -1,0 +1,175 @@
+//! Golden outputs: generated code as text, and the hacksaw's trajectory with its exact counts.
+//!
+//! `golden/hacksaw_paper.csv` is the project's reference solution of the paper's case, 51 instants of 5 s: an independent
+//! implementation's, copied unchanged from `reference/hacksaw_paper.csv` of the project's shared files.
+//! `README.md` says how the snapshots and the counts are renewed.
+
+use std::path::Path;
+
+use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::nalgebra::SVector;
+use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use bg_model::statistics::Statistics;
+use bg_model::system::Model;
+use hacksaw::mechanism::{Hacksaw, HacksawParameters};
+
+const N: usize = Hacksaw::STATES;
+const M: usize = Hacksaw::OUTPUTS;
+
+fn file(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Relative and absolute tolerance of `hacksaw run` by default and with `--rtol 1e-10`.
+const DEFAULT: [f64; 2] = [1e-8, 1e-9];
+const CLOSE: [f64; 2] = [1e-10, 1e-11];
+
+/// The generated code of a model of the stages suite.
+fn generated(model: &str) {
+    let tokens = file(&format!("stages/{model}.bond")).parse().expect("a model is tokens");
+    let items = syn::parse2(bg_compiler::compile(tokens)).expect("generated code is Rust");
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(".");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(model, without_graph_text(&prettyplease::unparse(&items))));
+}
+
+/// The code without the expanded graph's text, one long line that the stages' snapshots show better.
+fn without_graph_text(code: &str) -> String {
+    let shown =
+        |line: &str| if line.trim_start().starts_with("graph: \"") { "graph: \"...\"," } else { line }.to_owned();
+    code.lines().map(|line| shown(line) + "\n").collect()
+}
+
+#[test]
+fn the_code_of_the_motor() {
+    generated("motor");
+}
+
+#[test]
+fn the_code_of_the_pendulum() {
+    generated("pendulum");
+}
+
+/// A table of numbers with named columns, the first of them `t`.
+struct Table {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    fn read(name: &str) -> Self {
+        let text = file(name);
+        let mut lines = text.lines();
+        let names = lines.next().expect("a header").split(',').map(str::to_owned).collect();
+        let number = |field: &str| field.parse().unwrap_or_else(|_| panic!("`{field}` is no number"));
+        Self { names, rows: lines.map(|line| line.split(',').map(number).collect()).collect() }
+    }
+}
+
+/// Samples of all outputs, the cost, and the energies stored at the start and the end.
+struct Run {
+    outputs: Vec<SVector<f64, M>>,
+    statistics: Statistics,
+    stored: [f64; 2],
+}
+
+fn run(t_end: f64, relative: f64, absolute: f64, instants: &[f64]) -> Run {
+    let model = Hacksaw::new(HacksawParameters::default()).expect("the defaults are in range");
+    let start = model.start().expect("the paper's pose closes");
+    let settings = Settings::<N> {
+        tolerances: Tolerances::new(relative, absolute),
+        samples: Samples::At(instants.to_vec()),
+        ..Settings::default()
+    };
+    let mut outputs = Vec::new();
+    let mut stored = [f64::NAN; 2];
+    let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &_| {
+        let mut row = SVector::zeros();
+        model.outputs(t, x, negative, &mut row);
+        outputs.push(row);
+        stored = [
+            if t == 0.0 { model.stored_energy(t, x, negative) } else { stored[0] },
+            model.stored_energy(t, x, negative),
+        ];
+    });
+    let span = Span { t0: 0.0, t_end };
+    let finish = integrate(&model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the run ends");
+    Run { outputs, statistics: finish.statistics, stored }
+}
+
+fn column(name: &str) -> usize {
+    let model = Hacksaw::new(HacksawParameters::default()).expect("the defaults are in range");
+    let position = model.description().outputs.iter().position(|output| output.name == name);
+    position.unwrap_or_else(|| panic!("no output {name}"))
+}
+
+/// The largest deviation from the first rows of the reference, and the column that has it.
+fn deviation(run: &Run, table: &Table) -> (f64, String) {
+    let columns: Vec<usize> = table.names[1..].iter().map(|name| column(name)).collect();
+    let mut largest = (0.0, String::new());
+    for (row, expected) in run.outputs.iter().zip(&table.rows) {
+        for ((&position, name), value) in columns.iter().zip(&table.names[1..]).zip(&expected[1..]) {
+            let error = (row[position] - value).abs();
+            assert!(error.is_finite(), "{name} at {}", expected[0]);
+            if error > largest.0 {
+                largest = (error, format!("{name} at {} s", expected[0]));
+            }
+        }
+    }
+    largest
+}
+
+/// |stored - stored at the start - supplied + dissipated| at the end, in units of the energy supplied.
+fn imbalance(run: &Run) -> f64 {
+    let last = run.outputs.last().expect("a sample");
+    let (supplied, dissipated) = (last[column("supplied_energy")], last[column("dissipated_energy")]);
+    (run.stored[1] - run.stored[0] - supplied + dissipated).abs() / supplied
+}
+
+/// Steps, rejected steps, rate evaluations, events.
+fn counts(statistics: &Statistics) -> [u64; 4] {
+    [statistics.steps, statistics.rejected, statistics.rate_evaluations, statistics.events]
+}
+
+fn reference() -> Table {
+    let table = Table::read("golden/hacksaw_paper.csv");
+    assert_eq!((table.names.len(), table.rows.len()), (73, 51));
+    table
+}
+
+fn check(t_end: f64, [relative, absolute]: [f64; 2], bound: f64, expected: [u64; 4]) -> Run {
+    let table = reference();
+    let instants: Vec<f64> = table.rows.iter().map(|row| row[0]).filter(|&t| t <= t_end).collect();
+    let run = run(t_end, relative, absolute, &instants);
+    assert_eq!(run.outputs.len(), instants.len());
+    let (error, place) = deviation(&run, &table);
+    println!("rtol {relative:e}: error {error:.3e} in {place}, imbalance {:.3e}, {}", imbalance(&run), run.statistics);
+    assert!(error < bound, "{error:e} in {place}");
+    assert_eq!(counts(&run.statistics), expected, "steps, rejected, rate evaluations, events");
+    run
+}
+
+#[test]
+fn one_second_at_loose_tolerances() {
+    check(1.0, [1e-8, 1e-10], 1e-5, [5938, 84, 73_686, 12]);
+}
+
+#[test]
+fn one_second_at_close_tolerances() {
+    check(1.0, [1e-10, 1e-12], 1e-8, [10_322, 42, 126_211, 12]);
+}
+
+#[test]
+fn the_paper_s_five_seconds_at_the_default_tolerance() {
+    check(5.0, DEFAULT, 1e-5, [24_448, 146, 301_068, 60]);
+}
+
+#[test]
+fn the_paper_s_five_seconds_at_a_close_tolerance() {
+    let run = check(5.0, CLOSE, 1e-8, [41_873, 100, 511_425, 60]);
+    assert_eq!(run.statistics.events, 60);
+    assert!(imbalance(&run) < 1e-9, "{:e}", imbalance(&run));
+}

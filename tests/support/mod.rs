@@ -1,0 +1,5 @@
+//! What several suites measure with.
+
+pub mod power;
+pub mod record;
+pub mod rotation;

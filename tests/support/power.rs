@@ -1,0 +1,107 @@
+//! The power balance of a model at states drawn at random.
+
+use bg_model::description::StateInfo;
+use bg_model::nalgebra::SVector;
+use bg_model::scalar::Dual;
+use bg_model::system::{Model, Powers};
+
+use crate::support::rotation::matrix;
+
+/// Numbers that look random and are the same every time (SplitMix64, Steele, Lea and Flood 2014).
+#[derive(Clone, Debug)]
+pub struct Draw(u64);
+
+impl Draw {
+    /// The sequence of this seed.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// The next number, between -1 and 1.
+    pub fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        (z >> 11) as f64 * 2.0_f64.powi(-52) - 1.0
+    }
+
+    /// A rotation matrix, row by row: that of a random quaternion.
+    fn rotation(&mut self) -> [f64; 9] {
+        let quaternion = std::array::from_fn(|_| self.number() + 1e-3);
+        let [a, b, c, d] = quaternion;
+        let square = a * a + b * b + c * c + d * d;
+        matrix(quaternion).map(|entry| entry / square)
+    }
+
+    /// A rotation matrix about z.
+    fn turn(&mut self) -> [f64; 9] {
+        let (sine, cosine) = libm::sincos(4.0 * self.number());
+        [cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0]
+    }
+}
+
+/// A state drawn at random: storages and positions anywhere near their start, orientations any rotation; about z, where a scene
+/// integrates less than the whole matrix.
+pub fn state<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, draw: &mut Draw) -> SVector<f64, N>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    let mut x = model.start().expect("the mechanism closes");
+    let states = model.description().states;
+    // What stands before the row and the column in an orientation's name.
+    let stem = |index: usize| {
+        let StateInfo { name, kind, .. } = &states[index];
+        (kind.storage() == "orientation").then(|| &name[..name.len() - 2])
+    };
+    let mut index = 0;
+    while index < N {
+        let length = (index..N).take_while(|&other| stem(other).is_some() && stem(other) == stem(index)).count();
+        if length == 0 {
+            x[index] += (1.0 + x[index].abs()) * draw.number();
+            index += 1;
+            continue;
+        }
+        let rotation = if length == 9 { draw.rotation() } else { draw.turn() };
+        for entry in index..index + length {
+            let name = states[entry].name.as_bytes();
+            let [row, column] = [2, 1].map(|back| usize::from(name[name.len() - back] - b'1'));
+            x[entry] = rotation[3 * row + column];
+        }
+        index += length;
+    }
+    x
+}
+
+/// |d(stored)/dt - supplied + dissipated| at time `t` and state `x`, divided by the sum of the magnitudes of all powers
+/// into single states: what rounding leaves of a balance that holds.
+///
+/// The rate of the energy is a sum of exact derivatives: one pass with dual numbers for each state, and one for the time.
+pub fn imbalance<A, B, const N: usize, const G: usize, const M: usize>(
+    model: &A,
+    twin: &B,
+    t: f64,
+    x: &SVector<f64, N>,
+) -> f64
+where
+    A: Model<f64, N, G, M>,
+    B: Model<Dual, N, G, M>,
+{
+    let mut guards = SVector::<f64, G>::zeros();
+    model.guards(t, x, &[false; G], &mut guards);
+    let negative = std::array::from_fn(|k| guards[k] < 0.0);
+    let mut rate = SVector::zeros();
+    model.rate(t, x, &negative, &mut rate);
+    let Powers { supplied, dissipated } = model.powers(t, x, &negative);
+    let along = |index: Option<usize>| {
+        let seeded = SVector::<Dual, N>::from_fn(|k, _| Dual::new(x[k], if Some(k) == index { 1.0 } else { 0.0 }));
+        let time = Dual::new(t, if index.is_none() { 1.0 } else { 0.0 });
+        twin.stored_energy(time, &seeded, &negative).slope * index.map_or(1.0, |k| rate[k])
+    };
+    let parts: Vec<f64> = (0..N).map(Some).chain([None]).map(along).collect();
+    let change: f64 = parts.iter().sum();
+    let scale = parts.iter().map(|part| part.abs()).sum::<f64>() + supplied.abs() + dissipated.abs();
+    if scale == 0.0 { 0.0 } else { (change - supplied + dissipated).abs() / scale }
+}
