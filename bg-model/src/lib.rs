@@ -13,6 +13,7 @@
 //! | get the start state, loops closed | [`system::Model::start`] |
 //! | run it | [`simulation::integrate`] with a method of [`integrator`], [`simulation::Settings`], an observer |
 //! | look at outputs, energies, powers | [`system::Model`] |
+//! | keep the samples of a run as columns by name | [`simulation::Recorder`] |
 //! | look at the graph, strokes, states, equations | [`description::Description`] |
 //! | know why a run stopped | [`failure::Failure`], with the last good state |
 //! | know what it cost | [`statistics::Statistics`] |

@@ -7,8 +7,7 @@ use std::time::{Duration, Instant};
 
 use bg_model::assembly::AssemblyError;
 use bg_model::integrator::{AnyMethod, Change, Integrator, Method, Tolerances};
-use bg_model::nalgebra::SVector;
-use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
+use bg_model::simulation::{EachStep, Part, Recorder, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 
@@ -143,55 +142,22 @@ where
     let clock = Instant::now();
     let first = Change { t: 0.0, method: method.name() };
     let start = model.start()?;
-    let columns = model.description().outputs.iter();
-    let columns = columns.map(|output| Column { name: output.name.to_owned(), unit: output.unit.to_owned() }).collect();
-    let mut recorder = Recorder {
-        model,
-        outputs: SVector::zeros(),
-        trajectory: Trajectory::new(columns),
-        event_times: Vec::new(),
-        progress,
-    };
+    let mut observer = (Recorder::new(model, &[Part::Outputs]), EachStep(progress));
     let span = Span { t0: 0.0, t_end };
-    let result = integrate(model, &mut method, &start, span, integration, &mut recorder);
+    let result = integrate(model, &mut method, &start, span, integration, &mut observer);
     let (statistics, failure) = match result {
         Ok(finish) => (finish.statistics, None),
         Err(failure) => (failure.last.statistics, Some(failure.to_string())),
     };
-    let Recorder { trajectory, event_times, .. } = recorder;
+    let Recording { columns, times, rows, events } = observer.0.recording;
+    let columns = columns.into_iter().map(Column::from).collect();
+    let trajectory = Trajectory { columns, times, rows };
     let effort = Effort {
         states: N,
         statistics,
         methods: std::iter::once(first).chain(method.changes().iter().copied()).collect(),
-        event_times,
+        event_times: events,
         wall: clock.elapsed(),
     };
     Ok(Simulation { trajectory, effort, failure })
-}
-
-/// Evaluates the model's outputs at every sample.
-struct Recorder<'a, Mo, const M: usize> {
-    model: &'a Mo,
-    outputs: SVector<f64, M>,
-    trajectory: Trajectory,
-    event_times: Vec<f64>,
-    progress: &'a mut dyn FnMut(f64),
-}
-
-impl<Mo, const N: usize, const G: usize, const M: usize> Observer<N, G> for Recorder<'_, Mo, M>
-where
-    Mo: Model<f64, N, G, M>,
-{
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
-        self.model.outputs(t, x, negative, &mut self.outputs);
-        self.trajectory.push(t, self.outputs.as_slice().to_vec());
-    }
-
-    fn event(&mut self, t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {
-        self.event_times.push(t);
-    }
-
-    fn step(&mut self, t: f64, _t_end: f64, _statistics: &Statistics) {
-        (self.progress)(t);
-    }
 }

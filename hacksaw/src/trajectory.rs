@@ -6,6 +6,7 @@
 use std::io::{Read, Write};
 
 use bg_model::scalar::Scalar;
+use bg_model::simulation;
 use thiserror::Error;
 
 /// A column of a trajectory.
@@ -15,6 +16,12 @@ pub struct Column {
     pub name: String,
     /// Its SI unit as text; empty for a pure number.
     pub unit: String,
+}
+
+impl From<simulation::Column> for Column {
+    fn from(column: simulation::Column) -> Self {
+        Self { name: column.name.to_owned(), unit: column.unit.to_owned() }
+    }
 }
 
 /// The outputs of a run at its sample times.

@@ -7,14 +7,12 @@
 use std::path::Path;
 
 use bg_model::integrator::{Dop853, Tolerances};
-use bg_model::nalgebra::SVector;
-use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use bg_model::simulation::{Part, Recorder, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 use hacksaw::mechanism::{Hacksaw, HacksawParameters};
 
 const N: usize = Hacksaw::STATES;
-const M: usize = Hacksaw::OUTPUTS;
 
 fn file(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
@@ -69,11 +67,10 @@ impl Table {
     }
 }
 
-/// Samples of all outputs, the cost, and the energies stored at the start and the end.
+/// Samples of all outputs and of the energy stored, and the cost.
 struct Run {
-    outputs: Vec<SVector<f64, M>>,
+    samples: Recording,
     statistics: Statistics,
-    stored: [f64; 2],
 }
 
 fn run(t_end: f64, relative: f64, absolute: f64, instants: &[f64]) -> Run {
@@ -84,33 +81,18 @@ fn run(t_end: f64, relative: f64, absolute: f64, instants: &[f64]) -> Run {
         samples: Samples::At(instants.to_vec()),
         ..Settings::default()
     };
-    let mut outputs = Vec::new();
-    let mut stored = [f64::NAN; 2];
-    let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &_| {
-        let mut row = SVector::zeros();
-        model.outputs(t, x, negative, &mut row);
-        outputs.push(row);
-        stored = [
-            if t == 0.0 { model.stored_energy(t, x, negative) } else { stored[0] },
-            model.stored_energy(t, x, negative),
-        ];
-    });
+    let mut observer = Recorder::new(&model, &[Part::Outputs, Part::Energy]);
     let span = Span { t0: 0.0, t_end };
     let finish = integrate(&model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the run ends");
-    Run { outputs, statistics: finish.statistics, stored }
-}
-
-fn column(name: &str) -> usize {
-    let model = Hacksaw::new(HacksawParameters::default()).expect("the defaults are in range");
-    let position = model.description().outputs.iter().position(|output| output.name == name);
-    position.unwrap_or_else(|| panic!("no output {name}"))
+    Run { samples: observer.recording, statistics: finish.statistics }
 }
 
 /// The largest deviation from the first rows of the reference, and the column that has it.
 fn deviation(run: &Run, table: &Table) -> (f64, String) {
-    let columns: Vec<usize> = table.names[1..].iter().map(|name| column(name)).collect();
+    let position = |name: &String| run.samples.position(name).unwrap_or_else(|| panic!("no output {name}"));
+    let columns: Vec<usize> = table.names[1..].iter().map(position).collect();
     let mut largest = (0.0, String::new());
-    for (row, expected) in run.outputs.iter().zip(&table.rows) {
+    for (row, expected) in run.samples.rows.iter().zip(&table.rows) {
         for ((&position, name), value) in columns.iter().zip(&table.names[1..]).zip(&expected[1..]) {
             let error = (row[position] - value).abs();
             assert!(error.is_finite(), "{name} at {}", expected[0]);
@@ -124,9 +106,10 @@ fn deviation(run: &Run, table: &Table) -> (f64, String) {
 
 /// |stored - stored at the start - supplied + dissipated| at the end, in units of the energy supplied.
 fn imbalance(run: &Run) -> f64 {
-    let last = run.outputs.last().expect("a sample");
-    let (supplied, dissipated) = (last[column("supplied_energy")], last[column("dissipated_energy")]);
-    (run.stored[1] - run.stored[0] - supplied + dissipated).abs() / supplied
+    let column = |name: &str| run.samples.column(name).unwrap_or_else(|| panic!("no output {name}"));
+    let last = |name: &str| *column(name).last().expect("a sample");
+    let supplied = last("supplied_energy");
+    (last("stored energy") - column("stored energy")[0] - supplied + last("dissipated_energy")).abs() / supplied
 }
 
 /// Steps, rejected steps, rate evaluations, events.
@@ -144,7 +127,7 @@ fn check(t_end: f64, [relative, absolute]: [f64; 2], bound: f64, expected: [u64;
     let table = reference();
     let instants: Vec<f64> = table.rows.iter().map(|row| row[0]).filter(|&t| t <= t_end).collect();
     let run = run(t_end, relative, absolute, &instants);
-    assert_eq!(run.outputs.len(), instants.len());
+    assert_eq!(run.samples.rows.len(), instants.len());
     let (error, place) = deviation(&run, &table);
     println!("rtol {relative:e}: error {error:.3e} in {place}, imbalance {:.3e}, {}", imbalance(&run), run.statistics);
     assert!(error < bound, "{error:e} in {place}");

@@ -3,7 +3,7 @@
 use bg_model::failure::Failure;
 use bg_model::integrator::{Dop853, Tolerances};
 use bg_model::nalgebra::SVector;
-use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
+use bg_model::simulation::{Part, Recorder, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 
@@ -16,8 +16,7 @@ pub struct Record {
     pub events: Vec<f64>,
     /// What the run has cost.
     pub statistics: Statistics,
-    names: Vec<&'static str>,
-    rows: Vec<Vec<f64>>,
+    recording: Recording,
 }
 
 impl Record {
@@ -27,9 +26,8 @@ impl Record {
     /// There is no such output.
     #[must_use]
     pub fn series(&self, name: &str) -> Vec<f64> {
-        let column = self.names.iter().position(|known| *known == name);
-        let column = column.unwrap_or_else(|| panic!("no output `{name}` in {:?}", self.names));
-        self.rows.iter().map(|row| row[column]).collect()
+        let column = self.recording.column(name);
+        column.unwrap_or_else(|| panic!("no output `{name}` in {:?}", self.recording.columns))
     }
 
     /// The vector output `name` at every sample.
@@ -68,9 +66,7 @@ impl Record {
     /// that the model does not have counts as zero.
     #[must_use]
     pub fn imbalance(&self) -> f64 {
-        let series = |name: &str| {
-            if self.names.contains(&name) { self.series(name) } else { vec![0.0; self.times.len()] }
-        };
+        let series = |name: &str| self.recording.column(name).unwrap_or_else(|| vec![0.0; self.times.len()]);
         let (stored, supplied, dissipated) = (series("stored"), series("supplied"), series("dissipated"));
         let residual = |k: usize| (stored[k] - stored[0] - supplied[k] + dissipated[k]).abs();
         (0..self.times.len()).map(residual).fold(0.0, f64::max)
@@ -120,13 +116,7 @@ fn attempt<Mo, const N: usize, const G: usize, const M: usize>(
 where
     Mo: Model<f64, N, G, M>,
 {
-    let mut recorder = Recorder {
-        model,
-        outputs: SVector::<f64, M>::zeros(),
-        times: Vec::new(),
-        rows: Vec::new(),
-        events: Vec::new(),
-    };
+    let mut recorder = Recorder::new(model, &[Part::Outputs]);
     let span = Span { t0: 0.0, t_end: times.last().copied().unwrap_or(0.0) };
     let settings = Settings {
         // Stretches and momenta of stiff joints are small numbers: the absolute tolerance lies well below them.
@@ -138,30 +128,7 @@ where
         ..Settings::default()
     };
     let finish = integrate(model, &mut Dop853::new(), start, span, &settings, &mut recorder)?;
-    let Recorder { times, rows, events, .. } = recorder;
-    let names = model.description().outputs.iter().map(|output| output.name).collect();
-    Ok(Record { times, events, statistics: finish.statistics, names, rows })
-}
-
-struct Recorder<'a, Mo, const M: usize> {
-    model: &'a Mo,
-    outputs: SVector<f64, M>,
-    times: Vec<f64>,
-    rows: Vec<Vec<f64>>,
-    events: Vec<f64>,
-}
-
-impl<Mo, const N: usize, const G: usize, const M: usize> Observer<N, G> for Recorder<'_, Mo, M>
-where
-    Mo: Model<f64, N, G, M>,
-{
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
-        self.model.outputs(t, x, negative, &mut self.outputs);
-        self.times.push(t);
-        self.rows.push(self.outputs.as_slice().to_vec());
-    }
-
-    fn event(&mut self, t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {
-        self.events.push(t);
-    }
+    let recording = recorder.recording;
+    let (times, events) = (recording.times.clone(), recording.events.clone());
+    Ok(Record { times, events, statistics: finish.statistics, recording })
 }

@@ -6,13 +6,15 @@
 
 mod observer;
 mod pace;
+mod recording;
 mod rounding;
 mod sampling;
 mod settings;
 
 use nalgebra::SVector;
 
-pub use observer::{EachSample, Observer};
+pub use observer::{EachSample, EachStep, Observer};
+pub use recording::{Column, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 
 use crate::model::capability::Joints;

@@ -18,9 +18,41 @@ pub trait Observer<const N: usize, const G: usize> {
 
 impl<const N: usize, const G: usize> Observer<N, G> for () {}
 
+/// Both are told, the first one first.
+impl<A, B, const N: usize, const G: usize> Observer<N, G> for (A, B)
+where
+    A: Observer<N, G>,
+    B: Observer<N, G>,
+{
+    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+        self.0.sample(t, x, negative);
+        self.1.sample(t, x, negative);
+    }
+
+    fn event(&mut self, t: f64, x: &SVector<f64, N>, switch: usize, negative: &[bool; G]) {
+        self.0.event(t, x, switch, negative);
+        self.1.event(t, x, switch, negative);
+    }
+
+    fn step(&mut self, t: f64, t_end: f64, statistics: &Statistics) {
+        self.0.step(t, t_end, statistics);
+        self.1.step(t, t_end, statistics);
+    }
+}
+
 /// An observer that hands every sample to a closure of time (s), state and branches.
 #[derive(Clone, Debug)]
 pub struct EachSample<F>(pub F);
+
+/// An observer that hands the time (s) to which each accepted step leads to a closure, for the progress of a run.
+#[derive(Clone, Debug)]
+pub struct EachStep<F>(pub F);
+
+impl<F: FnMut(f64), const N: usize, const G: usize> Observer<N, G> for EachStep<F> {
+    fn step(&mut self, t: f64, _t_end: f64, _statistics: &Statistics) {
+        (self.0)(t);
+    }
+}
 
 impl<F, const N: usize, const G: usize> Observer<N, G> for EachSample<F>
 where
