@@ -205,8 +205,10 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
 
     /// Whether an implicit step goes on where explicit ones fail.
     fn goes_on(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+        // Where it has just handed back it does not go on either.
+        let has_gone_on = !self.changes.is_empty() && self.stint < STINT;
         let mut end = start.x;
-        self.implicit.attempt(flow, start, h, scale, &mut end) <= 1.0 && is_finite(&end)
+        !has_gone_on && self.implicit.attempt(flow, start, h, scale, &mut end) <= 1.0 && is_finite(&end)
     }
 
     /// The method stays: the next trial is later.

@@ -10,6 +10,8 @@
 mod order;
 mod ring;
 mod tableau;
+#[cfg(test)]
+mod trees;
 
 use std::ops::Range;
 
@@ -21,6 +23,8 @@ use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl};
 use crate::model::capability::SecondOrder;
+#[cfg(test)]
+use crate::model::scalar::Scalar;
 use ring::Ring;
 use tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES};
 

@@ -1,82 +1,28 @@
 //! Checks of the tableau against the order conditions of Runge-Kutta-Nystrom methods for q'' = f(q, q').
-//!
-//! Source: Hairer, Norsett, Wanner, section II.14. A tree is a force f with branches: rates q' at the start, forces that act by
-//! the positions they lead to, two orders on, and forces that act by the momenta, one order on.
 
 use super::tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES};
+use super::trees::{self, dot};
 use super::{END, ERROR};
 
-type Stages = [f64; STAGES];
-
+/// A tree with its elementary weights at the stages.
 struct Tree {
     order: usize,
-    /// How often a force acts by the momenta.
     by_momenta: usize,
-    /// The coefficient of the (order - 1)th power of time in the exact solution.
     exact: f64,
-    /// The stages' elementary weights.
-    weight: Stages,
-}
-
-/// How a branch hangs at its root.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum By {
-    Positions,
-    Momenta,
-}
-
-fn dot(row: &[f64], weight: &Stages) -> f64 {
-    row.iter().zip(weight).map(|(a, b)| a * b).sum()
+    weight: Vec<f64>,
 }
 
 /// All trees up to this order.
 fn trees(largest: usize) -> Vec<Tree> {
-    let mut trees: Vec<Tree> = Vec::new();
-    for order in 1..=largest {
-        let mut found = Vec::new();
-        collect(&trees, order - 1, (0, By::Positions), &mut Vec::new(), &mut found);
-        trees.extend(found);
-    }
-    trees
-}
-
-/// All trees whose branches, from this one on and beside the chosen ones, have `left` orders; what the branches leave are rates.
-fn collect(trees: &[Tree], left: usize, from: (usize, By), chosen: &mut Vec<(usize, By)>, found: &mut Vec<Tree>) {
-    found.push(tree(trees, left, chosen));
-    for index in from.0..trees.len() {
-        for by in [By::Positions, By::Momenta] {
-            let orders = trees[index].order + usize::from(by == By::Positions);
-            if (index, by) >= from && orders <= left {
-                chosen.push((index, by));
-                collect(trees, left - orders, (index, by), chosen, found);
-                chosen.pop();
-            }
-        }
-    }
-}
-
-fn tree(trees: &[Tree], rates: usize, branches: &[(usize, By)]) -> Tree {
-    let mut made = Tree {
-        order: 1 + rates,
-        by_momenta: 0,
-        exact: 1.0,
-        weight: INSTANTS.map(|c| c.powi(i32::try_from(rates).expect("few"))),
+    let trees = trees::trees(largest);
+    let weights = trees::weights(&trees, &INSTANTS, &FIRST[..STAGES], &SECOND[..STAGES]);
+    let weighted = |(tree, weight): (trees::Tree, Vec<f64>)| Tree {
+        order: tree.order,
+        by_momenta: tree.by_momenta,
+        exact: tree.exact,
+        weight,
     };
-    for &(index, by) in branches {
-        let branch = &trees[index];
-        let order = branch.order as f64;
-        let (table, integral, orders) = match by {
-            By::Positions => (&SECOND, order * (order + 1.0), branch.order + 1),
-            By::Momenta => (&FIRST, order, branch.order),
-        };
-        made.order += orders;
-        made.by_momenta += branch.by_momenta + usize::from(by == By::Momenta);
-        made.exact *= branch.exact / integral;
-        for (stage, weight) in made.weight.iter_mut().enumerate() {
-            *weight *= dot(table[stage], &branch.weight);
-        }
-    }
-    made
+    trees.into_iter().zip(weights).map(weighted).collect()
 }
 
 /// The largest violation of the conditions of the trees that are asked for, in parts of their values.
