@@ -13,10 +13,10 @@ pub fn print(text: &str) -> Result<(), FileError> {
     printed(stdout().write_all(text.as_bytes()))
 }
 
-/// What became of printing: flushes standard output after `outcome`, and judges both as [`print`] does.
+/// What became of printing: flushes standard output after `outcome`, and judges both as [`print()`] does.
 ///
 /// # Errors
-/// As [`print`].
+/// As [`print()`].
 pub fn printed(outcome: io::Result<()>) -> Result<(), FileError> {
     unless_closed(outcome.and_then(|()| stdout().flush())).map_err(FileError::Standard)
 }

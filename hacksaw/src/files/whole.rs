@@ -37,7 +37,7 @@ pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
     outcome.map_err(|fault| FileError::Write { path: path.to_owned(), source: without_path(fault) })
 }
 
-/// Finds out whether [`write`] could write `path`, and changes nothing.
+/// Finds out whether [`write()`] could write `path`, and changes nothing.
 ///
 /// # Errors
 /// [`FileError::Write`].

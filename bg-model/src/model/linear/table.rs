@@ -51,8 +51,8 @@ pub fn eliminate<S: Scalar, F: Field<S>>(
     is_regular
 }
 
-/// Replaces `b` by the solution. A step (row, factor, column) subtracts factor times b[column] from b[row], or, where row
-/// and column are equal, multiplies b[row] by the factor.
+/// Replaces `b` by the solution. A step (row, factor, column) subtracts factor times `b[column]` from `b[row]`, or, where row
+/// and column are equal, multiplies `b[row]` by the factor.
 pub fn substitute<S: Scalar, F: Field<S>>(steps: &[(u32, u32, u32)], factors: &[F], b: &mut [F]) {
     for &(row, slot, column) in steps {
         let (row, column, factor) = (row as usize, column as usize, factors[slot as usize]);
