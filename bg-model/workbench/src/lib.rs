@@ -1,0 +1,1 @@
+//! A program for every model of `bond_graph!`.
