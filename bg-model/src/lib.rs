@@ -90,7 +90,8 @@ mod model;
 mod solve;
 
 pub use model::{
-    assembly, capability, description, holding, input, linear, parameters, requirement, scalar, series, system,
+    assembly, capability, description, holding, input, linear, mechanism, parameters, requirement, scalar, series,
+    system,
 };
 pub use solve::{extended, failure, integrator, simulation, statistics};
 

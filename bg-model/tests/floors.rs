@@ -12,7 +12,7 @@ const FLOORS: [&[&str]; 11] = [
     &["model::input", "model::linear", "model::series", "model::origin", "model::parameters", "model::assembly"],
     &["model::capability"],
     &["model::system"],
-    &["model::reactions"],
+    &["model::reactions", "model::mechanism"],
     &["solve::statistics"],
     &["solve::integrator", "solve::finish"],
     &["solve::stepper", "solve::failure"],

@@ -6,6 +6,7 @@ pub mod description;
 pub mod holding;
 pub mod input;
 pub mod linear;
+pub mod mechanism;
 pub(crate) mod nearest;
 pub(crate) mod origin;
 pub mod parameters;

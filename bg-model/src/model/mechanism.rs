@@ -1,0 +1,65 @@
+//! A mechanism: a generated model seen by name, without the numbers of its states, switches and outputs.
+//!
+//! In: parameters and inputs by name. Out: the model, handed with its numbers to a visitor. What is generic over a
+//! [`Mechanism`] needs no const generics, and only what a visitor calls is compiled.
+
+use crate::model::description::Description;
+use crate::model::input::Input;
+use crate::model::parameters::{ParameterError, Parameters};
+use crate::model::scalar::Scalar;
+use crate::model::system::Model;
+
+/// A model that `bond_graph!` generated: a graph or one of its scenes.
+pub trait Mechanism: Clone {
+    /// Its parameters.
+    type Parameters: Parameters;
+
+    /// How many models the graph has: itself and its scenes. A scene has none but itself.
+    const MODELS: usize;
+
+    /// What it consists of.
+    fn describe() -> &'static Description;
+
+    /// The model with these parameters and inputs: an input for each of `describe().inputs`, in their order; those that
+    /// are missing are 0.
+    ///
+    /// # Errors
+    /// A parameter outside its range, a value that parameters give and that cannot be.
+    fn make(parameters: Self::Parameters, inputs: &[Input]) -> Result<Self, ParameterError>;
+
+    /// The parameters that it was made with.
+    fn parameters(&self) -> &Self::Parameters;
+
+    /// The inputs that it was made with, in the order of `describe().inputs`.
+    fn inputs(&self) -> Vec<Input>;
+
+    /// Hands the model, calculating in `S`, to `visitor`.
+    fn visit<S: Scalar, V: ModelVisitor<S>>(&self, visitor: V) -> V::Output;
+
+    /// Hands the type of model `index` of the graph to `visitor`: 0 is the mechanism itself; then come its scenes, in the order
+    /// of the text.
+    ///
+    /// # Panics
+    /// `index` is not below [`Mechanism::MODELS`].
+    fn model<V: MechanismVisitor>(index: usize, visitor: V) -> V::Output;
+}
+
+/// Something to do with a model, whatever its numbers of states, switches and outputs.
+pub trait ModelVisitor<S: Scalar> {
+    /// What results.
+    type Output;
+
+    /// Is handed the model.
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<S, N, G, M>;
+}
+
+/// Something to do with a mechanism, whatever its type.
+pub trait MechanismVisitor {
+    /// What results.
+    type Output;
+
+    /// Is handed the type.
+    fn visit<Me: Mechanism>(self) -> Self::Output;
+}
