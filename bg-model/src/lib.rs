@@ -11,9 +11,9 @@
 //! | set parameters by name, from a file | [`parameters::Parameters`]; the generated struct is a serde struct |
 //! | give an input, a function of time | [`input::Input`] |
 //! | get the start state, loops closed | [`system::Model::start`] |
-//! | run it | [`simulation::integrate`] with a method of [`integrator`], [`simulation::Settings`], an observer |
+//! | run it, get columns by name | [`run::Simulation`] |
+//! | run it without allocations, with an observer | [`simulation::integrate`] with a method of [`integrator`], [`simulation::Settings`] |
 //! | look at outputs, energies, powers | [`system::Model`] |
-//! | keep the samples of a run as columns by name | [`simulation::Recorder`] |
 //! | look at the graph, strokes, states, equations | [`description::Description`] |
 //! | know why a run stopped | [`failure::Failure`], with the last good state |
 //! | know what it cost | [`statistics::Statistics`] |
@@ -93,7 +93,7 @@ pub use model::{
     assembly, capability, description, holding, input, linear, mechanism, parameters, requirement, scalar, series,
     system,
 };
-pub use solve::{extended, failure, integrator, simulation, statistics};
+pub use solve::{extended, failure, integrator, run, simulation, statistics};
 
 pub use bg_macros::bond_graph;
 pub use nalgebra;

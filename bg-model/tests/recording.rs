@@ -25,7 +25,8 @@ fn columns_have_the_names_and_units_of_the_model_in_the_order_asked_for() {
     let span = Span { t0: 0.0, t_end: 2.0 };
     let finish = integrate(&model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the run ends");
     let recording = observer.0.recording;
-    let columns: Vec<(&str, &str)> = recording.columns.iter().map(|column| (column.name, column.unit)).collect();
+    let names = recording.columns.iter().map(|column| (column.name.as_str(), column.unit.as_str()));
+    let columns: Vec<(&str, &str)> = names.collect();
     let states = model.description().states.iter().map(|state| (state.name, state.unit));
     let expected: Vec<(&str, &str)> = [("stored energy", "J"), ("x", "m"), ("v", "m/s"), ("lost", "J")]
         .into_iter()
@@ -34,14 +35,14 @@ fn columns_have_the_names_and_units_of_the_model_in_the_order_asked_for() {
         .collect();
     assert_eq!(columns, expected);
     assert_eq!(recording.times, (0..=8).map(|k| 0.25 * f64::from(k)).collect::<Vec<_>>());
-    assert!(recording.rows.iter().all(|row| row.len() == columns.len()));
+    assert!(recording.columns.iter().all(|column| column.values.len() == recording.times.len()));
     assert_eq!(steps, finish.statistics.steps);
     assert_eq!(recording.events.len() as u64, finish.statistics.events);
     assert!(finish.statistics.events > 0);
 
     let column = |name: &str| recording.column(name).expect("a column of this name");
     assert_eq!(column("x")[0], 0.1);
-    for (stored, lost) in column("stored energy").into_iter().zip(column("lost")) {
+    for (stored, lost) in column("stored energy").iter().zip(column("lost")) {
         assert!((stored + lost - 0.25).abs() < 1e-8, "{stored} {lost}");
     }
     assert_eq!(recording.column("y"), None);

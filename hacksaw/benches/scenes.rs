@@ -8,25 +8,25 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use bg_model::integrator::{Dop853, Integrator, Tolerances};
+use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor};
 use bg_model::nalgebra::SVector;
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::run::{Request, Simulation, sample_times};
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::Model;
+use bg_workbench::report::{rate_operations, table};
 use hacksaw::agreement::{Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
-use hacksaw::report::{rate_operations, table};
-use hacksaw::run::{RunSettings, run};
-use hacksaw::scenes::{Scene, Visitor};
-use hacksaw::trajectory::sample_times;
+use hacksaw::scenes::Scene;
 use hacksaw_planar::{self as planar, Comparison, Planar};
 
 const BATCHES: usize = 400;
 /// Passes over the states in a batch.
 const PASSES: usize = 20;
 const RUNS: usize = 5;
-/// The paper's run.
-const PAPER: RunSettings =
-    RunSettings { method: Integrator::Dop853, fixed_step: 1e-4, t_end: 5.0, rtol: 1e-8, atol: 1e-9, step: 0.1 };
+/// The end of the paper's run, s, and its tolerances.
+const T_END: f64 = 5.0;
+const RTOL: f64 = 1e-8;
+const ATOL: f64 = 1e-9;
 /// The names of the two hand-written rates and their operations, counted in the source; a sine and cosine pair is two.
 const BY_HAND: [(&str, usize); 2] = [("by hand, plain", 295), ("by hand, tuned", 213)];
 /// The part of the hand-written model's time that the paper's scene is to take at most.
@@ -40,7 +40,7 @@ fn main() {
     if !std::env::args().any(|argument| argument == "--bench") {
         return;
     }
-    let mut batches: Vec<Batch> = Scene::all().iter().map(|scene| scene.visit(Rates)).collect();
+    let mut batches: Vec<Batch> = Scene::ALL.into_iter().map(|scene| scene.visit(Rates)).collect();
     let (states, disagreement) = planar_states();
     batches.push(planar_batch(states.clone(), Planar::rate));
     batches.push(planar_batch(states, Planar::tuned_rate));
@@ -52,7 +52,7 @@ fn main() {
     }
     let head = ["scene", "states", "operations", "ns a rate", "ms for 5 s", "steps", "largest deviation", "in"];
     let mut rows = vec![head.map(str::to_owned)];
-    for (&scene, nanoseconds) in Scene::all().iter().zip(&least) {
+    for (scene, nanoseconds) in Scene::ALL.into_iter().zip(&least) {
         let description = scene.description();
         let (milliseconds, steps) = scene.visit(Wall);
         let (deviation, column) = if scene.is_compliant() {
@@ -72,7 +72,7 @@ fn main() {
             column,
         ]);
     }
-    let by_hand = &least[Scene::all().len()..];
+    let by_hand = &least[Scene::ALL.len()..];
     for ((name, operations), nanoseconds) in BY_HAND.iter().zip(by_hand) {
         let cells = [*name, "24", &operations.to_string(), &format!("{nanoseconds:.1}"), "", "", "", ""];
         rows.push(cells.map(str::to_owned));
@@ -96,13 +96,13 @@ where
 {
     let mut states = Vec::new();
     let settings = Settings {
-        tolerances: Tolerances::new(PAPER.rtol, PAPER.atol),
-        samples: Samples::At(sample_times(PAPER.t_end / 61.0, PAPER.t_end)[1..].to_vec()),
+        tolerances: Tolerances::new(RTOL, ATOL),
+        samples: Samples::At(sample_times(0.0, T_END / 61.0, T_END)[1..].to_vec()),
         ..Settings::default()
     };
     let start = model.start().expect("the paper's mechanism closes");
     let mut observer = EachSample(|_, x: &SVector<f64, N>, negative: &[bool; G]| states.push((*x, *negative)));
-    let span = Span { t0: 0.0, t_end: PAPER.t_end };
+    let span = Span { t0: 0.0, t_end: T_END };
     integrate(model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the paper's case runs");
     states
 }
@@ -120,21 +120,24 @@ fn batch<X>(states: &[X], evaluate: impl Fn(&X)) -> f64 {
 
 struct Rates;
 
-impl Visitor for Rates {
+impl MechanismVisitor for Rates {
     type Output = Batch;
 
-    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
-        self,
-        new: fn(P) -> Result<Mo, ParameterError>,
-    ) -> Batch
+    fn visit<Sc: Mechanism>(self) -> Batch {
+        let model = Sc::make(Sc::Parameters::default(), &[]).expect("defaults are in their ranges");
+        model.visit(self)
+    }
+}
+
+impl ModelVisitor<f64> for Rates {
+    type Output = Batch;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Batch
     where
-        P: Parameters + 'static,
-        Mo: Model<f64, N, G, M> + 'static,
+        Mo: Model<f64, N, G, M> + Clone + 'static,
     {
-        // The box must not borrow, so the model goes with it.
-        let states = along(&new(P::default()).expect("defaults are in their ranges"));
+        let (states, model) = (along(model), model.clone());
         Box::new(move || {
-            let model = new(P::default()).expect("defaults are in their ranges");
             let model = black_box(&model);
             batch(&states, |(x, negative)| {
                 let mut rate = SVector::zeros();
@@ -172,20 +175,17 @@ fn planar_states() -> (Vec<(planar::State, bool)>, f64) {
 
 struct Wall;
 
-impl Visitor for Wall {
+impl MechanismVisitor for Wall {
     type Output = (f64, u64);
 
-    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
-        self,
-        new: fn(P) -> Result<Mo, ParameterError>,
-    ) -> (f64, u64)
-    where
-        P: Parameters,
-        Mo: Model<f64, N, G, M>,
-    {
-        let model = new(P::default()).expect("defaults are in their ranges");
-        let runs = (0..RUNS).map(|_| run(&model, &PAPER, |_| {}).expect("the paper's mechanism closes").effort);
-        runs.map(|effort| (effort.wall.as_secs_f64() * 1e3, effort.statistics.steps))
+    fn visit<Sc: Mechanism>(self) -> (f64, u64) {
+        let model = Sc::make(Sc::Parameters::default(), &[]).expect("defaults are in their ranges");
+        let request =
+            Request { method: Integrator::Dop853, t_end: T_END, rtol: RTOL, atol: Some(ATOL), ..Request::default() };
+        let request = Request { samples: Samples::Every(0.002), ..request };
+        let run = || Simulation::of(&model, request.clone()).run().expect("the paper's case runs");
+        let runs = (0..RUNS).map(|_| run());
+        runs.map(|run| (run.wall.as_secs_f64() * 1e3, run.statistics.steps))
             .fold((f64::INFINITY, 0), |least, run| if run.0 < least.0 { run } else { least })
     }
 }
@@ -194,12 +194,12 @@ impl Visitor for Wall {
 fn deviation(scene: Scene) -> (f64, String) {
     let t_end = horizon(scene);
     // The paper's 51 instants, over as long as the comparison means something.
-    let instants = sample_times(t_end / 50.0, t_end);
-    let steps = Steps::ByError { rtol: PAPER.rtol, atol: PAPER.atol };
+    let instants = sample_times(0.0, t_end / 50.0, t_end);
+    let steps = Steps::ByError { rtol: RTOL, atol: ATOL };
     let agreement = compare(scene, &HacksawParameters::default(), steps, t_end, &instants);
     let agreement = agreement.expect("the paper's case runs");
     let relative = agreement.deviations.iter().map(|deviation| {
-        (deviation.largest / deviation.magnitude.max(1.0), format!("{} at {} s", deviation.column.name, deviation.time))
+        (deviation.largest / deviation.magnitude.max(1.0), format!("{} at {} s", deviation.name, deviation.time))
     });
     relative.fold((0.0, String::new()), |most, this| if this.0 > most.0 { this } else { most })
 }

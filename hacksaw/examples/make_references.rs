@@ -23,21 +23,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             continue;
         }
         let clock = Instant::now();
-        let (trajectory, certificate) = reference.make()?;
-        write_table(&trajectory, &folder.join(name).with_extension("csv"))?;
+        let (samples, certificate) = reference.make()?;
+        samples.write_csv(File::create(folder.join(name).with_extension("csv"))?)?;
         write(folder.join(name).with_extension("toml"), toml::to_string(&certificate)?)?;
         println!("{name}: {:.1} s\n{}", clock.elapsed().as_secs_f64(), toml::to_string(&certificate)?);
     }
-    Ok(())
-}
-
-/// Writes all columns: [`hacksaw::trajectory::Trajectory::write_csv`] keeps to those of the reference trajectory where it can.
-fn write_table(trajectory: &hacksaw::trajectory::Trajectory, path: &Path) -> Result<(), Box<dyn Error>> {
-    let mut csv = csv::Writer::from_writer(File::create(path)?);
-    csv.write_record(std::iter::once("t").chain(trajectory.columns.iter().map(|column| column.name.as_str())))?;
-    for (t, row) in trajectory.times.iter().zip(&trajectory.rows) {
-        csv.write_record(std::iter::once(t).chain(row).map(|value| format!("{value:?}")))?;
-    }
-    csv.flush()?;
     Ok(())
 }

@@ -6,20 +6,21 @@
 //! coefficients at zero and does not watch its switch.
 
 use std::error::Error;
-use std::f64::consts::TAU;
 
 use bg_model::assembly::AssemblyError;
 use bg_model::description::{Description, StateKind};
-use bg_model::integrator::{Absolute, Integrator, Tolerances};
+use bg_model::integrator::{Absolute, AnyMethod, Integrator, Tolerances};
+use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor};
 use bg_model::nalgebra::SVector;
-use bg_model::parameters::{ParameterError, Parameters};
-use bg_model::simulation::{Samples, Settings};
+use bg_model::parameters::Parameters;
+use bg_model::simulation::{Part, Recorder, Recording, Samples, Settings, Span, integrate};
+use bg_model::statistics::Statistics;
 use bg_model::system::{Model, Powers, System};
+use bg_workbench::compare;
 
+use crate::columns::{AXES, add_angles};
 use crate::mechanism::{Hacksaw, HacksawParameters};
-use crate::run::{Simulation, record};
-use crate::scenes::{Scene, Visitor};
-use crate::trajectory::{AXES, Column, Trajectory};
+use crate::scenes::Scene;
 
 /// The steps that both models take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,8 +42,8 @@ pub enum Steps {
 /// The largest difference in one output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
-    /// The output.
-    pub column: Column,
+    /// The output's name.
+    pub name: String,
     /// The largest |scene - literal|, in the output's unit.
     pub largest: f64,
     /// When, s.
@@ -55,17 +56,26 @@ impl Deviation {
     /// The output's kind: its name without link and component, such as `C`, `R` or `gap`.
     #[must_use]
     pub fn kind(&self) -> &str {
-        kind(&self.column.name)
+        kind(&self.name)
     }
+}
+
+/// A run of one of the two.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Its outputs at the instants.
+    pub samples: Recording,
+    /// What it took.
+    pub statistics: Statistics,
 }
 
 /// A scene beside the literal model.
 #[derive(Clone, Debug)]
 pub struct Agreement {
     /// The scene's run.
-    pub scene: Simulation,
+    pub scene: Run,
     /// The literal model's.
-    pub literal: Simulation,
+    pub literal: Run,
     /// The outputs that both have, in the scene's order.
     pub deviations: Vec<Deviation>,
 }
@@ -100,9 +110,9 @@ pub fn compare(
     let job = Job { steps, t_end, instants };
     let reduced = scene.visit(Reduced { scene, values, job })?;
     let literal = literal(scene, values, job)?;
-    let mut whole = literal.trajectory.clone();
-    whole.add_angles()?;
-    let deviations = deviations(&reduced.trajectory, &whole)?;
+    let mut whole = literal.samples.clone();
+    add_angles(&mut whole)?;
+    let deviations = deviations(&reduced.samples, &whole)?;
     Ok(Agreement { scene: reduced, literal, deviations })
 }
 
@@ -124,7 +134,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run<Mo, const N: usize, const G: usize, const M: usize>(&self, model: &Mo) -> Result<Simulation, Box<dyn Error>>
+    fn run<Mo, const N: usize, const G: usize, const M: usize>(&self, model: &Mo) -> Result<Run, Box<dyn Error>>
     where
         Mo: Model<f64, N, G, M>,
     {
@@ -144,14 +154,27 @@ impl Job<'_> {
             samples: Samples::At(self.instants.to_vec()),
             ..Settings::default()
         };
-        let simulation = match self.steps {
-            Steps::Rk4(step) => record(model, Integrator::Rk4, step, self.t_end, &settings, &mut |_| {})?,
-            _ => record(model, Integrator::Dop853, f64::NAN, self.t_end, &settings, &mut |_| {})?,
+        let mut method: AnyMethod<N> = match self.steps {
+            Steps::Rk4(step) => Integrator::Rk4.method(step),
+            _ => Integrator::Dop853.method(f64::NAN),
         };
-        match simulation.failure {
-            Some(failure) => Err(failure.into()),
-            None => Ok(simulation),
-        }
+        let mut recorder = Recorder::new(model, &[Part::Outputs]);
+        let span = Span { t0: 0.0, t_end: self.t_end };
+        let finish = integrate(model, &mut method, &model.start()?, span, &settings, &mut recorder);
+        // A failure has the numbers of its model's states in its type.
+        let finish = finish.map_err(|failure| failure.to_string())?;
+        Ok(Run { samples: recorder.recording, statistics: finish.statistics })
+    }
+}
+
+impl ModelVisitor<f64> for Job<'_> {
+    type Output = Result<Run, Box<dyn Error>>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        self.run(model)
     }
 }
 
@@ -161,23 +184,16 @@ struct Reduced<'a> {
     job: Job<'a>,
 }
 
-impl Visitor for Reduced<'_> {
-    type Output = Result<Simulation, Box<dyn Error>>;
+impl MechanismVisitor for Reduced<'_> {
+    type Output = Result<Run, Box<dyn Error>>;
 
-    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
-        self,
-        new: fn(P) -> Result<Mo, ParameterError>,
-    ) -> Self::Output
-    where
-        P: Parameters,
-        Mo: Model<f64, N, G, M>,
-    {
-        self.job.run(&new(self.scene.parameters(self.values)?)?)
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        Sc::make(self.scene.parameters(self.values)?, &[])?.visit(self.job)
     }
 }
 
 /// The run of the literal model that `scene` stands for.
-fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Simulation, Box<dyn Error>> {
+fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Run, Box<dyn Error>> {
     let mut values = values.clone();
     if scene != Scene::FreeRun {
         return job.run(&Hacksaw::new(values)?);
@@ -227,35 +243,26 @@ impl<Mo: Model<f64, N, 1, M>, const N: usize, const M: usize> Model<f64, N, 0, M
     }
 }
 
-fn deviations(scene: &Trajectory, literal: &Trajectory) -> Result<Vec<Deviation>, Box<dyn Error>> {
+fn deviations(scene: &Recording, literal: &Recording) -> Result<Vec<Deviation>, Box<dyn Error>> {
     if scene.times != literal.times {
         return Err("the two runs have different instants".into());
     }
     let mut magnitudes: Vec<(&str, f64)> = Vec::new();
     for column in &literal.columns {
-        let largest = literal.series(&column.name)?.iter().map(|value| value.abs()).fold(0.0, f64::max);
+        let largest = column.values.iter().map(|value| value.abs()).fold(0.0, f64::max);
         match magnitudes.iter_mut().find(|(other, _)| *other == kind(&column.name)) {
             Some((_, magnitude)) => *magnitude = magnitude.max(largest),
             None => magnitudes.push((kind(&column.name), largest)),
         }
     }
-    let shared = scene.columns.iter().filter(|column| literal.has(&column.name));
-    let deviation = |column: &Column| {
-        let (ours, theirs) = (scene.series(&column.name)?, literal.series(&column.name)?);
-        let differences = ours.iter().zip(&theirs).map(|(ours, theirs)| {
-            let difference = ours - theirs;
-            // Angles jump by a turn where they leave -pi..pi.
-            let turns = if column.unit == "rad" { (difference / TAU).round() } else { 0.0 };
-            (difference - turns * TAU).abs()
-        });
-        let (largest, time) = differences.zip(&scene.times).fold((0.0, 0.0), |most, (difference, time)| {
-            // A NaN is the largest of all.
-            if difference > most.0 || difference.is_nan() { (difference, *time) } else { most }
-        });
-        let magnitude = magnitudes.iter().find(|(of, _)| *of == kind(&column.name)).map_or(0.0, |(_, most)| *most);
-        Ok(Deviation { column: column.clone(), largest, time, magnitude })
-    };
-    shared.map(deviation).collect()
+    let of_kind = |name: &str| magnitudes.iter().find(|(of, _)| *of == kind(name)).map_or(0.0, |(_, most)| *most);
+    let found = compare::deviations(scene, literal).into_iter();
+    Ok(found
+        .map(|compare::Deviation { name, largest, time, .. }| {
+            let magnitude = of_kind(&name);
+            Deviation { name, largest, time, magnitude }
+        })
+        .collect())
 }
 
 /// A name without the link's number and the component.
@@ -273,22 +280,5 @@ mod tests {
     fn kinds_are_names_without_numbers() {
         let kinds = ["C2_x", "R3_11", "gap_12", "F45_x", "Fcut_x", "stored_energy", "crank_angle"].map(kind);
         assert_eq!(kinds, ["C", "R", "gap", "F", "Fcut", "stored_energy", "crank_angle"]);
-    }
-
-    #[test]
-    fn the_largest_difference_of_each_output_is_found_and_turns_do_not_count() {
-        let column = |name: &str, unit: &str| Column { name: name.to_owned(), unit: unit.to_owned() };
-        let mut scene = Trajectory::new(vec![column("C2_x", "m"), column("crank_angle", "rad"), column("own", "m")]);
-        let mut literal = Trajectory::new(vec![column("crank_angle", "rad"), column("C2_x", "m"), column("C3_y", "m")]);
-        for (t, scene_row, literal_row) in
-            [(0.0, [1.0, 3.0, 0.0], [3.0, 1.0, 0.0]), (1.0, [2.0, -3.125, 0.0], [TAU - 3.0, 2.5, -8.0])]
-        {
-            scene.push(t, scene_row.to_vec());
-            literal.push(t, literal_row.to_vec());
-        }
-        let found = deviations(&scene, &literal).unwrap();
-        assert_eq!(found.len(), 2);
-        assert_eq!((found[0].largest, found[0].time, found[0].magnitude), (0.5, 1.0, 8.0));
-        assert!((found[1].largest - 0.125).abs() < 1e-15, "{}", found[1].largest);
     }
 }

@@ -5,23 +5,11 @@
 
 use std::f64::consts::TAU;
 
-use serde::Serialize;
+use bg_model::simulation::{MissingColumn, Recording};
+use bg_workbench::summary::Check;
 
+use crate::columns::AXES;
 use crate::figures::continued;
-use crate::trajectory::{AXES, Trajectory, TrajectoryError};
-
-/// A statement of the paper and what the run says to it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Check {
-    /// The figures it is about, such as `Fig. 4`.
-    pub figure: &'static str,
-    /// The paper's statement.
-    pub statement: &'static str,
-    /// What was measured, with units.
-    pub measured: String,
-    /// Whether it holds.
-    pub holds: bool,
-}
 
 /// What stands still moves less than this: m, rad or a part of the moving component. The model is exact there; what is
 /// left is rounding.
@@ -41,7 +29,7 @@ const START: f64 = 1.0;
 ///
 /// # Errors
 /// A column is missing.
-pub fn check(trajectory: &Trajectory) -> Result<Vec<Check>, TrajectoryError> {
+pub fn check(trajectory: &Recording) -> Result<Vec<Check>, MissingColumn> {
     if trajectory.times.is_empty() {
         return Ok(Vec::new());
     }
@@ -63,35 +51,35 @@ pub fn check(trajectory: &Trajectory) -> Result<Vec<Check>, TrajectoryError> {
 }
 
 struct Data<'a> {
-    trajectory: &'a Trajectory,
+    trajectory: &'a Recording,
 }
 
-type Measured = Result<Check, TrajectoryError>;
+type Measured = Result<Check, MissingColumn>;
 
 impl Data<'_> {
-    fn series(&self, name: &str) -> Result<Vec<f64>, TrajectoryError> {
-        self.trajectory.series(name)
+    fn values(&self, name: &str) -> Result<&[f64], MissingColumn> {
+        self.trajectory.values(name)
     }
 
     /// The angle of a link about z, rad, whole turns counted.
-    fn angle(&self, link: u8) -> Result<Vec<f64>, TrajectoryError> {
-        let (sine, cosine) = (self.series(&format!("R{link}_21"))?, self.series(&format!("R{link}_11"))?);
-        Ok(continued(sine.iter().zip(&cosine).map(|(sine, cosine)| sine.atan2(*cosine))))
+    fn angle(&self, link: u8) -> Result<Vec<f64>, MissingColumn> {
+        let (sine, cosine) = (self.values(&format!("R{link}_21"))?, self.values(&format!("R{link}_11"))?);
+        Ok(continued(sine.iter().zip(cosine).map(|(sine, cosine)| sine.atan2(*cosine))))
     }
 
     /// The largest change of any component of a link's z axis since the start, and of its z coordinate.
-    fn out_of_plane(&self, link: u8) -> Result<(f64, f64), TrajectoryError> {
+    fn out_of_plane(&self, link: u8) -> Result<(f64, f64), MissingColumn> {
         let mut axis = 0.0;
         for row in 1..=3 {
-            axis = f64::max(axis, largest_change(&self.series(&format!("R{link}_{row}3"))?));
+            axis = f64::max(axis, largest_change(&self.values(&format!("R{link}_{row}3"))?));
         }
-        Ok((axis, largest_change(&self.series(&format!("C{link}_z"))?)))
+        Ok((axis, largest_change(&self.values(&format!("C{link}_z"))?)))
     }
 
     fn crank_vectors(&self) -> Measured {
         let mut deviation: f64 = 0.0;
         for column in [1, 2] {
-            let [x, y, z] = [1, 2, 3].map(|row| self.series(&format!("R2_{row}{column}")));
+            let [x, y, z] = [1, 2, 3].map(|row| self.values(&format!("R2_{row}{column}")));
             let (x, y, z) = (x?, y?, z?);
             for k in 0..x.len() {
                 deviation = deviation.max((x[k].hypot(y[k]) - 1.0).abs()).max(z[k].abs());
@@ -117,7 +105,7 @@ impl Data<'_> {
     }
 
     fn crank_angular_momentum(&self) -> Measured {
-        let [x, y, z] = AXES.map(|axis| self.series(&format!("h2_{axis}")));
+        let [x, y, z] = AXES.map(|axis| self.values(&format!("h2_{axis}")));
         let across = largest(&x?).max(largest(&y?));
         let along = span(&z?);
         Ok(Check {
@@ -129,11 +117,11 @@ impl Data<'_> {
     }
 
     fn crank_path(&self) -> Measured {
-        let (x, y) = (self.series("C2_x")?, self.series("C2_y")?);
-        let radii: Vec<f64> = x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).collect();
+        let (x, y) = (self.values("C2_x")?, self.values("C2_y")?);
+        let radii: Vec<f64> = x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect();
         let mean = radii.iter().sum::<f64>() / radii.len() as f64;
         let deviation = radii.iter().map(|radius| (radius - mean).abs()).fold(0.0, f64::max);
-        let turns = span(&continued(y.iter().zip(&x).map(|(y, x)| y.atan2(*x)))) / TAU;
+        let turns = span(&continued(y.iter().zip(x).map(|(y, x)| y.atan2(*x)))) / TAU;
         Ok(Check {
             figure: "Fig. 7",
             statement: "C2 runs on a circle.",
@@ -143,7 +131,7 @@ impl Data<'_> {
     }
 
     fn rod_angular_momentum(&self) -> Measured {
-        let (h, angle) = (self.series("h3_z")?, self.angle(2)?);
+        let (h, angle) = (self.values("h3_z")?, self.angle(2)?);
         let start = angle[0];
         let peak = |turn: f64| {
             let inside = |angle: f64| (turn..turn + 1.0).contains(&((angle - start).abs() / TAU));
@@ -159,7 +147,7 @@ impl Data<'_> {
     }
 
     fn rod_moves(&self) -> Measured {
-        let (x, y) = (span(&self.series("C3_x")?), span(&self.series("C3_y")?));
+        let (x, y) = (span(self.values("C3_x")?), span(self.values("C3_y")?));
         Ok(Check {
             figure: "Fig. 11",
             statement: "The rod moves in x and y.",
@@ -190,7 +178,7 @@ impl Data<'_> {
     }
 
     fn frame_slides(&self) -> Measured {
-        let x = self.series("C4_x")?;
+        let x = self.values("C4_x")?;
         let (reversals, range) = (reversals(&x, MOVING), span(&x));
         Ok(Check {
             figure: "Fig. 15",
@@ -201,7 +189,7 @@ impl Data<'_> {
     }
 
     fn frame_descends(&self) -> Measured {
-        let (y, frame, guide) = (self.series("C4_y")?, self.angle(4)?, self.angle(5)?);
+        let (y, frame, guide) = (self.values("C4_y")?, self.angle(4)?, self.angle(5)?);
         // Half of the samples are enough strokes for a mean.
         let late = &y[y.len() / 2..];
         let descent = y[0] - late.iter().sum::<f64>() / late.len() as f64;
@@ -229,7 +217,7 @@ impl Data<'_> {
     }
 
     fn guide_angular_momentum(&self) -> Measured {
-        let (times, h) = (&self.trajectory.times, self.series("h5_z")?);
+        let (times, h) = (&self.trajectory.times, self.values("h5_z")?);
         let early = times.partition_point(|&t| t <= START);
         let settled = times.partition_point(|&t| t <= times[times.len() - 1] / 2.0).max(early);
         let (peak, after) = (largest(&h[..early]), largest(&h[settled..]));
@@ -296,13 +284,15 @@ fn reversals(values: &[f64], threshold: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::{Column, reference_columns};
+    use bg_model::simulation::Column;
+
+    use crate::columns::reference_columns;
 
     /// A hacksaw as the paper describes it, from simple motions: crank at constant speed after a short start.
-    fn synthetic(change: impl Fn(f64, &str, f64) -> f64) -> Trajectory {
+    fn synthetic(change: impl Fn(f64, &str, f64) -> f64) -> Recording {
         let names = reference_columns();
-        let columns = names.iter().map(|name| Column { name: name.clone(), unit: String::new() }).collect();
-        let mut trajectory = Trajectory::new(columns);
+        let columns = names.iter().map(|name| Column::new(name, "")).collect();
+        let mut trajectory = Recording::new(columns);
         for k in 0..=2000 {
             let t = f64::from(k) / 500.0;
             let crank = 20.0 * t;
@@ -326,13 +316,13 @@ mod tests {
                     _ => 0.0,
                 }
             };
-            trajectory.push(t, names.iter().map(|name| change(t, name, value(name))).collect());
+            trajectory.push(t, names.iter().map(|name| change(t, name, value(name))));
         }
         trajectory
     }
 
     /// The statements that do not hold.
-    fn broken(trajectory: &Trajectory) -> Vec<&'static str> {
+    fn broken(trajectory: &Recording) -> Vec<&'static str> {
         check(trajectory).unwrap().into_iter().filter(|check| !check.holds).map(|check| check.statement).collect()
     }
 
@@ -374,11 +364,9 @@ mod tests {
 
     #[test]
     fn a_single_sample_and_none_give_no_panic() {
-        let mut trajectory = synthetic(|_, _, value| value);
-        trajectory.times.truncate(1);
-        trajectory.rows.truncate(1);
+        let trajectory = synthetic(|_, _, value| value).at(&[0.0]);
         assert!(!broken(&trajectory).is_empty());
-        assert_eq!(check(&Trajectory::default()).unwrap(), []);
+        assert_eq!(check(&Recording::default()).unwrap(), []);
     }
 
     #[test]

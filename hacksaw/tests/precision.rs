@@ -3,12 +3,23 @@
 //! Pinned; to be renewed only where an integrator, the step control or the generated code was meant to change.
 
 use bg_model::integrator::Integrator;
-use hacksaw::precision::case::Case;
-use hacksaw::precision::measure::{Counts, Entry, Setting, measure};
-use hacksaw::trajectory::Trajectory;
+use bg_model::simulation::Recording;
+use bg_workbench::precision::measure::{self, Counts, Entry, Setting};
+use bg_workbench::scenes::scenes;
+use hacksaw::mechanism::Hacksaw;
+use hacksaw::precision::case::case;
 
 fn tolerance(rtol: f64) -> Setting {
     Setting::Tolerance { rtol, atol: 0.1 * rtol }
+}
+
+/// One run of the case called `name`.
+fn measure(name: &str, method: Integrator, setting: Setting, reference: &Recording) -> Entry {
+    measure::measure::<Hacksaw>(&case(name), &scenes::<Hacksaw>(), method, setting, 1, reference).unwrap()
+}
+
+fn stored(name: &str) -> Recording {
+    case(name).stored.expect("a stored solution")()
 }
 
 /// The largest pose error, m or rad, to two digits.
@@ -25,22 +36,22 @@ fn counts(entry: &Entry) -> [u64; 7] {
 }
 
 /// The first `rows` rows.
-fn beginning(reference: &Trajectory, rows: usize) -> Trajectory {
+fn beginning(reference: &Recording, rows: usize) -> Recording {
     reference.at(&reference.times[..rows])
 }
 
 #[test]
 fn errors_and_counts_are_pinned() {
-    let expected: [(Case, Integrator, f64, &str, [u64; 7]); 6] = [
-        (Case::Paper, Integrator::Cfmr7, 1e-5, "2.2e-7", [17385, 8, 159_357, 0, 0, 0, 60]),
-        (Case::Paper, Integrator::Nystrom, 1e-5, "6.2e-8", [17249, 22, 163_166, 0, 0, 0, 60]),
-        (Case::Paper, Integrator::Auto, 1e-6, "3.7e-7", [15090, 137, 190_477, 0, 10, 30, 60]),
-        (Case::Paper, Integrator::Taylor, 1e-8, "2.1e-12", [12109, 60, 24464, 193_760, 0, 0, 60]),
-        (Case::Rigid, Integrator::Auto, 1e-6, "4.9e-6", [1805, 382, 32575, 0, 6, 18, 96]),
-        (Case::FullOffset, Integrator::Auto, 1e-3, "2.8e-3", [2921, 387, 84821, 0, 2669, 10035, 58]),
+    let expected: [(&str, Integrator, f64, &str, [u64; 7]); 6] = [
+        ("paper", Integrator::Cfmr7, 1e-5, "2.2e-7", [17385, 8, 159_357, 0, 0, 0, 60]),
+        ("paper", Integrator::Nystrom, 1e-5, "6.2e-8", [17249, 22, 163_166, 0, 0, 0, 60]),
+        ("paper", Integrator::Auto, 1e-6, "3.7e-7", [15090, 137, 190_477, 0, 10, 30, 60]),
+        ("paper", Integrator::Taylor, 1e-8, "2.1e-12", [12109, 60, 24464, 193_760, 0, 0, 60]),
+        ("rigid", Integrator::Auto, 1e-6, "4.9e-6", [1805, 382, 32575, 0, 6, 18, 96]),
+        ("full-offset", Integrator::Auto, 1e-3, "2.8e-3", [2921, 387, 84821, 0, 2669, 10035, 58]),
     ];
     let found = expected.map(|(case, method, rtol, ..)| {
-        let entry = measure(case, method, tolerance(rtol), 1, &case.reference().load()).unwrap();
+        let entry = measure(case, method, tolerance(rtol), &stored(case));
         (case, method, rtol, error(&entry), counts(&entry))
     });
     let expected = expected.map(|(case, method, rtol, error, counts)| (case, method, rtol, error.to_owned(), counts));
@@ -49,10 +60,10 @@ fn errors_and_counts_are_pinned() {
 
 #[test]
 fn the_error_is_proportional_to_the_tolerance_over_eight_decades() {
-    let reference = beginning(&Case::Paper.reference().load(), 101);
+    let reference = beginning(&stored("paper"), 101);
     for exponent in [-4, -6, -8, -10, -12] {
         let rtol = 10.0_f64.powi(exponent);
-        let entry = measure(Case::Paper, Integrator::Dop853, tolerance(rtol), 1, &reference).unwrap();
+        let entry = measure("paper", Integrator::Dop853, tolerance(rtol), &reference);
         let ratio = entry.errors.unwrap().poses.unwrap().largest / rtol;
         assert!((0.02..2.0).contains(&ratio), "1e{exponent}: {ratio}");
     }
@@ -60,10 +71,10 @@ fn the_error_is_proportional_to_the_tolerance_over_eight_decades() {
 
 #[test]
 fn every_integrator_approaches_the_reference() {
-    let reference = beginning(&Case::Paper.reference().load(), 21);
+    let reference = beginning(&stored("paper"), 21);
     for method in Integrator::ALL {
         let setting = if method.has_fixed_step() { Setting::Step(1e-5) } else { tolerance(1e-7) };
-        let entry = measure(Case::Paper, method, setting, 1, &reference).unwrap();
+        let entry = measure("paper", method, setting, &reference);
         let poses = entry.errors.expect("the run reached its end").poses.unwrap();
         assert!(poses.largest < 1e-6, "{}: {:e}", method.name(), poses.largest);
     }

@@ -4,15 +4,14 @@
 //! the same outputs change by C 4e-14 m, R 6e-13, p 9e-11 kg m/s, h 8e-12 N m s, F 9e-7 N, gaps 7e-15 m. The pins' stiffness
 //! of 1e8 N/m makes a force of 1e-8 N of the last bit of a position, and they ring at 1e4 rad/s almost without decay.
 
-use bg_model::integrator::{Integrator, Tolerances};
-use bg_model::parameters::{ParameterError, Parameters};
-use bg_model::simulation::{Samples, Settings};
+use bg_model::integrator::Integrator;
+use bg_model::mechanism::{Mechanism, MechanismVisitor};
+use bg_model::parameters::Parameters;
+use bg_model::run::{Simulation, sample_times};
 use bg_model::system::Model;
 use hacksaw::agreement::{Agreement, Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
-use hacksaw::run::record;
-use hacksaw::scenes::{Scene, Visitor};
-use hacksaw::trajectory::sample_times;
+use hacksaw::scenes::Scene;
 use hacksaw_planar as planar;
 
 /// The steps of both models, s: as many as the run takes at rtol 1e-10.
@@ -35,19 +34,19 @@ fn allowed(kind: &str) -> f64 {
 }
 
 fn check(scene: Scene, values: &HacksawParameters, t_end: f64) -> Agreement {
-    let instants = sample_times(t_end / 50.0, t_end);
+    let instants = sample_times(0.0, t_end / 50.0, t_end);
     assert_eq!(instants.len(), 51);
     let agreement = compare(scene, values, Steps::Equal(STEP), t_end, &instants).unwrap();
     let outputs = scene.description().outputs.len();
     assert_eq!(agreement.deviations.len(), outputs, "every output of {scene:?} is compared");
-    assert_eq!(agreement.scene.effort.statistics.steps, agreement.literal.effort.statistics.steps);
-    assert_eq!(agreement.scene.effort.statistics.events, agreement.literal.effort.statistics.events);
+    assert_eq!(agreement.scene.statistics.steps, agreement.literal.statistics.steps);
+    assert_eq!(agreement.scene.statistics.events, agreement.literal.statistics.events);
     for deviation in &agreement.deviations {
         let relative = deviation.largest / deviation.magnitude.max(1.0);
         assert!(
             relative <= allowed(deviation.kind()),
             "{scene:?}: {} is off by {relative:e} at {} s",
-            deviation.column.name,
+            deviation.name,
             deviation.time
         );
     }
@@ -56,7 +55,7 @@ fn check(scene: Scene, values: &HacksawParameters, t_end: f64) -> Agreement {
 
 #[test]
 fn a_reduced_scene_equals_the_literal_model() {
-    for &scene in Scene::all().iter().filter(|scene| **scene != Scene::Literal && scene.is_compliant()) {
+    for scene in Scene::ALL.into_iter().filter(|scene| *scene != Scene::Literal && scene.is_compliant()) {
         check(scene, &HacksawParameters::default(), horizon(scene));
     }
 }
@@ -79,7 +78,7 @@ fn it_does_so_for_other_values_of_what_it_keeps_adjustable() {
     // The three-dimensional scene keeps what an offset of the rod sets in motion.
     values.set("rod_offset", 1e-3).unwrap();
     let agreement = compare(Scene::Full, &values, Steps::Equal(1e-7), 1e-4, &[0.0, 5e-5, 1e-4]).unwrap();
-    assert!(agreement.scene.trajectory.series("h3_x").unwrap()[2].abs() > 1e-9, "the rod leaves the plane");
+    assert!(agreement.scene.samples.values("h3_x").unwrap()[2].abs() > 1e-9, "the rod leaves the plane");
     for deviation in &agreement.deviations {
         assert!(deviation.largest <= 1e-12 * deviation.magnitude.max(1.0), "{deviation:?}");
     }
@@ -88,13 +87,13 @@ fn it_does_so_for_other_values_of_what_it_keeps_adjustable() {
 #[test]
 fn with_steps_by_the_error_only_rounding_in_the_estimate_tells_the_scenes_apart() {
     // The free run is chaotic: a difference in the steps grows to 3e-8 of its crank speed within 0.5 s.
-    let tame = |scene: &&Scene| scene.is_compliant() && **scene != Scene::FreeRun;
-    for &scene in Scene::all().iter().filter(tame) {
+    let tame = |scene: &Scene| scene.is_compliant() && *scene != Scene::FreeRun;
+    for scene in Scene::ALL.into_iter().filter(tame) {
         let t_end = 1.0;
-        let instants = sample_times(t_end / 50.0, t_end);
+        let instants = sample_times(0.0, t_end / 50.0, t_end);
         let steps = Steps::ByError { rtol: 1e-10, atol: 1e-14 };
         let agreement = compare(scene, &HacksawParameters::default(), steps, t_end, &instants).unwrap();
-        assert_eq!(agreement.scene.effort.statistics.events, agreement.literal.effort.statistics.events);
+        assert_eq!(agreement.scene.statistics.events, agreement.literal.statistics.events);
         // Measured over 5 s: 5e-10 (crank speed and pin forces).
         for deviation in &agreement.deviations {
             assert!(deviation.largest <= 5e-9 * deviation.magnitude.max(1.0), "{scene:?}: {deviation:?}");
@@ -117,29 +116,17 @@ struct FrameAt {
     t_end: f64,
 }
 
-impl Visitor for FrameAt {
+impl MechanismVisitor for FrameAt {
     type Output = f64;
 
-    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
-        self,
-        new: fn(P) -> Result<Mo, ParameterError>,
-    ) -> f64
-    where
-        P: Parameters,
-        Mo: Model<f64, N, G, M>,
-    {
-        let mut own = P::default();
-        for info in P::table() {
+    fn visit<Sc: Mechanism>(self) -> f64 {
+        let mut own = Sc::Parameters::default();
+        for info in Sc::Parameters::table() {
             own.set(info.name, self.values.get(info.name).unwrap()).unwrap();
         }
-        let settings = Settings {
-            tolerances: Tolerances::new(1e-10, 1e-14),
-            samples: Samples::At(vec![self.t_end]),
-            ..Settings::default()
-        };
-        let method = Integrator::Dop853;
-        let run = record(&new(own).unwrap(), method, f64::NAN, self.t_end, &settings, &mut |_| {}).unwrap();
-        run.trajectory.series("C4_x").unwrap()[0]
+        let model = Sc::make(own, &[]).unwrap();
+        let run = Simulation::new(&model).method(Integrator::Dop853).rtol(1e-10).atol(1e-14).at(&[self.t_end]);
+        run.until(self.t_end).run().unwrap()["C4_x"][0]
     }
 }
 

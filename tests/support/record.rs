@@ -26,8 +26,8 @@ impl Record {
     /// There is no such output.
     #[must_use]
     pub fn series(&self, name: &str) -> Vec<f64> {
-        let column = self.recording.column(name);
-        column.unwrap_or_else(|| panic!("no output `{name}` in {:?}", self.recording.columns))
+        let names = || self.recording.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>();
+        self.recording.column(name).unwrap_or_else(|| panic!("no output `{name}` in {:?}", names())).to_vec()
     }
 
     /// The vector output `name` at every sample.
@@ -66,7 +66,8 @@ impl Record {
     /// that the model does not have counts as zero.
     #[must_use]
     pub fn imbalance(&self) -> f64 {
-        let series = |name: &str| self.recording.column(name).unwrap_or_else(|| vec![0.0; self.times.len()]);
+        let series =
+            |name: &str| self.recording.column(name).map_or_else(|| vec![0.0; self.times.len()], <[f64]>::to_vec);
         let (stored, supplied, dissipated) = (series("stored"), series("supplied"), series("dissipated"));
         let residual = |k: usize| (stored[k] - stored[0] - supplied[k] + dissipated[k]).abs();
         (0..self.times.len()).map(residual).fold(0.0, f64::max)

@@ -34,6 +34,8 @@ pub struct Derived {
 pub struct Compiled {
     /// The graph as written, with what its scene changes.
     pub source: Graph,
+    /// The scenes of the graph; none of a scene.
+    pub scenes: Vec<String>,
     /// Its results as far as the state equations of the whole graph.
     pub derived: Derived,
     /// What became of its states; none of a literal graph, which keeps them all.
@@ -96,7 +98,7 @@ pub fn derive(graph: &Graph) -> Staged<Derived> {
 /// # Errors
 /// The faults of the first stage that has any.
 pub fn compile(variant: &Variant) -> Staged<Compiled> {
-    let source = variant.graph.clone();
+    let (source, scenes) = (variant.graph.clone(), variant.scenes.clone());
     let derived = derive(&source)?;
     let (mut equations, reduction) = reduced(variant, derived.equations.clone())?;
     second_order::arrange(&mut equations);
@@ -104,7 +106,7 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let mut second_order = second_order::differentiate(&equations);
     let elimination = elimination::plan(equations.states.len(), &jacobian.places());
     let programs = program::programs(&mut equations, &mut jacobian, &mut second_order);
-    Ok(Compiled { source, derived, reduction, equations, jacobian, second_order, elimination, programs })
+    Ok(Compiled { source, scenes, derived, reduction, equations, jacobian, second_order, elimination, programs })
 }
 
 /// The equations that the variant's model integrates: those of a scene reduced, with the report of it.

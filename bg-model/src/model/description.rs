@@ -120,6 +120,8 @@ impl StateKind {
 pub struct OutputInfo {
     /// Its name, such as `C2_x` or `R2_11`.
     pub name: &'static str,
+    /// What it is a component of, such as `C2` or `R2`; of a scalar the same as its name.
+    pub of: &'static str,
     /// Its unit.
     pub unit: &'static str,
 }

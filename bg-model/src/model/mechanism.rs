@@ -14,9 +14,6 @@ pub trait Mechanism: Clone {
     /// Its parameters.
     type Parameters: Parameters;
 
-    /// How many models the graph has: itself and its scenes. A scene has none but itself.
-    const MODELS: usize;
-
     /// What it consists of.
     fn describe() -> &'static Description;
 
@@ -35,12 +32,17 @@ pub trait Mechanism: Clone {
 
     /// Hands the model, calculating in `S`, to `visitor`.
     fn visit<S: Scalar, V: ModelVisitor<S>>(&self, visitor: V) -> V::Output;
+}
 
-    /// Hands the type of model `index` of the graph to `visitor`: 0 is the mechanism itself; then come its scenes, in the order
-    /// of the text.
+/// A mechanism with the models of its graph.
+pub trait Scenes: Mechanism {
+    /// How many models there are: the mechanism itself and its scenes. A scene has none but itself.
+    const MODELS: usize;
+
+    /// Hands the type of model `index` to `visitor`: 0 is the mechanism itself; then come its scenes, in the order of the text.
     ///
     /// # Panics
-    /// `index` is not below [`Mechanism::MODELS`].
+    /// `index` is not below [`Scenes::MODELS`].
     fn model<V: MechanismVisitor>(index: usize, visitor: V) -> V::Output;
 }
 
@@ -52,7 +54,7 @@ pub trait ModelVisitor<S: Scalar> {
     /// Is handed the model.
     fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
     where
-        Mo: Model<S, N, G, M>;
+        Mo: Model<S, N, G, M> + Clone + 'static;
 }
 
 /// Something to do with a mechanism, whatever its type.

@@ -5,6 +5,7 @@ pub mod extended;
 pub mod failure;
 pub(crate) mod finish;
 pub mod integrator;
+pub mod run;
 pub mod simulation;
 pub mod statistics;
 pub(crate) mod stepper;

@@ -41,6 +41,27 @@ impl Statistics {
         10 * self.rounded > self.steps
     }
 
+    /// Adds what another part of the run has cost.
+    pub(crate) fn add(&mut self, more: &Self) {
+        self.smallest_step = match (self.steps, more.steps) {
+            (_, 0) => self.smallest_step,
+            (0, _) => more.smallest_step,
+            _ => self.smallest_step.min(more.smallest_step),
+        };
+        self.largest_step = self.largest_step.max(more.largest_step);
+        self.steps += more.steps;
+        self.rejected += more.rejected;
+        self.rounded += more.rounded;
+        self.rate_evaluations += more.rate_evaluations;
+        self.dense_evaluations += more.dense_evaluations;
+        self.jacobian_evaluations += more.jacobian_evaluations;
+        self.factorisations += more.factorisations;
+        self.pivoted_factorisations += more.pivoted_factorisations;
+        self.series_orders += more.series_orders;
+        self.guard_evaluations += more.guard_evaluations;
+        self.events += more.events;
+    }
+
     /// Records an accepted step of size `h` (s).
     pub(crate) fn record(&mut self, h: f64) {
         self.smallest_step = if self.steps == 0 { h } else { self.smallest_step.min(h) };

@@ -1,1 +1,85 @@
-//! A program for every model of `bond_graph!`.
+//! A program for every model of `bond_graph!`: command line, trajectories, figures, golden outputs, linearisation.
+//!
+//! ```no_run
+//! use bg_model::bond_graph;
+//!
+//! bond_graph! {
+//!     /// A steel rod that swings about a pin.
+//!     pub graph Pendulum {
+//!         /// Angle at the start, from the horizontal.
+//!         param angle: rad = 0.5;
+//!         /// Length of the rod.
+//!         param length: m = 0.6, above 0;
+//!
+//!         gravity [0, -9.81, 0];
+//!         ground { point pivot = [0, 1, 0]; }
+//!
+//!         body rod {
+//!             cuboid [length, 0.03, 0.03] density 7850;
+//!             point end = [-length / 2, 0, 0];
+//!             start end at [0, 1, 0];
+//!             start turned rotation_z(angle);
+//!         }
+//!
+//!         joint pin: revolute z (ground.pivot -> rod.end) {
+//!             stiffness 1e6; damping 100; tilt stiffness 1e3; tilt damping 1;
+//!         }
+//!
+//!         observe {
+//!             angle: rad = rod.angle;
+//!             force_x: N = pin.force.x;
+//!             force_y: N = pin.force.y;
+//!             stored: J = stored_energy;
+//!             lost: J = integral(dissipated_power);
+//!         }
+//!     }
+//! }
+//!
+//! fn main() -> std::process::ExitCode {
+//!     bg_workbench::main::<Pendulum>()
+//! }
+//! ```
+//!
+//! | module | question |
+//! |---|---|
+//! | [`program`] | how a program is made of a mechanism, and what it adds |
+//! | [`command`] | what the user asks for |
+//! | [`scenes`] | which models there are, by name |
+//! | [`parameters`] | which values the parameters have in this run |
+//! | [`report`] | what a scene consists of and what it left out |
+//! | [`compare`] | how far two runs are apart |
+//! | [`precision`] | how exact a run is and what that costs |
+//! | [`figures`] | what the outputs look like |
+//! | [`summary`] | what a run comes to in numbers |
+//! | [`overview`] | all of it on one page |
+//! | [`output`] | which files a run writes, and where |
+//! | [`files`] | how results reach disk and terminal: whole, or not at all |
+
+pub mod command;
+pub mod compare;
+pub mod extras;
+pub mod figures;
+pub mod files;
+pub mod output;
+pub mod overview;
+pub mod parameters;
+pub mod precision;
+pub mod program;
+pub mod report;
+pub mod samples;
+pub mod scenes;
+pub mod summary;
+
+use std::process::ExitCode;
+
+use bg_model::mechanism::Scenes;
+
+pub use bg_model;
+pub use program::Program;
+
+/// Does what the program's arguments ask for of the mechanism `Me`, and gives the exit code: 0 done, 1 the run or an output
+/// failed, 2 the input cannot be used.
+#[must_use]
+pub fn main<Me: Scenes>() -> ExitCode {
+    Program::<Me>::new().main(std::env::args_os())
+}

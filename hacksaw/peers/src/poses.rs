@@ -4,9 +4,10 @@
 
 use std::path::Path;
 
-use hacksaw::trajectory::{LINKS, Trajectory};
-
 use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::simulation::Recording;
+use bg_workbench::samples;
+use hacksaw::columns::LINKS;
 
 use hacksaw_planar::State;
 use crate::problem::{SAMPLES, instants};
@@ -39,32 +40,30 @@ pub fn reference() -> Result<Reference, String> {
         let origin = "our DOP853 at rtol 1e-12, atol 1e-14: no stored reference yet".to_owned();
         return Ok(Reference { poses, origin });
     }
-    let file = std::fs::File::open(&path).map_err(|fault| fault.to_string())?;
-    let stored = Trajectory::read_csv(file).map_err(|fault| fault.to_string())?;
-    let poses = from_trajectory(&stored.at(&instants()))?;
+    let stored = samples::read_file(&path).map_err(|fault| fault.to_string())?;
+    let poses = from_run(&stored.at(&instants()))?;
     Ok(Reference { poses, origin: "hacksaw/reference/paper.csv, in extended precision".to_owned() })
 }
 
-/// The poses of a trajectory with the columns of the reference, which has to have every sample.
-pub fn from_trajectory(trajectory: &Trajectory) -> Result<Poses, String> {
-    if trajectory.times.len() != SAMPLES {
-        return Err(format!("{} of {SAMPLES} samples are there", trajectory.times.len()));
+/// The poses of a run with the columns of the reference, which has to have every sample.
+pub fn from_run(run: &Recording) -> Result<Poses, String> {
+    if run.times.len() != SAMPLES {
+        return Err(format!("{} of {SAMPLES} samples are there", run.times.len()));
     }
-    let position = |name: String| trajectory.position(&name).map_err(|fault| fault.to_string());
     let mut columns = Vec::new();
     for link in LINKS {
         let names = [format!("C{link}_x"), format!("C{link}_y"), format!("R{link}_11"), format!("R{link}_21")];
         for name in names {
-            columns.push(position(name)?);
+            columns.push(run.values(&name).map_err(|fault| fault.to_string())?);
         }
     }
-    let pose = |row: &Vec<f64>| {
+    let pose = |sample: usize| {
         std::array::from_fn(|i| {
-            let [x, y, cosine, sine] = std::array::from_fn(|k| row[columns[4 * (i / 3) + k]]);
+            let [x, y, cosine, sine] = std::array::from_fn(|k| columns[4 * (i / 3) + k][sample]);
             [x, y, sine.atan2(cosine)][i % 3]
         })
     };
-    Ok(trajectory.rows.iter().map(pose).collect())
+    Ok((0..SAMPLES).map(pose).collect())
 }
 
 /// The largest difference of two motions in any coordinate at any sample, m or rad; angles to the nearest turn. Not a

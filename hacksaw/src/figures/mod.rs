@@ -1,26 +1,18 @@
 //! The paper's Figures 4 to 19, drawn as SVG from a trajectory.
 //!
-//! In: a [`Trajectory`]. Out: one SVG text for each entry of [`FIGURES`]. [`FIGURES`] is the only place that says which
+//! In: a [`Recording`]. Out: one SVG text for each entry of [`FIGURES`]. [`FIGURES`] is the only place that says which
 //! figure shows what; `momentum`, `orientation` and `path` draw the three kinds of figure.
-//!
-//! Every figure has 16 : 9 and follows the reader's light or dark colour scheme (`palette`). Curves are thinned to what
-//! the eye can see at the drawn size (`thinning`), so a file stays below 300 kB whatever the output interval.
 
-mod canvas;
 mod momentum;
 mod orientation;
-mod palette;
-mod panel;
 mod path;
-mod thinning;
-mod work_precision;
 
-use thiserror::Error;
+use std::sync::Arc;
+
+use bg_model::simulation::Recording;
+use bg_workbench::figures::{self, FigureError};
 
 pub use orientation::continued;
-pub use work_precision::{Curve, work_precision};
-
-use crate::trajectory::{Trajectory, TrajectoryError};
 
 /// What a figure shows of its link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,20 +82,6 @@ const fn figure(number: u8, link: u8, quantity: Quantity, assignment: Assignment
     Figure { number, link, quantity, assignment }
 }
 
-/// A figure that cannot be drawn.
-#[derive(Debug, Error)]
-pub enum FigureError {
-    /// The trajectory lacks a column.
-    #[error(transparent)]
-    Trajectory(#[from] TrajectoryError),
-    /// The trajectory has no sample.
-    #[error("there is no sample to draw")]
-    Empty,
-    /// The drawing crate refuses.
-    #[error("drawing failed: {0}")]
-    Drawing(String),
-}
-
 impl Figure {
     /// The link's name.
     #[must_use]
@@ -140,11 +118,27 @@ impl Figure {
         format!("figure_{:02}_{}_{quantity}.svg", self.number, self.link_name())
     }
 
+    /// The figure as the workbench draws it.
+    #[must_use]
+    pub fn drawn(self) -> figures::Figure {
+        let caption = match self.assignment {
+            Assignment::Stated => "Number and content as the paper's text says.",
+            Assignment::Deduced => "Number deduced from the order of the figures about it.",
+        };
+        figures::Figure {
+            file: self.file_name(),
+            anchor: format!("figure-{}", self.number),
+            title: format!("Figure {}. {}", self.number, self.title()),
+            caption: caption.to_owned(),
+            draw: Arc::new(move |run| self.draw(run)),
+        }
+    }
+
     /// Draws the figure.
     ///
     /// # Errors
     /// A trajectory without samples or without the link's columns.
-    pub fn draw(&self, trajectory: &Trajectory) -> Result<String, FigureError> {
+    pub fn draw(&self, trajectory: &Recording) -> Result<String, FigureError> {
         if trajectory.times.is_empty() {
             return Err(FigureError::Empty);
         }
@@ -161,14 +155,15 @@ impl Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::{Column, reference_columns};
+    use crate::columns::reference_columns;
+    use bg_model::simulation::Column;
 
-    fn trajectory(samples: usize, value: impl Fn(usize, usize) -> f64) -> Trajectory {
-        let columns: Vec<Column> =
-            reference_columns().into_iter().map(|name| Column { name, unit: String::new() }).collect();
-        let mut trajectory = Trajectory::new(columns.clone());
+    fn trajectory(samples: usize, value: impl Fn(usize, usize) -> f64) -> Recording {
+        let columns: Vec<Column> = reference_columns().into_iter().map(|name| Column::new(name, "")).collect();
+        let count = columns.len();
+        let mut trajectory = Recording::new(columns);
         for k in 0..samples {
-            trajectory.push(k as f64 * 1e-4, (0..columns.len()).map(|c| value(k, c)).collect());
+            trajectory.push(k as f64 * 1e-4, (0..count).map(|c| value(k, c)));
         }
         trajectory
     }

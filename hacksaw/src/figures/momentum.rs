@@ -2,11 +2,12 @@
 //!
 //! At the left the whole run; at the right the last part of it, where single strokes can be told apart.
 
-use super::FigureError;
-use super::canvas::{Rectangle, figure};
-use super::palette::AXES as COLOURS;
-use super::panel::{CAPTION, OverTime, RIGHT, STILL, TIME_LABELS, VALUE_LABELS, extent, widened};
-use crate::trajectory::{AXES, Trajectory};
+use crate::columns::AXES;
+use bg_model::simulation::Recording;
+use bg_workbench::figures::FigureError;
+use bg_workbench::figures::canvas::{Rectangle, figure};
+use bg_workbench::figures::palette::AXES as COLOURS;
+use bg_workbench::figures::panel::{OverTime, RIGHT, STILL, VALUE_LABELS, extent, row_plot, time_span, widened};
 
 /// The time shown at the right, s: about five strokes of the paper's case.
 const CLOSE: f64 = 0.4;
@@ -14,11 +15,11 @@ const CLOSE: f64 = 0.4;
 const WHOLE: i32 = 500;
 
 /// Draws `p` or `h` of a link.
-pub fn draw(heading: &str, trajectory: &Trajectory, symbol: char, link: u8) -> Result<String, FigureError> {
+pub fn draw(heading: &str, trajectory: &Recording, symbol: char, link: u8) -> Result<String, FigureError> {
     let unit = if symbol == 'h' { "N m s" } else { "kg m/s" };
     let names = AXES.map(|axis| format!("{symbol}{link}_{axis}"));
-    let components = names.iter().map(|name| trajectory.series(name)).collect::<Result<Vec<_>, _>>()?;
-    let range = widened(extent(components.iter().flatten().copied()), STILL);
+    let components = names.iter().map(|name| trajectory.values(name)).collect::<Result<Vec<_>, _>>()?;
+    let range = widened(extent(components.iter().flat_map(|values| values.iter().copied())), STILL);
     let times = &trajectory.times;
     let (start, end) = (times[0], times[times.len() - 1]);
     // A run that is shorter than three times the close view is seen well enough as a whole.
@@ -49,16 +50,4 @@ pub fn draw(heading: &str, trajectory: &Trajectory, symbol: char, link: u8) -> R
         }
         Ok(())
     })
-}
-
-/// The plot of row `row` of `rows` with one time axis below them; `left` and `width` are those of the plot in the content.
-pub fn row_plot(row: i32, rows: i32, left: i32, width: i32) -> Rectangle {
-    let content = Rectangle::CONTENT;
-    let height = (content.height - TIME_LABELS) / rows;
-    Rectangle { x: content.x + left, y: content.y + row * height + CAPTION, width, height: height - CAPTION }
-}
-
-/// The time axis of a run, never empty.
-pub fn time_span(start: f64, end: f64) -> std::ops::Range<f64> {
-    if end > start { start..end } else { start..start + 1.0 }
 }

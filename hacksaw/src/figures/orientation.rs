@@ -8,13 +8,14 @@ use std::f64::consts::{PI, TAU};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::FigureError;
-use super::canvas::{Area, Rectangle, UNITS, drawing, figure, text, write};
-use super::momentum::{row_plot, time_span};
-use super::palette::{AXES as COLOURS, AXIS, GRID, INK, PENCIL};
-use super::panel::{Axis, CAPTION, OverTime, RIGHT, STILL, VALUE_LABELS, extent, widened};
-use super::thinning::along_path;
-use crate::trajectory::{AXES, Trajectory};
+use crate::columns::AXES;
+use bg_model::simulation::Recording;
+use bg_workbench::figures::FigureError;
+use bg_workbench::figures::canvas::{Area, Rectangle, UNITS, drawing, figure, text, write};
+use bg_workbench::figures::palette::{AXES as COLOURS, AXIS, GRID, INK, PENCIL};
+use bg_workbench::figures::panel::{Axis, CAPTION, OverTime, RIGHT, STILL, VALUE_LABELS, extent, widened};
+use bg_workbench::figures::panel::{row_plot, time_span};
+use bg_workbench::figures::thinning::along_path;
 
 /// The side of the square that shows the sphere, CSS pixels.
 const SIDE: i32 = 410;
@@ -28,12 +29,12 @@ const FROM_ABOVE: f64 = 0.4;
 const MOST: usize = 4_000;
 
 /// Draws the orientation of a link.
-pub fn draw(heading: &str, trajectory: &Trajectory, link: u8) -> Result<String, FigureError> {
-    let element = |row: usize, column: usize| trajectory.series(&format!("R{link}_{row}{column}"));
+pub fn draw(heading: &str, trajectory: &Recording, link: u8) -> Result<String, FigureError> {
+    let element = |row: usize, column: usize| trajectory.values(&format!("R{link}_{row}{column}"));
     let tips =
         [1, 2, 3].map(|column| Ok::<_, FigureError>([element(1, column)?, element(2, column)?, element(3, column)?]));
     let tips = tips.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let angle = continued(tips[0][1].iter().zip(&tips[0][0]).map(|(sine, cosine)| sine.atan2(*cosine)));
+    let angle = continued(tips[0][1].iter().zip(tips[0][0]).map(|(sine, cosine)| sine.atan2(*cosine)));
     let [z_x, z_y, z_z] = &tips[2];
     let tilt: Vec<f64> = (0..z_z.len()).map(|k| z_x[k].hypot(z_y[k]).atan2(z_z[k])).collect();
     let times = &trajectory.times;
@@ -84,7 +85,7 @@ fn seen([x, y, z]: [f64; 3]) -> (f64, f64) {
     (right, y * FROM_ABOVE.cos() - depth * FROM_ABOVE.sin())
 }
 
-fn sphere(area: &Area, tips: &[[Vec<f64>; 3]]) -> Result<(), FigureError> {
+fn sphere(area: &Area, tips: &[[&[f64]; 3]]) -> Result<(), FigureError> {
     let content = Rectangle::CONTENT;
     for (axis, name) in AXES.iter().enumerate() {
         let style = text(13, COLOURS[axis].light, HPos::Left);

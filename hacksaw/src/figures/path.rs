@@ -5,21 +5,24 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::FigureError;
-use super::canvas::{Area, Rectangle, UNITS, drawing, figure, text, write};
-use super::momentum::{row_plot, time_span};
-use super::palette::{AXES as COLOURS, INK, PAPER, PENCIL};
-use super::panel::{Axis, CAPTION, LINE, OverTime, RIGHT, STILL, TIME_LABELS, VALUE_LABELS, chart, extent, widened};
-use super::thinning::along_path;
-use crate::trajectory::{AXES, Trajectory};
+use crate::columns::AXES;
+use bg_model::simulation::Recording;
+use bg_workbench::figures::FigureError;
+use bg_workbench::figures::canvas::{Area, Rectangle, UNITS, drawing, figure, text, write};
+use bg_workbench::figures::palette::{AXES as COLOURS, INK, PAPER, PENCIL};
+use bg_workbench::figures::panel::{
+    Axis, CAPTION, LINE, OverTime, RIGHT, STILL, TIME_LABELS, VALUE_LABELS, chart, extent, widened,
+};
+use bg_workbench::figures::panel::{row_plot, time_span};
+use bg_workbench::figures::thinning::along_path;
 
 /// The side of the square that shows the plane, CSS pixels.
 const SIDE: i32 = 370;
 
 /// Draws the path of a link's centre of mass.
-pub fn draw(heading: &str, trajectory: &Trajectory, link: u8) -> Result<String, FigureError> {
+pub fn draw(heading: &str, trajectory: &Recording, link: u8) -> Result<String, FigureError> {
     let names = AXES.map(|axis| format!("C{link}_{axis}"));
-    let coordinates = names.iter().map(|name| trajectory.series(name)).collect::<Result<Vec<_>, _>>()?;
+    let coordinates = names.iter().map(|name| trajectory.values(name)).collect::<Result<Vec<_>, _>>()?;
     let extents: Vec<_> = coordinates.iter().map(|values| extent(values.iter().copied())).collect();
     let span = extents.iter().map(|range| range.end - range.start).fold(STILL, f64::max);
     let captions = AXES.map(|axis| format!("C_{link}{axis} in m"));

@@ -1,60 +1,39 @@
-//! What is measured: scenes with a reference solution.
+//! What is measured: the scenes, and the rod out of the plane, each with its stored solution.
 
-use clap::ValueEnum;
+use bg_model::parameters::Parameters;
+use bg_workbench::precision::case::Case;
+use bg_workbench::scenes::scenes;
 
 use super::reference::Reference;
-use crate::scenes::Scene;
+use crate::mechanism::Hacksaw;
 
-/// A scene with a reference.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Case {
-    /// The paper's case in the plane
-    Paper,
-    /// Only where the links are in the paper's case
-    Motion,
-    /// The rod 25 mm out of the plane: 3-D and stiff
-    FullOffset,
-    /// Ideal joints
-    Rigid,
-    /// The paper's case as the multibond graph stands, 85 states
-    Literal,
-    /// The paper's case in 3-D
-    Full,
-    /// Only the four angles of the paper's case
-    Angles,
-    /// The blade off the work, 1 s
-    FreeRun,
+/// All cases.
+#[must_use]
+pub fn cases() -> Vec<Case> {
+    let mut cases = Case::of_scenes(&scenes::<Hacksaw>(), 5.0);
+    for case in &mut cases {
+        case.stored = Some(match case.name.as_str() {
+            "rigid" => || Reference::Rigid.load(),
+            "free-run" => || Reference::FreeRun.load(),
+            _ => || Reference::Paper.load(),
+        });
+    }
+    cases.push(Case {
+        name: "full-offset".to_owned(),
+        about: "The rod 25 mm out of the plane: 3-D and stiff".to_owned(),
+        scene: "full".to_owned(),
+        set: vec![("rod_offset", Reference::FullOffset.parameters().get("rod_offset").unwrap_or_default())],
+        t_end: 5.0,
+        stored: Some(|| Reference::FullOffset.load()),
+    });
+    cases
 }
 
-impl Case {
-    /// The scene that is run.
-    #[must_use]
-    pub fn scene(self) -> Scene {
-        match self {
-            Self::Paper => Scene::Paper,
-            Self::Motion => Scene::Motion,
-            Self::FullOffset | Self::Full => Scene::Full,
-            Self::Rigid => Scene::Rigid,
-            Self::Literal => Scene::Literal,
-            Self::Angles => Scene::Angles,
-            Self::FreeRun => Scene::FreeRun,
-        }
-    }
-
-    /// What it is held against.
-    #[must_use]
-    pub fn reference(self) -> Reference {
-        match self {
-            Self::Paper | Self::Motion | Self::Literal | Self::Full | Self::Angles => Reference::Paper,
-            Self::FullOffset => Reference::FullOffset,
-            Self::Rigid => Reference::Rigid,
-            Self::FreeRun => Reference::FreeRun,
-        }
-    }
-
-    /// The name on the command line.
-    #[must_use]
-    pub fn name(self) -> String {
-        self.to_possible_value().expect("no case is skipped").get_name().to_owned()
-    }
+/// The case called `name`.
+///
+/// # Panics
+/// There is none.
+#[must_use]
+pub fn case(name: &str) -> Case {
+    cases().into_iter().find(|case| case.name == name).unwrap_or_else(|| panic!("there is no case `{name}`"))
 }

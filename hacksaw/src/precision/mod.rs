@@ -1,8 +1,4 @@
-//! How exact a run is, and what that costs: reference solutions, the distance of a trajectory from them, and the
-//! measurements of `hacksaw precision`.
+//! The hacksaw's cases of `precision` and their stored solutions.
 
 pub mod case;
-pub mod errors;
-pub mod measure;
 pub mod reference;
-pub mod report;

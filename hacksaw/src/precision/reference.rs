@@ -8,17 +8,18 @@
 
 use std::error::Error;
 
-use bg_model::extended::{Accuracy, integrate};
-use bg_model::nalgebra::SVector;
-use bg_model::scalar::{DoubleDouble, Scalar};
-use bg_model::simulation::Span;
-use bg_model::system::Model;
+use bg_model::extended::Accuracy;
+use bg_model::mechanism::{Mechanism, MechanismVisitor};
+use bg_model::run::sample_times;
+use bg_model::simulation::Recording;
+use bg_workbench::precision::errors::Errors;
+use bg_workbench::precision::reference::{Effort, Solution, solve};
+use bg_workbench::samples;
 use serde::{Deserialize, Serialize};
 
-use super::errors::Errors;
-use crate::mechanism::{FreeRun, Full, HacksawParameters, Paper, Rigid};
+use crate::columns::add_angles;
+use crate::mechanism::HacksawParameters;
 use crate::scenes::Scene;
-use crate::trajectory::{Column, Trajectory, sample_times};
 
 /// A case with a stored reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,32 +43,6 @@ pub struct Certificate {
     pub check: Effort,
     /// The differences between the two, both rounded to `f64`.
     pub differences: Errors,
-}
-
-/// Settings and work of a computation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Effort {
-    /// Columns of the extrapolation; the order is twice as high.
-    pub columns: usize,
-    /// Tolerance of a step.
-    pub tolerance: f64,
-    /// Accepted steps.
-    pub steps: u64,
-    /// Rejected steps, those on the search for events included.
-    pub rejected: u64,
-    /// Evaluations of the rate function.
-    pub rate_evaluations: u64,
-    /// The times of the switchings, s.
-    pub events: Vec<f64>,
-}
-
-/// What a computation gives.
-#[derive(Clone, Debug)]
-pub struct Solution {
-    /// The outputs at the instants, those that are gaps left out; for the paper's case also the links' angles.
-    pub trajectory: Trajectory,
-    /// What it took.
-    pub effort: Effort,
 }
 
 /// The table and the certificate of a reference.
@@ -117,9 +92,9 @@ impl Reference {
     #[must_use]
     pub fn instants(self) -> Vec<f64> {
         match self {
-            Self::Paper | Self::Rigid => sample_times(0.01, 5.0),
-            Self::FullOffset => sample_times(0.05, 5.0),
-            Self::FreeRun => sample_times(0.01, 1.0),
+            Self::Paper | Self::Rigid => sample_times(0.0, 0.01, 5.0),
+            Self::FullOffset => sample_times(0.0, 0.05, 5.0),
+            Self::FreeRun => sample_times(0.0, 0.01, 1.0),
         }
     }
 
@@ -140,20 +115,9 @@ impl Reference {
     /// # Errors
     /// Instants that cannot be, and a run that fails.
     pub fn compute(self, accuracy: Accuracy, instants: &[f64]) -> Result<Solution, Box<dyn Error>> {
-        macro_rules! with {
-            ($model:ident) => {{
-                let own = || self.scene().parameters(&self.parameters());
-                follow(&$model::new(own()?)?, &$model::<DoubleDouble>::in_scalar(own()?)?, accuracy, instants)?
-            }};
-        }
-        let mut solution = match self {
-            Self::Paper => with!(Paper),
-            Self::FullOffset => with!(Full),
-            Self::Rigid => with!(Rigid),
-            Self::FreeRun => with!(FreeRun),
-        };
+        let mut solution = self.scene().visit(Compute { reference: self, accuracy, instants })?;
         if self == Self::Paper {
-            solution.trajectory.add_angles()?;
+            add_angles(&mut solution.samples)?;
         }
         Ok(solution)
     }
@@ -162,12 +126,12 @@ impl Reference {
     ///
     /// # Errors
     /// A run that fails.
-    pub fn make(self) -> Result<(Trajectory, Certificate), Box<dyn Error>> {
+    pub fn make(self) -> Result<(Recording, Certificate), Box<dyn Error>> {
         let [stored, check] = self.accuracies();
         let stored = self.compute(stored, &self.instants())?;
         let check = self.compute(check, &self.instants())?;
-        let differences = Errors::between(&check.trajectory, &stored.trajectory)?;
-        Ok((stored.trajectory, Certificate { stored: stored.effort, check: check.effort, differences }))
+        let differences = Errors::between(&check.samples, &stored.samples, self.scene().description().outputs)?;
+        Ok((stored.samples, Certificate { stored: stored.effort, check: check.effort, differences }))
     }
 
     /// The stored table, its columns with units.
@@ -175,14 +139,14 @@ impl Reference {
     /// # Panics
     /// The stored file is broken, which a test excludes.
     #[must_use]
-    pub fn load(self) -> Trajectory {
-        let mut trajectory = Trajectory::read_csv(self.stored().0.as_bytes()).expect("a stored table");
+    pub fn load(self) -> Recording {
+        let mut samples = samples::read(self.stored().0.as_bytes()).expect("a stored table");
         let outputs = self.scene().description().outputs;
-        for column in &mut trajectory.columns {
+        for column in &mut samples.columns {
             let output = outputs.iter().find(|output| output.name == column.name);
             output.map_or("rad", |output| output.unit).clone_into(&mut column.unit);
         }
-        trajectory
+        samples
     }
 
     /// The stored check.
@@ -204,44 +168,30 @@ impl Reference {
     }
 }
 
-/// Integrates `extended` from the start of `plain`.
-fn follow<A, B, const N: usize, const G: usize, const M: usize>(
-    plain: &A,
-    extended: &B,
+struct Compute<'a> {
+    reference: Reference,
     accuracy: Accuracy,
-    instants: &[f64],
-) -> Result<Solution, Box<dyn Error>>
-where
-    A: Model<f64, N, G, M>,
-    B: Model<DoubleDouble, N, G, M>,
-{
-    let start = plain.start()?.map(DoubleDouble::from);
-    let outputs = plain.description().outputs;
-    let kept: Vec<usize> = (0..M).filter(|index| !outputs[*index].name.starts_with("gap_")).collect();
-    let column =
-        |index: &usize| Column { name: outputs[*index].name.to_owned(), unit: outputs[*index].unit.to_owned() };
-    let mut trajectory = Trajectory::new(kept.iter().map(column).collect());
-    let mut y = SVector::from_element(DoubleDouble::default());
-    let span = Span { t0: 0.0, t_end: instants.last().copied().unwrap_or(0.0) };
-    let finish = integrate(extended, &start, span, accuracy, instants, |t, x, negative| {
-        extended.outputs(t, x, negative, &mut y);
-        trajectory.push(t.to_f64(), kept.iter().map(|index| y[*index].to_f64()).collect());
-    })?;
-    let effort = Effort {
-        columns: accuracy.columns,
-        tolerance: accuracy.tolerance,
-        steps: finish.steps,
-        rejected: finish.rejected,
-        rate_evaluations: finish.rate_evaluations,
-        events: finish.events.iter().map(|event| event.t.to_f64()).collect(),
-    };
-    Ok(Solution { trajectory, effort })
+    instants: &'a [f64],
+}
+
+impl MechanismVisitor for Compute<'_> {
+    type Output = Result<Solution, Box<dyn Error>>;
+
+    /// Gaps are left out: rounding.
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        let Self { reference, accuracy, instants } = self;
+        let model = Sc::make(reference.scene().parameters(&reference.parameters())?, &[])?;
+        Ok(solve(&model, accuracy, instants, |output| !output.starts_with("gap_"))?)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::LINKS;
+    use bg_model::scalar::Scalar;
+    use bg_model::simulation::Column;
+
+    use crate::columns::LINKS;
 
     /// The paper's case by a program of its own in quad precision, `reference/independent.c`: all 501 instants.
     const INDEPENDENT: &str = include_str!("../../reference/independent.csv");
@@ -250,10 +200,10 @@ mod tests {
     const SHARED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/golden/hacksaw_paper.csv"));
 
     /// The largest difference from `reference` in columns whose names begin with `kind`, at all instants of `theirs`.
-    fn largest_difference(theirs: &Trajectory, reference: &Trajectory, kind: char) -> f64 {
+    fn largest_difference(theirs: &Recording, reference: &Recording, kind: char) -> f64 {
         let mut largest = 0.0_f64;
         for column in theirs.columns.iter().filter(|column| column.name.starts_with(kind)) {
-            let (values, ours) = (theirs.series(&column.name).unwrap(), reference.series(&column.name).unwrap());
+            let (values, ours) = (theirs.values(&column.name).unwrap(), reference.values(&column.name).unwrap());
             for (t, value) in theirs.times.iter().zip(values) {
                 // Some times are multiples of 0.1 with their rounding: 9e-16 s beside ours.
                 let place = (t * 100.0).round() as usize;
@@ -268,16 +218,14 @@ mod tests {
 
     #[test]
     fn the_paper_s_reference_is_that_of_an_independent_program_at_every_instant() {
-        let mut independent = Trajectory::read_csv(INDEPENDENT.as_bytes()).unwrap();
+        let mut independent = samples::read(INDEPENDENT.as_bytes()).unwrap();
         let reference = Reference::Paper.load();
         assert_eq!((independent.times.as_slice(), independent.columns.len()), (reference.times.as_slice(), 24));
         for link in LINKS {
-            let angles = independent.series(&format!("angle{link}")).unwrap();
+            let angles = independent.values(&format!("angle{link}")).unwrap().to_vec();
             for (name, function) in [("11", Scalar::cos as fn(f64) -> f64), ("21", Scalar::sin)] {
-                independent.columns.push(Column { name: format!("R{link}_{name}"), unit: String::new() });
-                for (row, angle) in independent.rows.iter_mut().zip(&angles) {
-                    row.push(function(*angle));
-                }
+                let values = angles.iter().map(|angle| function(*angle)).collect();
+                independent.columns.push(Column { values, ..Column::new(format!("R{link}_{name}"), "") });
             }
         }
         // Measured: positions 2.2e-15 m, orientations 3.3e-14, momenta 1.8e-12 kg m/s of 21, angular momenta 2.8e-13 kg m^2/s
@@ -290,7 +238,7 @@ mod tests {
 
     #[test]
     fn the_project_s_reference_in_double_precision_is_the_same_to_its_rounding() {
-        let shared = Trajectory::read_csv(SHARED.as_bytes()).unwrap();
+        let shared = samples::read(SHARED.as_bytes()).unwrap();
         assert_eq!((shared.times.len(), shared.columns.len()), (51, 72));
         // Measured: positions 9e-14 m, orientations 1.4e-12, momenta 4.9e-11 kg m/s of 21, angular momenta 8.3e-12 kg m^2/s
         // of 2.6: all grow with the time, as the rounding errors of a run in double precision do.
@@ -305,12 +253,13 @@ mod tests {
         let reference = Reference::Paper.load();
         let instants = &reference.times[..6];
         let accuracy = Accuracy { columns: 10, tolerance: 1e-20 };
-        let Solution { trajectory, effort } = Reference::Paper.compute(accuracy, instants).unwrap();
-        assert_eq!(trajectory.columns, reference.columns);
-        for (ours, stored) in trajectory.rows.iter().zip(&reference.rows) {
-            for ((ours, stored), column) in ours.iter().zip(stored).zip(&reference.columns) {
-                let error = (ours - stored).abs() / (1.0 + stored.abs());
-                assert!(error < 1e-15, "{} is off by {error:e}", column.name);
+        let Solution { samples, effort } = Reference::Paper.compute(accuracy, instants).unwrap();
+        assert_eq!(samples.columns.len(), reference.columns.len());
+        for (ours, theirs) in samples.columns.iter().zip(&reference.columns) {
+            assert_eq!((&ours.name, &ours.unit, ours.values.len()), (&theirs.name, &theirs.unit, instants.len()));
+            for (value, stored) in ours.values.iter().zip(&theirs.values) {
+                let error = (value - stored).abs() / (1.0 + stored.abs());
+                assert!(error < 1e-15, "{} is off by {error:e}", ours.name);
             }
         }
         assert_eq!(effort.events, Reference::Paper.certificate().stored.events[..2]);
@@ -324,7 +273,7 @@ mod tests {
             let table = reference.load();
             assert_eq!((reference.name(), table.times.clone()), (name, reference.instants()));
             assert_eq!((table.times.len(), table.columns.len()), (instants, columns), "{name}");
-            assert!(table.rows.iter().flatten().all(|value| value.is_finite()), "{name}");
+            assert!(table.columns.iter().flat_map(|column| &column.values).all(|value| value.is_finite()), "{name}");
             let Certificate { stored, check, differences } = reference.certificate();
             let settings = [&stored, &check].map(|of| Accuracy { columns: of.columns, tolerance: of.tolerance });
             assert_eq!(settings, reference.accuracies());

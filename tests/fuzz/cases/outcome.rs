@@ -12,8 +12,8 @@ use bg_compiler::source::{mechanism, scene, syntax};
 use bg_compiler::stages::stages;
 use bg_model::parameters::Parameters;
 use bg_model::system::Model;
+use bg_workbench::parameters::{Chosen, SettingError, merge};
 use hacksaw::mechanism::{Hacksaw, HacksawParameters};
-use hacksaw::parameters::{Chosen, SettingError, merge};
 use proc_macro2::{Ident, TokenStream, TokenTree};
 
 use super::Input;

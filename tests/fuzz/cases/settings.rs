@@ -3,9 +3,9 @@
 //! In: randomness. Out: bytes of a file that mostly are TOML of the hacksaw's parameters, and texts `NAME=VALUE`.
 
 use bg_model::parameters::Parameters;
+use bg_workbench::parameters::to_toml;
 use fastrand::Rng;
 use hacksaw::mechanism::HacksawParameters;
-use hacksaw::parameters::to_toml;
 
 use super::Input;
 use super::draw::{EXTREMES, number, one, rarely};

@@ -53,7 +53,7 @@ pub fn stored(name: &str) -> Table {
 #[must_use]
 pub fn of_hacksaw(reference: Reference, names: &[String]) -> Table {
     let of = reference.load();
-    let columns: Vec<Vec<f64>> = names.iter().map(|name| of.series(name).expect("a pose")).collect();
+    let columns: Vec<&[f64]> = names.iter().map(|name| of.values(name).expect("a pose")).collect();
     let row = |k: usize| columns.iter().map(|column| column[k]).collect();
     Table {
         source: "the application's reference in double-double arithmetic",

@@ -48,8 +48,8 @@ fn states(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
 
 fn outputs(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
     equations.outputs.iter().map(|output| {
-        let (name, unit) = (&output.name, &output.unit);
-        quote!(::bg_model::description::OutputInfo { name: #name, unit: #unit })
+        let (name, of, unit) = (&output.name, &output.of, &output.unit);
+        quote!(::bg_model::description::OutputInfo { name: #name, of: #of, unit: #unit })
     })
 }
 

@@ -5,6 +5,7 @@
 
 mod capabilities;
 mod linear;
+pub(super) mod mechanism;
 mod names;
 mod outputs;
 mod required;
@@ -65,7 +66,9 @@ impl Emission<'_> {
         let costs = self.costs();
         let tables = self.tables(&given.scalar());
         let definition = self.definition(&given, &costs, &tables);
-        given.items(&definition, &self.code(&costs, &tables))
+        let items = given.items(&definition, &self.code(&costs, &tables));
+        let scenes = given.scenes(&self.model.scenes.iter().map(String::as_str).collect::<Vec<_>>());
+        quote!(#items #scenes)
     }
 
     /// The model's struct.
@@ -88,6 +91,7 @@ impl Emission<'_> {
         let description = description::description(self.model, costs);
         let constructors = self.constructors(tables);
         let (system, capabilities, model) = (self.system(), self.capabilities(), self.model());
+        let mechanism = self.mechanism();
         let import_pair = tables.has_pairs.then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
@@ -108,6 +112,7 @@ impl Emission<'_> {
             #system
             #capabilities
             #model
+            #mechanism
         }
     }
 

@@ -6,6 +6,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::items::{Given, identifier};
+use super::model::mechanism;
 use crate::graph::units::Dimension;
 use crate::graph::{Input, Parameter};
 use crate::source::ast::{Item, Source};
@@ -56,10 +57,14 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
         #[allow(missing_docs, dead_code)]
         pub struct #name<#scalar = ::core::primitive::f64> { #fields scalar: ::core::marker::PhantomData<#scalar> }
     };
+    let fields: Vec<_> = inputs.iter().map(|input| identifier(&input.name.text)).collect();
+    let mechanism = mechanism::of(&fields);
     let code = quote! {
         use ::bg_model::scalar::Scalar;
         use ::bg_model::nalgebra::SVector;
         const WHY: &str = "the graph has faults";
+        static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
+            ::std::sync::LazyLock::new(|| ::core::unreachable!("{WHY}"));
 
         impl Model {
             pub const STATES: usize = 1;
@@ -103,6 +108,8 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
                 ::core::unreachable!("{WHY}")
             }
         }
+        #mechanism
     };
-    given.items(&definition, &code)
+    let (items, scenes) = (given.items(&definition, &code), given.scenes(&[]));
+    quote!(#items #scenes)
 }

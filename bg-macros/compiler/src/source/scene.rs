@@ -53,6 +53,8 @@ pub struct Variant {
     pub graph: Graph,
     /// The scene; none for the literal graph.
     pub scene: Option<Scene>,
+    /// The names of the literal graph's scenes; none for a scene.
+    pub scenes: Vec<String>,
 }
 
 /// The literal graph and one variant for each scene.
@@ -63,13 +65,17 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     let mut faults = Vec::new();
     let items: Vec<Item> = source.items.iter().filter(|item| !matches!(item, Item::Scene(_))).cloned().collect();
     let literal = Graph { items, ..source.clone() };
-    let mut variants = vec![Variant { graph: literal.clone(), scene: None }];
+    let named =
+        source.items.iter().filter_map(|item| if let Item::Scene(scene) = item { Some(&scene.name) } else { None });
+    let scenes = named.map(|name| name.text.clone()).collect();
+    let mut variants = vec![Variant { graph: literal.clone(), scene: None, scenes }];
     faults.extend(idle_impulse(source));
     for item in &source.items {
         let Item::Scene(scene) = item else { continue };
         let mut items = left(&literal.items, &scene.without, &mut faults);
         stiffen(&mut items, &scene.rigid, &mut faults);
-        variants.push(Variant { graph: watched(&literal, items, scene), scene: Some(scene.clone()) });
+        let graph = watched(&literal, items, scene);
+        variants.push(Variant { graph, scene: Some(scene.clone()), scenes: Vec::new() });
     }
     if faults.is_empty() { Ok(variants) } else { Err(faults) }
 }

@@ -14,7 +14,7 @@ mod settings;
 use nalgebra::SVector;
 
 pub use observer::{EachSample, EachStep, Observer};
-pub use recording::{Column, Part, Recorder, Recording};
+pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 
 use crate::model::capability::Joints;

@@ -1,9 +1,10 @@
 //! A recording: the samples of a run of a model, as columns by name.
 //!
-//! In: a model and what is to be recorded of it. Out: an observer, and after the run a table: a row for each sample, with the
-//! names and units of the model's description.
+//! In: a model and what is to be recorded of it. Out: an observer, and after the run a table: a value for each sample in every
+//! column, with the names and units of the model's description.
 
 use nalgebra::SVector;
+use thiserror::Error;
 
 use super::Observer;
 use crate::model::description::Description;
@@ -22,40 +23,101 @@ pub enum Part {
     Powers,
 }
 
-/// A column of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A column of a recording: a quantity over time.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Column {
     /// Its name, such as `C2_x`.
-    pub name: &'static str,
-    /// Its unit, SI; empty for a pure number.
-    pub unit: &'static str,
+    pub name: String,
+    /// Its unit, SI; empty for a pure number, and where it is not known.
+    pub unit: String,
+    /// Its values, one for each sample.
+    pub values: Vec<f64>,
 }
 
 /// The samples of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// Name and unit of each value of a row.
-    pub columns: Vec<Column>,
     /// Sample times, s, ascending.
     pub times: Vec<f64>,
-    /// One row of values for each sample.
-    pub rows: Vec<Vec<f64>>,
+    /// What was recorded, each with as many values as there are times.
+    pub columns: Vec<Column>,
     /// The times at which switches have changed their branches, s.
     pub events: Vec<f64>,
 }
 
-impl Recording {
-    /// The place of column `name` in a row: of the first of that name.
+/// A column that is needed and not there.
+#[derive(Clone, PartialEq, Eq, Error)]
+#[error("there is no column `{0}`")]
+pub struct MissingColumn(pub String);
+
+debug_is_display!(MissingColumn);
+
+impl Column {
+    /// A column without values.
     #[must_use]
-    pub fn position(&self, name: &str) -> Option<usize> {
-        self.columns.iter().position(|column| column.name == name)
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into(), values: Vec::new() }
+    }
+}
+
+impl Recording {
+    /// Without samples, of these columns.
+    #[must_use]
+    pub fn new(columns: Vec<Column>) -> Self {
+        Self { columns, ..Self::default() }
     }
 
-    /// The values of column `name`, one for each sample; nothing where there is no such column.
+    /// The column called `name`: the first of that name; none where there is no such column.
     #[must_use]
-    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
-        let position = self.position(name)?;
-        Some(self.rows.iter().map(|row| row[position]).collect())
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let column = self.columns.iter().find(|column| column.name == name)?;
+        Some(&column.values)
+    }
+
+    /// The same; of a name that no column has the error says so.
+    ///
+    /// # Errors
+    /// [`MissingColumn`].
+    pub fn values(&self, name: &str) -> Result<&[f64], MissingColumn> {
+        self.column(name).ok_or_else(|| MissingColumn(name.to_owned()))
+    }
+
+    /// Whether there is a column called `name`.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.column(name).is_some()
+    }
+
+    /// The values of sample `index`, one for each column.
+    ///
+    /// # Panics
+    /// There is no such sample.
+    pub fn row(&self, index: usize) -> impl Iterator<Item = f64> {
+        self.columns.iter().map(move |column| column.values[index])
+    }
+
+    /// Appends the sample at `t` (s) with a value for each column.
+    pub fn push(&mut self, t: f64, row: impl IntoIterator<Item = f64>) {
+        self.times.push(t);
+        for (column, value) in self.columns.iter_mut().zip(row) {
+            column.values.push(value);
+        }
+        debug_assert!(self.columns.iter().all(|column| column.values.len() == self.times.len()));
+    }
+
+    /// The samples at exactly the instants `times` (s, ascending), as far as there are any; with all events.
+    #[must_use]
+    pub fn at(&self, times: &[f64]) -> Self {
+        let mut wanted = times.iter().peekable();
+        let is_wanted = |t: &f64| {
+            while wanted.next_if(|&time| time < t).is_some() {}
+            wanted.peek() == Some(&t)
+        };
+        let kept: Vec<bool> = self.times.iter().map(is_wanted).collect();
+        let of =
+            |values: &[f64]| values.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect();
+        let columns = self.columns.iter().map(|column| Column { values: of(&column.values), ..column.clone() });
+        Self { times: of(&self.times), columns: columns.collect(), events: self.events.clone() }
     }
 }
 
@@ -64,6 +126,8 @@ impl Recording {
 pub struct Recorder<'a, Mo, const N: usize, const G: usize, const M: usize> {
     model: &'a Mo,
     parts: Vec<Part>,
+    /// The values of a sample on their way.
+    row: Vec<f64>,
     /// What has been recorded.
     pub recording: Recording,
 }
@@ -76,7 +140,7 @@ where
     #[must_use]
     pub fn new(model: &'a Mo, parts: &[Part]) -> Self {
         let columns = parts.iter().flat_map(|part| part.columns(model.description())).collect();
-        Self { model, parts: parts.to_vec(), recording: Recording { columns, ..Recording::default() } }
+        Self { model, parts: parts.to_vec(), row: Vec::new(), recording: Recording::new(columns) }
     }
 }
 
@@ -85,12 +149,11 @@ where
     Mo: Model<f64, N, G, M>,
 {
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
-        let mut row = Vec::with_capacity(self.recording.columns.len());
+        self.row.clear();
         for part in &self.parts {
-            part.write(self.model, t, x, negative, &mut row);
+            part.write(self.model, t, x, negative, &mut self.row);
         }
-        self.recording.times.push(t);
-        self.recording.rows.push(row);
+        self.recording.push(t, self.row.iter().copied());
     }
 
     fn event(&mut self, t: f64, _: &SVector<f64, N>, _: usize, _: &[bool; G]) {
@@ -100,7 +163,7 @@ where
 
 impl Part {
     fn columns(self, of: &Description) -> Vec<Column> {
-        let column = |name, unit| Column { name, unit };
+        let column = |name: &str, unit: &str| Column::new(name, unit);
         match self {
             Self::Outputs => of.outputs.iter().map(|output| column(output.name, output.unit)).collect(),
             Self::States => of.states.iter().map(|state| column(state.name, state.unit)).collect(),

@@ -7,11 +7,10 @@ use std::time::Instant;
 
 use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method, Nystrom, Radau9, Rk4, Taylor, Tolerances};
 use bg_model::nalgebra::SVector;
-use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use bg_model::simulation::{Column, EachSample, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::{Model, System};
 use hacksaw::mechanism::{Motion, MotionParameters, Paper, PaperParameters};
-use hacksaw::trajectory::{Column, Trajectory};
 
 use super::{Entry, Line, Run, Setting, Solver, Source, Work, by_tolerance};
 use hacksaw_planar::State;
@@ -104,14 +103,13 @@ where
     let start = model.start().map_err(|fault| fault.to_string())?;
     let samples = run(model, method, &start, tolerances)?;
     let columns = model.description().outputs.iter();
-    let columns = columns.map(|output| Column { name: output.name.to_owned(), unit: output.unit.to_owned() });
-    let mut trajectory = Trajectory::new(columns.collect());
+    let mut recording = Recording::new(columns.map(|output| Column::new(output.name, output.unit)).collect());
     for (t, x, negative) in &samples.states {
         let mut outputs = SVector::<f64, M>::zeros();
         model.outputs(*t, x, negative, &mut outputs);
-        trajectory.push(*t, outputs.as_slice().to_vec());
+        recording.push(*t, outputs.iter().copied());
     }
-    let poses = poses::from_trajectory(&trajectory)?;
+    let poses = poses::from_run(&recording)?;
     Ok(samples.into_run(|_| poses))
 }
 

@@ -133,6 +133,8 @@ pub struct Switch {
 pub struct Output {
     /// Its name with its component's suffix.
     pub name: String,
+    /// The name without the suffix.
+    pub of: String,
     /// Its unit.
     pub unit: String,
     /// Its value.

@@ -334,7 +334,8 @@ impl<'a> Signals<'a> {
             let value = self.evaluate(&observation.value, None);
             for (suffix, id) in value.shape().suffixes().iter().zip(value.0) {
                 let name = format!("{}{suffix}", observation.name);
-                outputs.push(Output { name, unit: observation.unit.clone(), value: id });
+                let (of, unit) = (observation.name.clone(), observation.unit.clone());
+                outputs.push(Output { name, of, unit, value: id });
             }
         }
         outputs

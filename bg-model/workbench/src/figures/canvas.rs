@@ -83,6 +83,15 @@ pub fn write(area: &Area, line: &str, at: (i32, i32), style: &TextStyle<'static>
     area.draw(&Text::new(line.to_owned(), (at.0 * UNITS, at.1 * UNITS), style.clone())).map_err(drawing)
 }
 
+/// A blank that stands for an underline which is to be drawn as one.
+const UNDERLINE: char = '\u{E000}';
+
+/// `text` with its underlines as they are: what comes after one is else set as a subscript.
+#[must_use]
+pub fn literally(text: &str) -> String {
+    text.replace('_', &UNDERLINE.to_string())
+}
+
 /// The drawing crate's fault as ours.
 pub fn drawing(fault: impl std::fmt::Display) -> FigureError {
     FigureError::Drawing(fault.to_string())
@@ -97,7 +106,7 @@ fn finish(svg: &str, heading: &str) -> String {
          role=\"img\" aria-label=\"{heading}\">"
     );
     let joins = "<style>polyline{stroke-linejoin:round;stroke-linecap:round}</style>";
-    format!("{opening}\n{}{joins}\n{}", dark_style(), subscripts(body))
+    format!("{opening}\n{}{joins}\n{}", dark_style(), subscripts(body).replace(UNDERLINE, "_"))
 }
 
 /// Sets the index of `h_2x`, `C_4y` and the like as a subscript.

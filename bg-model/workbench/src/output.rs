@@ -4,15 +4,18 @@
 //! directory that cannot be written. What goes wrong with one output does not keep the others back.
 
 use std::fmt;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::figures::{FIGURES, Figure, FigureError};
+use bg_model::simulation::Recording;
+
+use crate::extras::Page as Texts;
+use crate::figures::{Figure, FigureError};
 use crate::files::{FileError, RunFolder, whole};
 use crate::overview;
 use crate::summary::Summary;
-use crate::trajectory::Trajectory;
 
 /// The names of the files beside the figures.
 const CSV: &str = "trajectory.csv";
@@ -21,14 +24,14 @@ const JSON: &str = "summary.json";
 const PAGE: &str = "index.html";
 
 /// Where the files of a run go.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Places {
     /// The CSV file, where it is not one of the folder's.
     pub csv: Option<PathBuf>,
     /// The folder of figures, overview page and summary; `None` where only the CSV file is wanted.
     pub folder: Option<PathBuf>,
-    /// Whether figures and the overview page are wanted.
-    pub figures: bool,
+    /// The figures that are wanted, with the overview page; `None` without a page.
+    pub figures: Option<Vec<Figure>>,
 }
 
 /// An output that fails.
@@ -49,10 +52,10 @@ pub enum OutputError {
         source: FigureError,
     },
     /// A figure cannot be drawn.
-    #[error("figure {number}: {source}")]
+    #[error("figure {file}: {source}")]
     Figure {
-        /// Its number.
-        number: u8,
+        /// Its file.
+        file: String,
         /// Why.
         source: FigureError,
     },
@@ -62,10 +65,10 @@ impl Places {
     /// The places that the command line chooses: without `csv` the trajectory goes into `folder`; without figures and
     /// with `csv` nothing goes there.
     #[must_use]
-    pub fn new(folder: &Path, csv: Option<&Path>, figures: bool) -> Self {
+    pub fn new(folder: &Path, csv: Option<&Path>, figures: Option<Vec<Figure>>) -> Self {
         Self {
             csv: csv.filter(|csv| *csv != folder.join(CSV)).map(Path::to_owned),
-            folder: (figures || csv.is_none()).then(|| folder.to_owned()),
+            folder: (figures.is_some() || csv.is_none()).then(|| folder.to_owned()),
             figures,
         }
     }
@@ -74,8 +77,8 @@ impl Places {
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let csv = self.csv.is_none().then_some(CSV);
-        let figures = FIGURES.iter().filter(|_| self.figures).map(|figure| figure.file_name());
-        let page = self.figures.then_some(PAGE);
+        let figures = self.figures.iter().flatten().map(|figure| figure.file.clone());
+        let page = self.figures.as_ref().map(|_| PAGE);
         csv.into_iter().chain([TEXT, JSON]).chain(page).map(str::to_owned).chain(figures).collect()
     }
 
@@ -101,6 +104,24 @@ impl Places {
     }
 }
 
+/// What a CSV file has.
+#[derive(Clone, Copy, Debug)]
+pub struct Table<'a> {
+    /// The samples.
+    pub samples: &'a Recording,
+    /// The columns after `t`; `None` for all.
+    pub columns: Option<&'a [String]>,
+}
+
+impl Table<'_> {
+    fn write(&self, file: &mut dyn Write) -> io::Result<()> {
+        match self.columns {
+            Some(columns) => self.samples.write_columns(columns.iter().map(String::as_str), file),
+            None => self.samples.write_csv(file),
+        }
+    }
+}
+
 /// Places that are this run's until it has written.
 #[derive(Debug)]
 pub struct Claimed {
@@ -122,11 +143,12 @@ pub struct Written {
 }
 
 impl Claimed {
-    /// Writes the CSV file from `output` and everything else from `trajectory` and `summary`, whose list of files it fills.
-    pub fn write(self, output: &Trajectory, trajectory: &Trajectory, summary: &mut Summary) -> Written {
+    /// Writes the CSV file from `output` and everything else from `run` and `summary`, whose list of files it fills. `texts` are
+    /// those of the page.
+    pub fn write(self, output: &Table<'_>, run: &Recording, texts: &Texts, summary: &mut Summary) -> Written {
         let mut written = Written::default();
         if let Some(csv) = &self.places.csv {
-            match whole::write(csv, |file| Ok(output.write_csv(file)?)) {
+            match whole::write(csv, |file| output.write(file)) {
                 Ok(()) => written.csv = Some(csv.clone()),
                 Err(fault) => written.faults.push(fault.into()),
             }
@@ -139,13 +161,14 @@ impl Claimed {
         };
         let mut figures = Vec::new();
         // A run that failed before its first sample has nothing to draw.
-        for figure in FIGURES.into_iter().filter(|_| self.places.figures && !trajectory.times.is_empty()) {
-            match figure.draw(trajectory) {
+        let has_page = self.places.figures.is_some();
+        for figure in self.places.figures.into_iter().flatten().filter(|_| !run.times.is_empty()) {
+            match (figure.draw)(run) {
                 Ok(svg) => figures.push((figure, svg)),
-                Err(source) => written.faults.push(OutputError::Figure { number: figure.number, source }),
+                Err(source) => written.faults.push(OutputError::Figure { file: figure.file, source }),
             }
         }
-        let page = self.places.figures.then_some(Page { figures, data });
+        let page = has_page.then_some(Page { texts, figures, data });
         summary.files = written.csv.iter().cloned().collect();
         match fill(folder, &path, own, page.as_ref(), summary) {
             Ok(count) => (written.folder, written.page) = (Some((path, count)), page.is_some()),
@@ -156,7 +179,8 @@ impl Claimed {
 }
 
 /// What is on the overview page.
-struct Page {
+struct Page<'a> {
+    texts: &'a Texts,
     /// The figures, drawn.
     figures: Vec<(Figure, String)>,
     /// The CSV file as seen from the page, where it is below it.
@@ -168,27 +192,27 @@ struct Page {
 fn fill(
     mut folder: RunFolder,
     path: &Path,
-    output: Option<&Trajectory>,
-    page: Option<&Page>,
+    output: Option<&Table<'_>>,
+    page: Option<&Page<'_>>,
     summary: &mut Summary,
 ) -> Result<usize, FileError> {
     let figures = page.map_or(&[][..], |page| &page.figures);
     let names = output.map(|_| CSV).into_iter().chain([TEXT, JSON]).chain(page.map(|_| PAGE)).map(str::to_owned);
-    let names = names.chain(figures.iter().map(|(figure, _)| figure.file_name()));
+    let names = names.chain(figures.iter().map(|(figure, _)| figure.file.clone()));
     summary.files.extend(names.map(|name| path.join(name)));
 
     if let Some(output) = output {
-        folder.write(CSV, |file| Ok(output.write_csv(file)?))?;
+        folder.write(CSV, |file| output.write(file))?;
     }
     for (figure, svg) in figures {
-        folder.write_text(&figure.file_name(), svg)?;
+        folder.write_text(&figure.file, svg)?;
     }
     folder.write_text(TEXT, &summary.to_string())?;
     let json = serde_json::to_string_pretty(summary).expect("a summary has text keys only");
     folder.write_text(JSON, &(json + "\n"))?;
-    if let Some(Page { figures, data }) = page {
-        let drawn: Vec<Figure> = figures.iter().map(|(figure, _)| *figure).collect();
-        folder.write_text(PAGE, &overview::page(summary, &drawn, data.as_deref()))?;
+    if let Some(Page { texts, figures, data }) = page {
+        let drawn: Vec<Figure> = figures.iter().map(|(figure, _)| figure.clone()).collect();
+        folder.write_text(PAGE, &overview::page(texts, summary, &drawn, data.as_deref()))?;
     }
     Ok(folder.publish()?.len())
 }
@@ -207,24 +231,35 @@ impl fmt::Display for Written {
 mod tests {
     use super::*;
 
+    fn figures() -> Option<Vec<Figure>> {
+        let figure = |file: &str| Figure {
+            file: file.to_owned(),
+            anchor: String::new(),
+            title: String::new(),
+            caption: String::new(),
+            draw: std::sync::Arc::new(|_| Ok(String::new())),
+        };
+        Some(["a.svg", "b.svg"].map(figure).to_vec())
+    }
+
     #[test]
     fn places_follow_the_command_line() {
         let (out, csv) = (Path::new("out"), Path::new("run.csv"));
-        assert_eq!(Places::new(out, None, true).names().len(), 20);
-        let both = Places::new(out, Some(csv), true);
-        assert_eq!((both.csv.as_deref(), both.names().len()), (Some(csv), 19));
-        let alone = Places::new(out, Some(csv), false);
+        assert_eq!(Places::new(out, None, figures()).names().len(), 6);
+        let both = Places::new(out, Some(csv), figures());
+        assert_eq!((both.csv.as_deref(), both.names().len()), (Some(csv), 5));
+        let alone = Places::new(out, Some(csv), None);
         assert_eq!((alone.csv.as_deref(), alone.folder), (Some(csv), None));
-        assert_eq!(Places::new(out, None, false).names(), [CSV, TEXT, JSON]);
+        assert_eq!(Places::new(out, None, None).names(), [CSV, TEXT, JSON]);
         // The place that the trajectory has anyway.
-        let usual = out.join(CSV);
-        assert_eq!(Places::new(out, Some(&usual), true), Places::new(out, None, true));
+        let usual = Places::new(out, Some(&out.join(CSV)), figures());
+        assert_eq!((usual.csv.as_deref(), usual.names().len()), (None, 6));
     }
 
     #[test]
     fn claiming_changes_nothing_that_can_be_seen() {
         let directory = tempfile::tempdir().unwrap();
-        let places = Places::new(&directory.path().join("a/b"), Some(&directory.path().join("run.csv")), true);
+        let places = Places::new(&directory.path().join("a/b"), Some(&directory.path().join("run.csv")), figures());
         drop(places.claim().unwrap());
         let visible = std::fs::read_dir(directory.path().join("a/b"))
             .unwrap()
@@ -236,7 +271,7 @@ mod tests {
     #[test]
     fn a_csv_file_does_not_take_the_name_of_another() {
         let directory = tempfile::tempdir().unwrap();
-        let fault = Places::new(directory.path(), Some(&directory.path().join(JSON)), true).claim().unwrap_err();
+        let fault = Places::new(directory.path(), Some(&directory.path().join(JSON)), figures()).claim().unwrap_err();
         assert!(matches!(fault, OutputError::Clash(_)));
     }
 

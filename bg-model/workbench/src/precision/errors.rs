@@ -9,7 +9,8 @@ use std::f64::consts::{SQRT_2, TAU};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::trajectory::{LINKS, Trajectory, TrajectoryError};
+use bg_model::description::OutputInfo;
+use bg_model::simulation::{MissingColumn, Recording};
 
 /// A trajectory that cannot be compared with a reference.
 #[derive(Debug, Error)]
@@ -19,7 +20,7 @@ pub enum Incomparable {
     MissingInstant(f64),
     /// A column cannot be read.
     #[error(transparent)]
-    Trajectory(#[from] TrajectoryError),
+    Column(#[from] MissingColumn),
 }
 
 /// Errors of one kind.
@@ -49,10 +50,9 @@ enum Kind {
     Force,
 }
 
-/// The kind of an output, if its errors count.
-fn kind(name: &str, unit: &str) -> Option<Kind> {
+/// The kind of a quantity of this unit, if its errors count.
+fn kind(unit: &str) -> Option<Kind> {
     match unit {
-        "m" if name.starts_with("gap_") => None,
         "m" | "rad" => Some(Kind::Pose),
         "kg*m/s" | "N*s" | "kg*m^2/s" | "N*m*s" => Some(Kind::Momentum),
         "N" => Some(Kind::Force),
@@ -61,24 +61,27 @@ fn kind(name: &str, unit: &str) -> Option<Kind> {
 }
 
 impl Errors {
-    /// The errors of `trajectory` at all instants of `reference`, whose columns have units.
+    /// The errors of `run` at all instants of `reference`, whose columns have units, in what both have; `outputs` says which of them
+    /// are components of one.
     ///
     /// # Errors
     /// [`Incomparable::MissingInstant`].
-    pub fn between(trajectory: &Trajectory, reference: &Trajectory) -> Result<Self, Incomparable> {
-        let ours = trajectory.at(&reference.times);
+    pub fn between(run: &Recording, reference: &Recording, outputs: &[OutputInfo]) -> Result<Self, Incomparable> {
+        let ours = run.at(&reference.times);
         if let Some(missing) = reference.times.iter().find(|t| !ours.times.contains(t)) {
             return Err(Incomparable::MissingInstant(*missing));
         }
         let mut differences: [Vec<f64>; 3] = Default::default();
         for column in reference.columns.iter().filter(|column| ours.has(&column.name)) {
-            let Some(kind) = kind(&column.name, &column.unit) else { continue };
+            let Some(kind) = kind(&column.unit) else { continue };
             let turn = if column.unit == "rad" { TAU } else { f64::INFINITY };
-            let (ours, theirs) = (ours.series(&column.name)?, reference.series(&column.name)?);
+            let (ours, theirs) = (ours.values(&column.name)?, &column.values);
             differences[kind as usize].extend(ours.iter().zip(theirs).map(|(a, b)| modulo(a - b, turn).abs()));
         }
-        for link in LINKS.iter().filter(|link| [&ours, reference].iter().all(|side| has_orientation(side, **link))) {
-            differences[Kind::Pose as usize].extend(rotations(&ours, reference, *link)?);
+        for matrix in outputs.chunk_by(|a, b| a.of == b.of).filter(|components| is_orientation(components)) {
+            if matrix.iter().all(|component| reference.has(component.name)) {
+                differences[Kind::Pose as usize].extend(rotations(&ours, reference, matrix)?);
+            }
         }
         let [poses, momenta, forces] = differences.map(|errors| measure(&errors));
         Ok(Self { poses, momenta, forces })
@@ -90,19 +93,16 @@ fn modulo(difference: f64, turn: f64) -> f64 {
     if turn.is_finite() { difference - turn * (difference / turn).round() } else { difference }
 }
 
-fn components(link: u8) -> impl Iterator<Item = String> {
-    (1..=3).flat_map(move |row| (1..=3).map(move |column| format!("R{link}_{row}{column}")))
+/// A matrix of pure numbers.
+fn is_orientation(components: &[OutputInfo]) -> bool {
+    components.len() == 9 && components[0].unit.is_empty()
 }
 
-fn has_orientation(trajectory: &Trajectory, link: u8) -> bool {
-    components(link).all(|name| trajectory.has(&name))
-}
-
-/// The angle between the orientations of `link`, rad, at each instant.
-fn rotations(a: &Trajectory, b: &Trajectory, link: u8) -> Result<Vec<f64>, TrajectoryError> {
+/// The angle between the two orientations that the outputs `matrix` are, rad, at each instant.
+fn rotations(a: &Recording, b: &Recording, matrix: &[OutputInfo]) -> Result<Vec<f64>, MissingColumn> {
     let mut squares = vec![0.0; a.times.len()];
-    for name in components(link) {
-        for (square, (a, b)) in squares.iter_mut().zip(a.series(&name)?.iter().zip(b.series(&name)?)) {
+    for OutputInfo { name, .. } in matrix {
+        for (square, (a, b)) in squares.iter_mut().zip(a.values(name)?.iter().zip(b.values(name)?)) {
             *square += (a - b) * (a - b);
         }
     }
@@ -120,21 +120,21 @@ fn measure(errors: &[f64]) -> Option<Measure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::Column;
+    use bg_model::simulation::Column;
 
-    fn trajectory(columns: &[(&str, &str)], rows: &[(f64, Vec<f64>)]) -> Trajectory {
-        let column = |(name, unit): &(&str, &str)| Column { name: (*name).to_owned(), unit: (*unit).to_owned() };
-        let mut trajectory = Trajectory::new(columns.iter().map(column).collect());
+    fn trajectory(columns: &[(&str, &str)], rows: &[(f64, Vec<f64>)]) -> Recording {
+        let column = |(name, unit): &(&str, &str)| Column::new(*name, *unit);
+        let mut trajectory = Recording::new(columns.iter().map(column).collect());
         rows.iter().for_each(|(t, row)| trajectory.push(*t, row.clone()));
         trajectory
     }
 
     #[test]
     fn errors_are_sorted_by_kind() {
-        let columns = [("C2_x", "m"), ("a", "rad"), ("gap_12", "m"), ("p2_x", "kg*m/s"), ("E", "J"), ("F", "N")];
+        let columns = [("C2_x", "m"), ("a", "rad"), ("n", ""), ("p2_x", "kg*m/s"), ("E", "J"), ("F", "N")];
         let reference = trajectory(&columns, &[(0.0, vec![0.0; 6]), (1.0, vec![1.0, 3.125, 9.0, 2.0, 5.0, -4.0])]);
         let ours = [(0.0, vec![0.0; 6]), (0.5, vec![7.0; 6]), (1.0, vec![1.5, 3.125 - TAU, 0.0, 2.0, 0.0, -1.0])];
-        let errors = Errors::between(&trajectory(&columns, &ours), &reference).unwrap();
+        let errors = Errors::between(&trajectory(&columns, &ours), &reference, &[]).unwrap();
         // Poses: 0, 0, 1/2, 0 (a whole turn); momenta: none; forces: 0, 3.
         let poses = errors.poses.unwrap();
         assert!((poses.largest - 0.5).abs() < 1e-15 && (poses.l2 - 0.25).abs() < 1e-15, "{poses:?}");
@@ -144,14 +144,15 @@ mod tests {
 
     #[test]
     fn orientations_differ_by_an_angle() {
-        let names: Vec<String> = components(3).collect();
-        let columns: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
+        let names = ["R_11", "R_12", "R_13", "R_21", "R_22", "R_23", "R_31", "R_32", "R_33"];
+        let outputs = names.map(|name| OutputInfo { name, of: "R", unit: "" });
+        let columns = names.map(|name| (name, ""));
         let turned = |angle: f64| {
             let (s, c) = angle.sin_cos();
             trajectory(&columns, &[(0.0, vec![c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0])])
         };
         for angle in [1e-9, 0.1, 3.0] {
-            let errors = Errors::between(&turned(0.3 + angle), &turned(0.3)).unwrap();
+            let errors = Errors::between(&turned(0.3 + angle), &turned(0.3), &outputs).unwrap();
             let poses = errors.poses.unwrap();
             assert!((poses.largest - angle).abs() < 1e-15 + 1e-8 * angle, "{poses:?}");
             assert_eq!((errors.momenta, errors.forces), (None, None));
@@ -163,9 +164,9 @@ mod tests {
         let columns = [("C2_x", "m")];
         let reference = trajectory(&columns, &[(0.0, vec![0.0]), (1.0, vec![1.0])]);
         let short = trajectory(&columns, &[(0.0, vec![0.0])]);
-        assert!(matches!(Errors::between(&short, &reference), Err(Incomparable::MissingInstant(1.0))));
+        assert!(matches!(Errors::between(&short, &reference, &[]), Err(Incomparable::MissingInstant(1.0))));
         let broken = trajectory(&columns, &[(0.0, vec![f64::NAN]), (1.0, vec![1.0])]);
-        let poses = Errors::between(&broken, &reference).unwrap().poses.unwrap();
+        let poses = Errors::between(&broken, &reference, &[]).unwrap().poses.unwrap();
         assert!(poses.largest.is_nan() && poses.l2.is_nan());
     }
 }

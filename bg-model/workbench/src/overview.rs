@@ -6,7 +6,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::figures::{Assignment, Figure};
+use crate::extras::Page;
+use crate::figures::Figure;
 use crate::summary::Summary;
 
 /// The page's colours and layout; light and dark as the reader prefers.
@@ -36,12 +37,13 @@ a { color: inherit; }
 
 /// The page. `figures` are those that were drawn; `data` is where the CSV file is, as seen from the page.
 #[must_use]
-pub fn page(summary: &Summary, figures: &[Figure], data: Option<&Path>) -> String {
+pub fn page(texts: &Page, summary: &Summary, figures: &[Figure], data: Option<&Path>) -> String {
     let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Power hacksaw</title>\n";
-    write_into(&mut page, format_args!("<style>{STYLE}</style>\n</head>\n<body>\n<h1>Power hacksaw</h1>\n"));
-    page += "<p>The five-link power hacksaw of \u{201C}Modeling and Simulation of Power Hacksaw Machine Using Bond \
-             Graph\u{201D}, compiled from its multibond graph and run.</p>\n";
+    page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+    let (title, introduction) = (escaped(&texts.title), escaped(&texts.introduction));
+    write_into(&mut page, format_args!("<title>{title}</title>\n"));
+    write_into(&mut page, format_args!("<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"));
+    write_into(&mut page, format_args!("<p>{introduction}</p>\n"));
     if let Some(failure) = &summary.failure {
         let reached = summary.reached_s;
         let line = format!("The run failed: {failure}. What follows shows it up to t = {reached} s.");
@@ -56,14 +58,16 @@ pub fn page(summary: &Summary, figures: &[Figure], data: Option<&Path>) -> Strin
         write_into(&mut page, format_args!("<dt>trajectory</dt><dd><a href=\"{link}\">{name}</a></dd>\n"));
     }
     page += "</dl>\n";
-    checks(&mut page, summary);
-    gallery(&mut page, figures);
+    if !summary.checks.is_empty() {
+        checks(&mut page, summary);
+    }
+    gallery(&mut page, texts, figures);
     page += "</body>\n</html>\n";
     page
 }
 
 fn checks(page: &mut String, summary: &Summary) {
-    *page += "<h2>What the paper says its figures show</h2>\n<table>\n";
+    write_into(page, format_args!("<h2>{}</h2>\n<table>\n", escaped(summary.heading())));
     *page += "<tr><th>Figure</th><th>Statement</th><th>Measured</th><th></th></tr>\n";
     for check in &summary.checks {
         let (class, verdict) =
@@ -81,21 +85,20 @@ fn checks(page: &mut String, summary: &Summary) {
     *page += "</table>\n";
 }
 
-fn gallery(page: &mut String, figures: &[Figure]) {
-    *page +=
-        "<h2>Figures 4 to 19</h2>\n<p>Each link in turn: orientation, momenta and path.</p>\n<div class=\"figures\">\n";
-    for figure in figures {
-        let (file, title) = (figure.file_name(), escaped(&figure.title()));
-        let caption = match figure.assignment {
-            Assignment::Stated => "Number and content as the paper's text says.",
-            Assignment::Deduced => "Number deduced from the order of the figures about it.",
-        };
+fn gallery(page: &mut String, texts: &Page, figures: &[Figure]) {
+    let (heading, text) = (escaped(&texts.gallery), escaped(&texts.about_gallery));
+    write_into(page, format_args!("<h2>{heading}</h2>\n"));
+    if !text.is_empty() {
+        write_into(page, format_args!("<p>{text}</p>\n"));
+    }
+    *page += "<div class=\"figures\">\n";
+    for Figure { file, anchor, title, caption, .. } in figures {
+        let (title, caption) = (escaped(title), escaped(caption));
         write_into(
             page,
             format_args!(
-                "<figure id=\"figure-{0}\"><a href=\"{file}\"><img src=\"{file}\" alt=\"Figure {0}. {title}\" width=\"960\" \
-                 height=\"540\"></a><figcaption>{caption}</figcaption></figure>\n",
-                figure.number
+                "<figure id=\"{anchor}\"><a href=\"{file}\"><img src=\"{file}\" alt=\"{title}\" width=\"960\" \
+                 height=\"540\"></a><figcaption>{caption}</figcaption></figure>\n"
             ),
         );
     }

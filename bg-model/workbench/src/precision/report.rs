@@ -3,7 +3,6 @@
 //! In: entries. Out: text, files. A diagram for each case: error over wall time, and error over evaluations of the rate,
 //! which do not depend on the machine.
 
-use super::case::Case;
 use super::measure::{Counts, Entry};
 use crate::figures::{Curve, FigureError, work_precision};
 use crate::files::RunFolder;
@@ -75,8 +74,8 @@ fn diagram(case: &str, cost: &str) -> String {
 
 /// The names of all files that measurements of these cases may give.
 #[must_use]
-pub fn names(cases: &[Case]) -> Vec<String> {
-    let diagrams = cases.iter().flat_map(|case| COSTS.map(|(cost, ..)| diagram(&case.name(), cost)));
+pub fn names<'c>(cases: impl IntoIterator<Item = &'c str>) -> Vec<String> {
+    let diagrams = cases.into_iter().flat_map(|case| COSTS.map(|(cost, ..)| diagram(case, cost)));
     [TEXT, JSON].map(str::to_owned).into_iter().chain(diagrams).collect()
 }
 

@@ -30,7 +30,7 @@ pub enum SettingError {
         fault: ParameterError,
     },
     /// A `--set` without `=`.
-    #[error("--set {0}: give it as NAME=VALUE, for example --set torque=12")]
+    #[error("--set {0}: give it as NAME=VALUE, for example --set mass=2")]
     NoValue(String),
     /// A value that is no number.
     #[error("{place}: the value of `{name}` must be a number, and `{value}` is none")]
@@ -67,7 +67,7 @@ pub enum SettingError {
 fn near_miss(near: Option<&String>) -> String {
     match near {
         Some(near) => format!("; did you mean `{near}`?"),
-        None => "; `hacksaw parameters` lists them".to_owned(),
+        None => "; the command `parameters` lists them".to_owned(),
     }
 }
 
@@ -206,86 +206,4 @@ fn nearest<P: Parameters>(name: &str) -> Option<String> {
         .filter(|(similarity, _)| *similarity > SIMILAR)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, name)| name.to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mechanism::HacksawParameters;
-
-    fn chosen(toml: &str, settings: &[&str]) -> Result<Chosen<HacksawParameters>, SettingError> {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), toml).unwrap();
-        let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
-        merge(Some(file.path()), &settings)
-    }
-
-    fn merge_text(toml: &str, settings: &[&str]) -> Result<HacksawParameters, SettingError> {
-        chosen(toml, settings).map(|chosen| chosen.values)
-    }
-
-    fn fault(toml: &str, settings: &[&str]) -> String {
-        merge_text(toml, settings).unwrap_err().to_string()
-    }
-
-    #[test]
-    fn a_file_beats_defaults_and_a_setting_beats_the_file() {
-        let parameters = merge_text("torque = 12\nr_cut = 80.5\n", &["torque=14", "torque=15"]).unwrap();
-        assert_eq!(parameters.get("torque"), Some(15.0));
-        assert_eq!(parameters.get("r_cut"), Some(80.5));
-        assert_eq!(parameters.get("r_return"), HacksawParameters::default().get("r_return"));
-    }
-
-    #[test]
-    fn the_last_place_that_set_a_parameter_is_known() {
-        let chosen = chosen("torque = 12\nr_cut = 80.5\n", &["torque=14", "torque=15"]).unwrap();
-        let place =
-            |name: &str| &chosen.places[HacksawParameters::table().iter().position(|info| info.name == name).unwrap()];
-        assert_eq!(place("torque"), "--set torque=15");
-        assert!(!place("r_cut").is_empty());
-        assert_eq!(place("r_return"), "");
-    }
-
-    #[test]
-    fn each_fault_is_one_line_that_names_its_place() {
-        assert_eq!(fault("", &["torqe=1"]), "--set torqe=1: there is no parameter `torqe`; did you mean `torque`?");
-        assert_eq!(fault("", &["zzz=1"]), "--set zzz=1: there is no parameter `zzz`; `hacksaw parameters` lists them");
-        assert!(fault("", &["k_23=-1"]).starts_with("--set k_23=-1: parameter `k_23` = -1 N/m is out of range"));
-        assert!(fault("", &["torque=NaN"]).contains("a finite number"));
-        assert!(fault("", &["torque=ten"]).ends_with("must be a number, and `ten` is none"));
-        assert!(fault("", &["torque"]).contains("NAME=VALUE"));
-        assert!(fault("torqe = 1", &[]).contains("did you mean `torque`?"));
-        assert!(fault("torque = nan", &[]).contains("a finite number"));
-        assert!(fault("torque = 'ten'", &[]).contains("must be a number"));
-        assert!(fault("torque = 1\ntorque = = 2", &[]).contains("line 2, column 10"));
-        assert!(fault("[torque]\nx = 1", &[]).contains("must be a number"));
-        let cases = [
-            ("torqe = 1", &[][..]),
-            ("a = [1,\n2", &[]),
-            ("\"a\\nb\" = 1", &[]),
-            ("", &["k_2=-1"]),
-            ("", &["zzz\n = 1"]),
-            ("", &["torque=1\r2"]),
-        ];
-        for (toml, settings) in cases {
-            assert!(!fault(toml, settings).contains('\n'));
-        }
-    }
-
-    #[test]
-    fn the_written_file_reads_back() {
-        let mut parameters = HacksawParameters::default();
-        parameters.set("torque", 1.0 / 3.0).unwrap();
-        let back = merge_text(&to_toml(&parameters), &[]).unwrap();
-        for index in 0..HacksawParameters::table().len() {
-            assert_eq!(back.value(index), parameters.value(index));
-        }
-    }
-
-    #[test]
-    fn numbers_as_written_by_a_person() {
-        assert_eq!(number(1e7), "1e7");
-        assert_eq!(number(9.81), "9.81");
-        assert_eq!(number(7850.0), "7850");
-    }
 }

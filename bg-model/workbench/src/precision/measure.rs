@@ -3,20 +3,19 @@
 //! In: case, integrator, tolerance or step. Out: its true errors against the reference and what it cost. Times are of the
 //! run with the outputs at the reference's instants, without the building of the model.
 
-use bg_model::assembly::AssemblyError;
-use bg_model::integrator::{Integrator, Tolerances};
-use bg_model::parameters::{ParameterError, Parameters};
-use bg_model::simulation::{Samples, Settings};
+use std::marker::PhantomData;
+
+use bg_model::integrator::Integrator;
+use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::run::{Request, RunError, Simulation, Trajectory};
+use bg_model::simulation::{Recording, Samples};
 use bg_model::statistics::Statistics;
-use bg_model::system::Model;
 use serde::Serialize;
 use thiserror::Error;
 
-use super::case::Case;
+use super::case::{Case, CaseError};
 use super::errors::{Errors, Incomparable};
-use crate::run::{Simulation, record};
-use crate::scenes::{Fixed, Visitor};
-use crate::trajectory::Trajectory;
+use crate::scenes::Scene;
 
 /// How exact a run is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,16 +97,13 @@ impl From<&Statistics> for Counts {
 /// A case that cannot be measured.
 #[derive(Debug, Error)]
 pub enum MeasureError {
-    /// A parameter.
+    /// It cannot be built.
     #[error(transparent)]
-    Parameter(#[from] ParameterError),
-    /// A parameter that the scene keeps.
+    Case(#[from] CaseError),
+    /// It cannot be started.
     #[error(transparent)]
-    Fixed(#[from] Fixed),
-    /// The start.
-    #[error(transparent)]
-    Start(#[from] AssemblyError),
-    /// The trajectory does not fit the reference.
+    Run(#[from] RunError),
+    /// The run does not fit the reference.
     #[error(transparent)]
     Incomparable(#[from] Incomparable),
 }
@@ -119,34 +115,39 @@ const ENOUGH: f64 = 2.0;
 ///
 /// # Errors
 /// The case cannot be built; a run that fails is no error here.
-pub fn measure(
-    case: Case,
+pub fn measure<Me: Scenes>(
+    case: &Case,
+    scenes: &[Scene],
     integrator: Integrator,
     setting: Setting,
     repeats: usize,
-    reference: &Trajectory,
+    reference: &Recording,
 ) -> Result<Entry, MeasureError> {
     let repeats = repeats.max(1);
+    let scene = case.scene(scenes);
+    let request = request(integrator, setting, reference);
     let mut runs = Vec::with_capacity(repeats);
     let mut first = None;
     for _ in 0..repeats {
-        let simulation = case.scene().visit(Once { case, integrator, setting, reference })?;
-        runs.push(simulation.effort.wall.as_secs_f64());
-        first.get_or_insert(simulation);
+        let once = Once::<Me> { case, scenes, request: &request, of: PhantomData };
+        let (run, failure) = Me::model(scene.index, once)?;
+        runs.push(run.wall.as_secs_f64());
+        first.get_or_insert((run, failure));
         if runs.iter().sum::<f64>() > ENOUGH {
             break;
         }
     }
     let repeats = runs.len();
     runs.sort_unstable_by(f64::total_cmp);
-    let Simulation { trajectory, effort, failure } = first.expect("there is a run");
-    let errors = if failure.is_none() { Some(Errors::between(&trajectory, reference)?) } else { None };
+    let (run, failure) = first.expect("there is a run");
+    let outputs = scene.description.outputs;
+    let errors = if failure.is_none() { Some(Errors::between(&run, reference, outputs)?) } else { None };
     let (rtol, atol, step) = match setting {
         Setting::Tolerance { rtol, atol } => (Some(rtol), Some(atol), None),
         Setting::Step(step) => (None, None, Some(step)),
     };
     Ok(Entry {
-        case: case.name(),
+        case: case.name.clone(),
         integrator: integrator.name().to_owned(),
         rtol,
         atol,
@@ -156,44 +157,42 @@ pub fn measure(
         wall_minimum_s: runs[0],
         wall_median_s: runs[runs.len() / 2],
         repeats,
-        counts: Counts::from(&effort.statistics),
+        counts: Counts::from(&run.statistics),
     })
 }
 
-/// One run at the reference's instants.
-struct Once<'a> {
-    case: Case,
-    integrator: Integrator,
-    setting: Setting,
-    reference: &'a Trajectory,
+/// A run at the reference's instants.
+fn request(method: Integrator, setting: Setting, reference: &Recording) -> Request {
+    /// More than any method needs that is worth its time.
+    const LIMIT: u64 = 20_000_000;
+    let plain = Request::default();
+    // Each kind of method takes one of them.
+    let (rtol, atol, fixed_step) = match setting {
+        Setting::Tolerance { rtol, atol } => (rtol, Some(atol), plain.fixed_step),
+        Setting::Step(step) => (plain.rtol, None, step),
+    };
+    let t_end = reference.times.last().copied().unwrap_or(0.0);
+    let samples = Samples::At(reference.times.clone());
+    Request { method, fixed_step, t_end, rtol, atol, samples, step_limit: LIMIT, ..plain }
 }
 
-impl Visitor for Once<'_> {
-    type Output = Result<Simulation, MeasureError>;
+/// One run; where it fails what it reached, and why.
+struct Once<'a, Me> {
+    case: &'a Case,
+    scenes: &'a [Scene],
+    request: &'a Request,
+    of: PhantomData<Me>,
+}
 
-    fn visit<P, Mo, const N: usize, const G: usize, const M: usize>(
-        self,
-        new: fn(P) -> Result<Mo, ParameterError>,
-    ) -> Self::Output
-    where
-        P: Parameters + 'static,
-        Mo: Model<f64, N, G, M> + 'static,
-    {
-        /// More than any method needs that is worth its time.
-        const LIMIT: u64 = 20_000_000;
-        let model = new(self.case.scene().parameters(&self.case.reference().parameters())?)?;
-        // Each kind of method takes one of them.
-        let (tolerances, step) = match self.setting {
-            Setting::Tolerance { rtol, atol } => (Tolerances::new(rtol, atol), f64::NAN),
-            Setting::Step(step) => (Tolerances::default(), step),
-        };
-        let settings = Settings {
-            tolerances,
-            samples: Samples::At(self.reference.times.clone()),
-            step_limit: LIMIT,
-            ..Settings::default()
-        };
-        let t_end = self.reference.times.last().copied().unwrap_or(0.0);
-        record(&model, self.integrator, step, t_end, &settings, &mut |_| {}).map_err(Into::into)
+impl<Me: Mechanism> MechanismVisitor for Once<'_, Me> {
+    type Output = Result<(Trajectory, Option<String>), MeasureError>;
+
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        let model = self.case.model::<Me, Sc>(self.scenes)?;
+        match Simulation::of(&model, self.request.clone()).run() {
+            Ok(run) => Ok((run, None)),
+            Err(RunError::Stopped(stopped)) => Ok((stopped.trajectory, Some(stopped.cause.to_string()))),
+            Err(fault) => Err(fault.into()),
+        }
     }
 }

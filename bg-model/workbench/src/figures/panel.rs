@@ -154,6 +154,20 @@ pub fn widened(range: Range<f64>, smallest: f64) -> Range<f64> {
     middle - half..middle + half
 }
 
+/// The plot of row `row` of `rows` with one time axis below them; `left` and `width` are those of the plot in the content.
+#[must_use]
+pub fn row_plot(row: i32, rows: i32, left: i32, width: i32) -> Rectangle {
+    let content = Rectangle::CONTENT;
+    let height = (content.height - TIME_LABELS) / rows;
+    Rectangle { x: content.x + left, y: content.y + row * height + CAPTION, width, height: height - CAPTION }
+}
+
+/// The time axis of a run, never empty.
+#[must_use]
+pub fn time_span(start: f64, end: f64) -> Range<f64> {
+    if end > start { start..end } else { start..start + 1.0 }
+}
+
 /// The smallest span worth showing of a quantity that does not move; SI units.
 pub const STILL: f64 = 1e-6;
 
@@ -177,22 +191,31 @@ pub struct OverTime<'a> {
 
 impl OverTime<'_> {
     /// Draws the panel: caption above, the plot in `plot`, labels outside of it.
+    ///
+    /// # Errors
+    /// The drawing crate refuses.
     pub fn draw(&self, area: &Area, plot: Rectangle) -> Result<(), FigureError> {
+        self.draw_with(area, plot, &[])
+    }
+
+    /// The same with more curves over the same times.
+    ///
+    /// # Errors
+    /// The drawing crate refuses.
+    pub fn draw_with(&self, area: &Area, plot: Rectangle, more: &[(&[f64], RGBColor)]) -> Result<(), FigureError> {
         let style = text(13, self.colour, HPos::Left);
         write(area, &self.caption, (plot.x, plot.y - CAPTION + 3), &style)?;
         let time = Axis::over(self.span.clone(), plot.width as usize / 70);
         let values = Axis::over(self.range.clone(), plot.height as usize / 28);
         let mut chart = chart(area, plot, time, values, self.time_description.as_deref())?;
-        let shown: Vec<(f64, f64)> = self
-            .times
-            .iter()
-            .copied()
-            .zip(self.values.iter().copied())
-            .filter(|(t, value)| self.span.contains(t) || *t == self.span.end && value.is_finite())
-            .collect();
-        // Two columns a pixel: finer is not seen.
-        let thin = thinning::over_time(&shown, 2 * plot.width as usize);
-        chart.draw_series([PathElement::new(thin, self.colour.stroke_width(LINE))]).map_err(drawing)?;
+        for (values, colour) in std::iter::once((self.values, self.colour)).chain(more.iter().copied()) {
+            let points = self.times.iter().copied().zip(values.iter().copied());
+            let is_shown = |(t, value): &(f64, f64)| self.span.contains(t) || *t == self.span.end && value.is_finite();
+            let shown: Vec<(f64, f64)> = points.filter(is_shown).collect();
+            // Two columns a pixel: finer is not seen.
+            let thin = thinning::over_time(&shown, 2 * plot.width as usize);
+            chart.draw_series([PathElement::new(thin, colour.stroke_width(LINE))]).map_err(drawing)?;
+        }
         Ok(())
     }
 }

@@ -1,0 +1,73 @@
+//! The model seen by name: made from parameters and inputs in their order, handed on with its numbers.
+//!
+//! In: the graph's inputs, the names of its scenes. Out: `bg_model::Mechanism` for the model, beside its other code;
+//! `bg_model::Scenes`, which names the scenes' types, where these are.
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::quote;
+
+use super::super::items::{Given, identifier};
+use super::Emission;
+
+impl Emission<'_> {
+    pub(super) fn mechanism(&self) -> TokenStream {
+        of(&self.model.derived.causal.graph.inputs.iter().map(|input| identifier(&input.name.text)).collect::<Vec<_>>())
+    }
+}
+
+/// The implementation for a model with these inputs.
+pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
+    let places = (0..inputs.len()).map(Literal::usize_unsuffixed);
+    let has_inputs = !inputs.is_empty();
+    let made = has_inputs.then(|| quote!(, Inputs { #(#inputs: inputs.get(#places).cloned().unwrap_or_default(),)* }));
+    let own = has_inputs.then(|| quote!(, self.inputs.clone()));
+    quote! {
+        impl ::bg_model::mechanism::Mechanism for Model {
+            type Parameters = Parameters;
+
+            fn describe() -> &'static ::bg_model::description::Description {
+                &DESCRIPTION
+            }
+            fn make(parameters: Parameters, inputs: &[::bg_model::input::Input])
+                -> Result<Self, ::bg_model::parameters::ParameterError>
+            {
+                Self::new(parameters #made)
+            }
+            fn parameters(&self) -> &Parameters {
+                &self.parameters
+            }
+            fn inputs(&self) -> ::std::vec::Vec<::bg_model::input::Input> {
+                ::std::vec![#(self.inputs.#inputs.clone()),*]
+            }
+            fn visit<S: Scalar, V: ::bg_model::mechanism::ModelVisitor<S>>(&self, visitor: V) -> V::Output {
+                let model = Model::<S>::in_scalar(self.parameters.clone() #own);
+                visitor.visit(&model.expect("a model was made with these parameters before"))
+            }
+        }
+    }
+}
+
+impl Given<'_> {
+    /// The types of the graph's scenes. Stands where these are: no module inside sees items of a function's body.
+    pub(in super::super) fn scenes(&self, names: &[&str]) -> TokenStream {
+        let name = identifier(self.name);
+        let count = Literal::usize_unsuffixed(names.len() + 1);
+        let places = (1..=names.len()).map(Literal::usize_unsuffixed);
+        let scenes = names.iter().map(|name| identifier(name));
+        quote! {
+            #[allow(clippy::all, clippy::pedantic)]
+            impl ::bg_model::mechanism::Scenes for #name {
+                const MODELS: ::core::primitive::usize = #count;
+                fn model<__Visitor: ::bg_model::mechanism::MechanismVisitor>(
+                    index: ::core::primitive::usize, visitor: __Visitor,
+                ) -> __Visitor::Output {
+                    match index {
+                        0 => visitor.visit::<Self>(),
+                        #(#places => visitor.visit::<#scenes>(),)*
+                        _ => ::core::panic!("there is no model of this number"),
+                    }
+                }
+            }
+        }
+    }
+}

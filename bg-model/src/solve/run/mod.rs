@@ -1,0 +1,238 @@
+//! A run of a mechanism, asked for in words and given as columns by name: the face without const generics.
+//!
+//! In: a [`Mechanism`] and what is asked of the run. Out: a [`Trajectory`], from which the run can go on. Underneath is
+//! [`simulation::integrate`](crate::simulation::integrate), which allocates nothing; what this face costs on top is the
+//! recording of the samples.
+
+mod instants;
+mod request;
+mod state;
+mod trajectory;
+
+use std::time::Instant;
+
+use nalgebra::SVector;
+
+pub use instants::sample_times;
+pub use request::Request;
+pub use state::{State, StateError};
+pub use trajectory::{Stopped, Trajectory};
+
+use thiserror::Error;
+
+use crate::model::assembly::AssemblyError;
+use crate::model::description::Description;
+use crate::model::mechanism::{Mechanism, ModelVisitor};
+use crate::model::system::Model;
+use crate::solve::integrator::{AnyMethod, Change, Integrator, Method};
+use crate::solve::simulation::{EachStep, Part, Recorder, Samples, Span, integrate};
+
+/// A run to be made.
+///
+/// ```
+/// use bg_model::bond_graph;
+/// use bg_model::run::Simulation;
+///
+/// bond_graph! {
+///     pub graph Oscillator {
+///         param mass: kg = 2, above 0;
+///         param stiffness: N/m = 50, at least 0;
+///         param damping: N*s/m = 0.5, at least 0;
+///         1 slide: translation;
+///         I body = mass; C spring = stiffness start 0.1; R damper = damping;
+///         slide -> body; slide -> spring; slide -> damper;
+///         observe { x: m = spring.q; v: m/s = slide.flow }
+///     }
+/// }
+///
+/// let model = Oscillator::new(OscillatorParameters::default())?;
+/// let mut run = Simulation::new(&model).rtol(1e-8).every(0.01).until(5.0).run()?;
+/// assert_eq!((run.times.len(), run["x"][0]), (501, 0.1));
+/// run.continue_until(&model, 6.0)?;
+/// assert_eq!(run.times.last(), Some(&6.0));
+/// run.write_csv(std::io::sink())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use = "a run is made by `run`"]
+pub struct Simulation<'a, Me> {
+    model: &'a Me,
+    request: Request,
+    start: Option<State>,
+    progress: Box<dyn FnMut(f64) + 'a>,
+}
+
+impl<'a, Me: Mechanism> Simulation<'a, Me> {
+    /// A run of `model` from its start, as [`Request::default`] says until it is told otherwise.
+    pub fn new(model: &'a Me) -> Self {
+        Self::of(model, Request::default())
+    }
+
+    /// A run of `model` from its start as it is asked for.
+    pub fn of(model: &'a Me, request: Request) -> Self {
+        Self { model, request, start: None, progress: Box::new(|_| ()) }
+    }
+
+    /// The integrator.
+    pub fn method(mut self, method: Integrator) -> Self {
+        self.request.method = method;
+        self
+    }
+
+    /// The relative tolerance of each step; the absolute one is a tenth of it unless it is set.
+    pub fn rtol(mut self, relative: f64) -> Self {
+        self.request.rtol = relative;
+        self
+    }
+
+    /// The absolute tolerance of each step, in each state's SI unit.
+    pub fn atol(mut self, absolute: f64) -> Self {
+        self.request.atol = Some(absolute);
+        self
+    }
+
+    /// A sample at the start, every `interval` (s) and at the end. Without it every step gives one.
+    pub fn every(mut self, interval: f64) -> Self {
+        self.request.samples = Samples::Every(interval);
+        self
+    }
+
+    /// Samples at these instants only, s, ascending.
+    pub fn at(mut self, instants: &[f64]) -> Self {
+        self.request.samples = Samples::At(instants.to_vec());
+        self
+    }
+
+    /// What is recorded of each sample; the outputs unless it is said.
+    pub fn recording(mut self, parts: &[Part]) -> Self {
+        self.request.parts = parts.to_vec();
+        self
+    }
+
+    /// The end of the run, s.
+    pub fn until(mut self, t_end: f64) -> Self {
+        self.request.t_end = t_end;
+        self
+    }
+
+    /// Starts from `state` at its time, not from the model's own start. The parameters may be others than those that led to
+    /// it: what stays are the states (momenta, not velocities).
+    pub fn from(mut self, state: &State) -> Self {
+        self.start = Some(state.clone());
+        self
+    }
+
+    /// Tells `progress` the time reached, s, after each step.
+    pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
+        self.progress = Box::new(progress);
+        self
+    }
+
+    /// The state that it starts from.
+    ///
+    /// # Errors
+    /// The start cannot be assembled, the state is not one of this mechanism.
+    pub fn start(&self) -> Result<State, RunError> {
+        let x = self.model.visit(Start { start: self.start.as_ref() })?;
+        let Description { name, states, .. } = Me::describe();
+        Ok(State::new(name, states, x.0, &x.1))
+    }
+
+    /// Makes the run.
+    ///
+    /// # Errors
+    /// The start cannot be assembled, the state is not one of this mechanism, or the run stops before its end: then the
+    /// error has what was reached.
+    pub fn run(self) -> Result<Trajectory, RunError> {
+        let Self { model, request, start, progress } = self;
+        model.visit(Integration { request, start, progress })
+    }
+}
+
+/// A run that was not made, or not to its end.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The mechanism cannot be assembled.
+    #[error(transparent)]
+    Start(#[from] AssemblyError),
+    /// A state that it cannot start from.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// It stopped before its end.
+    #[error(transparent)]
+    Stopped(Box<Stopped>),
+}
+
+/// The time and the states that a run starts from.
+struct Start<'a> {
+    start: Option<&'a State>,
+}
+
+impl Start<'_> {
+    fn vector<Mo, const N: usize, const G: usize, const M: usize>(
+        &self,
+        model: &Mo,
+    ) -> Result<(f64, SVector<f64, N>), RunError>
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        let Description { name, states, .. } = model.description();
+        match self.start {
+            Some(state) => Ok((state.t, state.vector(name, states)?)),
+            None => Ok((0.0, model.start()?)),
+        }
+    }
+}
+
+impl ModelVisitor<f64> for Start<'_> {
+    type Output = Result<(f64, Vec<f64>), RunError>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        let (t, x) = self.vector(model)?;
+        Ok((t, x.as_slice().to_vec()))
+    }
+}
+
+/// What is integrated. Every run passes here, so that each model is compiled once.
+struct Integration<'a> {
+    request: Request,
+    start: Option<State>,
+    progress: Box<dyn FnMut(f64) + 'a>,
+}
+
+impl ModelVisitor<f64> for Integration<'_> {
+    type Output = Result<Trajectory, RunError>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        let Self { request, start, progress } = self;
+        let clock = Instant::now();
+        let Description { name, states, .. } = model.description();
+        let (t0, start) = Start { start: start.as_ref() }.vector(model)?;
+        let mut method: AnyMethod<N> = request.method.method(request.fixed_step);
+        let first = Change { t: t0, method: method.name() };
+        let settings = request.settings(t0);
+        let mut observer = (Recorder::new(model, &request.parts), EachStep(progress));
+        let span = Span { t0, t_end: request.t_end };
+        let (finish, cause) = match integrate(model, &mut method, &start, span, &settings, &mut observer) {
+            Ok(finish) => (finish, None),
+            Err(failure) => (*failure.last, Some(failure.cause)),
+        };
+        let trajectory = Trajectory {
+            recording: observer.0.recording,
+            statistics: finish.statistics,
+            methods: std::iter::once(first).chain(method.changes().iter().copied()).collect(),
+            wall: clock.elapsed(),
+            last: State::new(name, states, finish.t, finish.x.as_slice()),
+            request,
+        };
+        match cause {
+            None => Ok(trajectory),
+            Some(cause) => Err(RunError::Stopped(Box::new(Stopped { cause, trajectory }))),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! What is asked of a run.
+
+use super::sample_times;
+use crate::solve::integrator::{Integrator, Tolerances};
+use crate::solve::simulation::{Part, Samples, Settings};
+
+/// What is asked of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The integrator.
+    pub method: Integrator,
+    /// The step of a fixed-step method, s; without effect on others.
+    pub fixed_step: f64,
+    /// The end of the run, s.
+    pub t_end: f64,
+    /// Relative tolerance of each step.
+    pub rtol: f64,
+    /// Absolute tolerance of each step, in each state's SI unit; without one, `rtol` over [`Request::RTOL_OVER_ATOL`].
+    pub atol: Option<f64>,
+    /// The instants of the samples.
+    pub samples: Samples,
+    /// What is recorded at each.
+    pub parts: Vec<Part>,
+    /// The number of attempted steps, rejected ones included, after which the run gives up.
+    pub step_limit: u64,
+}
+
+impl Default for Request {
+    /// `auto` over 1 s at a relative tolerance of 1e-8; the outputs at the end of each step.
+    fn default() -> Self {
+        Self {
+            method: Integrator::default(),
+            fixed_step: 1e-4,
+            t_end: 1.0,
+            rtol: 1e-8,
+            atol: None,
+            samples: Samples::Steps,
+            parts: vec![Part::Outputs],
+            step_limit: Settings::<0>::default().step_limit,
+        }
+    }
+}
+
+impl Request {
+    /// The rtol over the atol that goes with it. A smaller atol costs steps and gives no smaller an error for the same time.
+    pub const RTOL_OVER_ATOL: f64 = 10.0;
+
+    /// The absolute tolerance, in each state's SI unit.
+    #[must_use]
+    pub fn atol(&self) -> f64 {
+        self.atol.unwrap_or(self.rtol / Self::RTOL_OVER_ATOL)
+    }
+
+    /// The same for the driver, of a run from `t0` (s) on.
+    pub(super) fn settings<const N: usize>(&self, t0: f64) -> Settings<N> {
+        let samples = match &self.samples {
+            // The driver says what is wrong with an interval that cannot be.
+            Samples::Every(interval) if interval.is_finite() && self.is_countable(t0, *interval) => {
+                Samples::At(sample_times(t0, *interval, self.t_end))
+            }
+            Samples::At(instants) => Samples::At(instants.iter().copied().filter(|t| *t >= t0).collect()),
+            samples => samples.clone(),
+        };
+        let tolerances = Tolerances::new(self.rtol, self.atol());
+        Settings { tolerances, samples, step_limit: self.step_limit, ..Settings::default() }
+    }
+
+    /// Whether the samples can be listed before the run: their instants take 80 MB at most.
+    fn is_countable(&self, t0: f64, interval: f64) -> bool {
+        const MOST: f64 = 1e7;
+        interval > 0.0 && self.t_end >= t0 && (self.t_end - t0) / interval < MOST
+    }
+}

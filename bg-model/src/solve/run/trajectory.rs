@@ -1,0 +1,138 @@
+//! What a run gives: its samples as columns by name, what it took, and the state from which it can go on.
+
+use std::io::{self, Write};
+use std::ops::{Deref, Index};
+use std::time::Duration;
+
+use thiserror::Error;
+
+use super::{Request, RunError, Simulation, State};
+use crate::model::mechanism::Mechanism;
+use crate::solve::failure::Cause;
+use crate::solve::integrator::Change;
+use crate::solve::simulation::{Recording, Samples};
+use crate::solve::statistics::Statistics;
+
+/// A run: its samples (it can be used as its [`Recording`]) and what it took.
+#[derive(Clone, Debug)]
+pub struct Trajectory {
+    /// The samples.
+    pub recording: Recording,
+    /// Steps, evaluations, factorisations, events.
+    pub statistics: Statistics,
+    /// The methods that made the steps, from when (s) on; the first from the start.
+    pub methods: Vec<Change>,
+    /// Time on the wall clock.
+    pub wall: Duration,
+    /// Where the run has come to.
+    pub last: State,
+    /// What was asked for.
+    pub request: Request,
+}
+
+/// A run that stopped before its end.
+#[derive(Debug, Error)]
+#[error("{cause}")]
+pub struct Stopped {
+    /// Why.
+    pub cause: Cause,
+    /// What was reached.
+    pub trajectory: Trajectory,
+}
+
+impl Deref for Trajectory {
+    type Target = Recording;
+
+    fn deref(&self) -> &Recording {
+        &self.recording
+    }
+}
+
+impl Index<&str> for Trajectory {
+    type Output = [f64];
+
+    /// The values of the column called `name`, one for each of `times`.
+    ///
+    /// # Panics
+    /// There is no such column; [`Recording::column`] says so by `None`.
+    fn index(&self, name: &str) -> &[f64] {
+        let names = || self.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
+        self.column(name).unwrap_or_else(|| panic!("the run has no column `{name}`; it has {}", names()))
+    }
+}
+
+impl Trajectory {
+    /// Goes on to `t_end` (s) from where the run has come to, and appends what is sampled. `model` may have other parameters:
+    /// what stays are the states (momenta, not velocities).
+    ///
+    /// # Errors
+    /// As [`Simulation::run`]; what was reached is appended then as well.
+    pub fn continue_until<Me: Mechanism>(&mut self, model: &Me, t_end: f64) -> Result<(), RunError> {
+        let request = Request { t_end, ..self.request.clone() };
+        match Simulation::of(model, request).from(&self.last).run() {
+            Ok(more) => self.append(more),
+            Err(RunError::Stopped(stopped)) => {
+                let Stopped { cause, trajectory } = *stopped;
+                self.append(trajectory);
+                return Err(RunError::Stopped(Box::new(Stopped { cause, trajectory: self.clone() })));
+            }
+            Err(fault) => return Err(fault),
+        }
+        Ok(())
+    }
+
+    /// Appends a run that started where this one has come to.
+    fn append(&mut self, more: Self) {
+        let known = self.times.last().copied();
+        let is_new = |t: f64| known.is_none_or(|known| t > known);
+        for (index, &t) in more.times.iter().enumerate().filter(|(_, t)| is_new(**t)) {
+            self.recording.push(t, more.row(index));
+        }
+        self.recording.events.extend(&more.recording.events);
+        let known = self.methods.last().map(|change| change.method);
+        let is_new = |(index, change): &(usize, &Change)| *index > 0 || Some(change.method) != known;
+        let changes = more.methods.iter().enumerate().filter(is_new).map(|(_, change)| *change);
+        self.methods.extend(changes);
+        self.statistics.add(&more.statistics);
+        self.wall += more.wall;
+        self.last = more.last;
+        self.request.t_end = more.request.t_end;
+        if let (Samples::At(own), Samples::At(more)) = (&mut self.request.samples, more.request.samples) {
+            *own = more;
+        }
+    }
+}
+
+impl Recording {
+    /// Writes a CSV file: `t` and all columns, every number in the shortest form that reads back to the same bits.
+    ///
+    /// # Errors
+    /// A failure of `writer`.
+    pub fn write_csv(&self, writer: impl Write) -> io::Result<()> {
+        self.write_columns(self.columns.iter().map(|column| column.name.as_str()), writer)
+    }
+
+    /// Writes a CSV file: `t` and the columns called `names`, in this order.
+    ///
+    /// # Errors
+    /// A failure of `writer`; a name that no column has.
+    pub fn write_columns<'n>(&self, names: impl IntoIterator<Item = &'n str>, writer: impl Write) -> io::Result<()> {
+        let column = |name: &'n str| Ok((name, self.values(name).map_err(io::Error::other)?));
+        let columns = names.into_iter().map(column).collect::<io::Result<Vec<_>>>()?;
+        let mut csv = csv::Writer::from_writer(writer);
+        csv.write_record(std::iter::once("t").chain(columns.iter().map(|(name, _)| *name)))?;
+        for (index, t) in self.times.iter().enumerate() {
+            csv.write_field(shortest(*t))?;
+            for (_, values) in &columns {
+                csv.write_field(shortest(values[index]))?;
+            }
+            csv.write_record(None::<&[u8]>)?;
+        }
+        csv.flush()
+    }
+}
+
+/// The shortest decimal form that reads back to the same bits, with an exponent where that is shorter.
+fn shortest(value: f64) -> String {
+    format!("{value:?}")
+}

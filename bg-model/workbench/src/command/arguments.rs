@@ -1,0 +1,192 @@
+//! The arguments as the user writes them.
+
+use std::path::PathBuf;
+
+use bg_model::integrator::Integrator;
+use bg_model::run::Request;
+use clap::{Args, Parser, Subcommand};
+
+use super::methods::integrator;
+use crate::report::Part;
+
+#[derive(Debug, Parser)]
+#[command(name = "program", version, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    #[command(flatten)]
+    pub run: RunArguments,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run the mechanism (also what the program alone does)
+    Run(RunArguments),
+    /// List the scenes, or say what a scene left out of the literal model and why
+    Scene {
+        /// The scene to report on; without it, one line for each
+        #[arg(value_name = "NAME", id = "scene")]
+        scene: Option<String>,
+    },
+    /// Print the multibond graph of a scene: elements, bonds with causal strokes, states, equations, operations
+    Graph {
+        /// The scene. All of one mechanism have the same graph but for what they are without; states, operations differ
+        #[arg(long, value_name = "NAME")]
+        scene: String,
+        /// What to print; without it, an overview of counts, states and operations
+        #[arg(long, value_name = "PART", value_enum)]
+        part: Option<Part>,
+    },
+    /// List the states of a scene: name, unit, storage, causality
+    States {
+        /// The scene
+        #[arg(long, value_name = "NAME")]
+        scene: String,
+    },
+    /// Print the equations of a scene in the order of evaluation
+    Equations {
+        /// The scene
+        #[arg(long, value_name = "NAME")]
+        scene: String,
+    },
+    /// Measure what each error costs: integrators over tolerances against reference solutions in extended precision
+    Precision(PrecisionArguments),
+    /// Compare two runs, output by output: the largest difference and its time
+    Compare(CompareArguments),
+    /// List the parameters: name, default, unit, meaning
+    Parameters {
+        /// Print them as a file for --params
+        #[arg(long)]
+        toml: bool,
+    },
+}
+
+/// What is run, and how.
+#[derive(Clone, Debug, Args)]
+pub struct ModelArguments {
+    /// What to model; the command `scene` says more
+    #[arg(long, value_name = "NAME")]
+    pub scene: String,
+
+    /// Set a parameter; can be given again and again, the last one counts. Comes after --params
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<String>,
+
+    /// Read parameters from a TOML file of lines `name = value`
+    #[arg(long, value_name = "FILE.toml")]
+    pub params: Option<PathBuf>,
+}
+
+/// How it is integrated.
+#[derive(Clone, Debug, Args)]
+pub struct IntegrationArguments {
+    /// End of the run, s
+    #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = real, allow_negative_numbers = true)]
+    pub t_end: f64,
+
+    /// The integrator; auto says in the summary what it chose
+    #[arg(long, value_name = "NAME", default_value_t, value_parser = integrator())]
+    pub method: Integrator,
+
+    /// Step of an integrator with a fixed step, s
+    #[arg(long, value_name = "SECONDS", default_value = "1e-4", value_parser = real, allow_negative_numbers = true)]
+    pub fixed_step: f64,
+
+    /// Relative tolerance of each step
+    #[arg(long, value_name = "NUMBER", default_value = "1e-8", value_parser = real, allow_negative_numbers = true)]
+    pub rtol: f64,
+
+    /// Absolute tolerance of each step, in SI units [default: 0.1 of --rtol]
+    #[arg(long, value_name = "NUMBER", value_parser = real, allow_negative_numbers = true)]
+    pub atol: Option<f64>,
+
+    /// Output interval of the CSV file, s. Figures and summary use finer samples where they need them
+    #[arg(long, value_name = "SECONDS", default_value = "0.01", value_parser = real, allow_negative_numbers = true)]
+    pub step: f64,
+}
+
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+
+    #[command(flatten)]
+    pub integration: IntegrationArguments,
+
+    /// Write the trajectory here instead of trajectory.csv in --out. Replaces a file that is there; later runs leave it
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+
+    /// Folder for figures, index.html, summary.txt, summary.json and trajectory.csv; made if it is not there. They replace
+    /// the files of the run before as soon as all are written; other files stay
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+
+    /// Draw no figures and no overview page; together with --csv nothing is written but that file
+    #[arg(long)]
+    pub no_figures: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// A scene, a CSV file of a run, or the folder of one
+    #[arg(value_name = "A")]
+    pub a: String,
+
+    /// What it is compared with, likewise
+    #[arg(value_name = "B")]
+    pub b: String,
+
+    /// Set a parameter of the scenes; can be given again and again
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<String>,
+
+    /// Read parameters of the scenes from a TOML file
+    #[arg(long, value_name = "FILE.toml")]
+    pub params: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub integration: IntegrationArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct PrecisionArguments {
+    /// What is run
+    #[arg(value_name = "CASE")]
+    pub cases: Vec<String>,
+
+    /// The integrators [default: all]
+    #[arg(long, value_name = "NAME", value_parser = integrator(), value_delimiter = ',')]
+    pub methods: Vec<Integrator>,
+
+    /// Relative tolerances
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        value_delimiter = ',',
+        value_parser = real,
+        default_values = ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10", "1e-11", "1e-12"]
+    )]
+    pub rtol: Vec<f64>,
+
+    /// Absolute tolerances, in SI units, over the relative ones
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0 / Request::RTOL_OVER_ATOL, value_parser = real)]
+    pub atol_ratio: f64,
+
+    /// Steps of integrators with a fixed step, s
+    #[arg(long, value_name = "SECONDS", value_delimiter = ',', value_parser = real, default_values = ["2e-4", "1e-4", "5e-5", "2e-5"])]
+    pub fixed_step: Vec<f64>,
+
+    /// Runs of each point, within two seconds; the least and the median of their times count
+    #[arg(long, value_name = "COUNT", default_value_t = 5)]
+    pub repeats: usize,
+
+    /// Folder for precision.txt, precision.json and the diagrams, which replace those of the run before
+    #[arg(long, value_name = "DIR", default_value = "out/precision")]
+    pub out: PathBuf,
+}
+
+/// A number on the command line.
+fn real(text: &str) -> Result<f64, &'static str> {
+    text.parse().map_err(|_| "not a number")
+}

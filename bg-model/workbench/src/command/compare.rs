@@ -1,0 +1,73 @@
+//! The command `compare`: two scenes or two runs, output by output.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::parameters::Parameters;
+use bg_model::run::Request;
+use bg_model::simulation::Recording;
+
+use super::arguments::CompareArguments;
+use super::run::{Outcome, integrate, model, request};
+use super::{InputError, ended, say};
+use crate::Program;
+use crate::compare::text;
+use crate::parameters::{self, Chosen};
+use crate::samples::read_file;
+use crate::scenes::Scene;
+
+pub fn compare<Me: Scenes>(program: &Program<Me>, arguments: &CompareArguments) -> Result<ExitCode, InputError> {
+    let chosen = parameters::merge::<Me::Parameters>(arguments.params.as_deref(), &arguments.set)?;
+    let request = request(&arguments.integration, None)?;
+    let [a, b] = [&arguments.a, &arguments.b].map(|name| side(program, name, &chosen, &request));
+    let ((a, first), (b, second)) = (a?, b?);
+    let code = say(&text([&arguments.a, &arguments.b], &a, &b));
+    let failures: Vec<String> = first.into_iter().chain(second).collect();
+    Ok(if failures.is_empty() { code } else { ended(failures) })
+}
+
+/// A run by name, and why it stopped before its end, if it did: of a scene a new one, else the one that a file has.
+fn side<Me: Scenes>(
+    program: &Program<Me>,
+    name: &str,
+    chosen: &Chosen<Me::Parameters>,
+    request: &Request,
+) -> Result<(Recording, Option<String>), InputError> {
+    if let Some(scene) = program.scenes.iter().find(|scene| scene.name == name) {
+        let run = Running { scene, scenes: &program.scenes, chosen, request: request.clone() };
+        let Outcome { run, failure } = Me::model(scene.index, run)?;
+        let failure = failure.map(|failure| format!("the run of `{name}` failed: {failure}"));
+        return Ok((run.recording, failure));
+    }
+    let path = Path::new(name);
+    if !path.exists() {
+        return Err(InputError::NothingToCompare(name.to_owned()));
+    }
+    let file = if path.is_dir() { path.join("trajectory.csv") } else { path.to_owned() };
+    let mut samples = read_file(&file)?;
+    // A file has no units; those of the model's outputs are known by name.
+    for column in &mut samples.columns {
+        let mut outputs = program.scenes.iter().flat_map(|scene| scene.description.outputs);
+        if let Some(output) = outputs.find(|output| output.name == column.name) {
+            output.unit.clone_into(&mut column.unit);
+        }
+    }
+    Ok((samples, None))
+}
+
+struct Running<'a, P> {
+    scene: &'a Scene,
+    scenes: &'a [Scene],
+    chosen: &'a Chosen<P>,
+    request: Request,
+}
+
+impl<P: Parameters> MechanismVisitor for Running<'_, P> {
+    type Output = Result<Outcome, InputError>;
+
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        let model: Sc = model(self.scene, self.scenes, self.chosen)?;
+        Ok(integrate(&model, self.request)?)
+    }
+}

@@ -1,0 +1,163 @@
+//! The command line: what a user asks for, and what results.
+//!
+//! In: arguments. Out: a run with its files and the summary on stdout, or one line `error: ...` on stderr.
+//! Exit codes: 0 done; 1 the run or an output failed, what could be written is; 2 the input cannot be used, nothing was run.
+
+mod arguments;
+mod compare;
+mod methods;
+mod precision;
+mod progress;
+mod run;
+
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::process::ExitCode;
+
+use bg_model::mechanism::{Mechanism, Scenes};
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::run::RunError;
+use bg_model::simulation::MissingColumn;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Arg, CommandFactory, FromArgMatches};
+use thiserror::Error;
+
+use crate::Program;
+use crate::files::{FileError, console};
+use crate::output::OutputError;
+use crate::parameters::{self, SettingError};
+use crate::precision::measure::MeasureError;
+use crate::report::{self, Part};
+use crate::samples::Unreadable;
+use crate::scenes::Fixed;
+use arguments::{Cli, Command};
+
+/// Input that cannot be used.
+#[derive(Debug, Error)]
+enum InputError {
+    #[error(transparent)]
+    Setting(#[from] SettingError),
+    #[error("{name} {}: must be {range}", parameters::number(*value))]
+    Range { name: &'static str, value: f64, range: String },
+    #[error("--step {}: gives more than {most} rows until {t_end} s; choose a longer one", parameters::number(*step))]
+    Rows { step: f64, t_end: f64, most: f64 },
+    #[error("{place}: {fault}")]
+    Fixed { place: String, fault: Fixed },
+    #[error("{0}: neither a scene nor a run; the command `scene` lists the scenes")]
+    NothingToCompare(String),
+    #[error(transparent)]
+    Model(#[from] ParameterError),
+    #[error(transparent)]
+    Run(#[from] RunError),
+    #[error(transparent)]
+    Column(#[from] MissingColumn),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Unreadable(#[from] Unreadable),
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+}
+
+impl From<crate::precision::case::CaseError> for InputError {
+    fn from(fault: crate::precision::case::CaseError) -> Self {
+        Self::Measure(fault.into())
+    }
+}
+
+/// Does what the arguments ask for and gives the exit code.
+pub(crate) fn main<Me: Scenes>(program: &Program<Me>, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = command(program).try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
+    let outcome = match cli {
+        Err(fault) if fault.use_stderr() => return refuse(&one_line(&fault)),
+        // Help and version.
+        Err(help) => Ok(ended(console::printed(help.print()).err())),
+        Ok(Cli { command: None, run }) => run::simulate(program, &run),
+        Ok(Cli { command: Some(command), .. }) => obey(program, command),
+    };
+    outcome.unwrap_or_else(|fault| refuse(&fault))
+}
+
+fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode, InputError> {
+    let graph = |scene: &str, part| Ok(say(&report::graph(program.scene_called(scene), part)));
+    match command {
+        Command::Run(arguments) => run::simulate(program, &arguments),
+        Command::Precision(arguments) => precision::measure_all(program, &arguments),
+        Command::Compare(arguments) => compare::compare(program, &arguments),
+        Command::Scene { scene: None } => Ok(say(&report::scenes(&program.scenes))),
+        Command::Scene { scene: Some(name) } => {
+            Ok(say(&report::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))
+        }
+        Command::Graph { scene, part } => graph(&scene, part),
+        Command::States { scene } => graph(&scene, Some(Part::States)),
+        Command::Equations { scene } => graph(&scene, Some(Part::Equations)),
+        Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&Me::Parameters::default()))),
+        Command::Parameters { toml: false } => Ok(say(&parameters::table::<Me::Parameters>())),
+    }
+}
+
+/// The command line with the program's names, and its parameters in the help.
+fn command<Me: Mechanism>(program: &Program<Me>) -> clap::Command {
+    let help = format!(
+        "Parameters (name, default, unit, meaning); defaults < --params < --set:\n{}\n\
+         Files: a folder has the files of one run. They are written aside and take their place at the end, when those of the\n\
+         run before are removed; a run that is stopped leaves the earlier one's. Files that no run wrote are left alone: a run\n\
+         that would replace one is refused, as is a second run into the same folder at once. What a run wrote is listed in\n\
+         `.run` in the folder.\n\n\
+         Exit code: 0 done, 1 the run or an output failed (what could be written is), 2 the input cannot be used.",
+        parameters::table::<Me::Parameters>()
+    );
+    let texts = &program.texts;
+    let command = Cli::command().name(texts.name.clone()).bin_name(texts.name.clone()).version(texts.version.clone());
+    let command = named(command.about(texts.about.clone()).after_help(help.clone()), program);
+    let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let command =
+        names.into_iter().fold(command, |command, name| command.mut_subcommand(name, |own| named(own, program)));
+    command.mut_subcommand("run", |run| run.after_help(help))
+}
+
+/// `command` with the names of scenes and cases where it takes any.
+fn named<Me>(command: clap::Command, program: &Program<Me>) -> clap::Command {
+    let scene = |argument: Arg| {
+        let is_optional = argument.get_long().is_none();
+        let names = program.scenes.iter().map(|scene| PossibleValue::new(scene.name.clone()).help(scene.summary()));
+        let argument = argument.value_parser(PossibleValuesParser::new(names));
+        if is_optional { argument } else { argument.required(false).default_value(program.scene.clone()) }
+    };
+    let cases = |argument: Arg| {
+        let names = program.cases.iter().map(|case| PossibleValue::new(case.name.clone()).help(case.about.clone()));
+        argument.value_parser(PossibleValuesParser::new(names)).default_values(program.measured.clone())
+    };
+    let takes = |command: &clap::Command, id: &str| command.get_arguments().any(|argument| argument.get_id() == id);
+    let command = if takes(&command, "scene") { command.mut_arg("scene", scene) } else { command };
+    if takes(&command, "cases") { command.mut_arg("cases", cases) } else { command }
+}
+
+/// Prints `text`, which is all there is to do.
+fn say(text: &str) -> ExitCode {
+    ended(console::print(text).err())
+}
+
+/// Input that cannot be used.
+fn refuse(fault: &impl Display) -> ExitCode {
+    console::complain(fault);
+    ExitCode::from(2)
+}
+
+/// What is done is done; `faults` are what failed of it.
+fn ended(faults: impl IntoIterator<Item = impl Display>) -> ExitCode {
+    let failed = faults.into_iter().inspect(console::complain).count() > 0;
+    if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
+/// What clap says in several lines, in one.
+fn one_line(fault: &clap::Error) -> String {
+    let text = fault.render().to_string();
+    let told =
+        text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let told: Vec<&str> = told.filter(|line| !line.is_empty()).collect();
+    let line = told.join("; ");
+    format!("{}; --help says more", line.strip_prefix("error: ").unwrap_or(&line))
+}

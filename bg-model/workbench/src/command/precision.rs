@@ -1,0 +1,65 @@
+//! The command `precision`: every case with every integrator.
+
+use std::process::ExitCode;
+
+use bg_model::integrator::Integrator;
+use bg_model::mechanism::Scenes;
+
+use super::arguments::PrecisionArguments;
+use super::progress::bar;
+use super::{InputError, ended};
+use crate::Program;
+use crate::files::{RunFolder, console};
+use crate::output::OutputError;
+use crate::precision::case::Case;
+use crate::precision::measure::{Entry, Setting, measure};
+use crate::precision::report;
+
+pub fn measure_all<Me: Scenes>(program: &Program<Me>, arguments: &PrecisionArguments) -> Result<ExitCode, InputError> {
+    check(arguments)?;
+    let wanted = |name: &String| program.cases.iter().find(|case| case.name == *name);
+    let cases: Vec<&Case> = arguments.cases.iter().filter_map(wanted).collect();
+    let methods = if arguments.methods.is_empty() { &Integrator::ALL[..] } else { &arguments.methods };
+    let folder = RunFolder::claim(&arguments.out, &report::names(cases.iter().map(|case| case.name.as_str())))?;
+    let points: usize = methods.iter().map(|method| settings(arguments, *method).len()).sum();
+    let bar = bar((points * cases.len()) as u64, "measuring {bar:40} {pos} of {len} {msg}");
+    let mut entries: Vec<Entry> = Vec::new();
+    for case in cases {
+        bar.set_message(format!("{}: reference", case.name));
+        let reference = case.solution::<Me>(&program.scenes)?;
+        for method in methods {
+            bar.set_message(format!("{} by {}", case.name, method.name()));
+            for setting in settings(arguments, *method) {
+                entries.push(measure::<Me>(case, &program.scenes, *method, setting, arguments.repeats, &reference)?);
+                bar.inc(1);
+            }
+        }
+    }
+    bar.finish_and_clear();
+    let (written, fault) = match report::write(folder, &entries) {
+        Ok(count) => (format!("{count} files in {}", arguments.out.display()), None),
+        Err(fault) => ("nothing".to_owned(), Some(fault)),
+    };
+    let printed = console::print(&format!("{}\nwritten: {written}\n", report::table(&entries)));
+    Ok(ended(fault.into_iter().chain(printed.err().map(OutputError::from))))
+}
+
+fn check(arguments: &PrecisionArguments) -> Result<(), InputError> {
+    let ratios = vec![arguments.atol_ratio];
+    let numbers = [("--rtol", &arguments.rtol), ("--atol-ratio", &ratios), ("--fixed-step", &arguments.fixed_step)];
+    for (name, values) in numbers {
+        if let Some(&value) = values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
+            return Err(InputError::Range { name, value, range: "a finite number above 0".to_owned() });
+        }
+    }
+    Ok(())
+}
+
+/// How exactly a method is run: its steps or tolerances.
+fn settings(arguments: &PrecisionArguments, method: Integrator) -> Vec<Setting> {
+    if method.has_fixed_step() {
+        return arguments.fixed_step.iter().copied().map(Setting::Step).collect();
+    }
+    let tolerance = |rtol| Setting::Tolerance { rtol, atol: rtol * arguments.atol_ratio };
+    arguments.rtol.iter().copied().map(tolerance).collect()
+}

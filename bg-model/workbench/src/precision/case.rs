@@ -1,0 +1,112 @@
+//! What is measured: a scene with parameters and the solution that it is held against.
+
+use bg_model::extended::Accuracy;
+use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::run::sample_times;
+use bg_model::simulation::Recording;
+use thiserror::Error;
+
+use super::reference::{self, ReferenceError};
+use crate::scenes::{Fixed, Scene, own_parameters};
+
+/// A case.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its name on the command line.
+    pub name: String,
+    /// What it is, in one line.
+    pub about: String,
+    /// The name of its scene.
+    pub scene: String,
+    /// The parameters that are not at their defaults.
+    pub set: Vec<(&'static str, f64)>,
+    /// The end of its runs, s, where it has no stored solution.
+    pub t_end: f64,
+    /// The solution, where one is stored; else it is computed.
+    pub stored: Option<fn() -> Recording>,
+}
+
+/// A case that cannot be built or solved.
+#[derive(Debug, Error)]
+pub enum CaseError {
+    /// A parameter.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// A parameter that the scene keeps.
+    #[error(transparent)]
+    Fixed(#[from] Fixed),
+    /// Its solution.
+    #[error("no solution to measure against: {0}")]
+    Reference(#[from] ReferenceError),
+}
+
+impl Case {
+    /// A case for each scene: its defaults until `t_end` (s).
+    #[must_use]
+    pub fn of_scenes(scenes: &[Scene], t_end: f64) -> Vec<Self> {
+        let case = |scene: &Scene| Self {
+            name: scene.name.clone(),
+            about: scene.summary(),
+            scene: scene.name.clone(),
+            set: Vec::new(),
+            t_end,
+            stored: None,
+        };
+        scenes.iter().map(case).collect()
+    }
+
+    /// Its scene among `scenes`.
+    ///
+    /// # Panics
+    /// There is none.
+    #[must_use]
+    pub fn scene<'a>(&self, scenes: &'a [Scene]) -> &'a Scene {
+        let scene = scenes.iter().find(|scene| scene.name == self.scene);
+        scene.unwrap_or_else(|| panic!("there is no scene `{}`", self.scene))
+    }
+
+    /// Its model, `Sc` of the mechanism `Me`.
+    ///
+    /// # Errors
+    /// Parameters that cannot be.
+    pub fn model<Me: Mechanism, Sc: Mechanism>(&self, scenes: &[Scene]) -> Result<Sc, CaseError> {
+        let mut values = Me::Parameters::default();
+        for (name, value) in &self.set {
+            values.set(name, *value)?;
+        }
+        Ok(Sc::make(own_parameters(self.scene(scenes), scenes, &values)?, &[])?)
+    }
+
+    /// Its solution: the stored one, or one computed in double-double arithmetic at a hundred instants.
+    ///
+    /// # Errors
+    /// A computation that fails.
+    pub fn solution<Me: Scenes>(&self, scenes: &[Scene]) -> Result<Recording, CaseError> {
+        match self.stored {
+            Some(stored) => Ok(stored()),
+            None => {
+                Me::model(self.scene(scenes).index, Solve::<Me> { case: self, scenes, of: std::marker::PhantomData })
+            }
+        }
+    }
+}
+
+struct Solve<'a, Me> {
+    case: &'a Case,
+    scenes: &'a [Scene],
+    of: std::marker::PhantomData<Me>,
+}
+
+impl<Me: Mechanism> MechanismVisitor for Solve<'_, Me> {
+    type Output = Result<Recording, CaseError>;
+
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        /// Two digits beyond what a run in double precision can show.
+        const ACCURACY: Accuracy = Accuracy { columns: 10, tolerance: 1e-18 };
+        let Self { case, scenes, .. } = self;
+        let model: Sc = case.model::<Me, Sc>(scenes)?;
+        let instants = sample_times(0.0, case.t_end / 100.0, case.t_end);
+        Ok(reference::solve(&model, ACCURACY, &instants, |_| true)?.samples)
+    }
+}

@@ -1,0 +1,110 @@
+//! A program made of a mechanism: its name, its defaults, what it adds to the workbench.
+
+use std::ffi::OsString;
+use std::marker::PhantomData;
+use std::process::ExitCode;
+
+use bg_model::mechanism::Scenes;
+
+use crate::command;
+use crate::extras::{Extras, Plain};
+use crate::precision::case::Case;
+use crate::scenes::{Scene, scenes};
+
+/// A program of the mechanism `Me`.
+pub struct Program<Me> {
+    pub(crate) texts: Texts,
+    pub(crate) scene: String,
+    pub(crate) scenes: Vec<Scene>,
+    pub(crate) cases: Vec<Case>,
+    pub(crate) measured: Vec<String>,
+    pub(crate) extras: Box<dyn Extras>,
+    mechanism: PhantomData<Me>,
+}
+
+/// What a program says of itself.
+#[derive(Clone, Debug)]
+pub(crate) struct Texts {
+    pub name: String,
+    pub version: String,
+    pub about: String,
+}
+
+/// The end of a run that is not told another, s.
+pub const T_END: f64 = 5.0;
+
+impl<Me: Scenes> Default for Program<Me> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<Me: Scenes> Program<Me> {
+    /// The program of any mechanism: it runs the graph as it stands.
+    #[must_use]
+    pub fn new() -> Self {
+        let scenes = scenes::<Me>();
+        let literal = scenes.last().expect("there is the literal model");
+        let texts = Texts {
+            name: crate::scenes::in_small_letters(literal.description.name),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            about: literal.description.doc.split_whitespace().collect::<Vec<_>>().join(" "),
+        };
+        let (scene, cases) = (literal.name.clone(), Case::of_scenes(&scenes, 1.0));
+        let measured = vec![scene.clone()];
+        Self { texts, scene, scenes, cases, measured, extras: Box::new(Plain), mechanism: PhantomData }
+    }
+
+    /// What `--help` says first; else the documentation of the graph.
+    #[must_use]
+    pub fn about(mut self, about: &str) -> Self {
+        about.clone_into(&mut self.texts.about);
+        self
+    }
+
+    /// What `--version` says: `env!("CARGO_PKG_VERSION")` of the program.
+    #[must_use]
+    pub fn version(mut self, version: &str) -> Self {
+        version.clone_into(&mut self.texts.version);
+        self
+    }
+
+    /// The scene that is run unless another is asked for, by its name on the command line.
+    ///
+    /// # Panics
+    /// There is no such scene.
+    #[must_use]
+    pub fn scene(mut self, name: &str) -> Self {
+        assert!(self.scenes.iter().any(|scene| scene.name == name), "there is no scene `{name}`");
+        name.clone_into(&mut self.scene);
+        self.measured = vec![self.scene.clone()];
+        self
+    }
+
+    /// The cases that `precision` measures, and the names of those that it measures unless others are asked for.
+    #[must_use]
+    pub fn cases(mut self, cases: Vec<Case>, measured: &[&str]) -> Self {
+        self.cases = cases;
+        self.measured = measured.iter().map(|&name| name.to_owned()).collect();
+        self
+    }
+
+    /// What the program adds.
+    #[must_use]
+    pub fn extras(mut self, extras: impl Extras + 'static) -> Self {
+        self.extras = Box::new(extras);
+        self
+    }
+
+    /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output failed,
+    /// 2 the input cannot be used.
+    pub fn main(&self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+        command::main(self, arguments)
+    }
+
+    /// The scene called `name`.
+    pub(crate) fn scene_called(&self, name: &str) -> &Scene {
+        let scene = self.scenes.iter().find(|scene| scene.name == name);
+        scene.expect("the command line takes the names of scenes only")
+    }
+}

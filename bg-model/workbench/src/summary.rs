@@ -1,0 +1,262 @@
+//! The summary of a run, for people and as JSON.
+//!
+//! In: a run, and what the program adds. Out: the numbers that say whether the run is to be trusted and what the machine does.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use bg_model::integrator::Change;
+use bg_model::run::{Request, Trajectory};
+use serde::{Serialize, Serializer};
+
+/// A statement about a run and what the run says to it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Check {
+    /// The figures it is about, such as `Fig. 4`.
+    pub figure: &'static str,
+    /// The statement.
+    pub statement: &'static str,
+    /// What was measured, with units.
+    pub measured: String,
+    /// Whether it holds.
+    pub holds: bool,
+}
+
+/// A number that a program adds to the summary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Its name in JSON, with the unit at its end.
+    pub key: &'static str,
+    /// Its value in JSON.
+    pub value: serde_json::Value,
+}
+
+/// What a program adds to the summary.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Additions {
+    /// Lines for people: a name and a text with unit.
+    pub lines: Vec<(String, String)>,
+    /// The same for programs.
+    pub entries: Vec<Entry>,
+    /// Statements about the run, and above them what they are.
+    pub checks: Vec<Check>,
+    /// What the checks are, such as `What the paper says its figures show`.
+    pub heading: &'static str,
+}
+
+/// What a run gives in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The scene.
+    pub scene: String,
+    /// The parameters that differ from their defaults, as `name = value unit`.
+    pub changed_parameters: Vec<String>,
+    /// The end that was asked for, s.
+    pub t_end_s: f64,
+    /// The last sample, s.
+    pub reached_s: f64,
+    /// The integrators that made the steps, with the time from which on.
+    pub integrators: Vec<String>,
+    /// The step of a fixed-step method, s; such a method has no tolerances.
+    pub fixed_step_s: Option<f64>,
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Absolute tolerance, SI units.
+    pub atol: f64,
+    /// Why the run stopped before its end, if it did.
+    pub failure: Option<String>,
+    /// States integrated.
+    pub states: usize,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected steps.
+    pub rejected: u64,
+    /// Evaluations of the rate function.
+    pub rate_evaluations: u64,
+    /// Orders of Taylor series.
+    pub series_orders: u64,
+    /// Evaluations of the Jacobian.
+    pub jacobian_evaluations: u64,
+    /// Factorisations of I - c J.
+    pub factorisations: u64,
+    /// Those of them that needed row exchanges.
+    pub pivoted_factorisations: u64,
+    /// Steps in which the tolerances are below what rounding makes of the error.
+    pub steps_below_rounding: u64,
+    /// Whether these are so many that larger tolerances would serve as well.
+    pub is_at_rounding: bool,
+    /// Switchings of the stroke.
+    pub events: u64,
+    /// Time on the wall clock, s.
+    pub wall_time_s: f64,
+    /// Simulated time over wall time.
+    pub times_real_time: f64,
+    /// What the program adds.
+    #[serde(flatten, serialize_with = "as_map")]
+    entries: Vec<Entry>,
+    #[serde(skip)]
+    lines: Vec<(String, String)>,
+    #[serde(skip)]
+    heading: &'static str,
+    /// Statements about the run.
+    pub checks: Vec<Check>,
+    /// The files written.
+    #[serde(serialize_with = "as_text")]
+    pub files: Vec<PathBuf>,
+}
+
+/// Paths as JSON can hold them: bytes that are no text are shown as U+FFFD.
+fn as_text<S: Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(paths.iter().map(|path| path.display().to_string()))
+}
+
+fn as_map<S: Serializer>(entries: &[Entry], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(entries.iter().map(|Entry { key, value }| (key, value)))
+}
+
+impl Summary {
+    /// Summarises a run of the scene called `scene`; `failure` says why it stopped before its end, if it did. Files and changed
+    /// parameters are added by the caller.
+    #[must_use]
+    pub fn new(scene: &str, run: &Trajectory, failure: Option<String>, additions: Additions) -> Self {
+        let Request { method, fixed_step, t_end, rtol, .. } = run.request;
+        let statistics = &run.statistics;
+        let reached = run.times.last().copied().unwrap_or(0.0);
+        let wall = run.wall.as_secs_f64();
+        Self {
+            scene: scene.to_owned(),
+            changed_parameters: Vec::new(),
+            t_end_s: t_end,
+            reached_s: reached,
+            integrators: integrators(&run.methods),
+            fixed_step_s: method.has_fixed_step().then_some(fixed_step),
+            rtol,
+            atol: run.request.atol(),
+            failure,
+            states: run.last.states.len(),
+            steps: statistics.steps,
+            rejected: statistics.rejected,
+            rate_evaluations: statistics.rate_evaluations,
+            series_orders: statistics.series_orders,
+            jacobian_evaluations: statistics.jacobian_evaluations,
+            factorisations: statistics.factorisations,
+            pivoted_factorisations: statistics.pivoted_factorisations,
+            steps_below_rounding: statistics.rounded,
+            is_at_rounding: statistics.is_at_rounding(),
+            events: statistics.events,
+            wall_time_s: wall,
+            times_real_time: reached / wall,
+            entries: additions.entries,
+            lines: additions.lines,
+            heading: additions.heading,
+            checks: additions.checks,
+            files: Vec::new(),
+        }
+    }
+
+    /// What the checks are.
+    #[must_use]
+    pub const fn heading(&self) -> &'static str {
+        self.heading
+    }
+
+    /// The numbers as pairs of a name and a text with unit, in the order of reading.
+    #[must_use]
+    pub fn lines(&self) -> Vec<(&str, String)> {
+        let mut lines = vec![("scene", self.scene.clone())];
+        let time = if self.failure.is_some() {
+            format!("{} s of {} s: the run failed", self.reached_s, self.t_end_s)
+        } else {
+            format!("{} s", self.t_end_s)
+        };
+        lines.push(("simulated time", time));
+        let changed = if self.changed_parameters.is_empty() {
+            "all at their defaults".to_owned()
+        } else {
+            self.changed_parameters.join(", ")
+        };
+        lines.push(("parameters", changed));
+        lines.push(("integrator", self.integrators.join(", ")));
+        lines.push(match self.fixed_step_s {
+            Some(step) => ("fixed step", format!("{step:e} s")),
+            None => {
+                ("tolerances", format!("relative {}, absolute {} (SI)", tolerance(self.rtol), tolerance(self.atol)))
+            }
+        });
+        lines.push(("states", self.states.to_string()));
+        lines.push(("steps", format!("{} accepted, {} rejected", self.steps, self.rejected)));
+        if self.is_at_rounding {
+            let share = 100.0 * self.steps_below_rounding as f64 / self.steps as f64;
+            let text = format!(
+                "in {share:.0} % of the steps the tolerances are below rounding: larger ones give as good a result"
+            );
+            lines.push(("limit of rounding", text));
+        }
+        lines.push(("rate evaluations", self.rate_evaluations.to_string()));
+        if self.series_orders > 0 {
+            lines.push(("orders of Taylor series", self.series_orders.to_string()));
+        }
+        if self.factorisations > 0 {
+            let pivoted = match self.pivoted_factorisations {
+                0 => String::new(),
+                count => format!(", {count} of them with row exchanges"),
+            };
+            let (jacobians, factorisations) = (self.jacobian_evaluations, self.factorisations);
+            lines.push(("Jacobians", format!("{jacobians}, {factorisations} factorisations{pivoted}")));
+        }
+        lines.push(("switching events", self.events.to_string()));
+        let wall = format!("{:.3} s, {:.1} times faster than real time", self.wall_time_s, self.times_real_time);
+        lines.push(("wall time", wall));
+        lines.extend(self.lines.iter().map(|(name, text)| (name.as_str(), text.clone())));
+        lines
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lines = self.lines();
+        let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+        for (name, text) in &lines {
+            writeln!(f, "{name:width$}  {text}")?;
+        }
+        if !self.checks.is_empty() {
+            let held = self.checks.iter().filter(|check| check.holds).count();
+            writeln!(f, "\n{}: {held} of {} statements hold", self.heading, self.checks.len())?;
+        }
+        for Check { figure, statement, measured, holds } in &self.checks {
+            let verdict = if *holds { "holds" } else { "does not hold" };
+            writeln!(f, "  {figure:11}  {statement} {verdict}\n               {measured}")?;
+        }
+        Ok(())
+    }
+}
+
+/// A tolerance to twelve digits: a tenth of 1e-10 reads 1e-11, not 1.0000000000000001e-11.
+fn tolerance(value: f64) -> String {
+    let rounded = format!("{value:.11e}").parse().unwrap_or(value);
+    format!("{rounded:e}")
+}
+
+/// The methods in the order of their turns, the first three of them.
+fn integrators(methods: &[Change]) -> Vec<String> {
+    const SHOWN: usize = 3;
+    let name = |(index, change): (usize, &Change)| match index {
+        0 => change.method.to_owned(),
+        _ => format!("{} from {:.4} s", change.method, change.t),
+    };
+    let mut names: Vec<String> = methods.iter().enumerate().take(SHOWN).map(name).collect();
+    if methods.len() > SHOWN {
+        names.push(format!("{} more changes", methods.len() - SHOWN));
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tolerance_reads_as_it_was_meant() {
+        assert_eq!([1e-10 / 10.0, 1e-8 / 10.0, 2.5e-7, 1.0].map(tolerance), ["1e-11", "1e-9", "2.5e-7", "1e0"]);
+    }
+}
