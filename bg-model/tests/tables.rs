@@ -100,10 +100,9 @@ fn a_mass_driven_by_a_table_moves_as_the_closed_form_at_any_tolerance() {
     }
 }
 
-/// The second-order method meets the velocity, which is a parabola, only with the slope of the input of the right side
-/// of each row.
+/// The velocity is a parabola, which is what a method of order 2 gives exactly.
 #[test]
-fn the_slope_at_a_row_is_that_of_the_step_that_begins_there() {
+fn a_method_of_second_order_meets_the_velocity() {
     let model = mass(linear(&TIMES, &FORCES), Input::default());
     let [v, _] = closed_form::<f64>(4.0);
     let (finish, _) = run(&model, Integrator::Ros2.method(0.5), 4.0, &settings(1.0));

@@ -103,6 +103,18 @@ mod tests {
     }
 
     #[test]
+    fn a_run_that_ends_early_gives_its_end_once() {
+        let samples = Samples::Every(0.25);
+        for (end, expected) in [(0.5, None), (0.6, Some(0.6)), (0.5 + f64::EPSILON, None)] {
+            let mut sampling = Sampling::new(&samples, Span { t0: 0.0, t_end: 9.0 });
+            while sampling.next_up_to(0.5).is_some() {}
+            sampling.end(end);
+            assert_eq!(sampling.next_up_to(end), expected);
+            assert_eq!(sampling.next_up_to(9.0), None);
+        }
+    }
+
+    #[test]
     fn given_instants_and_step_ends_are_given_as_they_are() {
         let span = Span { t0: 0.0, t_end: 1.0 };
         assert_eq!(instants(&Samples::At(vec![0.25, 0.25, 1.0]), span, &[0.0, 0.5, 1.0]), [0.25, 0.25, 1.0]);
