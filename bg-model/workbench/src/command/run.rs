@@ -1,5 +1,6 @@
 //! The command `run`: a scene integrated, its files written, its summary printed.
 
+use std::ops::ControlFlow;
 use std::process::ExitCode;
 
 use bg_model::integrator::Tolerances;
@@ -65,7 +66,11 @@ pub fn model<P: Parameters, Sc: Mechanism>(
 /// A run with its progress on the terminal. One that stops before its end is no error.
 pub fn integrate<Sc: Mechanism>(model: &Sc, request: Request) -> Result<Outcome, RunError> {
     let bar = over_time(request.t_end);
-    let run = Simulation::of(model, request).progress(|t| bar.set_position(ticks(t))).run();
+    let told = |t| {
+        bar.set_position(ticks(t));
+        ControlFlow::Continue(())
+    };
+    let run = Simulation::of(model, request).each_step(told).run();
     bar.finish_and_clear();
     match run {
         Ok(run) => Ok(Outcome { run, failure: None }),
