@@ -75,6 +75,11 @@ pub struct ModelArguments {
     /// Read parameters from a TOML file of lines `name = value`
     #[arg(long, value_name = "FILE.toml")]
     pub params: Option<PathBuf>,
+
+    /// Set an input of the model, 0 otherwise: to a number, or to the second column of a CSV file over the first, in s. A column
+    /// by its name as FILE.csv:COLUMN; straight lines between the rows, a spline with cubic:FILE.csv
+    #[arg(long = "input", value_name = "NAME=VALUE|FILE.csv", allow_hyphen_values = true)]
+    pub input: Vec<String>,
 }
 
 /// How it is integrated.
@@ -113,6 +118,14 @@ pub struct RunArguments {
     #[command(flatten)]
     pub integration: IntegrationArguments,
 
+    /// Start from a state that --save-state wrote, at its time. The parameters may be others: what stays are the states
+    #[arg(long, value_name = "FILE.json")]
+    pub from: Option<PathBuf>,
+
+    /// Write the state at the end here, for --from
+    #[arg(long, value_name = "FILE.json")]
+    pub save_state: Option<PathBuf>,
+
     /// Write the trajectory here instead of trajectory.csv in --out. Replaces a file that is there; later runs leave it
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -140,6 +153,10 @@ pub struct CompareArguments {
     /// Set a parameter of the scenes; can be given again and again
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
+
+    /// Set an input of the scenes to a number or a table, as for `run`
+    #[arg(long = "input", value_name = "NAME=VALUE|FILE.csv", allow_hyphen_values = true)]
+    pub input: Vec<String>,
 
     /// Read parameters of the scenes from a TOML file
     #[arg(long, value_name = "FILE.toml")]

@@ -12,6 +12,7 @@ mod run;
 
 use std::ffi::OsString;
 use std::fmt::Display;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bg_model::mechanism::{Mechanism, Scenes};
@@ -24,6 +25,7 @@ use thiserror::Error;
 
 use crate::Program;
 use crate::files::{FileError, console};
+use crate::inputs::InputSettingError;
 use crate::output::OutputError;
 use crate::parameters::{self, SettingError};
 use crate::precision::measure::MeasureError;
@@ -45,6 +47,10 @@ enum InputError {
     Fixed { place: String, fault: Fixed },
     #[error("{0}: neither a scene nor a run; the command `scene` lists the scenes")]
     NothingToCompare(String),
+    #[error(transparent)]
+    Input(#[from] InputSettingError),
+    #[error("--from {}: {fault}", path.display())]
+    From { path: PathBuf, fault: String },
     #[error(transparent)]
     Model(#[from] ParameterError),
     #[error(transparent)]
