@@ -18,6 +18,7 @@ use super::descent::{Local, Stability};
 use super::error::LinearError;
 use super::manifold::Drift;
 use super::plant::{Frozen, Plant};
+use super::text::{counted, short};
 
 /// How many steps are made before the search ends.
 const ITERATIONS: usize = 600;
@@ -39,6 +40,20 @@ pub struct Equilibrium {
     pub turning: Vec<(String, f64)>,
     /// The number of steps that it took.
     pub steps: usize,
+}
+
+impl Equilibrium {
+    /// How it was found, and what goes on: `equilibrium after 12 steps, with inputs as at t = 0.0 s`.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let Self { t, turning, steps, .. } = self;
+        let word = if turning.is_empty() { "equilibrium" } else { "steady motion" };
+        let mut text = format!("{word} after {}, with inputs as at t = {t:?} s", counted(*steps, "step"));
+        for (name, rate) in turning {
+            text.push_str(&format!("; `{name}` goes on by {} per s", short(*rate)));
+        }
+        text
+    }
 }
 
 /// The equilibrium of `mechanism` near the state `guess`, with its inputs held as they are at time `t` (s).

@@ -93,12 +93,13 @@ fn as_json<T: serde::Serialize>(value: &T) -> String {
     serde_json::to_string_pretty(value).map_or_else(|error| format!("{{\"error\": \"{error}\"}}\n"), |text| text + "\n")
 }
 
-fn counted(count: usize, what: &str) -> String {
+/// `1 step`, `2 steps`.
+pub(super) fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// A number to five digits.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     let rounded = format!("{value:.4e}").parse::<f64>().unwrap_or(value);
     let is_plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs());
     if is_plain { format!("{rounded}") } else { format!("{rounded:e}") }

@@ -66,6 +66,18 @@ fn springs_that_are_states_fit_the_poses_in_space() {
 }
 
 #[test]
+fn a_twist_that_is_a_state_is_the_turn_of_its_rod() {
+    let (rest, linear) = at_rest::<Twisted>(&model(&[], &[]));
+    let value = |name: &str| linear.point.iter().find(|state| state.name == name).unwrap().value;
+    let (twist, cos) = (value("twist.q"), value("rod.orientation_11"));
+    let angle = value("rod.orientation_21").atan2(cos);
+    near(twist, angle - 0.4, 1e-9);
+    near(9.0 * twist, -2.0 * 9.81 * 0.3 * cos, 1e-9);
+    assert_eq!(linear.left_out.dependent, ["twist.q"]);
+    assert!(rest.sentence().starts_with("equilibrium after "), "{}", rest.sentence());
+}
+
+#[test]
 fn a_shaft_and_a_wheel_held_by_a_gear_share_the_torque() {
     let (_, linear) = at_rest::<Geared>(&model(&[], &[]));
     let value = |name: &str| linear.point.iter().find(|state| state.name == name).unwrap().value;
@@ -89,6 +101,7 @@ fn a_steady_motion_is_found_where_there_is_no_rest() {
     let [(name, speed)] = &rest.turning[..] else { panic!("{:?}", rest.turning) };
     assert_eq!(name, "disc.rotation_z");
     near(*speed, 0.2 * 12.0 / (2.0 * 0.01 + 0.2 * 0.2), 1e-9);
+    assert!(rest.sentence().ends_with("`disc.rotation_z` goes on by 40 per s"), "{}", rest.sentence());
     near(linear.c[(1, crate::place(&linear.states, "disc.angular.p_z"))], 50.0, 1e-12);
 }
 

@@ -62,6 +62,22 @@ bond_graph! {
         spring aside (ground.wall -> rod.tip) { stiffness 30; }
         observe { rod.position; pin.moment }
     }
+    /// A rod on a pin with a torsion spring, whose twist is a state of its own.
+    pub graph Twisted {
+        param angle: rad = 0.4;
+        gravity [0, -9.81, 0];
+        ground { point pivot = [0, 0, 0]; }
+        body rod {
+            mass 2; inertia [1e-3, 0.06, 0.06];
+            point end = [-0.3, 0, 0];
+            start end at [0, 0, 0]; start turned rotation_z(angle);
+        }
+        joint pin: revolute z (ground.pivot -> rod.end) { stiffness 1e6; damping 50; tilt stiffness 1e3; tilt damping 1; }
+        C twist(q) = 9 * q;
+        pin.spin -> twist;
+        observe { angle: rad = rod.angle; twist: rad = twist.q }
+        scene TwistedPlane { expect planar; }
+    }
     /// Two rods, one below the other, at angles from the downward vertical.
     pub graph Double {
         param upper_angle: rad = 0.7;
