@@ -51,6 +51,7 @@
 //! | [`compare`] | how far two runs are apart |
 //! | [`precision`] | how exact a run is and what that costs |
 //! | [`figures`] | what the outputs look like |
+//! | [`linear`] | where the mechanism is in equilibrium, and how it moves near a state |
 //! | [`summary`] | what a run comes to in numbers |
 //! | [`overview`] | all of it on one page |
 //! | [`output`] | which files a run writes, and where |
@@ -62,6 +63,7 @@ pub mod extras;
 pub mod figures;
 pub mod files;
 pub mod inputs;
+pub mod linear;
 pub mod output;
 pub mod overview;
 pub mod parameters;
