@@ -39,7 +39,8 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArgumen
     let (space, sentence) = Me::model(scene.index, here)?;
     let text = format!("{sentence}\n{}", space.table());
     let (written, faults) = write(folder, &space, &text);
-    let written = written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
+    let written =
+        written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
     let printed = console::print(&format!("{text}\nwritten: {written}\n"));
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
 }
@@ -47,9 +48,10 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArgumen
 /// The names of all files that may be written.
 fn names(scene: &Scene) -> Vec<String> {
     let description = scene.description;
-    let pairs = description.inputs.iter().flat_map(|input| {
-        description.outputs.iter().map(move |output| diagram(input.name, output.name))
-    });
+    let pairs = description
+        .inputs
+        .iter()
+        .flat_map(|input| description.outputs.iter().map(move |output| diagram(input.name, output.name)));
     let responses = (!description.inputs.is_empty()).then_some(RESPONSES);
     [JSON, ARRAYS, MODES].into_iter().chain(responses).map(str::to_owned).chain(pairs.take(MOST)).collect()
 }

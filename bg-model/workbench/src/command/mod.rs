@@ -5,6 +5,7 @@
 
 mod arguments;
 mod compare;
+mod linearize;
 mod methods;
 mod precision;
 mod progress;
@@ -26,6 +27,7 @@ use thiserror::Error;
 use crate::Program;
 use crate::files::{FileError, console};
 use crate::inputs::InputSettingError;
+use crate::linear::LinearError;
 use crate::output::OutputError;
 use crate::parameters::{self, SettingError};
 use crate::precision::measure::MeasureError;
@@ -49,6 +51,10 @@ enum InputError {
     NothingToCompare(String),
     #[error(transparent)]
     Input(#[from] InputSettingError),
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    #[error("--at {t}: the run failed before: {failure}")]
+    NotReached { t: f64, failure: String },
     #[error("--from {}: {fault}", path.display())]
     From { path: PathBuf, fault: String },
     #[error(transparent)]
@@ -92,6 +98,7 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
         Command::Run(arguments) => run::simulate(program, &arguments),
         Command::Precision(arguments) => precision::measure_all(program, &arguments),
         Command::Compare(arguments) => compare::compare(program, &arguments),
+        Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&report::scenes(&program.scenes))),
         Command::Scene { scene: Some(name) } => {
             Ok(say(&report::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))

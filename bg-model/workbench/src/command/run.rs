@@ -10,12 +10,13 @@ use bg_model::parameters::Parameters;
 use bg_model::run::{Request, RunError, Simulation, State, Stopped, Trajectory, sample_times};
 use bg_model::simulation::{MissingColumn, Samples};
 
-use super::arguments::{IntegrationArguments, RunArguments};
+use super::arguments::{IntegrationArguments, RunArguments, Start};
 use super::progress::{over_time, ticks};
 use super::{InputError, ended};
 use crate::Program;
 use crate::files::{console, whole};
 use crate::inputs;
+use crate::linear::equilibrium;
 use crate::output::{Claimed, OutputError, Places, Table};
 use crate::parameters::{self, Chosen};
 use crate::scenes::{Scene, own_parameters};
@@ -39,15 +40,19 @@ pub fn simulate<Me: Scenes>(program: &Program<Me>, arguments: &RunArguments) -> 
     let RunArguments { model, integration, .. } = arguments;
     let mut chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
     chosen.inputs = inputs::chosen(&model.input, Me::describe().inputs)?;
-    let start = arguments.from.as_deref().map(read_state).transpose()?;
-    let t0 = start.as_ref().map_or(0.0, |start| start.t);
+    let begin = match (&arguments.from, arguments.start) {
+        (Some(path), _) => Begin::At(read_state(path)?),
+        (None, Start::Model) => Begin::Model,
+        (None, Start::Equilibrium) => Begin::Equilibrium,
+    };
+    let t0 = if let Begin::At(state) = &begin { state.t } else { 0.0 };
     let finest = program.extras.finest(integration.t_end);
     let request = request(integration, t0, Some(finest))?;
     arguments.save_state.iter().try_for_each(|path| whole::probe(path))?;
     let scene = program.scene_called(&model.scene);
     let figures = (!arguments.no_figures).then(|| program.extras.figures(scene.description)).flatten();
     let places = Places::new(&arguments.out, arguments.csv.as_deref(), figures);
-    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, start, places: &places };
+    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin, places: &places };
     let (outcome, claimed) = Me::model(scene.index, run)?;
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
@@ -77,7 +82,7 @@ pub fn integrate<Sc: Mechanism>(model: &Sc, request: Request) -> Result<Outcome,
 }
 
 /// The same of a simulation that may start elsewhere.
-fn follow<Sc: Mechanism>(simulation: Simulation<'_, Sc>, request: &Request) -> Result<Outcome, RunError> {
+pub fn follow<Sc: Mechanism>(simulation: Simulation<'_, Sc>, request: &Request) -> Result<Outcome, RunError> {
     let bar = over_time(request.t_end);
     let told = |t| {
         bar.set_position(ticks(t));
@@ -95,13 +100,31 @@ fn follow<Sc: Mechanism>(simulation: Simulation<'_, Sc>, request: &Request) -> R
     }
 }
 
+/// Where a run begins.
+enum Begin {
+    Model,
+    At(State),
+    Equilibrium,
+}
+
+/// The equilibrium near the start, with the inputs as at t = 0.
+fn at_rest<Sc: Mechanism>(model: &Sc) -> Result<State, InputError> {
+    let mut state = Simulation::new(model).start()?;
+    let guess: Vec<f64> = state.states.iter().map(|(_, value)| *value).collect();
+    let rest = equilibrium(model, 0.0, &guess)?;
+    for ((_, value), at_rest) in state.states.iter_mut().zip(rest.x) {
+        *value = at_rest;
+    }
+    Ok(state)
+}
+
 /// Makes a scene's model and runs it, with the places claimed before.
 struct Claiming<'a, P> {
     scene: &'a Scene,
     scenes: &'a [Scene],
     chosen: &'a Chosen<P>,
     request: Request,
-    start: Option<State>,
+    begin: Begin,
     places: &'a Places,
 }
 
@@ -111,7 +134,11 @@ impl<P: Parameters> MechanismVisitor for Claiming<'_, P> {
     fn visit<Sc: Mechanism>(self) -> Self::Output {
         let model: Sc = model(self.scene, self.scenes, self.chosen)?;
         let simulation = Simulation::of(&model, self.request.clone());
-        let simulation = self.start.iter().fold(simulation, |simulation, start| simulation.from(start));
+        let simulation = match self.begin {
+            Begin::Model => simulation,
+            Begin::At(state) => simulation.from(&state),
+            Begin::Equilibrium => simulation.from(&at_rest(&model)?),
+        };
         // What cannot be assembled is refused before anything is claimed.
         simulation.start()?;
         let claimed = self.places.claim()?;
