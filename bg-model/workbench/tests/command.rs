@@ -137,3 +137,27 @@ fn errors_are_measured_against_a_reference_made_on_the_way() {
     assert!(error(1) < 1e-4 && error(2) < 1e-2 * error(1) && error(2) > 0.0, "{table}");
     assert!(folder.path().join("p/precision_literal_rates.svg").exists());
 }
+
+#[test]
+fn the_linear_model_at_the_equilibrium_has_the_frequency_of_the_pendulum() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let table = text(path, &["linearize", "--out", "l"]);
+    assert!(table.starts_with("equilibrium after ") && table.contains("written: 3 files in l"), "{table}");
+    // sqrt(3 g / (2 l)) of a rod, less what its thickness and the pin's compliance take.
+    let slowest = table.lines().find(|line| line.trim_start().starts_with("1 ")).unwrap();
+    let frequency: f64 = slowest.split_whitespace().nth(2).unwrap().parse().unwrap();
+    assert!((frequency - (1.5 * 9.81 / 0.6_f64).sqrt()).abs() < 2e-3 * frequency, "{frequency}");
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(path.join("l/linear.json")).unwrap()).unwrap();
+    assert_eq!((json["states"].as_array().unwrap().len(), json["modes"].as_array().unwrap().len()), (12, 6));
+    assert!(fs::read(path.join("l/linear.npz")).unwrap().starts_with(b"PK"));
+
+    assert!(text(path, &["linearize", "--at", "0.1"]).starts_with("where the run is at t = 0.1 s\n"));
+    let rest = text(path, &["run", "--start", "equilibrium", "--t-end", "0.1", "--out", "r"]);
+    let angle = rest.lines().find(|line| line.starts_with("angle ")).unwrap();
+    assert!(angle.contains("-1.5708 to -1.5708, between -1.5708 and -1.5708 rad"), "{angle}");
+    assert!(
+        refused(&path.join("r"), &["linearize", "--at", "-1"]).contains("--at -1: must be a finite number, at least 0")
+    );
+    assert!(refused(&path.join("r"), &["linearize", "--at", "1", "--equilibrium"]).contains("cannot be used with"));
+}

@@ -30,6 +30,9 @@ const IN_DECADE: f64 = 100.0;
 const MOST_FREQUENCIES: f64 = 2000.0;
 
 pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArguments) -> Result<ExitCode, InputError> {
+    if let Some(value) = arguments.at.filter(|at| !(at.is_finite() && *at >= 0.0)) {
+        return Err(InputError::Range { name: "--at", value, range: "a finite number, at least 0".to_owned() });
+    }
     let values = &arguments.model;
     let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
     chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
