@@ -1,4 +1,10 @@
 //! A rigid body in free rotation, in bond-graph words: a multibond junction, a tensor that turns with the body.
+//!
+//! Look at `h` and `w`: the angular momentum stays, the angular velocity does not. Spun about the axis of its middle
+//! moment of inertia, as it starts here, the body turns over again and again. `--set middle=2.5 --set greatest=2` makes that
+//! moment the greatest, and the body only wobbles.
+//!
+//!     cargo run --release --example free_body -- --t-end 30
 
 use bg_model::bond_graph;
 
@@ -17,4 +23,8 @@ bond_graph! {
         rotation -> tensor;
         observe { R = attitude; w: rad/s = rotation.flow; h: kg*m^2/s = tensor.p; stored: J = stored_energy; }
     }
+}
+
+fn main() -> std::process::ExitCode {
+    bg_workbench::main::<FreeBody>()
 }
