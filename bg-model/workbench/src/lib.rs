@@ -46,10 +46,12 @@
 //! | [`command`] | what the user asks for |
 //! | [`scenes`] | which models there are, by name |
 //! | [`parameters`] | which values the parameters have in this run |
+//! | [`inputs`] | which inputs: numbers, or tables from files |
 //! | [`report`] | what a scene consists of and what it left out |
 //! | [`compare`] | how far two runs are apart |
 //! | [`precision`] | how exact a run is and what that costs |
 //! | [`figures`] | what the outputs look like |
+//! | [`linear`] | where the mechanism is in equilibrium, and how it moves near a state |
 //! | [`summary`] | what a run comes to in numbers |
 //! | [`overview`] | all of it on one page |
 //! | [`output`] | which files a run writes, and where |
@@ -61,6 +63,8 @@ pub mod compare;
 pub mod extras;
 pub mod figures;
 pub mod files;
+pub mod inputs;
+pub mod linear;
 pub mod output;
 pub mod overview;
 pub mod parameters;

@@ -1,0 +1,124 @@
+//! A finite move of a mechanism along its kinematics.
+//!
+//! In: a state, momenta that carry it for one unit of pseudo-time, changes that are added, which states stay. Out: the
+//! state after the move: orientations are rotations, displacements that are integrated fit the poses, gaps of rigid
+//! joints closed.
+//! Method: q' = A(q) p from rest, with the slope A of the rates of the other states by the momenta, by the classical
+//! Runge-Kutta method. Where joints are rigid, p loses what they hold, as by an impulse, and closes the gaps q by p
+//! such that the flows are -q. A gap is read off Baumgarte's terms, dv/dt = -2 a v - a^2 q, which the rates contain.
+
+use bg_model::nalgebra::{DMatrix, DVector, SVector};
+use bg_model::scalar::Dual;
+use bg_model::system::Model;
+
+use super::plant::{branches, held};
+
+/// The rate a of Baumgarte's terms in generated code, 1/s: see "Rigid joints" in the reference of the language.
+const DECAY: f64 = 50.0;
+
+/// A move.
+pub(super) struct Carry {
+    /// The momenta that carry: zero for states that are not momenta.
+    pub push: DVector<f64>,
+    /// What is added to every state.
+    pub add: DVector<f64>,
+    /// Which states the kinematics leaves alone: momenta, and integrals that outputs ask for.
+    pub stays: Vec<bool>,
+    /// Which states are momenta.
+    pub momenta: Vec<bool>,
+    /// The number of steps.
+    pub steps: usize,
+}
+
+/// The state that the move leads to from `x`.
+pub(super) fn carried<Mo, const N: usize, const G: usize, const M: usize>(
+    model: &Mo,
+    t: f64,
+    x: &DVector<f64>,
+    carry: &Carry,
+) -> DVector<f64>
+where
+    Mo: Model<Dual, N, G, M>,
+{
+    let momenta: DVector<f64> = x.zip_map(&mask(&carry.momenta), |value, is| value * is);
+    let kinematics = Kinematics::<Mo, N, G, M> { model, t, carry, negative: branches(model, t, &dual(x, &(x * 0.0))) };
+    let mut place = x - &momenta;
+    let gaps = kinematics.gaps(&place);
+    let h = 1.0 / carry.steps as f64;
+    for _ in 0..carry.steps {
+        let k1 = kinematics.slope(&place, &gaps);
+        let k2 = kinematics.slope(&(&place + &k1 * (h / 2.0)), &gaps);
+        let k3 = kinematics.slope(&(&place + &k2 * (h / 2.0)), &gaps);
+        let k4 = kinematics.slope(&(&place + &k3 * h), &gaps);
+        place += (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
+        place = kinematics.projected(&place);
+    }
+    let added = carry.add.zip_map(&mask(&carry.momenta), |value, is| value * is);
+    kinematics.fitting(place + momenta + added)
+}
+
+struct Kinematics<'a, Mo, const N: usize, const G: usize, const M: usize> {
+    model: &'a Mo,
+    t: f64,
+    carry: &'a Carry,
+    negative: [bool; G],
+}
+
+impl<Mo, const N: usize, const G: usize, const M: usize> Kinematics<'_, Mo, N, G, M>
+where
+    Mo: Model<Dual, N, G, M>,
+{
+    /// d/ds of all states but momenta, which are zero at `place`.
+    fn slope(&self, place: &DVector<f64>, gaps: &DVector<f64>) -> DVector<f64> {
+        let t = Dual::new(self.t, 0.0);
+        let mut push = self.carry.push.clone();
+        if let Some(held) = held(self.model, t, &dual(place, &push), &self.negative) {
+            let flows = DVector::from_iterator(held.flows.len(), held.flows.iter().map(|flow| flow.slope));
+            push -= held.moves * solved(held.matrix, &(flows + gaps));
+        }
+        let mut rates = SVector::repeat(Dual::new(0.0, 0.0));
+        self.model.rate(t, &dual(place, &push), &self.negative, &mut rates);
+        let stays = &self.carry.stays;
+        DVector::from_fn(N, |state, _| if stays[state] { 0.0 } else { rates[state].slope + self.carry.add[state] })
+    }
+
+    /// The gaps of the rigid motions; none without rigid joints.
+    fn gaps(&self, place: &DVector<f64>) -> DVector<f64> {
+        let mut rates = SVector::repeat(Dual::new(0.0, 0.0));
+        self.model.rate(Dual::new(self.t, 0.0), &dual(place, &(place * 0.0)), &self.negative, &mut rates);
+        let rates = DVector::from_fn(N, |state, _| rates[state].value);
+        let along = held(self.model, Dual::new(self.t, 1.0), &dual(place, &rates), &self.negative);
+        let flows = along.map_or(Vec::new(), |held| held.flows);
+        let gap = |flow: &Dual| -(flow.slope + 2.0 * DECAY * flow.value) / (DECAY * DECAY);
+        DVector::from_iterator(flows.len(), flows.iter().map(gap))
+    }
+
+    /// The state with momenta that rigid joints allow.
+    fn fitting(&self, x: DVector<f64>) -> DVector<f64> {
+        let Some(held) = held(self.model, Dual::new(self.t, 0.0), &dual(&x, &(&x * 0.0)), &self.negative) else {
+            return x;
+        };
+        let flows = DVector::from_iterator(held.flows.len(), held.flows.iter().map(|flow| flow.value));
+        x - held.moves * solved(held.matrix, &flows)
+    }
+
+    fn projected(&self, x: &DVector<f64>) -> DVector<f64> {
+        let mut projected = dual(x, &(x * 0.0));
+        self.model.project(&mut projected);
+        DVector::from_fn(N, |state, _| projected[state].value)
+    }
+}
+
+/// The solution, not a number where there is none.
+fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
+    matrix.lu().solve(right).unwrap_or_else(|| DVector::repeat(right.len(), f64::NAN))
+}
+
+fn dual<const N: usize>(x: &DVector<f64>, along: &DVector<f64>) -> SVector<Dual, N> {
+    SVector::from_fn(|state, _| Dual::new(x[state], along[state]))
+}
+
+/// 1 where true, 0 where not.
+fn mask(of: &[bool]) -> DVector<f64> {
+    DVector::from_iterator(of.len(), of.iter().map(|&is| if is { 1.0 } else { 0.0 }))
+}
