@@ -1,8 +1,7 @@
 //! A rigid body in free rotation, in bond-graph words: a multibond junction, a tensor that turns with the body.
 //!
-//! Look at `h` and `w`: the angular momentum stays, the angular velocity does not. Spun about the axis of its middle
-//! moment of inertia, as it starts here, the body turns over again and again. `--set middle=2.5 --set greatest=2` makes that
-//! moment the greatest, and the body only wobbles.
+//! Look at `h` and `w`: the angular momentum stays, the angular velocity does not, for the tensor of inertia turns with the
+//! body. `R` is the rotation matrix; its columns are the body's axes.
 //!
 //!     cargo run --release --example free_body -- --t-end 30
 
