@@ -1,23 +1,47 @@
 //! Models in the macro language, one file each. The suite `physics` tests every one against an independent truth; the
 //! suite `laws` tests what holds for all of them.
 
-pub mod contact;
-pub mod dc_motor;
-pub mod double_pendulum;
 pub mod drives;
-pub mod free_body;
 pub mod hacksaw_with_motor;
-pub mod hydraulic_cylinder;
 pub mod joints;
-pub mod mass_spring_damper;
 pub mod modulated;
 pub mod nonlinear;
-pub mod orbit;
-pub mod orifice;
 pub mod permuted;
-pub mod rlc_circuit;
-pub mod slider_crank;
 pub mod sources;
+
+// The gallery: programs of the workbench, whose `main` nobody calls here.
+#[path = "../../bg-model/workbench/examples/contact.rs"]
+#[allow(dead_code)]
+pub mod contact;
+#[path = "../../bg-model/workbench/examples/dc_motor.rs"]
+#[allow(dead_code)]
+pub mod dc_motor;
+#[path = "../../bg-model/workbench/examples/double_pendulum.rs"]
+#[allow(dead_code)]
+pub mod double_pendulum;
+#[path = "../../bg-model/workbench/examples/free_body.rs"]
+#[allow(dead_code)]
+pub mod free_body;
+#[path = "../../bg-model/workbench/examples/hydraulic_cylinder.rs"]
+#[allow(dead_code)]
+pub mod hydraulic_cylinder;
+#[path = "../../bg-model/workbench/examples/mass_spring_damper.rs"]
+#[allow(dead_code)]
+pub mod mass_spring_damper;
+#[path = "../../bg-model/workbench/examples/orbit.rs"]
+#[allow(dead_code)]
+pub mod orbit;
+#[path = "../../bg-model/workbench/examples/orifice.rs"]
+#[allow(dead_code)]
+pub mod orifice;
+#[path = "../../bg-model/workbench/examples/rlc_circuit.rs"]
+#[allow(dead_code)]
+pub mod rlc_circuit;
+#[path = "../../bg-model/workbench/examples/slider_crank.rs"]
+#[allow(dead_code)]
+pub mod slider_crank;
+#[path = "../../bg-model/workbench/examples/spinning_top.rs"]
+#[allow(dead_code)]
 pub mod spinning_top;
 
 /// Hands the list of the hacksaw's models to the macro `$then`: name of a test, type and parameters.

@@ -56,6 +56,7 @@
 //! | [`overview`] | all of it on one page |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
+//! | [`cookbook`] | short programs for what comes up after the first run |
 
 pub mod command;
 pub mod compare;
@@ -73,6 +74,9 @@ pub mod report;
 pub mod samples;
 pub mod scenes;
 pub mod summary;
+
+#[doc = include_str!("../cookbook.md")]
+pub mod cookbook {}
 
 use std::process::ExitCode;
 

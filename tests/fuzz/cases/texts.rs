@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::Input;
 
-/// The texts of valid macro calls below the workspace's folder: the stages' models, the example models, the hacksaw,
+/// The texts of valid macro calls below the workspace's folder: the stages' models, the example models, the gallery, the hacksaw,
 /// the parser's example.
 ///
 /// # Errors
@@ -17,7 +17,11 @@ pub fn seeds(workspace: &Path) -> io::Result<Vec<String>> {
         texts.push(fs::read_to_string(path)?);
     }
     texts.push(fs::read_to_string(workspace.join("bg-macros/compiler/src/source/syntax/tests/example.bond"))?);
-    for path in files(&workspace.join("tests/models"), "rs")? {
+    let mut models = files(&workspace.join("tests/models"), "rs")?;
+    models.extend(files(&workspace.join("bg-model/workbench/examples"), "rs")?);
+    // One order for both folders: seeds stay in their places when a model moves to the gallery.
+    models.sort_unstable_by(|a, b| a.file_name().cmp(&b.file_name()));
+    for path in models {
         texts.extend(calls(&fs::read_to_string(path)?));
     }
     texts.extend(calls(&fs::read_to_string(workspace.join("hacksaw/src/mechanism.rs"))?));

@@ -106,7 +106,7 @@ fn finish(svg: &str, heading: &str) -> String {
          role=\"img\" aria-label=\"{heading}\">"
     );
     let joins = "<style>polyline{stroke-linejoin:round;stroke-linecap:round}</style>";
-    format!("{opening}\n{}{joins}\n{}", dark_style(), subscripts(body).replace(UNDERLINE, "_"))
+    format!("{opening}\n{}{joins}\n{}", dark_style(), subscripts(body)).replace(UNDERLINE, "_")
 }
 
 /// Sets the index of `h_2x`, `C_4y` and the like as a subscript.

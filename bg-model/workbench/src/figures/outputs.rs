@@ -1,17 +1,19 @@
 //! Figures of a model's outputs: for each observed quantity its components over time, one panel each.
 //!
 //! In: a description. Out: the figures. The components of a vector share one scale, and so do those of a matrix, which has a
-//! panel for each row.
+//! panel for each row: there the colour says the column.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use bg_model::description::{Description, OutputInfo};
 use bg_model::simulation::Recording;
 use plotters::style::RGBColor;
+use plotters::style::text_anchor::HPos;
 
-use super::canvas::{Rectangle, figure, literally};
+use super::canvas::{Rectangle, figure, literally, text, write};
 use super::palette::{AXES, INK};
-use super::panel::{OverTime, RIGHT, STILL, VALUE_LABELS, extent, row_plot, time_span, widened};
+use super::panel::{CAPTION, OverTime, RIGHT, STILL, VALUE_LABELS, extent, row_plot, superscript, time_span, widened};
 use super::{Figure, FigureError};
 
 /// The most outputs that get figures of their own; a run with more has them in its CSV file.
@@ -27,7 +29,7 @@ pub fn figures(description: &'static Description) -> Vec<Figure> {
 /// The figure of one quantity, given its components.
 fn quantity(components: &'static [OutputInfo]) -> Figure {
     let (of, unit) = (components[0].of, components[0].unit);
-    let title = if matches!(unit, "" | "1") { of.to_owned() } else { format!("{of} in {unit}") };
+    let title = if matches!(unit, "" | "1") { of.to_owned() } else { format!("{of} in {}", set_unit(unit)) };
     let heading = title.clone();
     Figure {
         file: format!("{of}.svg"),
@@ -43,17 +45,32 @@ fn draw(heading: &str, recording: &Recording, components: &[OutputInfo]) -> Resu
     let curves = components.iter().map(|output| recording.values(output.name)).collect::<Result<Vec<_>, _>>()?;
     let times = &recording.times;
     let (Some(start), Some(end)) = (times.first(), times.last()) else { return Err(FigureError::Empty) };
-    let range = widened(extent(curves.iter().flat_map(|values| values.iter().copied())), STILL);
+    let range = extent(curves.iter().flat_map(|values| values.iter().copied()));
+    let range = widened(range.clone(), least_span(&range));
     let in_panel = if components.len() > 3 { 3 } else { 1 };
     let panels = components.len() / in_panel;
-    figure(heading, |area| {
+    figure(&literally(heading), |area| {
         for (row, (outputs, values)) in components.chunks(in_panel).zip(curves.chunks(in_panel)).enumerate() {
             let plot =
                 row_plot(row as i32, panels as i32, VALUE_LABELS, Rectangle::CONTENT.width - VALUE_LABELS - RIGHT);
-            let names: Vec<&str> = outputs.iter().map(|output| output.name).collect();
+            let colour = |column: usize| match (components.len(), in_panel) {
+                (1, _) => INK.light,
+                (_, 1) => AXES[row % AXES.len()].light,
+                _ => AXES[column % AXES.len()].light,
+            };
+            // Of several curves each has its name in its colour.
+            for (column, output) in outputs.iter().enumerate().skip(1) {
+                let left = plot.x + column as i32 * name_width(outputs);
+                write(
+                    area,
+                    &literally(output.name),
+                    (left, plot.y - CAPTION + 3),
+                    &text(13, colour(column), HPos::Left),
+                )?;
+            }
             let panel = OverTime {
-                caption: literally(&names.join(", ")),
-                colour: if components.len() == 1 { INK.light } else { colour(row) },
+                caption: literally(outputs[0].name),
+                colour: colour(0),
                 times,
                 values: values[0],
                 span: time_span(*start, *end),
@@ -61,13 +78,53 @@ fn draw(heading: &str, recording: &Recording, components: &[OutputInfo]) -> Resu
                 time_description: (row + 1 == panels).then(|| "t in s".to_owned()),
             };
             let more: Vec<(&[f64], RGBColor)> =
-                values.iter().enumerate().skip(1).map(|(k, values)| (*values, colour(row + k))).collect();
+                values.iter().enumerate().skip(1).map(|(column, values)| (*values, colour(column))).collect();
             panel.draw_with(area, plot, &more)?;
         }
         Ok(())
     })
 }
 
-fn colour(index: usize) -> RGBColor {
-    AXES[index % AXES.len()].light
+/// Space for the longest of these names with a gap after it, CSS pixels.
+fn name_width(outputs: &[OutputInfo]) -> i32 {
+    let longest = outputs.iter().map(|output| output.name.chars().count()).max();
+    8 * longest.unwrap_or(0) as i32 + 16
+}
+
+/// The smallest span that a panel of values in `range` shows, so that rounding noise does not fill it.
+fn least_span(range: &Range<f64>) -> f64 {
+    const NOTHING: f64 = 1e-12;
+    let magnitude = range.start.abs().max(range.end.abs());
+    if magnitude < NOTHING { STILL } else { STILL * magnitude }
+}
+
+/// A unit as it is set in print: `kg*m^2/s` as kg·m²/s.
+fn set_unit(unit: &str) -> String {
+    let mut parts = unit.split('^');
+    let mut set = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (power, rest) = part.split_at(part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len()));
+        set += &superscript(power);
+        set += rest;
+    }
+    set.replace('*', "\u{B7}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_unit_is_set_as_in_print() {
+        assert_eq!(set_unit("kg*m^2/s"), "kg\u{B7}m\u{B2}/s");
+        assert_eq!(set_unit("W/m^2/K^4"), "W/m\u{B2}/K\u{2074}");
+        assert_eq!(set_unit("N"), "N");
+    }
+
+    #[test]
+    fn a_small_quantity_fills_its_panel_and_noise_does_not() {
+        assert_eq!(least_span(&(0.0..2e-9)), 2e-15);
+        assert_eq!(least_span(&(-1e-15..1e-15)), STILL);
+        assert!(least_span(&(1.0..1.0 + 1e-15)) > 1e-9);
+    }
 }

@@ -91,7 +91,7 @@ fn ticks(range: &Range<f64>, step: f64) -> Vec<f64> {
 }
 
 /// An exponent in raised digits.
-fn superscript(exponent: &str) -> String {
+pub(super) fn superscript(exponent: &str) -> String {
     const RAISED: [char; 10] = [
         '\u{2070}', '\u{B9}', '\u{B2}', '\u{B3}', '\u{2074}', '\u{2075}', '\u{2076}', '\u{2077}', '\u{2078}',
         '\u{2079}',

@@ -29,9 +29,10 @@ impl Signals<'_> {
         for node in nodes {
             let Some(element) = graph.element(node) else { continue };
             let bond = graph.node(node).bonds[0];
-            let flow = self.flow(bond);
-            let flow = flow.scale(&mut self.pool, graph.sign(bond, node));
-            let wanted = self.evaluate(element.law.term(), None).negate(&mut self.pool);
+            // The law is the flow along the half arrow; the reaction acts against the flow into the sink.
+            let sign = graph.sign(bond, node);
+            let flow = self.flow(bond).scale(&mut self.pool, sign);
+            let wanted = self.evaluate(element.law.term(), None).negate(&mut self.pool).scale(&mut self.pool, sign);
             let excess = flow.add(&mut self.pool, &wanted);
             let gap: Option<Vec<Id>> = element.displacement.as_ref().map(|gap| self.evaluate(gap, None).0);
             let multipliers = self.multipliers(node, excess.0.len());

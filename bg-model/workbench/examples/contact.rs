@@ -1,4 +1,9 @@
-//! A block that is drawn to and fro on a slide under a contact that resists the two directions differently.
+//! A block that a spring draws to and fro on a slide, under a contact that resists the two directions differently.
+//!
+//! Look at `v` and `force_x`: where the velocity changes its sign, the resistance switches between `cut` and `back`, and the
+//! force has a kink. Each switching is an event, found to rounding; the summary counts them.
+//!
+//!     cargo run --release --example contact -- --t-end 3 --set cut=8
 
 use bg_model::bond_graph;
 
@@ -34,4 +39,8 @@ bond_graph! {
             dissipated: J = integral(dissipated_power);
         }
     }
+}
+
+fn main() -> std::process::ExitCode {
+    bg_workbench::main::<SlidingBlock>()
 }

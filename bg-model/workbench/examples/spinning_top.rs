@@ -1,4 +1,8 @@
 //! A heavy symmetric top in three dimensions, its tip on a stiff spherical joint.
+//!
+//! Look at `axis`: it circles the vertical and nods a little. A slower top nods more.
+//!
+//!     cargo run --release --example spinning_top -- --t-end 2 --set spin=80
 
 use bg_model::bond_graph;
 
@@ -70,4 +74,8 @@ bond_graph! {
             }
         }
     }
+}
+
+fn main() -> std::process::ExitCode {
+    bg_workbench::main::<SpinningTop>()
 }

@@ -1,4 +1,9 @@
 //! A rigid body in free rotation, in bond-graph words: a multibond junction, a tensor that turns with the body.
+//!
+//! Look at `h` and `w`: the angular momentum stays, the angular velocity does not, for the tensor of inertia turns with the
+//! body. `R` is the rotation matrix; its columns are the body's axes.
+//!
+//!     cargo run --release --example free_body -- --t-end 30
 
 use bg_model::bond_graph;
 
@@ -17,4 +22,8 @@ bond_graph! {
         rotation -> tensor;
         observe { R = attitude; w: rad/s = rotation.flow; h: kg*m^2/s = tensor.p; stored: J = stored_energy; }
     }
+}
+
+fn main() -> std::process::ExitCode {
+    bg_workbench::main::<FreeBody>()
 }

@@ -1,4 +1,9 @@
 //! A ball that circles a point of the ground on a spring, in three dimensions.
+//!
+//! Look at `position`: a circle in a plane that is tilted. At another speed the spring stretches and slackens, and the path is a
+//! rosette.
+//!
+//!     cargo run --release --example orbit -- --t-end 10 --set speed=2
 
 use bg_model::bond_graph;
 
@@ -27,4 +32,8 @@ bond_graph! {
         spring band (ground.O -> ball) { stiffness stiffness; length length; }
         observe { position: m = ball.position; mass: kg = ball.linear.p.y / ball.velocity.y; stored: J = stored_energy; force: N = band.force; }
     }
+}
+
+fn main() -> std::process::ExitCode {
+    bg_workbench::main::<Orbit>()
 }

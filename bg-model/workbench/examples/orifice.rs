@@ -1,4 +1,9 @@
 //! An orifice at rest: where every hydraulic model starts, and where the square root of its law has an infinite slope.
+//!
+//! Look at `flow`: `root(p, laminar)` is linear for small pressures, so the run starts without trouble. A smaller `laminar`
+//! brings the law closer to the root.
+//!
+//!     cargo run --release --example orifice -- --t-end 1 --set laminar=10
 
 use bg_model::bond_graph;
 
@@ -36,4 +41,8 @@ bond_graph! {
             dissipated: J = integral(dissipated_power);
         }
     }
+}
+
+fn main() -> std::process::ExitCode {
+    bg_workbench::main::<Orifice>()
 }

@@ -1,4 +1,9 @@
 //! A series circuit of resistor, coil and capacitor on a voltage source.
+//!
+//! Look at `current` and `capacitor_voltage` after the voltage is switched on: they ring at 159 Hz and die out. The voltage is
+//! an input and 0 unless it is given.
+//!
+//!     cargo run --release --example rlc_circuit -- --t-end 0.05 --step 1e-4 --input voltage=12
 
 use bg_model::bond_graph;
 
@@ -33,4 +38,8 @@ bond_graph! {
             dissipated: J = integral(resistor.power);
         }
     }
+}
+
+fn main() -> std::process::ExitCode {
+    bg_workbench::main::<RlcCircuit>()
 }

@@ -1,4 +1,9 @@
 //! A direct-current motor that turns a flywheel through a gear.
+//!
+//! Look at `current`: it leaps up while the rotor stands still and falls as the motor's own voltage rises with the speed. The
+//! voltage is an input and 0 unless it is given.
+//!
+//!     cargo run --release --example dc_motor -- --t-end 2 --input voltage=12
 
 use bg_model::bond_graph;
 
@@ -49,4 +54,8 @@ bond_graph! {
             dissipated: J = integral(dissipated_power);
         }
     }
+}
+
+fn main() -> std::process::ExitCode {
+    bg_workbench::main::<DcMotor>()
 }
