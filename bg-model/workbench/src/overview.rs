@@ -93,12 +93,14 @@ fn gallery(page: &mut String, texts: &Page, figures: &[Figure]) {
     }
     *page += "<div class=\"figures\">\n";
     for Figure { file, anchor, title, caption, .. } in figures {
-        let (title, caption) = (escaped(title), escaped(caption));
+        let title = escaped(title);
+        let caption =
+            if caption.is_empty() { String::new() } else { format!("<figcaption>{}</figcaption>", escaped(caption)) };
         write_into(
             page,
             format_args!(
                 "<figure id=\"{anchor}\"><a href=\"{file}\"><img src=\"{file}\" alt=\"{title}\" width=\"960\" \
-                 height=\"540\"></a><figcaption>{caption}</figcaption></figure>\n"
+                 height=\"540\"></a>{caption}</figure>\n"
             ),
         );
     }
