@@ -68,7 +68,8 @@ use proc_macro::TokenStream;
 ///
 /// - A **parameter** stays the same during a run. Its default and the ends of its range are made of numbers and `+ - *
 ///   /`. The range is checked by the generated `new`.
-/// - An **input** is a function of time, given at run time as a `bg_model::input::Input`: a constant or a closure.
+/// - An **input** is a function of time, given at run time as a `bg_model::input::Input`: a constant, a closure, or a table
+///   with straight lines or a cubic spline between its rows. Steps end at the rows of a table.
 /// - A **let** names an expression. A unit, where given, is checked.
 ///
 /// ## Junctions: `0`, `1`

@@ -9,13 +9,16 @@
 //! |---|---|
 //! | describe a model | [`bond_graph!`](bond_graph) |
 //! | set parameters by name, from a file | [`parameters::Parameters`]; the generated struct is a serde struct |
-//! | give an input, a function of time | [`input::Input`] |
+//! | give an input, a function of time: a constant, a closure, a table | [`input::Input`], [`input::Table`] |
 //! | get the start state, loops closed | [`system::Model::start`] |
 //! | run it, get columns by name | [`run::Simulation`] |
 //! | run it without allocations, with an observer | [`simulation::integrate`] with a method of [`integrator`], [`simulation::Settings`] |
+//! | end it where a condition passes through zero | [`simulation::integrate_until`] |
+//! | end it from its observer | [`simulation::Observer::is_done`] |
+//! | know why it ended | [`simulation::Ended`] of [`simulation::Finish`] |
 //! | look at outputs, energies, powers | [`system::Model`] |
 //! | look at the graph, strokes, states, equations | [`description::Description`] |
-//! | know why a run stopped | [`failure::Failure`], with the last good state |
+//! | know why it failed | [`failure::Failure`], with the last good state |
 //! | know what it cost | [`statistics::Statistics`] |
 //! | calculate in another number type | [`scalar::Scalar`] and the model's `in_scalar` |
 //! | get a reference solution beyond double precision | [`extended::integrate`] with [`scalar::DoubleDouble`] |

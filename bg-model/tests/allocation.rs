@@ -4,7 +4,7 @@ mod problems;
 
 use bg_model::integrator::{Dop853, Gauss6, Method, Radau5, Radau9, Rk4};
 use bg_model::nalgebra::SVector;
-use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use bg_model::simulation::{EachSample, Ended, Samples, Settings, Span, integrate, integrate_until};
 use problems::*;
 
 fn allocations<M: Method<2>>(mut method: M) -> (u64, u64, u64) {
@@ -23,6 +23,19 @@ fn allocations<M: Method<2>>(mut method: M) -> (u64, u64, u64) {
 fn the_counter_counts() {
     let counted = allocation_counter::measure(|| drop(std::hint::black_box(vec![1.0; 100])));
     assert_eq!(counted.count_total, 1);
+}
+
+#[test]
+fn a_condition_allocates_nothing() {
+    let (system, start, span) = (bilinear(), SVector::from([1.0, 0.0]), Span { t0: 0.0, t_end: 30.0 });
+    let (mut method, settings) = (Dop853::new(), settings(1e-9));
+    let condition = |t: f64, x: &SVector<f64, 2>, _: &[bool; 1]| if t < 20.0 { 1.0 } else { x[1] };
+    let mut ended = None;
+    let counted = allocation_counter::measure(|| {
+        let finish = integrate_until(&system, &mut method, &start, span, &settings, condition, &mut ());
+        ended = finish.ok().map(|finish| finish.ended);
+    });
+    assert_eq!((counted.count_total, ended), (0, Some(Ended::ByCondition)));
 }
 
 #[test]

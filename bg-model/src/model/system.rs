@@ -30,6 +30,12 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// after each accepted step, before the rate at the new state is evaluated.
     fn project(&self, _x: &mut SVector<S, N>) {}
 
+    /// The first instant after `t` (s) at which a step must end, because the rate follows another law from there on: a kink
+    /// of an input. The rate is continuous there. Infinity, as by default, where there is none.
+    fn next_break(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// The name of state `index`, for messages.
     fn state_name(&self, _index: usize) -> &'static str {
         "state"

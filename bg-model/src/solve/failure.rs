@@ -41,6 +41,19 @@ pub enum Cause {
         /// The size of the step, s; 0 at the start of the run.
         h: f64,
     },
+    /// The condition that ends the run is not finite, however small the step.
+    #[error(
+        "the condition that ends the run is {value:?} {}; it must be a finite number all along the run",
+        place(*.t, *.h)
+    )]
+    Condition {
+        /// Its value.
+        value: f64,
+        /// The start of the step, s.
+        t: f64,
+        /// The size of the step, s; 0 at the start of a step.
+        h: f64,
+    },
     /// The tolerances call for a step that rounding does not allow.
     #[error(
         "the step fell to {h:.2e} s at t = {t:?} s, where `{state}` = {value:?} allows no larger one: it grows without \
@@ -227,7 +240,7 @@ fn not_finite(
     h: f64,
 ) -> String {
     let whose = if quantity == Quantity::Guard { switch_text(name, index) } else { format!("`{name}`") };
-    let place = if h == 0.0 { format!("at t = {t:?} s") } else { format!("in a step of {h:.2e} s from t = {t:?} s") };
+    let place = place(t, h);
     match origin {
         None => format!("{quantity} of {whose} is {value:?} {place}"),
         Some(origin) => format!(
@@ -238,6 +251,11 @@ fn not_finite(
             origin.action()
         ),
     }
+}
+
+/// In which step.
+fn place(t: f64, h: f64) -> String {
+    if h == 0.0 { format!("at t = {t:?} s") } else { format!("in a step of {h:.2e} s from t = {t:?} s") }
 }
 
 /// A switch by its name, or its number where it has none.

@@ -1,4 +1,4 @@
-//! Where a run has come to, at its end or where it failed.
+//! Where a run has come to, at its end or where it failed, and why it ended.
 
 use nalgebra::SVector;
 
@@ -13,6 +13,21 @@ pub struct Finish<const N: usize, const G: usize> {
     pub x: SVector<f64, N>,
     /// The branches of the switches from `t` on; of one whose guard has just come to zero there, the branch before.
     pub negative: [bool; G],
+    /// Why the run ended.
+    pub ended: Ended,
     /// What the run has cost.
     pub statistics: Statistics,
+}
+
+/// Why a run ended. Of several reasons at one instant the condition comes first, then the observer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// It came to the end of its span.
+    AtEnd,
+    /// The condition passed through zero.
+    ByCondition,
+    /// The observer had enough.
+    ByObserver,
+    /// It failed: only in [`Failure::last`](crate::failure::Failure::last).
+    ByFailure,
 }

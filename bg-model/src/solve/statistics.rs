@@ -24,7 +24,7 @@ pub struct Statistics {
     pub pivoted_factorisations: u64,
     /// Orders of Taylor series, each of which costs two to five rates.
     pub series_orders: u64,
-    /// Evaluations of the guards, each of all guards at once.
+    /// Evaluations of the guards, each of all guards at once, and of the condition that ends the run.
     pub guard_evaluations: u64,
     /// Changes of a switch's branch after the start.
     pub events: u64,

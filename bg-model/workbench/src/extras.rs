@@ -85,7 +85,8 @@ fn of_outputs(run: &Recording) -> Additions {
 
 fn line(column: &Column) -> (String, String) {
     let [start, end, least, largest] = ends(&column.values).map(short);
-    let text = format!("{start} to {end}, between {least} and {largest} {}", column.unit);
+    let unit = if column.unit == "1" { "" } else { &column.unit };
+    let text = format!("{start} to {end}, between {least} and {largest} {unit}");
     (column.name.clone(), text.trim_end().to_owned())
 }
 

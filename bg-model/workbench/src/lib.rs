@@ -46,6 +46,7 @@
 //! | [`command`] | what the user asks for |
 //! | [`scenes`] | which models there are, by name |
 //! | [`parameters`] | which values the parameters have in this run |
+//! | [`inputs`] | which inputs: numbers, or tables from files |
 //! | [`report`] | what a scene consists of and what it left out |
 //! | [`compare`] | how far two runs are apart |
 //! | [`precision`] | how exact a run is and what that costs |
@@ -61,6 +62,7 @@ pub mod compare;
 pub mod extras;
 pub mod figures;
 pub mod files;
+pub mod inputs;
 pub mod linear;
 pub mod output;
 pub mod overview;

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use bg_model::input::Input;
 use bg_model::parameters::{ParameterError, Parameters};
 use thiserror::Error;
 
@@ -78,6 +79,8 @@ pub struct Chosen<P> {
     pub values: P,
     /// For each parameter of the table the last place that set it: a `--set` or a file; empty for a default.
     pub places: Vec<String>,
+    /// The inputs in the order of the model's description; those that are missing are 0.
+    pub inputs: Vec<Input>,
 }
 
 /// The model's defaults, changed by the file and then by the `NAME=VALUE` texts in their order.
@@ -85,7 +88,8 @@ pub struct Chosen<P> {
 /// # Errors
 /// The first setting that cannot be used.
 pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<Chosen<P>, SettingError> {
-    let mut parameters = Chosen { values: P::default(), places: vec![String::new(); P::table().len()] };
+    let mut parameters =
+        Chosen { values: P::default(), places: vec![String::new(); P::table().len()], inputs: Vec::new() };
     if let Some(path) = file {
         let text = std::fs::read_to_string(path)
             .map_err(|source| SettingError::Unreadable { path: path.to_owned(), source })?;
@@ -184,9 +188,11 @@ fn set_from_toml<P: Parameters>(parameters: &mut Chosen<P>, path: &Path, text: &
 fn set<P: Parameters>(parameters: &mut Chosen<P>, place: &str, name: &str, value: f64) -> Result<(), SettingError> {
     let place = place.to_owned();
     parameters.values.set(name, value).map_err(|fault| match fault {
-        ParameterError::Unknown { name } => {
-            SettingError::Unknown { place: place.clone(), near: nearest::<P>(&name), name: one_line(&name) }
-        }
+        ParameterError::Unknown { name } => SettingError::Unknown {
+            place: place.clone(),
+            near: nearest(&name, P::table().iter().map(|info| info.name)),
+            name: one_line(&name),
+        },
         fault => SettingError::Range { place: place.clone(), fault },
     })?;
     if let Some(index) = P::table().iter().position(|info| info.name == name) {
@@ -195,15 +201,14 @@ fn set<P: Parameters>(parameters: &mut Chosen<P>, place: &str, name: &str, value
     Ok(())
 }
 
-/// The parameter whose name is most similar to `name`, if any is similar.
-fn nearest<P: Parameters>(name: &str) -> Option<String> {
+/// The one of `names` that is most similar to `name`, if any is similar.
+pub(crate) fn nearest(name: &str, names: impl Iterator<Item = &'static str>) -> Option<String> {
     // Jaro-Winkler similarity; clap uses 0.7 for its own near misses.
     const SIMILAR: f64 = 0.7;
     let wanted = name.to_lowercase();
-    P::table()
-        .iter()
-        .map(|info| (strsim::jaro_winkler(&wanted, info.name), info.name))
+    names
+        .map(|known| (strsim::jaro_winkler(&wanted, known), known))
         .filter(|(similarity, _)| *similarity > SIMILAR)
         .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, name)| name.to_owned())
+        .map(|(_, known)| known.to_owned())
 }

@@ -53,6 +53,9 @@ pub struct Summary {
     pub changed_parameters: Vec<String>,
     /// The end that was asked for, s.
     pub t_end_s: f64,
+    /// The start, s, of a run that goes on from a saved state; else nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_s: Option<f64>,
     /// The last sample, s.
     pub reached_s: f64,
     /// The integrators that made the steps, with the time from which on.
@@ -121,12 +124,14 @@ impl Summary {
     pub fn new(scene: &str, run: &Trajectory, failure: Option<String>, additions: Additions) -> Self {
         let Request { method, fixed_step, t_end, rtol, .. } = run.request;
         let statistics = &run.statistics;
-        let reached = run.times.last().copied().unwrap_or(0.0);
+        let from = run.methods.first().map_or(0.0, |first| first.t);
+        let reached = run.times.last().copied().unwrap_or(from);
         let wall = run.wall.as_secs_f64();
         Self {
             scene: scene.to_owned(),
             changed_parameters: Vec::new(),
             t_end_s: t_end,
+            from_s: (from != 0.0).then_some(from),
             reached_s: reached,
             integrators: integrators(&run.methods),
             fixed_step_s: method.has_fixed_step().then_some(fixed_step),
@@ -145,7 +150,7 @@ impl Summary {
             is_at_rounding: statistics.is_at_rounding(),
             events: statistics.events,
             wall_time_s: wall,
-            times_real_time: reached / wall,
+            times_real_time: (reached - from) / wall,
             entries: additions.entries,
             lines: additions.lines,
             heading: additions.heading,
@@ -167,7 +172,10 @@ impl Summary {
         let time = if self.failure.is_some() {
             format!("{} s of {} s: the run failed", self.reached_s, self.t_end_s)
         } else {
-            format!("{} s", self.t_end_s)
+            match self.from_s {
+                Some(from) => format!("from {from} s to {} s", self.t_end_s),
+                None => format!("{} s", self.t_end_s),
+            }
         };
         lines.push(("simulated time", time));
         let changed = if self.changed_parameters.is_empty() {

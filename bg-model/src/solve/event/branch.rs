@@ -3,6 +3,7 @@
 //! A guard is followed for a small step of the method under a branch; the branch is right if the guard then has its
 //! sign. Where the other branch is right in this sense and this one is not, the other one is taken.
 
+use super::guarded::Guarded;
 use super::{CERTAIN, Watch, check_finite, clearance};
 use crate::model::system::System;
 use crate::solve::integrator::{Method, is_finite};
@@ -124,27 +125,22 @@ impl<const G: usize> Watch<G> {
         std::array::from_fn(|k| switches[k] && signs[k].is_some_and(|negative| negative != stepper.negative[k]))
     }
 
-    /// Whether the guards of `switches` are negative a little later under the present branches; nothing where they stay
-    /// zero.
-    fn probe<Sys, M, const N: usize>(
+    /// Whether the guards of `switches` are negative a little later under the present branches, by steps that are small
+    /// compared with `reach` (s); nothing where they stay zero.
+    pub(super) fn probe<const N: usize>(
         &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        step: &mut impl Guarded<N, G>,
         switches: &[bool; G],
-        step: f64,
-    ) -> [Option<bool>; G]
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+        reach: f64,
+    ) -> [Option<bool>; G] {
         let mut signs = [None; G];
         for part in PROBES {
             // Long enough to be seen in the time as well.
-            let h = (part * step).max(1024.0 * f64::EPSILON * stepper.start.t.abs());
-            stepper.attempt(h);
-            stepper.project();
-            let end = stepper.end;
-            let value = stepper.guards(end.t, &end.x);
-            let noise = self.noise(stepper, end.t, &end.x, &value);
+            let h = (part * reach).max(1024.0 * f64::EPSILON * step.start().t.abs());
+            step.resize(h);
+            let end = *step.end();
+            let value = step.guards(end.t, &end.x);
+            let noise = self.noise(step, end.t, &end.x, &value);
             for k in 0..G {
                 if signs[k].is_none() && value[k].abs() > CERTAIN * noise[k] {
                     signs[k] = Some(value[k] < 0.0);

@@ -6,12 +6,11 @@
 
 use nalgebra::SVector;
 
+use super::guarded::Guarded;
 use super::minimum::minimum;
 use super::noise::larger;
 use super::{Crossing, Reading, Watch, check_finite, clearance, read};
-use crate::model::system::System;
-use crate::solve::integrator::{Method, hermite};
-use crate::solve::stepper::Stepper;
+use crate::solve::integrator::hermite;
 
 /// The number of parts of a step at whose ends the dense output is looked at.
 const PARTS: usize = 8;
@@ -44,37 +43,34 @@ impl<const G: usize> Watch<G> {
     /// Looks for events in the step just made, whose end has been projected and whose rates are known at both ends.
     ///
     /// Shortens the step to the first event. Fails with the first guard that is not finite.
-    pub fn inspect<Sys, M, const N: usize>(
+    pub fn inspect<const N: usize>(
         &mut self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-    ) -> Result<Option<Crossing<G>>, (usize, f64)>
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+        step: &mut impl Guarded<N, G>,
+    ) -> Result<Option<Crossing<G>>, (usize, f64)> {
         if G == 0 {
             return Ok(None);
         }
-        let (end, h) = (stepper.end, stepper.h);
-        self.end = read(stepper, end.t, &end.x, &end.rate, h);
+        let (end, h) = (*step.end(), step.size());
+        self.end = read(step, end.t, &end.x, &end.rate, h);
         check_finite(&self.end.value)?;
         let mut x = SVector::zeros();
-        hermite(&stepper.start, h, &end, 0.5, &mut x);
-        let middle = stepper.guards(stepper.start.t + 0.5 * h, &x);
+        hermite(step.start(), h, &end, 0.5, &mut x);
+        let middle = step.start().t + 0.5 * h;
+        let middle = step.guards(middle, &x);
         // As long as the noise is not known it counts as none: there are only more suspects.
-        if !self.suspects(stepper.negative, &middle, h).contains(&true) {
+        if !self.suspects(step.negative(), &middle, h).contains(&true) {
             return Ok(None);
         }
-        let (start, value) = (stepper.start, self.start.value);
-        self.start.noise = self.noise(stepper, start.t, &start.x, &value);
+        let (start, value) = (*step.start(), self.start.value);
+        self.start.noise = self.noise(step, start.t, &start.x, &value);
         let value = self.end.value;
-        self.end.noise = self.noise(stepper, end.t, &end.x, &value);
-        let suspects = self.suspects(stepper.negative, &middle, h);
+        self.end.noise = self.noise(step, end.t, &end.x, &value);
+        let suspects = self.suspects(step.negative(), &middle, h);
         if !suspects.contains(&true) {
             return Ok(None);
         }
-        let courses = self.courses(stepper, &suspects);
-        Ok(self.first_crossing(stepper, &courses))
+        let courses = self.courses(step, &suspects);
+        Ok(self.first_crossing(step, &courses))
     }
 
     /// The guards that are on the wrong side at the end of the step or may have been in it.
@@ -118,39 +114,27 @@ impl<const G: usize> Watch<G> {
     }
 
     /// The course of the suspects by the dense output; the other guards are clear.
-    fn courses<Sys, M, const N: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        suspects: &[bool; G],
-    ) -> [Course; G]
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+    fn courses<const N: usize>(&self, step: &mut impl Guarded<N, G>, suspects: &[bool; G]) -> [Course; G] {
         let mut values = [self.start.value; PARTS + 1];
         for (part, value) in values.iter_mut().enumerate().take(PARTS).skip(1) {
-            *value = stepper.dense_guards(part as f64 / PARTS as f64);
+            *value = step.dense_guards(part as f64 / PARTS as f64);
         }
         values[PARTS] = self.end.value;
-        std::array::from_fn(|k| if suspects[k] { self.course(stepper, k, &values) } else { Course::Clear })
+        std::array::from_fn(|k| if suspects[k] { self.course(step, k, &values) } else { Course::Clear })
     }
 
     /// The course of guard `k`, whose values at the parts of the step are known.
-    fn course<Sys, M, const N: usize>(
+    fn course<const N: usize>(
         &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        step: &mut impl Guarded<N, G>,
         k: usize,
         values: &[SVector<f64, G>; PARTS + 1],
-    ) -> Course
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
-        let clearances = values.map(|value| clearance(value[k], stepper.negative[k]));
+    ) -> Course {
+        let clearances = values.map(|value| clearance(value[k], step.negative()[k]));
         let at = |part: usize| (part as f64 / PARTS as f64, clearances[part]);
-        let wrong = (1..=PARTS).map(at).find(|place| self.is_wrong(stepper, k, *place));
+        let wrong = (1..=PARTS).map(at).find(|place| self.is_wrong(step, k, *place));
         // Every minimum in front of that may reach the wrong side between two parts.
-        let negative = stepper.negative[k];
+        let negative = step.negative()[k];
         let falls = |reading: &Reading<G>| clearance(reading.slope[k], negative) < 0.0;
         let is_minimum = |part: &usize| {
             let is_below = |other: usize| clearances[*part] <= clearances[other];
@@ -163,95 +147,60 @@ impl<const G: usize> Watch<G> {
         let is_in_front = |part: &usize| wrong.is_none_or(|wrong| at(*part).0 < wrong.0);
         let mut minima = (0..=PARTS).filter(is_in_front).filter(is_minimum);
         let dip = minima.find_map(|part| {
-            let lowest = self.lowest(stepper, k, at(part).0);
-            self.is_wrong(stepper, k, lowest).then_some(lowest)
+            let lowest = self.lowest(step, k, at(part).0);
+            self.is_wrong(step, k, lowest).then_some(lowest)
         });
         let Some(wrong) = dip.or(wrong) else { return Course::Clear };
         let mut in_front = (0..PARTS).rev().map(at).filter(|place| place.0 < wrong.0);
-        let right = in_front.find(|place| self.is_right(stepper, k, *place));
+        let right = in_front.find(|place| self.is_right(step, k, *place));
         match right {
             Some(right) => Course::Crosses(Bracket { right, wrong }),
-            None => self.bracket_near_start(stepper, k, wrong),
+            None => self.bracket_near_start(step, k, wrong),
         }
     }
 
     /// Whether the clearance of guard `k` at this part of the step is negative by more than rounding.
-    fn is_wrong<Sys, M, const N: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        k: usize,
-        (part, clearance): (f64, f64),
-    ) -> bool
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
-        clearance < 0.0 && clearance < -self.noise_inside(stepper, k, part)
+    fn is_wrong<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, (part, clearance): (f64, f64)) -> bool {
+        clearance < 0.0 && clearance < -self.noise_inside(step, k, part)
     }
 
     /// Whether it is positive by more than rounding.
-    fn is_right<Sys, M, const N: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        k: usize,
-        (part, clearance): (f64, f64),
-    ) -> bool
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
-        clearance > 0.0 && clearance > self.noise_inside(stepper, k, part)
+    fn is_right<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, (part, clearance): (f64, f64)) -> bool {
+        clearance > 0.0 && clearance > self.noise_inside(step, k, part)
     }
 
     /// The rounding error of guard `k` at this part of the step, by the dense output.
-    pub(super) fn noise_inside<Sys, M, const N: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        k: usize,
-        part: f64,
-    ) -> f64
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+    pub(super) fn noise_inside<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, part: f64) -> f64 {
         if part == 0.0 {
             return self.start.noise[k];
         }
         if part == 1.0 {
             return self.end.noise[k];
         }
-        let (t, x) = (stepper.start.t + part * stepper.h, stepper.dense(part));
-        let value = stepper.guards(t, &x);
-        self.noise(stepper, t, &x, &value)[k]
+        let (t, x) = (step.start().t + part * step.size(), step.dense(part));
+        let value = step.guards(t, &x);
+        self.noise(step, t, &x, &value)[k]
     }
 
     /// The lowest clearance of guard `k` near the part `near` of the step; stops on the wrong side.
-    fn lowest<Sys, M, const N: usize>(&self, stepper: &mut Stepper<'_, Sys, M, N, G>, k: usize, near: f64) -> (f64, f64)
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+    fn lowest<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, near: f64) -> (f64, f64) {
         let width = 1.0 / PARTS as f64;
         let (low, high) = ((near - width).max(0.0), (near + width).min(1.0));
-        let enough = -self.noise_inside(stepper, k, near);
-        minimum(low, high, enough, |part| clearance(stepper.dense_guards(part)[k], stepper.negative[k]))
+        let enough = -self.noise_inside(step, k, near);
+        minimum(low, high, enough, |part| clearance(step.dense_guards(part)[k], step.negative()[k]))
     }
 
     /// The course of guard `k` that starts at zero and is on the wrong side at `wrong`.
-    fn bracket_near_start<Sys, M, const N: usize>(
+    fn bracket_near_start<const N: usize>(
         &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        step: &mut impl Guarded<N, G>,
         k: usize,
         mut wrong: (f64, f64),
-    ) -> Course
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+    ) -> Course {
         for _ in 0..HALVINGS {
             let part = 0.5 * wrong.0;
-            let near = clearance(stepper.dense_guards(part)[k], stepper.negative[k]);
-            if self.is_right(stepper, k, (part, near)) {
+            let near = clearance(step.dense_guards(part)[k], step.negative()[k]);
+            if self.is_right(step, k, (part, near)) {
                 return Course::Crosses(Bracket { right: (part, near), wrong });
             }
             wrong = (part, near);

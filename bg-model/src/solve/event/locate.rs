@@ -6,12 +6,10 @@
 use nalgebra::SVector;
 
 use super::detect::{Bracket, Course};
+use super::guarded::Guarded;
 use super::noise::larger;
 use super::zero::{Precision, zero};
 use super::{Crossing, Watch, clearance};
-use crate::model::system::System;
-use crate::solve::integrator::Method;
-use crate::solve::stepper::Stepper;
 
 /// The part of a guard's values around a zero up to which what is left of it there is rounding, of the states that stiff forces
 /// lead to, where it stops falling. A guard of which more is left jumps there.
@@ -32,116 +30,82 @@ struct Foreseen {
 
 impl<const G: usize> Watch<G> {
     /// Shortens the step to the first of the crossings in `courses`, if there is one; the rate at its end is known then.
-    pub(super) fn first_crossing<Sys, M, const N: usize>(
+    pub(super) fn first_crossing<const N: usize>(
         &mut self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        step: &mut impl Guarded<N, G>,
         courses: &[Course; G],
-    ) -> Option<Crossing<G>>
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+    ) -> Option<Crossing<G>> {
         let switches = courses.map(|course| matches!(course, Course::WrongFromStart));
         if switches.contains(&true) {
             return Some(Crossing { switches, is_at_start: true });
         }
         let crossing = |(k, course): (usize, &Course)| match course {
-            Course::Crosses(bracket) => Some(self.foresee(stepper, k, *bracket)),
+            Course::Crosses(bracket) => Some(self.foresee(step, k, *bracket)),
             Course::Clear | Course::WrongFromStart => None,
         };
         let first = courses.iter().enumerate().filter_map(crossing).min_by(|a, b| a.guess.total_cmp(&b.guess))?;
-        let full = stepper.end.t;
-        let (first, value) = self.shorten(stepper, first);
-        stepper.end.t = stepper.end.t.min(full);
-        stepper.evaluate_end();
-        Some(Crossing { switches: self.concerned(stepper, courses, first, &value), is_at_start: false })
+        let latest = step.end().t;
+        let (first, value) = self.shorten(step, first);
+        step.close(latest);
+        Some(Crossing { switches: self.concerned(step, courses, first, &value), is_at_start: false })
     }
 
     /// Where guard `k` crosses in its bracket by the dense output.
-    fn foresee<Sys, M, const N: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        k: usize,
-        bracket: Bracket,
-    ) -> Foreseen
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+    fn foresee<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, bracket: Bracket) -> Foreseen {
         // Of the step: enough for the slope, which only speeds up what follows.
         const ASIDE: f64 = 1e-4;
-        let (t, h) = (stepper.end.t, stepper.h);
+        let (t, h) = (step.end().t, step.size());
         let Bracket { right, wrong } = bracket;
         let chord = (wrong.1 - right.1) / (wrong.0 - right.0);
         let guess = right.0 - right.1 / chord;
-        let mut at = |part: f64| clearance(stepper.dense_guards(part)[k], stepper.negative[k]);
+        let mut at = |part: f64| clearance(step.dense_guards(part)[k], step.negative()[k]);
         let size = larger(right.1.abs(), wrong.1.abs());
         let coarse = precise_to(size, 0.0, t * chord / h);
         let (part, _) = zero(right.0, wrong.0, guess, chord, coarse, &mut at);
         let slope = (at(part + ASIDE) - at(part - ASIDE)) / (2.0 * ASIDE * h);
-        let precision = precise_to(size, self.noise_inside(stepper, k, part), t * slope);
+        let precision = precise_to(size, self.noise_inside(step, k, part), t * slope);
         Foreseen { switch: k, right: right.0 * h, wrong: wrong.0 * h, guess: part * h, slope, precision }
     }
 
     /// Shortens the step until the guard of `foreseen` vanishes, or one that turns out to cross before it; gives the
     /// switch and the guards at the end.
-    fn shorten<Sys, M, const N: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        foreseen: Foreseen,
-    ) -> (usize, SVector<f64, G>)
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
+    fn shorten<const N: usize>(&self, step: &mut impl Guarded<N, G>, foreseen: Foreseen) -> (usize, SVector<f64, G>) {
         let Foreseen { mut switch, mut right, mut wrong, mut guess, mut slope, mut precision } = foreseen;
         for _ in 0..G {
             let (h, _) = zero(right, wrong, guess, slope, precision, |h| {
-                clearance(guards_after(stepper, h)[switch], stepper.negative[switch])
+                clearance(guards_after(step, h)[switch], step.negative()[switch])
             });
-            let value = guards_after(stepper, h);
-            let noise = self.noise_after(stepper, &value);
-            let is_earlier = |k: &usize| *k != switch && clearance(value[*k], stepper.negative[*k]) < -noise[*k];
+            let value = guards_after(step, h);
+            let noise = self.noise_after(step, &value);
+            let is_earlier = |k: &usize| *k != switch && clearance(value[*k], step.negative()[*k]) < -noise[*k];
             let Some(earlier) = (0..G).find(is_earlier) else { return (switch, value) };
-            let behind = clearance(value[earlier], stepper.negative[earlier]);
+            let behind = clearance(value[earlier], step.negative()[earlier]);
             slope = -(self.start.slope[earlier].abs().max(f64::MIN_POSITIVE));
             (switch, right, wrong, guess) = (earlier, 0.0, h, h - behind / slope);
             let size = larger(self.start.value[earlier].abs(), behind.abs());
-            precision = precise_to(size, noise[earlier], stepper.end.t * slope);
+            precision = precise_to(size, noise[earlier], step.end().t * slope);
         }
-        (switch, guards_after(stepper, stepper.h))
+        (switch, guards_after(step, step.size()))
     }
 
     /// The rounding errors of the guards at the end of the step just tried, where they have this `value`.
-    fn noise_after<Sys, M, const N: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        value: &SVector<f64, G>,
-    ) -> [f64; G]
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
-        let end = stepper.end;
-        self.noise(stepper, end.t, &end.x, value)
+    fn noise_after<const N: usize>(&self, step: &mut impl Guarded<N, G>, value: &SVector<f64, G>) -> [f64; G] {
+        let end = *step.end();
+        self.noise(step, end.t, &end.x, value)
     }
 
     /// All switches whose guards are at zero where the step ends now; takes note of the remainders.
-    fn concerned<Sys, M, const N: usize>(
+    fn concerned<const N: usize>(
         &mut self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        step: &mut impl Guarded<N, G>,
         courses: &[Course; G],
         first: usize,
         value: &SVector<f64, G>,
-    ) -> [bool; G]
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
-        let noise = self.noise_after(stepper, value);
+    ) -> [bool; G] {
+        let noise = self.noise_after(step, value);
         std::array::from_fn(|k| {
             let is_on_course = matches!(courses[k], Course::Crosses(_));
-            let is_wrong = clearance(value[k], stepper.negative[k]) < -noise[k];
+            let is_wrong = clearance(value[k], step.negative()[k]) < -noise[k];
             let is_concerned = k == first || is_wrong || (is_on_course && value[k].abs() <= noise[k]);
             let size = larger(self.start.value[k].abs(), self.end.value[k].abs());
             if is_concerned && value[k].abs() <= larger(REMAINDER * size, noise[k]) {
@@ -163,19 +127,11 @@ fn precise_to(size: f64, noise: f64, drift: f64) -> Precision {
 }
 
 /// The guards at the projected end of a step of size `h` (s).
-fn guards_after<Sys, M, const N: usize, const G: usize>(
-    stepper: &mut Stepper<'_, Sys, M, N, G>,
-    h: f64,
-) -> SVector<f64, G>
-where
-    Sys: System<f64, N, G>,
-    M: Method<N>,
-{
+fn guards_after<const N: usize, const G: usize>(step: &mut impl Guarded<N, G>, h: f64) -> SVector<f64, G> {
     // The last attempt may be this one.
-    if stepper.h != h {
-        stepper.attempt(h);
-        stepper.project();
+    if step.size() != h {
+        step.resize(h);
     }
-    let end = stepper.end;
-    stepper.guards(end.t, &end.x)
+    let end = *step.end();
+    step.guards(end.t, &end.x)
 }

@@ -8,7 +8,9 @@
 //! event, under that branch, and not by the direction of the crossing.
 
 mod branch;
+mod condition;
 mod detect;
+mod guarded;
 mod locate;
 mod minimum;
 mod noise;
@@ -16,9 +18,8 @@ mod zero;
 
 use nalgebra::SVector;
 
-use crate::model::system::System;
-use crate::solve::integrator::Method;
-use crate::solve::stepper::Stepper;
+pub(crate) use condition::{Condition, Located, Never, Stop};
+use guarded::Guarded;
 
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;
@@ -83,14 +84,18 @@ impl<const G: usize> Watch<G> {
         self.crowd > CROWD
     }
 
+    /// Those of `switches` whose guards are at zero, to rounding, at the end of a step that was shortened further.
+    pub fn still_at_zero<const N: usize>(&self, step: &mut impl Guarded<N, G>, switches: [bool; G]) -> [bool; G] {
+        let end = *step.end();
+        let value = step.guards(end.t, &end.x);
+        let noise = self.noise(step, end.t, &end.x, &value);
+        std::array::from_fn(|k| switches[k] && value[k].abs() <= noise[k])
+    }
+
     /// Reads the guards at the start of the step, where the rate is known.
-    fn read_start<Sys, M, const N: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, h: f64)
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
-        let start = stepper.start;
-        self.start = read(stepper, start.t, &start.x, &start.rate, h);
+    fn read_start<const N: usize>(&mut self, step: &mut impl Guarded<N, G>, h: f64) {
+        let start = *step.start();
+        self.start = read(step, start.t, &start.x, &start.rate, h);
     }
 }
 
@@ -104,22 +109,18 @@ fn check_finite<const G: usize>(value: &SVector<f64, G>) -> Result<(), (usize, f
 }
 
 /// The guards at a point with the given rate, and their derivatives along the flow by a forward difference.
-fn read<Sys, M, const N: usize, const G: usize>(
-    stepper: &mut Stepper<'_, Sys, M, N, G>,
+fn read<const N: usize, const G: usize>(
+    step: &mut impl Guarded<N, G>,
     t: f64,
     x: &SVector<f64, N>,
     rate: &SVector<f64, N>,
     h: f64,
-) -> Reading<G>
-where
-    Sys: System<f64, N, G>,
-    M: Method<N>,
-{
+) -> Reading<G> {
     // Of the step; the difference keeps nine digits and its truncation error is as small.
     const AHEAD: f64 = 1e-6;
     let ahead = AHEAD * h;
-    let value = stepper.guards(t, x);
+    let value = step.guards(t, x);
     let x_ahead = SVector::from(std::array::from_fn(|i| x.data.0[0][i] + rate.data.0[0][i] * ahead));
-    let slope = (stepper.guards(t + ahead, &x_ahead) - value) / ahead;
+    let slope = (step.guards(t + ahead, &x_ahead) - value) / ahead;
     Reading { value, slope, noise: [0.0; G] }
 }

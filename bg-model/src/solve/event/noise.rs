@@ -7,9 +7,7 @@
 use nalgebra::SVector;
 
 use super::Watch;
-use crate::model::system::System;
-use crate::solve::integrator::Method;
-use crate::solve::stepper::Stepper;
+use super::guarded::Guarded;
 
 /// How far rounding displaces a sum of some terms, in parts of the largest: the weights of methods go up to 30.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -18,24 +16,20 @@ const MARGIN: f64 = 4.0;
 
 impl<const G: usize> Watch<G> {
     /// How far each guard may be on the wrong side by rounding alone at time `t` (s) and state `x`, where they have this
-    /// `value`, in a step that begins where `stepper` does. Evaluates the guards twice.
-    pub(super) fn noise<Sys, M, const N: usize>(
+    /// `value`, in a step that begins where `step` does. Evaluates the guards twice.
+    pub(super) fn noise<const N: usize>(
         &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        step: &mut impl Guarded<N, G>,
         t: f64,
         x: &SVector<f64, N>,
         value: &SVector<f64, G>,
-    ) -> [f64; G]
-    where
-        Sys: System<f64, N, G>,
-        M: Method<N>,
-    {
-        let (start, h) = (stepper.start, stepper.h);
+    ) -> [f64; G] {
+        let (start, h) = (*step.start(), step.size());
         let moves: [f64; N] = std::array::from_fn(|i| {
             ROUNDING * irregular(i + 1) * (larger(start.x[i].abs(), x[i].abs()) + (h * start.rate[i]).abs())
         });
         let wait = ROUNDING * larger(start.t.abs(), t.abs());
-        let mut displaced = |by: f64| stepper.guards(t + by * wait, &SVector::from_fn(|i, _| x[i] + by * moves[i]));
+        let mut displaced = |by: f64| step.guards(t + by * wait, &SVector::from_fn(|i, _| x[i] + by * moves[i]));
         let (ahead, back) = (displaced(1.0), displaced(-1.0));
         std::array::from_fn(|k| {
             let (ahead, back) = ((ahead[k] - value[k]).abs(), (back[k] - value[k]).abs());

@@ -3,7 +3,7 @@
 //!
 //! In: a system, its start, a span, an accuracy, instants. Out: the state at the instants, told to an observer, and at the
 //! end. Method: Gragg's midpoint rule extrapolated after Bulirsch and Stoer ([`Accuracy::columns`] columns, order twice
-//! that) with steps by the estimated error. Steps end at the instants and at the switchings, so nothing is interpolated;
+//! that) with steps by the estimated error. Steps end at the instants, at kinks of inputs and at the switchings, so nothing is interpolated;
 //! a switching is located by steps of other sizes until the guard vanishes to rounding. Explicit: a stiff system costs
 //! as many steps as its stability takes.
 
@@ -115,10 +115,10 @@ where
     let mut run = Run::new(system, start, span, accuracy);
     run.begin();
     for &instant in instants {
-        run.advance(instant)?;
+        run.advance_over_breaks(instant)?;
         observe(run.t, &run.x, &run.negative);
     }
-    run.advance(span.t_end)?;
+    run.advance_over_breaks(span.t_end)?;
     let Run { x, negative, events, steps, rejected, rate_evaluations, .. } = run;
     Ok(Finish { x, negative, events, steps, rejected, rate_evaluations })
 }
@@ -178,6 +178,17 @@ where
             steps: 0,
             rejected: 0,
             rate_evaluations: 0,
+        }
+    }
+
+    /// Steps until `target` (s) is reached, with a step's end at each instant from which on the system follows another law.
+    fn advance_over_breaks(&mut self, target: f64) -> Result<(), Fault> {
+        loop {
+            let next = self.system.next_break(self.t.to_f64());
+            if !(next > self.t.to_f64() && next < target) {
+                return self.advance(target);
+            }
+            self.advance(next)?;
         }
     }
 

@@ -4,15 +4,18 @@
 //! [`simulation::integrate`](crate::simulation::integrate), which allocates nothing; what this face costs on top is the
 //! recording of the samples.
 
+mod ending;
 mod instants;
 mod request;
 mod state;
 mod trajectory;
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use nalgebra::SVector;
 
+pub use ending::{Ending, Sample, Unconditional, When};
 pub use instants::sample_times;
 pub use request::Request;
 pub use state::{State, StateError};
@@ -25,7 +28,8 @@ use crate::model::description::Description;
 use crate::model::mechanism::{Mechanism, ModelVisitor};
 use crate::model::system::Model;
 use crate::solve::integrator::{AnyMethod, Change, Integrator, Method};
-use crate::solve::simulation::{EachStep, Part, Recorder, Samples, Span, integrate};
+use crate::solve::simulation::{Observer, Part, Recorder, Samples, Span};
+use crate::solve::statistics::Statistics;
 
 /// A run to be made.
 ///
@@ -50,16 +54,24 @@ use crate::solve::simulation::{EachStep, Part, Recorder, Samples, Span, integrat
 /// assert_eq!((run.times.len(), run["x"][0]), (501, 0.1));
 /// run.continue_until(&model, 6.0)?;
 /// assert_eq!(run.times.last(), Some(&6.0));
+///
+/// // Until the mass passes the place at which the spring is unloaded.
+/// let swing = Simulation::new(&model).every(0.1).until(5.0).stop_when(|now| now["x"]).run()?;
+/// assert!(swing["x"].last().is_some_and(|x| x.abs() < 1e-12));
 /// run.write_csv(std::io::sink())?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use = "a run is made by `run`"]
-pub struct Simulation<'a, Me> {
+pub struct Simulation<'a, Me, E = Unconditional> {
     model: &'a Me,
     request: Request,
     start: Option<State>,
-    progress: Box<dyn FnMut(f64) + 'a>,
+    each_step: EachStep<'a>,
+    ending: E,
 }
+
+/// Is told the time reached, s, after each step, and says whether the run goes on.
+type EachStep<'a> = Box<dyn FnMut(f64) -> ControlFlow<()> + 'a>;
 
 impl<'a, Me: Mechanism> Simulation<'a, Me> {
     /// A run of `model` from its start, as [`Request::default`] says until it is told otherwise.
@@ -69,9 +81,19 @@ impl<'a, Me: Mechanism> Simulation<'a, Me> {
 
     /// A run of `model` from its start as it is asked for.
     pub fn of(model: &'a Me, request: Request) -> Self {
-        Self { model, request, start: None, progress: Box::new(|_| ()) }
+        let each_step = Box::new(|_| ControlFlow::Continue(()));
+        Self { model, request, start: None, each_step, ending: Unconditional }
     }
 
+    /// Ends the run where `condition` passes through zero, in either direction; located like an event, by steps to its zero. A
+    /// condition that is zero at the start ends the run the next time.
+    pub fn stop_when<F: FnMut(&Sample<'_>) -> f64>(self, condition: F) -> Simulation<'a, Me, When<F>> {
+        let Self { model, request, start, each_step, ending: Unconditional } = self;
+        Simulation { model, request, start, each_step, ending: When(condition) }
+    }
+}
+
+impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
     /// The integrator.
     pub fn method(mut self, method: Integrator) -> Self {
         self.request.method = method;
@@ -121,9 +143,9 @@ impl<'a, Me: Mechanism> Simulation<'a, Me> {
         self
     }
 
-    /// Tells `progress` the time reached, s, after each step.
-    pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
-        self.progress = Box::new(progress);
+    /// Tells `each_step` the time reached, s, after each step; where it breaks, the run ends there.
+    pub fn each_step(mut self, each_step: impl FnMut(f64) -> ControlFlow<()> + 'a) -> Self {
+        self.each_step = Box::new(each_step);
         self
     }
 
@@ -143,8 +165,8 @@ impl<'a, Me: Mechanism> Simulation<'a, Me> {
     /// The start cannot be assembled, the state is not one of this mechanism, or the run stops before its end: then the
     /// error has what was reached.
     pub fn run(self) -> Result<Trajectory, RunError> {
-        let Self { model, request, start, progress } = self;
-        model.visit(Integration { request, start, progress })
+        let Self { model, request, start, each_step, ending } = self;
+        model.visit(Integration { request, start, each_step, ending })
     }
 }
 
@@ -196,34 +218,42 @@ impl ModelVisitor<f64> for Start<'_> {
 }
 
 /// What is integrated. Every run passes here, so that each model is compiled once.
-struct Integration<'a> {
+struct Integration<'a, E> {
     request: Request,
     start: Option<State>,
-    progress: Box<dyn FnMut(f64) + 'a>,
+    each_step: EachStep<'a>,
+    ending: E,
 }
 
-impl ModelVisitor<f64> for Integration<'_> {
+impl<E: Ending> ModelVisitor<f64> for Integration<'_, E> {
     type Output = Result<Trajectory, RunError>;
 
     fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
     {
-        let Self { request, start, progress } = self;
+        let Self { request, start, each_step, ending } = self;
         let clock = Instant::now();
         let Description { name, states, .. } = model.description();
         let (t0, start) = Start { start: start.as_ref() }.vector(model)?;
         let mut method: AnyMethod<N> = request.method.method(request.fixed_step);
         let first = Change { t: t0, method: method.name() };
         let settings = request.settings(t0);
-        let mut observer = (Recorder::new(model, &request.parts), EachStep(progress));
+        let mut observer = (Recorder::new(model, &request.parts), Told { each_step, is_done: false });
         let span = Span { t0, t_end: request.t_end };
-        let (finish, cause) = match integrate(model, &mut method, &start, span, &settings, &mut observer) {
+        let (finish, cause) = match ending.integrate(model, &mut method, &start, span, &settings, &mut observer) {
             Ok(finish) => (finish, None),
             Err(failure) => (*failure.last, Some(failure.cause)),
         };
+        let mut recorder = observer.0;
+        // The end of a run that was stopped is none of the instants that were listed before it.
+        let is_sampled = recorder.recording.times.last().is_some_and(|&t| t >= finish.t);
+        if matches!(request.samples, Samples::Every(_)) && cause.is_none() && !is_sampled {
+            recorder.sample(finish.t, &finish.x, &finish.negative);
+        }
         let trajectory = Trajectory {
-            recording: observer.0.recording,
+            recording: recorder.recording,
+            ended: finish.ended,
             statistics: finish.statistics,
             methods: std::iter::once(first).chain(method.changes().iter().copied()).collect(),
             wall: clock.elapsed(),
@@ -234,5 +264,21 @@ impl ModelVisitor<f64> for Integration<'_> {
             None => Ok(trajectory),
             Some(cause) => Err(RunError::Stopped(Box::new(Stopped { cause, trajectory }))),
         }
+    }
+}
+
+/// Hands each step on.
+struct Told<'a> {
+    each_step: EachStep<'a>,
+    is_done: bool,
+}
+
+impl<const N: usize, const G: usize> Observer<N, G> for Told<'_> {
+    fn step(&mut self, t: f64, _t_end: f64, _statistics: &Statistics) {
+        self.is_done = (self.each_step)(t).is_break();
+    }
+
+    fn is_done(&self) -> bool {
+        self.is_done
     }
 }

@@ -9,8 +9,9 @@ use thiserror::Error;
 use super::{Request, RunError, Simulation, State};
 use crate::model::mechanism::Mechanism;
 use crate::solve::failure::Cause;
+use crate::solve::finish::Ended;
 use crate::solve::integrator::Change;
-use crate::solve::simulation::{Recording, Samples};
+use crate::solve::simulation::Recording;
 use crate::solve::statistics::Statistics;
 
 /// A run: its samples (it can be used as its [`Recording`]) and what it took.
@@ -18,6 +19,8 @@ use crate::solve::statistics::Statistics;
 pub struct Trajectory {
     /// The samples.
     pub recording: Recording,
+    /// Why it ended.
+    pub ended: Ended,
     /// Steps, evaluations, factorisations, events.
     pub statistics: Statistics,
     /// The methods that made the steps, from when (s) on; the first from the start.
@@ -96,10 +99,8 @@ impl Trajectory {
         self.statistics.add(&more.statistics);
         self.wall += more.wall;
         self.last = more.last;
+        self.ended = more.ended;
         self.request.t_end = more.request.t_end;
-        if let (Samples::At(own), Samples::At(more)) = (&mut self.request.samples, more.request.samples) {
-            *own = more;
-        }
     }
 }
 

@@ -14,11 +14,16 @@ pub trait Observer<const N: usize, const G: usize> {
 
     /// A step was accepted that leads to `t` (s), on the way to `t_end` (s).
     fn step(&mut self, _t: f64, _t_end: f64, _statistics: &Statistics) {}
+
+    /// Whether the run ends here: asked after each accepted step, whose end then is the end of the run and its last sample.
+    fn is_done(&self) -> bool {
+        false
+    }
 }
 
 impl<const N: usize, const G: usize> Observer<N, G> for () {}
 
-/// Both are told, the first one first.
+/// Both are told, the first one first; the run ends as soon as one of them is done.
 impl<A, B, const N: usize, const G: usize> Observer<N, G> for (A, B)
 where
     A: Observer<N, G>,
@@ -37,6 +42,10 @@ where
     fn step(&mut self, t: f64, t_end: f64, statistics: &Statistics) {
         self.0.step(t, t_end, statistics);
         self.1.step(t, t_end, statistics);
+    }
+
+    fn is_done(&self) -> bool {
+        self.0.is_done() || self.1.is_done()
     }
 }
 

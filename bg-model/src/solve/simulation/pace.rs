@@ -1,10 +1,12 @@
 //! The pace: which step is tried next.
 //!
-//! In: the error norms of the steps tried. Out: the end of the next step. Source: the step-size control of Hairer's
-//! `dop853.f` with its estimate of the first step (function HINIT). Stabilised control: the proportional-integral one of
-//! K. Gustafsson (Hairer, Wanner II, section IV.2), with beta = 0.4 / order, without which a tenth of all steps is rejected
-//! where stability limits them. Predictive control: Gustafsson's for implicit methods, as in Hairer's `radau5.f` (Hairer,
-//! Wanner II, section IV.8, equation (8.25)).
+//! In: the error norms of the steps tried, the instants at which the system has steps end. Out: the end of the next
+//! step; one that such an instant cuts short leaves the size of the step after it as it was.
+//!
+//! Source: the step-size control of Hairer's `dop853.f` with its estimate of the first step (function HINIT).
+//! Stabilised control: the proportional-integral one of K. Gustafsson (Hairer, Wanner II, section IV.2), with beta =
+//! 0.4 / order, without which a tenth of all steps is rejected where stability limits them. Predictive control:
+//! Gustafsson's for implicit methods, as in Hairer's `radau5.f` (Hairer, Wanner II, section IV.8, equation (8.25)).
 
 use nalgebra::SVector;
 
@@ -25,8 +27,10 @@ const HOLD: f64 = 1.2;
 const DAMPING: f64 = 0.4;
 /// The least logarithm of an error norm that is taken for that of the step before, which is that of 0.01.
 const LEAST: f64 = -2.0 * std::f64::consts::LN_10;
-/// A step that would leave less than this part of itself to the end is stretched to it.
+/// A step that would leave less than this part of itself to the end, or to a break, is stretched to it.
 const STRETCH: f64 = 0.01;
+/// A part of a fixed step that rounding may make: such a sliver is no step.
+const SLIVER: f64 = 1e-9;
 
 /// Chooses steps.
 #[derive(Debug)]
@@ -44,10 +48,14 @@ pub(super) struct Pace {
     grid: u64,
     /// The longest of the next fixed step after one that was rejected, s.
     short: f64,
+    /// A fixed step that would be shorter than this is none, s: 0 where the system has no breaks.
+    sliver: f64,
+    /// Whether a break has cut the step that is tried.
+    is_cut: bool,
 }
 
 impl Pace {
-    pub fn new<const N: usize>(control: StepControl, span: Span, settings: &Settings<N>) -> Self {
+    pub fn new<const N: usize>(control: StepControl, span: Span, settings: &Settings<N>, has_breaks: bool) -> Self {
         let asked = match control {
             StepControl::Fixed { step } => step,
             _ => settings.first_step.unwrap_or(span.t_end - span.t0),
@@ -62,6 +70,8 @@ impl Pace {
             accepted: None,
             grid: 1,
             short: f64::INFINITY,
+            sliver: if has_breaks { SLIVER * asked.min(largest) } else { 0.0 },
+            is_cut: false,
         }
     }
 
@@ -90,19 +100,23 @@ impl Pace {
         self.step = step.max(2.0 * self.least(self.span.t0)).min(self.largest);
     }
 
-    /// The end of the next step from `t` (s).
-    pub fn next_end(&mut self, t: f64) -> f64 {
+    /// The end of the next step from `t` (s), not beyond `next_break` (s), after which the system follows another law.
+    pub fn next_end(&mut self, t: f64, next_break: f64) -> f64 {
         let t_end = self.span.t_end;
         if self.is_adaptive() {
-            let stretched = t + (1.0 + STRETCH) * self.step >= t_end;
-            return if stretched && t_end - t <= (1.0 + 1e-9) * self.largest { t_end } else { t + self.step };
+            let goal = if next_break < t_end { next_break } else { t_end };
+            let stretched = t + (1.0 + STRETCH) * self.step >= goal;
+            let reaches = stretched && goal - t <= (1.0 + 1e-9) * self.largest;
+            self.is_cut = reaches && next_break < t_end && goal - t < self.step;
+            return if reaches { goal } else { t + self.step };
         }
         let end_of = |grid: u64| self.span.t0 + grid as f64 * self.step;
-        while end_of(self.grid) <= t {
+        while end_of(self.grid) <= t + self.sliver {
             self.grid += 1;
         }
         // A sliver that rounding leaves at the end belongs to the last step; a billionth of the step is no error.
-        let end = if end_of(self.grid) >= t_end - 1e-9 * self.step { t_end } else { end_of(self.grid) };
+        let end = if end_of(self.grid) >= t_end - SLIVER * self.step { t_end } else { end_of(self.grid) };
+        let end = if next_break < t_end && next_break <= end + self.sliver { next_break } else { end };
         end.min(t + self.short)
     }
 
@@ -110,12 +124,22 @@ impl Pace {
     /// a size that rounding allows.
     pub fn accept(&mut self, t: f64, h: f64, error: f64) {
         if self.is_adaptive() {
-            let next = h * self.ratio_after(h, error);
-            let next = if self.rejected { next.min(h) } else { next };
+            let next = if self.is_cut { self.after_cut(h, error) } else { h * self.ratio_after(h, error) };
+            let longest = if self.is_cut { self.step } else { h };
+            let next = if self.rejected { next.min(longest) } else { next };
             self.step = next.max(2.0 * self.least(t)).min(self.largest);
         }
         self.short = f64::INFINITY;
         self.rejected = false;
+    }
+
+    /// The step after one of size `h` (s) that was cut short: as long as that was to be, unless its error says
+    /// otherwise.
+    fn after_cut(&self, h: f64, error: f64) -> f64 {
+        let logarithm = libm::log(error);
+        let order = self.control.order().unwrap_or(1.0);
+        let allowed = h * SAFETY * libm::exp(-logarithm / order);
+        (h * self.ratio(logarithm)).max(self.step.min(allowed))
     }
 
     /// The step `h` (s) did not satisfy the tolerances; `error` is not a number where the step gave none, infinite where
@@ -140,7 +164,7 @@ impl Pace {
     }
 
     /// The largest step from `t` (s) that is lost in rounding, s.
-    fn least(&self, t: f64) -> f64 {
+    pub fn least(&self, t: f64) -> f64 {
         let span = self.span.t_end - self.span.t0;
         16.0 * f64::EPSILON * t.abs().max(f64::EPSILON * span)
     }
@@ -210,7 +234,7 @@ mod tests {
     /// A pace of a run of 100 s from a first step of 1 s.
     fn pace(control: StepControl, largest_step: f64) -> Pace {
         let settings = Settings::<1> { first_step: Some(1.0), largest_step, ..Settings::default() };
-        Pace::new(control, Span { t0: 0.0, t_end: 100.0 }, &settings)
+        Pace::new(control, Span { t0: 0.0, t_end: 100.0 }, &settings, true)
     }
 
     /// `dop853.f` and `radau5.f`: the step after a rejected one is not longer than it.
@@ -235,17 +259,17 @@ mod tests {
     #[test]
     fn the_last_step_is_stretched_up_to_the_largest() {
         let control = StepControl::Adaptive { order: 5.0 };
-        assert_eq!(pace(control, f64::INFINITY).next_end(98.995), 100.0);
-        assert_eq!(pace(control, 1.0).next_end(98.995), 99.995);
-        assert_eq!(pace(control, 1.0).next_end(99.0), 100.0);
-        assert_eq!(pace(control, 1.01).next_end(98.995), 100.0);
+        assert_eq!(pace(control, f64::INFINITY).next_end(98.995, f64::INFINITY), 100.0);
+        assert_eq!(pace(control, 1.0).next_end(98.995, f64::INFINITY), 99.995);
+        assert_eq!(pace(control, 1.0).next_end(99.0, f64::INFINITY), 100.0);
+        assert_eq!(pace(control, 1.01).next_end(98.995, f64::INFINITY), 100.0);
     }
 
     #[test]
     fn a_first_step_beyond_the_end_reaches_as_far_as_the_run() {
         let settings = Settings::<1> { first_step: Some(f64::INFINITY), ..Settings::default() };
         let span = Span { t0: 1.0, t_end: 3.0 };
-        let mut pace = Pace::new(StepControl::Adaptive { order: 5.0 }, span, &settings);
-        assert_eq!((pace.reach(), pace.next_end(1.0)), (2.0, 3.0));
+        let mut pace = Pace::new(StepControl::Adaptive { order: 5.0 }, span, &settings, false);
+        assert_eq!((pace.reach(), pace.next_end(1.0, f64::INFINITY)), (2.0, 3.0));
     }
 }

@@ -11,12 +11,14 @@ pub(super) struct Sampling<'a> {
     samples: &'a Samples,
     span: Span,
     given: usize,
+    /// The instant of the last one, s.
+    last: f64,
     ended: bool,
 }
 
 impl<'a> Sampling<'a> {
     pub fn new(samples: &'a Samples, span: Span) -> Self {
-        Self { samples, span, given: 0, ended: false }
+        Self { samples, span, given: 0, last: f64::NEG_INFINITY, ended: false }
     }
 
     /// The next instant up to `t` (s), where a step ends or the run starts; moves on to the one after it.
@@ -26,6 +28,7 @@ impl<'a> Sampling<'a> {
             return None;
         }
         self.given += 1;
+        self.last = instant;
         self.ended = instant >= self.span.t_end && !matches!(self.samples, Samples::At(_));
         Some(instant)
     }
@@ -44,6 +47,12 @@ impl<'a> Sampling<'a> {
             // One at the start and one at the end of each step: the walk is only moved on by `next_step`.
             Samples::Steps => (self.given == 0).then_some(t),
         }
+    }
+
+    /// The run ends at `t` (s), which is before the end of the span.
+    pub fn end(&mut self, t: f64) {
+        self.span.t_end = t;
+        self.ended |= !matches!(self.samples, Samples::At(_)) && self.last >= t - 0.5 * self.span.resolution();
     }
 
     /// Begins a new step.
@@ -90,6 +99,18 @@ mod tests {
             let span = Span { t0: 0.0, t_end: (1..=k).fold(0.0, |t, _| t + interval) };
             let exact = Span { t_end: k as f64 / 10.0, ..span };
             assert_eq!(instants(&Samples::Every(interval), exact, &[0.0, exact.t_end]).len(), k + 1);
+        }
+    }
+
+    #[test]
+    fn a_run_that_ends_early_gives_its_end_once() {
+        let samples = Samples::Every(0.25);
+        for (end, expected) in [(0.5, None), (0.6, Some(0.6)), (0.5 + f64::EPSILON, None)] {
+            let mut sampling = Sampling::new(&samples, Span { t0: 0.0, t_end: 9.0 });
+            while sampling.next_up_to(0.5).is_some() {}
+            sampling.end(end);
+            assert_eq!(sampling.next_up_to(end), expected);
+            assert_eq!(sampling.next_up_to(9.0), None);
         }
     }
 

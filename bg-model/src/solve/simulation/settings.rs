@@ -63,7 +63,7 @@ pub enum Samples {
     Steps,
     /// The start, the instants t0 + k dt, and the end of the run; of an infinite dt (s) the start and the end.
     Every(f64),
-    /// These instants only, s: ascending and inside the span.
+    /// These instants only, s: ascending and inside the span. Those after the end of a run that ends early are not given.
     At(Vec<f64>),
 }
 

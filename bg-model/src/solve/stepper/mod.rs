@@ -108,14 +108,6 @@ where
         self.start = self.end;
     }
 
-    /// The guards at time `t` (s) and state `x`.
-    pub fn guards(&mut self, t: f64, x: &SVector<f64, N>) -> SVector<f64, G> {
-        let mut guards = SVector::zeros();
-        self.statistics.guard_evaluations += 1;
-        self.system.guards(t, x, &self.negative, &mut guards);
-        guards
-    }
-
     /// The state at the part `theta` of the step, not projected. The rates at both ends must be known.
     pub fn dense(&mut self, theta: f64) -> SVector<f64, N> {
         if !self.dense_is_ready {
@@ -129,11 +121,5 @@ where
         let mut x = SVector::zeros();
         self.method.dense(&self.start, self.h, &self.end, theta, &mut x);
         x
-    }
-
-    /// The guards at the part `theta` of the step, by the dense output.
-    pub fn dense_guards(&mut self, theta: f64) -> SVector<f64, G> {
-        let x = self.dense(theta);
-        self.guards(self.start.t + theta * self.h, &x)
     }
 }

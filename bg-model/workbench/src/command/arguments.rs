@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bg_model::integrator::Integrator;
 use bg_model::run::Request;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::methods::integrator;
 use crate::report::Part;
@@ -51,6 +51,8 @@ pub enum Command {
     },
     /// Measure what each error costs: integrators over tolerances against reference solutions in extended precision
     Precision(PrecisionArguments),
+    /// Linearise at an equilibrium or at some time: modes, frequency responses, A, B, C and D
+    Linearize(LinearizeArguments),
     /// Compare two runs, output by output: the largest difference and its time
     Compare(CompareArguments),
     /// List the parameters: name, default, unit, meaning
@@ -75,6 +77,11 @@ pub struct ModelArguments {
     /// Read parameters from a TOML file of lines `name = value`
     #[arg(long, value_name = "FILE.toml")]
     pub params: Option<PathBuf>,
+
+    /// Set an input of the model, 0 otherwise: to a number, or to the second column of a CSV file over the first, in s. A column
+    /// by its name as FILE.csv:COLUMN; straight lines between the rows, a spline with cubic:FILE.csv
+    #[arg(long = "input", value_name = "NAME=VALUE|FILE.csv", allow_hyphen_values = true)]
+    pub input: Vec<String>,
 }
 
 /// How it is integrated.
@@ -113,6 +120,18 @@ pub struct RunArguments {
     #[command(flatten)]
     pub integration: IntegrationArguments,
 
+    /// Where to start: as the model says, or at rest with its springs loaded
+    #[arg(long, value_name = "START", value_enum, default_value_t, conflicts_with = "from")]
+    pub start: Start,
+
+    /// Start from a state that --save-state wrote, at its time. The parameters may be others: what stays are the states
+    #[arg(long, value_name = "FILE.json")]
+    pub from: Option<PathBuf>,
+
+    /// Write the state at the end here, for --from
+    #[arg(long, value_name = "FILE.json")]
+    pub save_state: Option<PathBuf>,
+
     /// Write the trajectory here instead of trajectory.csv in --out. Replaces a file that is there; later runs leave it
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -125,6 +144,50 @@ pub struct RunArguments {
     /// Draw no figures and no overview page; together with --csv nothing is written but that file
     #[arg(long)]
     pub no_figures: bool,
+}
+
+/// Where a run starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Start {
+    /// As the model says
+    #[default]
+    Model,
+    /// The equilibrium near there, inputs as at t = 0
+    Equilibrium,
+}
+
+#[derive(Debug, Args)]
+pub struct LinearizeArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+
+    /// Where the run is at this time, s; 0 is the start [default: at the equilibrium]
+    #[arg(long, value_name = "SECONDS", value_parser = real, allow_negative_numbers = true)]
+    pub at: Option<f64>,
+
+    /// At the static equilibrium near the start, springs loaded, inputs as at t = 0; this is what is done without --at
+    #[arg(long, conflicts_with = "at")]
+    pub equilibrium: bool,
+
+    /// The integrator of the run to --at
+    #[arg(long, value_name = "NAME", default_value_t, value_parser = integrator())]
+    pub method: Integrator,
+
+    /// Relative tolerance of the run to --at
+    #[arg(long, value_name = "NUMBER", default_value = "1e-8", value_parser = real, allow_negative_numbers = true)]
+    pub rtol: f64,
+
+    /// Folder for modes.txt, linear.json, linear.npz, responses.csv and Bode diagrams, which replace those of the run before
+    #[arg(long, value_name = "DIR", default_value = "out/linear")]
+    pub out: PathBuf,
+}
+
+impl LinearizeArguments {
+    /// How the run to `t` (s) is made.
+    pub fn integration(&self, t: f64) -> IntegrationArguments {
+        let Self { method, rtol, .. } = *self;
+        IntegrationArguments { t_end: t, method, fixed_step: Request::default().fixed_step, rtol, atol: None, step: t }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -140,6 +203,10 @@ pub struct CompareArguments {
     /// Set a parameter of the scenes; can be given again and again
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
+
+    /// Set an input of the scenes to a number or a table, as for `run`
+    #[arg(long = "input", value_name = "NAME=VALUE|FILE.csv", allow_hyphen_values = true)]
+    pub input: Vec<String>,
 
     /// Read parameters of the scenes from a TOML file
     #[arg(long, value_name = "FILE.toml")]

@@ -13,13 +13,15 @@ use super::run::{Outcome, integrate, model, request};
 use super::{InputError, ended, say};
 use crate::Program;
 use crate::compare::text;
+use crate::inputs;
 use crate::parameters::{self, Chosen};
 use crate::samples::read_file;
 use crate::scenes::Scene;
 
 pub fn compare<Me: Scenes>(program: &Program<Me>, arguments: &CompareArguments) -> Result<ExitCode, InputError> {
-    let chosen = parameters::merge::<Me::Parameters>(arguments.params.as_deref(), &arguments.set)?;
-    let request = request(&arguments.integration, None)?;
+    let mut chosen = parameters::merge::<Me::Parameters>(arguments.params.as_deref(), &arguments.set)?;
+    chosen.inputs = inputs::chosen(&arguments.input, Me::describe().inputs)?;
+    let request = request(&arguments.integration, 0.0, None)?;
     let [a, b] = [&arguments.a, &arguments.b].map(|name| side(program, name, &chosen, &request));
     let ((a, first), (b, second)) = (a?, b?);
     let code = say(&text([&arguments.a, &arguments.b], &a, &b));

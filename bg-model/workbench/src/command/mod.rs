@@ -5,6 +5,7 @@
 
 mod arguments;
 mod compare;
+mod linearize;
 mod methods;
 mod precision;
 mod progress;
@@ -12,6 +13,7 @@ mod run;
 
 use std::ffi::OsString;
 use std::fmt::Display;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bg_model::mechanism::{Mechanism, Scenes};
@@ -24,6 +26,8 @@ use thiserror::Error;
 
 use crate::Program;
 use crate::files::{FileError, console};
+use crate::inputs::InputSettingError;
+use crate::linear::LinearError;
 use crate::output::OutputError;
 use crate::parameters::{self, SettingError};
 use crate::precision::measure::MeasureError;
@@ -45,6 +49,14 @@ enum InputError {
     Fixed { place: String, fault: Fixed },
     #[error("{0}: neither a scene nor a run; the command `scene` lists the scenes")]
     NothingToCompare(String),
+    #[error(transparent)]
+    Input(#[from] InputSettingError),
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    #[error("--at {t}: the run failed before: {failure}")]
+    NotReached { t: f64, failure: String },
+    #[error("--from {}: {fault}", path.display())]
+    From { path: PathBuf, fault: String },
     #[error(transparent)]
     Model(#[from] ParameterError),
     #[error(transparent)]
@@ -86,6 +98,7 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
         Command::Run(arguments) => run::simulate(program, &arguments),
         Command::Precision(arguments) => precision::measure_all(program, &arguments),
         Command::Compare(arguments) => compare::compare(program, &arguments),
+        Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&report::scenes(&program.scenes))),
         Command::Scene { scene: Some(name) } => {
             Ok(say(&report::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))

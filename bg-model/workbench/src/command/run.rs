@@ -1,18 +1,22 @@
 //! The command `run`: a scene integrated, its files written, its summary printed.
 
+use std::ops::ControlFlow;
+use std::path::Path;
 use std::process::ExitCode;
 
 use bg_model::integrator::Tolerances;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::Parameters;
-use bg_model::run::{Request, RunError, Simulation, Stopped, Trajectory, sample_times};
+use bg_model::run::{Request, RunError, Simulation, State, Stopped, Trajectory, sample_times};
 use bg_model::simulation::{MissingColumn, Samples};
 
-use super::arguments::{IntegrationArguments, RunArguments};
+use super::arguments::{IntegrationArguments, RunArguments, Start};
 use super::progress::{over_time, ticks};
 use super::{InputError, ended};
 use crate::Program;
-use crate::files::console;
+use crate::files::{console, whole};
+use crate::inputs;
+use crate::linear::equilibrium;
 use crate::output::{Claimed, OutputError, Places, Table};
 use crate::parameters::{self, Chosen};
 use crate::scenes::{Scene, own_parameters};
@@ -34,20 +38,30 @@ pub struct Outcome {
 
 pub fn simulate<Me: Scenes>(program: &Program<Me>, arguments: &RunArguments) -> Result<ExitCode, InputError> {
     let RunArguments { model, integration, .. } = arguments;
-    let chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
+    let mut chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
+    chosen.inputs = inputs::chosen(&model.input, Me::describe().inputs)?;
+    let begin = match (&arguments.from, arguments.start) {
+        (Some(path), _) => Begin::At(read_state(path)?),
+        (None, Start::Model) => Begin::Model,
+        (None, Start::Equilibrium) => Begin::Equilibrium,
+    };
+    let t0 = if let Begin::At(state) = &begin { state.t } else { 0.0 };
     let finest = program.extras.finest(integration.t_end);
-    let request = request(integration, Some(finest))?;
+    let request = request(integration, t0, Some(finest))?;
+    arguments.save_state.iter().try_for_each(|path| whole::probe(path))?;
     let scene = program.scene_called(&model.scene);
     let figures = (!arguments.no_figures).then(|| program.extras.figures(scene.description)).flatten();
     let places = Places::new(&arguments.out, arguments.csv.as_deref(), figures);
-    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, places: &places };
+    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin, places: &places };
     let (outcome, claimed) = Me::model(scene.index, run)?;
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
-    let rows = sample_times(0.0, integration.step, integration.t_end);
-    let faults = match report(program, scene, outcome, &rows, claimed, changed(&chosen.values)) {
+    let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
+    let rows = sample_times(t0, integration.step, integration.t_end);
+    let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, changed(&chosen.values)) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
     };
+    faults.extend(saved.and_then(Result::err));
     Ok(ended(faults.into_iter().chain(failure)))
 }
 
@@ -59,13 +73,22 @@ pub fn model<P: Parameters, Sc: Mechanism>(
 ) -> Result<Sc, InputError> {
     let own = own_parameters(scene, scenes, &chosen.values);
     let own = own.map_err(|fault| InputError::Fixed { place: chosen.places[fault.index].clone(), fault })?;
-    Ok(Sc::make(own, &[])?)
+    Ok(Sc::make(own, &chosen.inputs)?)
 }
 
 /// A run with its progress on the terminal. One that stops before its end is no error.
 pub fn integrate<Sc: Mechanism>(model: &Sc, request: Request) -> Result<Outcome, RunError> {
+    follow(Simulation::of(model, request.clone()), &request)
+}
+
+/// The same of a simulation that may start elsewhere.
+pub fn follow<Sc: Mechanism>(simulation: Simulation<'_, Sc>, request: &Request) -> Result<Outcome, RunError> {
     let bar = over_time(request.t_end);
-    let run = Simulation::of(model, request).progress(|t| bar.set_position(ticks(t))).run();
+    let told = |t| {
+        bar.set_position(ticks(t));
+        ControlFlow::Continue(())
+    };
+    let run = simulation.each_step(told).run();
     bar.finish_and_clear();
     match run {
         Ok(run) => Ok(Outcome { run, failure: None }),
@@ -77,12 +100,31 @@ pub fn integrate<Sc: Mechanism>(model: &Sc, request: Request) -> Result<Outcome,
     }
 }
 
+/// Where a run begins.
+enum Begin {
+    Model,
+    At(State),
+    Equilibrium,
+}
+
+/// The equilibrium near the start, with the inputs as at t = 0.
+fn at_rest<Sc: Mechanism>(model: &Sc) -> Result<State, InputError> {
+    let mut state = Simulation::new(model).start()?;
+    let guess: Vec<f64> = state.states.iter().map(|(_, value)| *value).collect();
+    let rest = equilibrium(model, 0.0, &guess)?;
+    for ((_, value), at_rest) in state.states.iter_mut().zip(rest.x) {
+        *value = at_rest;
+    }
+    Ok(state)
+}
+
 /// Makes a scene's model and runs it, with the places claimed before.
 struct Claiming<'a, P> {
     scene: &'a Scene,
     scenes: &'a [Scene],
     chosen: &'a Chosen<P>,
     request: Request,
+    begin: Begin,
     places: &'a Places,
 }
 
@@ -91,11 +133,29 @@ impl<P: Parameters> MechanismVisitor for Claiming<'_, P> {
 
     fn visit<Sc: Mechanism>(self) -> Self::Output {
         let model: Sc = model(self.scene, self.scenes, self.chosen)?;
+        let simulation = Simulation::of(&model, self.request.clone());
+        let simulation = match self.begin {
+            Begin::Model => simulation,
+            Begin::At(state) => simulation.from(&state),
+            Begin::Equilibrium => simulation.from(&at_rest(&model)?),
+        };
         // What cannot be assembled is refused before anything is claimed.
-        Simulation::new(&model).start()?;
+        simulation.start()?;
         let claimed = self.places.claim()?;
-        Ok((integrate(&model, self.request)?, claimed))
+        Ok((follow(simulation, &self.request)?, claimed))
     }
+}
+
+fn read_state(path: &Path) -> Result<State, InputError> {
+    let failed = |fault: String| InputError::From { path: path.to_owned(), fault };
+    let text = std::fs::read_to_string(path).map_err(|fault| failed(format!("cannot be read: {fault}")))?;
+    State::from_json(&text).map_err(|fault| failed(fault.to_string()))
+}
+
+/// Writes the state where the run has come to; gives what failed.
+fn save_state(path: &Path, state: &State) -> Result<(), String> {
+    let text = state.to_json().map_err(|fault| fault.to_string())?;
+    whole::write(path, |file| file.write_all(text.as_bytes())).map_err(|fault| fault.to_string())
 }
 
 /// Writes the files and prints the summary; gives what failed.
@@ -120,13 +180,17 @@ fn report<Me>(
     Ok(written.faults)
 }
 
-/// What is asked of the run: samples at the rows of the CSV file, and every `finest` (s) where that is given.
-pub fn request(arguments: &IntegrationArguments, finest: Option<f64>) -> Result<Request, InputError> {
+/// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file, and every `finest` (s) where that is given.
+pub fn request(arguments: &IntegrationArguments, t0: f64, finest: Option<f64>) -> Result<Request, InputError> {
     let above_zero = |name, value: f64| {
         let range = "a finite number above 0".to_owned();
         if value.is_finite() && value > 0.0 { Ok(value) } else { Err(InputError::Range { name, value, range }) }
     };
     let t_end = above_zero("--t-end", arguments.t_end)?;
+    if t_end <= t0 {
+        let range = format!("after {} s, where the state of --from is", parameters::number(t0));
+        return Err(InputError::Range { name: "--t-end", value: t_end, range });
+    }
     let step = above_zero("--step", arguments.step)?;
     let rtol = above_zero("--rtol", arguments.rtol)?;
     let smallest = Tolerances::<0>::SMALLEST_RELATIVE;
@@ -135,12 +199,13 @@ pub fn request(arguments: &IntegrationArguments, finest: Option<f64>) -> Result<
         return Err(InputError::Range { name: "--rtol", value: rtol, range });
     }
     let atol = arguments.atol.map(|atol| above_zero("--atol", atol)).transpose()?;
-    if t_end / step > MOST_ROWS {
+    if (t_end - t0) / step > MOST_ROWS {
         return Err(InputError::Rows { step, t_end, most: MOST_ROWS });
     }
     let fixed_step = above_zero("--fixed-step", arguments.fixed_step)?;
-    let mut times = sample_times(0.0, step, t_end);
-    times.extend(finest.into_iter().flat_map(|finest| sample_times(0.0, finest.max(t_end / MOST_FINE), t_end)));
+    let mut times = sample_times(t0, step, t_end);
+    let finest = finest.map(|finest| finest.max((t_end - t0) / MOST_FINE));
+    times.extend(finest.into_iter().flat_map(|finest| sample_times(t0, finest, t_end)));
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();
     let step_limit = (STEPS_PER_SECOND * t_end.max(1.0)) as u64;

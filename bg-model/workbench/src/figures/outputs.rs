@@ -27,7 +27,7 @@ pub fn figures(description: &'static Description) -> Vec<Figure> {
 /// The figure of one quantity, given its components.
 fn quantity(components: &'static [OutputInfo]) -> Figure {
     let (of, unit) = (components[0].of, components[0].unit);
-    let title = if unit.is_empty() { of.to_owned() } else { format!("{of} in {unit}") };
+    let title = if matches!(unit, "" | "1") { of.to_owned() } else { format!("{of} in {unit}") };
     let heading = title.clone();
     Figure {
         file: format!("{of}.svg"),

@@ -95,7 +95,7 @@ fn modulo(difference: f64, turn: f64) -> f64 {
 
 /// A matrix of pure numbers.
 fn is_orientation(components: &[OutputInfo]) -> bool {
-    components.len() == 9 && components[0].unit.is_empty()
+    components.len() == 9 && matches!(components[0].unit, "" | "1")
 }
 
 /// The angle between the two orientations that the outputs `matrix` are, rad, at each instant.
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn orientations_differ_by_an_angle() {
         let names = ["R_11", "R_12", "R_13", "R_21", "R_22", "R_23", "R_31", "R_32", "R_33"];
-        let outputs = names.map(|name| OutputInfo { name, of: "R", unit: "" });
+        let outputs = names.map(|name| OutputInfo { name, of: "R", unit: "1" });
         let columns = names.map(|name| (name, ""));
         let turned = |angle: f64| {
             let (s, c) = angle.sin_cos();

@@ -1,4 +1,4 @@
-//! What an integrator asks of every system: rates, guards, projection, names for messages.
+//! What an integrator asks of every system: rates, guards, projection, kinks of inputs, names for messages.
 //!
 //! In: the programs of the running model. Out: `System` for the model.
 
@@ -13,11 +13,13 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let (rate, guards, project) = (self.rate(), self.guards(), self.project());
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
+        let next_break = self.next_break();
         quote! {
             impl<S: Scalar> ::bg_model::system::System<S, #n, #g> for Model<S> {
                 #rate
                 #guards
                 #project
+                #next_break
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
@@ -72,6 +74,19 @@ impl Emission<'_> {
                 #(projected[#indices] = #projected;)*
             }
         }
+    }
+
+    /// Where inputs have a step end; nothing where there are none.
+    fn next_break(&self) -> Option<TokenStream> {
+        let inputs = &self.model.equations.inputs;
+        let inputs = inputs.iter().map(|input| identifier(&input.name.text)).collect::<Vec<_>>();
+        (!inputs.is_empty()).then(|| {
+            quote! {
+                fn next_break(&self, t: f64) -> f64 {
+                    ::bg_model::input::next_break([#(&self.inputs.#inputs),*], t)
+                }
+            }
+        })
     }
 
     /// What switches are called.

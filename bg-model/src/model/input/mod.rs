@@ -1,19 +1,26 @@
 //! Inputs: functions of time given at run time.
 //!
-//! In: a number or a closure. Out: the input's value, and its rate where it is known, at any time.
+//! In: a number, a closure or a table. Out: the input's value, and its rate where it is known, at any time; and the
+//! instants at which a step must end.
+
+mod spline;
+mod table;
 
 use std::fmt;
 use std::sync::Arc;
 
 use crate::model::scalar::Scalar;
+pub use table::{Table, TableError};
 
 /// A real function of time (s).
 type OfTime = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
-/// A function of time that a model reads: a constant, or a closure with or without its rate. The default is the constant 0.
+/// A function of time that a model reads: a constant, a closure with or without its rate, or a table. The default is
+/// the constant 0.
 ///
-/// The unit is that of the model's input. The function must be smooth between switchings, or the integrator has to
-/// shorten its steps at each kink; it is evaluated several times a step and not in order of time.
+/// The unit is that of the model's input. A closure must be smooth between switchings, or the integrator has to shorten
+/// its steps at each kink; it is evaluated several times a step and not in order of time. At the kinks of a table steps
+/// end.
 #[derive(Clone)]
 pub struct Input {
     law: Law,
@@ -24,6 +31,7 @@ enum Law {
     Constant(f64),
     Function(OfTime),
     FunctionAndRate(OfTime, OfTime),
+    Table(Arc<Table>),
 }
 
 impl Input {
@@ -46,7 +54,22 @@ impl Input {
         Self { law: Law::FunctionAndRate(Arc::new(value), Arc::new(rate)) }
     }
 
-    /// Whether the value is the same at all times: not of a closure.
+    /// The rows of `table` and what is in between; outside, the value of the nearest row.
+    ///
+    /// ```
+    /// use bg_model::input::{Input, Table};
+    ///
+    /// let ramp = Input::table(Table::linear(&[0.0, 0.1, 2.0], &[0.0, 50.0, 50.0])?);
+    /// assert_eq!((ramp.value(0.05), ramp.value(3.0)), (25.0, 50.0));
+    /// assert_eq!(ramp.next_break(0.0), 0.1);
+    /// # Ok::<(), bg_model::input::TableError>(())
+    /// ```
+    #[must_use]
+    pub fn table(table: Table) -> Self {
+        Self { law: Law::Table(Arc::new(table)) }
+    }
+
+    /// Whether the value is the same at all times: not of a closure, nor of a table.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         matches!(self.law, Law::Constant(_))
@@ -55,7 +78,8 @@ impl Input {
     /// The value at time `t` (s).
     ///
     /// A closure is evaluated at the `f64` nearest to `t`. With a rate, what `t` has beyond that `f64` (the low part of
-    /// a double-double number, the infinitesimal part of a dual one) enters to first order.
+    /// a double-double number, the infinitesimal part of a dual one) enters to first order. A table is evaluated in
+    /// `S`.
     pub fn value<S: Scalar>(&self, t: S) -> S {
         match &self.law {
             Law::Constant(value) => S::from_f64(*value),
@@ -64,16 +88,28 @@ impl Input {
                 let nearest = t.to_f64();
                 S::from_f64(value(nearest)) + S::from_f64(rate(nearest)) * (t - S::from_f64(nearest))
             }
+            Law::Table(table) => table.value(t),
         }
     }
 
-    /// The derivative with respect to time at time `t` (s), where it is known: of a constant, and of a closure given
-    /// with its rate.
+    /// The derivative with respect to time at time `t` (s), where it is known: of a constant, of a closure given with
+    /// its rate, and of a table, where it jumps that of the time after `t`.
     pub fn rate<S: Scalar>(&self, t: S) -> Option<S> {
         match &self.law {
             Law::Constant(_) => Some(S::from_f64(0.0)),
             Law::Function(_) => None,
             Law::FunctionAndRate(_, rate) => Some(S::from_f64(rate(t.to_f64()))),
+            Law::Table(table) => Some(table.rate(t)),
+        }
+    }
+
+    /// The first instant after `t` (s) at which a step must end, because another law begins there: of a table the next
+    /// row. Infinity where there is none, as always of a constant or a closure.
+    #[must_use]
+    pub fn next_break(&self, t: f64) -> f64 {
+        match &self.law {
+            Law::Table(table) => table.next_break(t),
+            Law::Constant(_) | Law::Function(_) | Law::FunctionAndRate(..) => f64::INFINITY,
         }
     }
 }
@@ -91,20 +127,29 @@ impl Input {
     }
 }
 
+/// The first instant after `t` (s) at which one of the `inputs` has a step end; infinity where there is none.
+pub fn next_break<const N: usize>(inputs: [&Input; N], t: f64) -> f64 {
+    inputs
+        .into_iter()
+        .map(|input| input.next_break(t))
+        .fold(f64::INFINITY, |first, next| if next < first { next } else { first })
+}
+
 /// How far after time `t` (s) a closure is asked for its slope, s.
 pub(crate) fn reach(t: f64) -> f64 {
     2.0 * distance(t)
 }
 
-/// The distance of the times at which a slope is asked for: it balances truncation with rounding where the time scale is 1 s or
+/// The distance of the times at which a slope is asked for: it balances truncation with rounding where the time scale
+/// is 1 s or
 /// `t`.
 fn distance(t: f64) -> f64 {
     let size = t.abs();
     f64::EPSILON.sqrt() * if size > 1.0 { size } else { 1.0 }
 }
 
-/// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences at
-/// the times as rounded.
+/// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences
+/// at the times as rounded.
 fn parabola_slope(value: &dyn Fn(f64) -> f64, t: f64) -> f64 {
     let distance = distance(t);
     let times = [t, t + distance, t + 2.0 * distance];
@@ -132,6 +177,7 @@ impl fmt::Debug for Input {
             Law::Constant(value) => write!(f, "Input::constant({value:?})"),
             Law::Function(_) => f.write_str("Input::function(..)"),
             Law::FunctionAndRate(..) => f.write_str("Input::with_rate(..)"),
+            Law::Table(table) => write!(f, "Input::table({} rows)", table.times().len()),
         }
     }
 }
@@ -181,9 +227,19 @@ mod tests {
     }
 
     #[test]
+    fn the_next_break_is_the_first_of_all_inputs() {
+        let table = |times: &[f64; 2]| Input::table(Table::linear(times, &[0.0, 1.0]).unwrap());
+        let (early, late, none) = (table(&[0.0, 1.0]), table(&[0.5, 3.0]), Input::function(|t| t));
+        let at = |t| next_break([&late, &none, &early], t);
+        assert_eq!([-1.0, 0.0, 0.5, 1.0, 3.0].map(at), [0.0, 0.5, 1.0, 3.0, f64::INFINITY]);
+    }
+
+    #[test]
     fn debug_tells_the_kinds_apart() {
         assert_eq!(format!("{:?}", Input::from(1.0)), "Input::constant(1.0)");
         assert_eq!(format!("{:?}", Input::function(|t| t)), "Input::function(..)");
         assert_eq!(format!("{:?}", Input::with_rate(|t| t, |_| 1.0)), "Input::with_rate(..)");
+        let table = Table::linear(&[0.0, 1.0, 2.0], &[0.0; 3]).unwrap();
+        assert_eq!(format!("{:?}", Input::table(table)), "Input::table(3 rows)");
     }
 }

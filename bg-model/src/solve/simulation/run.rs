@@ -1,0 +1,321 @@
+//! A run under way: which steps are made, shortened, accepted, and when it ends.
+//!
+//! In: a system, a method, a condition that may end the run. Out: the point where the run ends and why it does, with
+//! samples and events told to the observer on the way; or why it cannot go on (`cause`).
+
+use super::observer::Observer;
+use super::pace::{self, Pace};
+use super::rounding::RoundingWatch;
+use super::sampling::Sampling;
+use super::settings::{Settings, Span};
+use crate::model::capability::Joints;
+use crate::model::reactions::Independence;
+use crate::model::system::System;
+use crate::solve::event::{Condition, Crossing, Stop, Watch};
+use crate::solve::failure::Cause;
+use crate::solve::finish::{Ended, Finish};
+use crate::solve::integrator::{Method, StepControl, is_finite};
+use crate::solve::stepper::Stepper;
+
+/// A run under way.
+pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
+    pub stepper: Stepper<'a, Sys, M, N, G>,
+    pub pace: Pace,
+    /// What was not finite at the end of a longer step from the present start.
+    pub faulty: Option<Faulty>,
+    pub watch: Watch<G>,
+    condition: C,
+    sampling: Sampling<'a>,
+    span: Span,
+    attempts: u64,
+    limit: u64,
+    /// Of the rigid joints, where there are any.
+    independence: Option<Independence>,
+    /// Of the error estimates, where the tolerances may be below it.
+    rounding: Option<RoundingWatch>,
+}
+
+/// What is watched in a step and is not finite at its end.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Faulty {
+    /// The guard of this index, and its value.
+    Guard((usize, f64)),
+    /// The condition that ends the run.
+    Condition(f64),
+}
+
+impl<'a, Sys, M, C, const N: usize, const G: usize> Run<'a, Sys, M, C, N, G>
+where
+    Sys: System<f64, N, G>,
+    M: Method<N>,
+    C: Condition<N, G>,
+{
+    pub fn new(
+        stepper: Stepper<'a, Sys, M, N, G>,
+        condition: C,
+        control: StepControl,
+        span: Span,
+        settings: &'a Settings<N>,
+    ) -> Self {
+        let has_breaks = stepper.system.next_break(span.t0) < f64::INFINITY;
+        let independence = stepper.system.joints().and_then(|joints| Independence::new(joints.held()));
+        Self {
+            stepper,
+            pace: Pace::new(control, span, settings, has_breaks),
+            faulty: None,
+            watch: Watch::new(),
+            condition,
+            sampling: Sampling::new(&settings.samples, span),
+            span,
+            attempts: 0,
+            limit: settings.step_limit,
+            independence,
+            rounding: RoundingWatch::new(settings.tolerances.relative),
+        }
+    }
+
+    /// Finds the first step, the branches at the start and the condition's side.
+    pub fn begin(&mut self, control: StepControl, settings: &Settings<N>) -> Result<(), Cause> {
+        self.watch.begin_by_sign(&mut self.stepper);
+        self.stepper.evaluate_start();
+        self.check_start()?;
+        let longest = self.span.length().min(settings.largest_step);
+        if let (Some(order), None) = (control.order(), settings.first_step) {
+            let (_, flow, start, _, scale) = self.stepper.split();
+            let first = pace::first_step(&flow, start, scale, order, longest);
+            self.pace.begin(first);
+        }
+        self.watch.begin_by_probe(&mut self.stepper, self.pace.reach());
+        self.stepper.end = self.stepper.start;
+        self.check_start()?;
+        let outcome = self.condition.begin(&mut self.stepper, self.pace.reach());
+        self.stepper.end = self.stepper.start;
+        outcome.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))?;
+        let Stepper { system, start, negative, .. } = &self.stepper;
+        let (Some(independence), Some(joints)) = (&mut self.independence, system.joints()) else { return Ok(()) };
+        let found = independence.begin(joints, (start.t, &start.x), negative);
+        found.map_or(Ok(()), |redundancy| Err(Cause::Redundant { redundancy, t: start.t }))
+    }
+
+    /// Sees to it that the rigid joints hold each a motion of its own over the whole step.
+    fn check_joints(&mut self) -> Result<(), Cause> {
+        let Stepper { system, start, h, end, negative, .. } = self.stepper;
+        let (Some(independence), Some(joints)) = (&mut self.independence, system.joints()) else { return Ok(()) };
+        let inside = |part: f64| (start.t + part * h, self.stepper.dense(part));
+        let found = independence.check(joints, (end.t, &end.x), &negative, inside);
+        found.map_or(Ok(()), |(t, redundancy)| Err(Cause::Redundant { redundancy, t }))
+    }
+
+    /// Makes steps until the run ends; gives why it does.
+    pub fn advance_to_end(&mut self, observer: &mut impl Observer<N, G>) -> Result<Ended, Cause> {
+        self.sample(observer, self.span.t0);
+        while self.stepper.start.t < self.span.t_end {
+            self.try_steps()?;
+            let crossing = match self.watch.inspect(&mut self.stepper) {
+                Ok(crossing) => crossing,
+                Err(guard) => {
+                    self.retreat(Faulty::Guard(guard))?;
+                    continue;
+                }
+            };
+            if crossing.as_ref().is_some_and(|crossing| crossing.is_at_start) {
+                if self.change_branches(crossing, observer)? {
+                    return Ok(self.end_at_start(observer));
+                }
+                continue;
+            }
+            let h = self.stepper.h;
+            match self.condition.inspect(&mut self.stepper, crossing.is_some()) {
+                Err(value) => self.retreat(Faulty::Condition(value))?,
+                Ok(Some(Stop::AtStart)) => return Ok(self.end_at_start(observer)),
+                Ok(Some(Stop::AtEnd)) => {
+                    let crossing = if self.stepper.h == h { crossing } else { self.still_crossing(crossing) };
+                    self.end_span(self.stepper.end.t);
+                    self.accept(observer)?;
+                    self.change_branches(crossing, observer)?;
+                    return Ok(Ended::ByCondition);
+                }
+                Ok(None) => {
+                    let is_done = self.accept(observer)?;
+                    if self.change_branches(crossing, observer)? {
+                        return Ok(self.end_at_start(observer));
+                    }
+                    if is_done {
+                        return Ok(Ended::ByObserver);
+                    }
+                }
+            }
+        }
+        Ok(Ended::AtEnd)
+    }
+
+    /// Tries steps until one satisfies the tolerances; its end is projected and the rate there is known.
+    fn try_steps(&mut self) -> Result<(), Cause> {
+        let t = self.stepper.start.t;
+        let next_break = self.next_break(t);
+        let mut error = 0.0_f64;
+        loop {
+            if self.pace.is_lost(t) {
+                return Err(self.lost(error));
+            }
+            if self.attempts >= self.limit {
+                return Err(Cause::TooManySteps { limit: self.limit, t, h: self.stepper.h });
+            }
+            self.attempts += 1;
+            let t_new = self.pace.next_end(t, next_break);
+            let h = t_new - t;
+            error = self.stepper.attempt(h);
+            self.pace.follow(self.stepper.method.control());
+            self.stepper.end.t = t_new;
+            if error <= 1.0 && is_finite(&self.stepper.end.x) {
+                self.stepper.project();
+                self.stepper.evaluate_end();
+                if is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
+                    self.pace.accept(t_new, h, error);
+                    return Ok(());
+                }
+            }
+            if error <= 1.0 {
+                error = f64::NAN;
+            }
+            self.stepper.statistics.rejected += 1;
+            self.pace.reject(h, error);
+            if !self.pace.is_adaptive() {
+                return Err(self.lost(error));
+            }
+        }
+    }
+
+    /// The first instant after `t` (s) and before the end, by more than rounding, at which the system has a step end;
+    /// infinity where there is none.
+    fn next_break(&self, t: f64) -> f64 {
+        let latest = self.span.t_end - self.pace.least(self.span.t_end);
+        let mut last = t;
+        loop {
+            let next = self.stepper.system.next_break(last);
+            // A system that gives no later one has none.
+            if next.is_nan() || next <= last || next >= latest {
+                return f64::INFINITY;
+            }
+            if next - t > self.pace.least(t) {
+                return next;
+            }
+            last = next;
+        }
+    }
+
+    /// Gives up a step at whose end something is not finite, for a shorter one.
+    fn retreat(&mut self, faulty: Faulty) -> Result<(), Cause> {
+        let h = self.stepper.h;
+        self.stepper.statistics.rejected += 1;
+        self.pace.reject(h, f64::NAN);
+        self.faulty = Some(faulty);
+        let is_last = !self.pace.is_adaptive() || self.pace.is_lost(self.stepper.start.t);
+        if is_last { Err(self.not_finite_watched(faulty, h)) } else { Ok(()) }
+    }
+
+    /// Takes the step over: gives its samples and makes its end the start of the next one. Gives whether the observer
+    /// ends the run with it.
+    fn accept(&mut self, observer: &mut impl Observer<N, G>) -> Result<bool, Cause> {
+        self.check_joints()?;
+        self.faulty = None;
+        if let Some(rounding) = &mut self.rounding {
+            rounding.follow(&mut self.stepper);
+        }
+        self.stepper.statistics.record(self.stepper.h);
+        self.sampling.next_step();
+        let t = self.stepper.end.t;
+        self.sample(observer, t);
+        self.stepper.advance();
+        observer.step(t, self.span.t_end, &self.stepper.statistics);
+        let is_done = observer.is_done();
+        if is_done {
+            self.end_span(t);
+            self.sample(observer, t);
+        }
+        Ok(is_done)
+    }
+
+    /// Gives the samples up to the end of the step at `t`.
+    fn sample(&mut self, observer: &mut impl Observer<N, G>, t: f64) {
+        while let Some(instant) = self.sampling.next_up_to(t) {
+            if instant >= t {
+                observer.sample(t, &self.stepper.end.x, &self.stepper.negative);
+                continue;
+            }
+            let part = (instant - self.stepper.start.t) / self.stepper.h;
+            let mut x = self.stepper.dense(part.min(1.0));
+            self.stepper.system.project(&mut x);
+            observer.sample(instant, &x, &self.stepper.negative);
+        }
+    }
+
+    /// The run is to end at `t` (s).
+    fn end_span(&mut self, t: f64) {
+        self.span.t_end = t;
+        self.sampling.end(t);
+    }
+
+    /// The run ends where the last accepted step has led.
+    fn end_at_start(&mut self, observer: &mut impl Observer<N, G>) -> Ended {
+        let start = self.stepper.start;
+        self.stepper.end = start;
+        self.end_span(start.t);
+        self.sample(observer, start.t);
+        Ended::ByCondition
+    }
+
+    /// What is left of an event at the end of a step that the condition has shortened: nothing where it is later.
+    fn still_crossing(&mut self, crossing: Option<Crossing<G>>) -> Option<Crossing<G>> {
+        let switches = self.watch.still_at_zero(&mut self.stepper, crossing?.switches);
+        switches.contains(&true).then_some(Crossing { switches, is_at_start: false })
+    }
+
+    /// Goes on with the branches that hold after the step: the old ones where nothing has crossed. Gives whether the
+    /// condition has jumped through zero by that.
+    fn change_branches(
+        &mut self,
+        crossing: Option<Crossing<G>>,
+        observer: &mut impl Observer<N, G>,
+    ) -> Result<bool, Cause> {
+        let Some(Crossing { switches, is_at_start }) = crossing else {
+            self.watch.advance();
+            self.condition.advance();
+            return Ok(false);
+        };
+        let before = self.stepper.negative;
+        let h = self.stepper.h;
+        self.switch(switches, observer)?;
+        if is_at_start && self.stepper.negative == before {
+            // The branch is right, so the step was too long for the guard's course.
+            self.stepper.statistics.rejected += 1;
+            self.pace.reject(h, f64::NAN);
+            if self.pace.is_lost(self.stepper.start.t) {
+                return Err(self.accumulate(switches));
+            }
+        }
+        let jumps = self.condition.jumps(&mut self.stepper, self.pace.reach());
+        jumps.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))
+    }
+
+    /// Lets the switches whose guards are at zero find their branches at the start of the next step.
+    fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
+        let t = self.stepper.start.t;
+        let before = self.stepper.negative;
+        self.watch.settle(&mut self.stepper, switches, self.pace.reach());
+        self.check_start()?;
+        for (switch, before) in before.into_iter().enumerate() {
+            if self.stepper.negative[switch] != before {
+                self.stepper.statistics.events += 1;
+                observer.event(t, &self.stepper.start.x, switch, &self.stepper.negative);
+            }
+        }
+        let is_crowded = self.watch.is_crowded(t, self.span.t_end - self.span.t0);
+        if is_crowded { Err(self.accumulate(switches)) } else { Ok(()) }
+    }
+
+    pub fn finish(self, ended: Ended) -> Finish<N, G> {
+        let Stepper { start, negative, statistics, .. } = self.stepper;
+        Finish { t: start.t, x: start.x, negative, ended, statistics }
+    }
+}

@@ -1,0 +1,158 @@
+//! The command `linearize`: the linear model at an equilibrium or at some time, its modes and frequency responses.
+
+use std::process::ExitCode;
+
+use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::parameters::Parameters;
+use bg_model::run::{Request, Simulation};
+
+use super::arguments::LinearizeArguments;
+use super::run::{follow, model, request};
+use super::{InputError, ended};
+use crate::Program;
+use crate::figures::FigureError;
+use crate::figures::bode::bode;
+use crate::files::{FileError, RunFolder, console};
+use crate::inputs;
+use crate::linear::{Response, StateSpace, equilibrium, linearise, logarithmic, responses_csv};
+use crate::output::OutputError;
+use crate::parameters::{self, Chosen};
+use crate::scenes::Scene;
+
+const JSON: &str = "linear.json";
+const ARRAYS: &str = "linear.npz";
+const MODES: &str = "modes.txt";
+const RESPONSES: &str = "responses.csv";
+/// The most Bode diagrams; the others are in the table of responses.
+const MOST: usize = 40;
+/// The frequencies of a response in each decade, and at most.
+const IN_DECADE: f64 = 100.0;
+const MOST_FREQUENCIES: f64 = 2000.0;
+
+pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArguments) -> Result<ExitCode, InputError> {
+    if let Some(value) = arguments.at.filter(|at| !(at.is_finite() && *at >= 0.0)) {
+        return Err(InputError::Range { name: "--at", value, range: "a finite number, at least 0".to_owned() });
+    }
+    let values = &arguments.model;
+    let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
+    chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
+    let scene = program.scene_called(&values.scene);
+    let folder = RunFolder::claim(&arguments.out, &names(scene))?;
+    let here = Here { scene, scenes: &program.scenes, chosen: &chosen, arguments };
+    let (space, sentence) = Me::model(scene.index, here)?;
+    let text = format!("{sentence}\n{}", space.table());
+    let (written, faults) = write(folder, &space, &text);
+    let written =
+        written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
+    let printed = console::print(&format!("{text}\nwritten: {written}\n"));
+    Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
+}
+
+/// The names of all files that may be written.
+fn names(scene: &Scene) -> Vec<String> {
+    let description = scene.description;
+    let pairs = description
+        .inputs
+        .iter()
+        .flat_map(|input| description.outputs.iter().map(move |output| diagram(input.name, output.name)));
+    let responses = (!description.inputs.is_empty()).then_some(RESPONSES);
+    [JSON, ARRAYS, MODES].into_iter().chain(responses).map(str::to_owned).chain(pairs.take(MOST)).collect()
+}
+
+fn diagram(input: &str, output: &str) -> String {
+    format!("bode_{output}_over_{input}.svg")
+}
+
+/// Linearises a scene where the arguments say.
+struct Here<'a, P> {
+    scene: &'a Scene,
+    scenes: &'a [Scene],
+    chosen: &'a Chosen<P>,
+    arguments: &'a LinearizeArguments,
+}
+
+impl<P: Parameters> MechanismVisitor for Here<'_, P> {
+    type Output = Result<(StateSpace, String), InputError>;
+
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        let model: Sc = model(self.scene, self.scenes, self.chosen)?;
+        match self.arguments.at {
+            None => {
+                let start = values(&Simulation::new(&model).start()?);
+                let rest = equilibrium(&model, 0.0, &start)?;
+                Ok((linearise(&model, 0.0, &rest.x)?, rest.sentence()))
+            }
+            Some(t) => {
+                let x = values(&self.state_at(&model, t)?);
+                Ok((linearise(&model, t, &x)?, format!("where the run is at t = {t:?} s")))
+            }
+        }
+    }
+}
+
+impl<P> Here<'_, P> {
+    /// The state that a run reaches at `t` (s).
+    fn state_at<Sc: Mechanism>(&self, model: &Sc, t: f64) -> Result<bg_model::run::State, InputError> {
+        if t == 0.0 {
+            return Ok(Simulation::new(model).start()?);
+        }
+        let request = Request { t_end: t, ..request(&self.arguments.integration(t), 0.0, None)? };
+        let outcome = follow(Simulation::of(model, request.clone()), &request)?;
+        match outcome.failure {
+            None => Ok(outcome.run.last),
+            Some(failure) => Err(InputError::NotReached { t, failure }),
+        }
+    }
+}
+
+fn values(state: &bg_model::run::State) -> Vec<f64> {
+    state.states.iter().map(|(_, value)| *value).collect()
+}
+
+/// Writes the files; gives their number, where they are there, and what failed.
+fn write(mut folder: RunFolder, space: &StateSpace, text: &str) -> (Option<usize>, Vec<OutputError>) {
+    let mut faults = Vec::new();
+    let responses = responses(space);
+    let outcome = fill(&mut folder, space, text, &responses, &mut faults);
+    match outcome.and_then(|()| folder.publish()) {
+        Ok(files) => (Some(files.len()), faults),
+        Err(fault) => {
+            faults.push(fault.into());
+            (None, faults)
+        }
+    }
+}
+
+/// Of all outputs to all inputs, over the band in which something happens.
+fn responses(space: &StateSpace) -> Vec<Response> {
+    let (first, last) = space.band();
+    let points = (IN_DECADE * (last / first).log10()).clamp(2.0, MOST_FREQUENCIES) as usize;
+    let all = space.responses(&[], &[], &logarithmic(first, last, points));
+    all.expect("no name is asked for")
+}
+
+fn fill(
+    folder: &mut RunFolder,
+    space: &StateSpace,
+    text: &str,
+    responses: &[Response],
+    faults: &mut Vec<OutputError>,
+) -> Result<(), FileError> {
+    folder.write_text(MODES, text)?;
+    folder.write_text(JSON, &space.json())?;
+    folder.write(ARRAYS, |file| file.write_all(&space.npz().map_err(std::io::Error::other)?))?;
+    if responses.is_empty() {
+        return Ok(());
+    }
+    folder.write_text(RESPONSES, &responses_csv(responses))?;
+    for response in responses.iter().take(MOST) {
+        let file = diagram(&response.input.name, &response.output.name);
+        match bode(response) {
+            Ok(svg) => folder.write_text(&file, &svg)?,
+            // An output that the input does not reach.
+            Err(FigureError::Empty) => {}
+            Err(source) => faults.push(OutputError::Figure { file, source }),
+        }
+    }
+    Ok(())
+}
