@@ -255,6 +255,9 @@ fn two_inputs_and_two_outputs_of_two_masses() {
     // C (s - A)^-1 B + D at s = 0 is the static answer.
     let gains = linear.responses(&["second"], &["x1"], &[1e-9]).unwrap();
     near(gains[0].magnitude[0], 2.0 * 50.0 / (150.0 * 250.0 - 50.0 * 50.0), 1e-12);
+    // Two masses and a damper between: the phase falls by three quarters of a turn, without a jump.
+    let far = &linear.responses(&["second"], &["x1"], &bg_workbench::linear::logarithmic(0.1, 1e6, 400)).unwrap()[0];
+    near(far.phase[399], -1.5 * std::f64::consts::PI, 1e-4);
 }
 
 #[test]

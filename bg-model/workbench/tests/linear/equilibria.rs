@@ -31,6 +31,14 @@ fn a_rod_that_stands_stays_and_would_fall() {
 }
 
 #[test]
+fn a_rod_that_nearly_stands_falls() {
+    for off in [1e-3, -0.01] {
+        let rod = model::<Ideal>(&[("angle", std::f64::consts::FRAC_PI_2 + off)], &[]);
+        near(at_rest(&rod).1.modes[0].imaginary, (3.0 * 9.81 / 1.2_f64).sqrt(), 1e-12);
+    }
+}
+
+#[test]
 fn a_slider_crank_comes_to_rest_with_its_crank_down() {
     let (_, linear) = at_rest::<CrankIdeal>(&model(&[], &[]));
     let value = |name: &str| linear.point.iter().find(|state| state.name == name).unwrap().value;
