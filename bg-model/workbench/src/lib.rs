@@ -46,8 +46,10 @@
 //! | [`command`] | what the user asks for |
 //! | [`scenes`] | which models there are, by name |
 //! | [`parameters`] | which values the parameters have in this run |
+//! | [`request`] | how it is integrated |
 //! | [`report`] | what a scene consists of and what it left out |
 //! | [`compare`] | how far two runs are apart |
+//! | [`golden`] | does what was recorded still come out |
 //! | [`precision`] | how exact a run is and what that costs |
 //! | [`figures`] | what the outputs look like |
 //! | [`summary`] | what a run comes to in numbers |
@@ -60,12 +62,14 @@ pub mod compare;
 pub mod extras;
 pub mod figures;
 pub mod files;
+pub mod golden;
 pub mod output;
 pub mod overview;
 pub mod parameters;
 pub mod precision;
 pub mod program;
 pub mod report;
+pub mod request;
 pub mod samples;
 pub mod scenes;
 pub mod summary;
