@@ -77,3 +77,23 @@ impl Place {
         Ok(format!("{name}: recorded, {size}, in {} and {}", csv.display(), toml.display()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_that_cannot_be_one_is_told_with_what_to_do() {
+        let root = tempfile::tempdir().unwrap();
+        let file = root.path().join("file");
+        fs::write(&file, "x").unwrap();
+        let fault = |folder: &Path, name| Place::claim(folder, name, "Slide").unwrap_err().to_string();
+        let (shown, below) = (file.display(), file.join("below"));
+        let expected = format!("cannot write into {}: {shown} is a file; choose a folder with --out", below.display());
+        assert_eq!(fault(&below, "x"), expected);
+        assert_eq!(fault(root.path(), "a/b"), "--name a/b: must be a plain file name, without a dot in front");
+        fs::write(root.path().join("y.csv"), "t\n").unwrap();
+        assert!(fault(root.path(), "y").contains("y.csv is no file of an earlier run: move it away"));
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 2);
+    }
+}

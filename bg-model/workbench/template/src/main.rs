@@ -36,7 +36,6 @@ fn main() -> std::process::ExitCode {
     bg_workbench::main::<Pendulum>()
 }
 
-/// What `golden record` has recorded still comes out.
 #[test]
 fn golden() -> Result<(), bg_workbench::golden::GoldenError> {
     bg_workbench::golden::check::<Pendulum>(concat!(env!("CARGO_MANIFEST_DIR"), "/golden"))
