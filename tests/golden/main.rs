@@ -1,8 +1,9 @@
-//! Golden outputs: generated code as text, and the hacksaw's trajectory with its exact counts.
+//! Golden outputs: generated code as text, and the hacksaw's trajectory beside an independent one.
 //!
 //! `golden/hacksaw_paper.csv` is the project's reference solution of the paper's case, 51 instants of 5 s: an independent
 //! implementation's, copied unchanged from `reference/hacksaw_paper.csv` of the project's shared files.
-//! `README.md` says how the snapshots and the counts are renewed.
+//! `README.md` says how the snapshots are renewed. What the program itself gives, with exact counts, is recorded in
+//! `hacksaw/golden`.
 
 use std::path::Path;
 
@@ -112,18 +113,13 @@ fn imbalance(run: &Run) -> f64 {
     (last("stored energy") - column("stored energy")[0] - supplied + last("dissipated_energy")).abs() / supplied
 }
 
-/// Steps, rejected steps, rate evaluations, events.
-fn counts(statistics: &Statistics) -> [u64; 4] {
-    [statistics.steps, statistics.rejected, statistics.rate_evaluations, statistics.events]
-}
-
 fn reference() -> Table {
     let table = Table::read("golden/hacksaw_paper.csv");
     assert_eq!((table.names.len(), table.rows.len()), (73, 51));
     table
 }
 
-fn check(t_end: f64, [relative, absolute]: [f64; 2], bound: f64, expected: [u64; 4]) -> Run {
+fn check(t_end: f64, [relative, absolute]: [f64; 2], bound: f64) -> Run {
     let table = reference();
     let instants: Vec<f64> = table.rows.iter().map(|row| row[0]).filter(|&t| t <= t_end).collect();
     let run = run(t_end, relative, absolute, &instants);
@@ -131,28 +127,27 @@ fn check(t_end: f64, [relative, absolute]: [f64; 2], bound: f64, expected: [u64;
     let (error, place) = deviation(&run, &table);
     println!("rtol {relative:e}: error {error:.3e} in {place}, imbalance {:.3e}, {}", imbalance(&run), run.statistics);
     assert!(error < bound, "{error:e} in {place}");
-    assert_eq!(counts(&run.statistics), expected, "steps, rejected, rate evaluations, events");
     run
 }
 
 #[test]
 fn one_second_at_loose_tolerances() {
-    check(1.0, [1e-8, 1e-10], 1e-5, [5938, 84, 73_686, 12]);
+    check(1.0, [1e-8, 1e-10], 1e-5);
 }
 
 #[test]
 fn one_second_at_close_tolerances() {
-    check(1.0, [1e-10, 1e-12], 1e-8, [10_322, 42, 126_211, 12]);
+    check(1.0, [1e-10, 1e-12], 1e-8);
 }
 
 #[test]
 fn the_paper_s_five_seconds_at_the_default_tolerance() {
-    check(5.0, DEFAULT, 1e-5, [24_448, 146, 301_068, 60]);
+    check(5.0, DEFAULT, 1e-5);
 }
 
 #[test]
 fn the_paper_s_five_seconds_at_a_close_tolerance() {
-    let run = check(5.0, CLOSE, 1e-8, [41_873, 100, 511_425, 60]);
+    let run = check(5.0, CLOSE, 1e-8);
     assert_eq!(run.statistics.events, 60);
     assert!(imbalance(&run) < 1e-9, "{:e}", imbalance(&run));
 }

@@ -34,13 +34,19 @@ pub fn deviations(a: &Recording, b: &Recording) -> Vec<Deviation> {
 
 fn deviation(times: &[f64], column: &Column, theirs: &[f64]) -> Deviation {
     let turn = if column.unit == "rad" { TAU } else { f64::INFINITY };
-    let differences = column.values.iter().zip(theirs).map(|(ours, theirs)| without_turns(ours - theirs, turn).abs());
+    let differences = column.values.iter().zip(theirs).map(|(ours, theirs)| difference(*ours, *theirs, turn));
     let (largest, time) = differences.zip(times).fold((0.0, 0.0), |most, (difference, time)| {
         // A NaN is the largest of all.
         if difference > most.0 || difference.is_nan() { (difference, *time) } else { most }
     });
     let magnitude = theirs.iter().map(|value| value.abs()).fold(0.0, f64::max);
     Deviation { name: column.name.clone(), unit: column.unit.clone(), largest, time, magnitude }
+}
+
+/// How far `a` and `b` are apart. Infinities of one sign are not, nor are two values that are both no number.
+fn difference(a: f64, b: f64, turn: f64) -> f64 {
+    let is_same = a == b || a.is_nan() && b.is_nan();
+    if is_same { 0.0 } else { without_turns(a - b, turn).abs() }
 }
 
 /// `difference` less whole turns.
@@ -111,5 +117,7 @@ mod tests {
     fn a_number_that_is_none_is_the_largest() {
         let [a, b] = [f64::NAN, 1.0].map(|value| run(&[("x", "m")], &[(0.0, &[2.0]), (1.0, &[value])]));
         assert!(deviations(&a, &b)[0].largest.is_nan());
+        let infinite = run(&[("x", "m")], &[(0.0, &[f64::INFINITY]), (1.0, &[f64::NAN])]);
+        assert_eq!(deviations(&infinite, &infinite)[0].largest, 0.0);
     }
 }

@@ -47,8 +47,10 @@
 //! | [`scenes`] | which models there are, by name |
 //! | [`parameters`] | which values the parameters have in this run |
 //! | [`inputs`] | which inputs: numbers, or tables from files |
+//! | [`request`] | how it is integrated |
 //! | [`report`] | what a scene consists of and what it left out |
 //! | [`compare`] | how far two runs are apart |
+//! | [`golden`] | does what was recorded still come out |
 //! | [`precision`] | how exact a run is and what that costs |
 //! | [`figures`] | what the outputs look like |
 //! | [`linear`] | where the mechanism is in equilibrium, and how it moves near a state |
@@ -63,6 +65,7 @@ pub mod compare;
 pub mod extras;
 pub mod figures;
 pub mod files;
+pub mod golden;
 pub mod inputs;
 pub mod linear;
 pub mod output;
@@ -71,6 +74,7 @@ pub mod parameters;
 pub mod precision;
 pub mod program;
 pub mod report;
+pub mod request;
 pub mod samples;
 pub mod scenes;
 pub mod summary;

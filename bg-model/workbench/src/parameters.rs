@@ -83,13 +83,18 @@ pub struct Chosen<P> {
     pub inputs: Vec<Input>,
 }
 
+impl<P: Parameters> Default for Chosen<P> {
+    fn default() -> Self {
+        Self { values: P::default(), places: vec![String::new(); P::table().len()], inputs: Vec::new() }
+    }
+}
+
 /// The model's defaults, changed by the file and then by the `NAME=VALUE` texts in their order.
 ///
 /// # Errors
 /// The first setting that cannot be used.
 pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<Chosen<P>, SettingError> {
-    let mut parameters =
-        Chosen { values: P::default(), places: vec![String::new(); P::table().len()], inputs: Vec::new() };
+    let mut parameters = Chosen::<P>::default();
     if let Some(path) = file {
         let text = std::fs::read_to_string(path)
             .map_err(|source| SettingError::Unreadable { path: path.to_owned(), source })?;
@@ -154,19 +159,14 @@ pub fn number(value: f64) -> String {
     if plain.len() > 6 && scientific.len() < plain.len() { scientific } else { plain }
 }
 
-fn one_line(doc: &str) -> String {
+pub(crate) fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn set_from_toml<P: Parameters>(parameters: &mut Chosen<P>, path: &Path, text: &str) -> Result<(), SettingError> {
     let entries: toml::Table = text.parse().map_err(|fault: toml::de::Error| {
-        let before = &text[..fault.span().map_or(0, |span| span.start).min(text.len())];
-        SettingError::Toml {
-            path: path.to_owned(),
-            line: before.matches('\n').count() + 1,
-            column: before.chars().rev().take_while(|&c| c != '\n').count() + 1,
-            message: one_line(fault.message()),
-        }
+        let [line, column] = place_of(&fault, text);
+        SettingError::Toml { path: path.to_owned(), line, column, message: one_line(fault.message()) }
     })?;
     let place = path.display().to_string();
     for (name, value) in &entries {
@@ -185,7 +185,19 @@ fn set_from_toml<P: Parameters>(parameters: &mut Chosen<P>, path: &Path, text: &
     Ok(())
 }
 
-fn set<P: Parameters>(parameters: &mut Chosen<P>, place: &str, name: &str, value: f64) -> Result<(), SettingError> {
+/// Line and column of a fault in the TOML text, counted from 1.
+pub(crate) fn place_of(fault: &toml::de::Error, text: &str) -> [usize; 2] {
+    let before = &text[..fault.span().map_or(0, |span| span.start).min(text.len())];
+    [before.matches('\n').count() + 1, before.chars().rev().take_while(|&c| c != '\n').count() + 1]
+}
+
+/// Sets the parameter called `name`; a fault names `place`.
+pub(crate) fn set<P: Parameters>(
+    parameters: &mut Chosen<P>,
+    place: &str,
+    name: &str,
+    value: f64,
+) -> Result<(), SettingError> {
     let place = place.to_owned();
     parameters.values.set(name, value).map_err(|fault| match fault {
         ParameterError::Unknown { name } => SettingError::Unknown {

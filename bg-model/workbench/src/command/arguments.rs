@@ -7,7 +7,9 @@ use bg_model::run::Request;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::methods::integrator;
+use crate::golden::FOLDER;
 use crate::report::Part;
+use crate::request::Integration;
 
 #[derive(Debug, Parser)]
 #[command(name = "program", version, args_conflicts_with_subcommands = true)]
@@ -53,6 +55,9 @@ pub enum Command {
     Precision(PrecisionArguments),
     /// Linearise at an equilibrium or at some time: modes, frequency responses, A, B, C and D
     Linearize(LinearizeArguments),
+    /// Record a run as a golden output, or check that what was recorded still comes out
+    #[command(subcommand)]
+    Golden(GoldenCommand),
     /// Compare two runs, output by output: the largest difference and its time
     Compare(CompareArguments),
     /// List the parameters: name, default, unit, meaning
@@ -110,6 +115,14 @@ pub struct IntegrationArguments {
     /// Output interval of the CSV file, s. Figures and summary use finer samples where they need them
     #[arg(long, value_name = "SECONDS", default_value = "0.01", value_parser = real, allow_negative_numbers = true)]
     pub step: f64,
+}
+
+impl IntegrationArguments {
+    /// The same, not yet checked.
+    pub const fn integration(&self) -> Integration {
+        let &Self { t_end, method, fixed_step, rtol, atol, step } = self;
+        Integration { t_end, step, method, rtol, atol, fixed_step }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -188,6 +201,42 @@ impl LinearizeArguments {
         let Self { method, rtol, .. } = *self;
         IntegrationArguments { t_end: t, method, fixed_step: Request::default().fixed_step, rtol, atol: None, step: t }
     }
+}
+
+#[derive(Debug, Subcommand)]
+pub enum GoldenCommand {
+    /// Run a scene and record its trajectory, its settings and its counts. Tolerances that were edited are kept
+    Record(RecordArguments),
+    /// Run again what is recorded and say what differs
+    Check(CheckArguments),
+}
+
+#[derive(Debug, Args)]
+pub struct RecordArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+
+    #[command(flatten)]
+    pub integration: IntegrationArguments,
+
+    /// Folder of golden outputs; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = FOLDER)]
+    pub out: PathBuf,
+
+    /// What it is called: the files are NAME.toml and NAME.csv [default: the scene's name]
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// Folder of golden outputs
+    #[arg(long, value_name = "DIR", default_value = FOLDER)]
+    pub out: PathBuf,
+
+    /// Which of them [default: all]
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
 }
 
 #[derive(Debug, Args)]

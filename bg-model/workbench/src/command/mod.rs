@@ -5,6 +5,7 @@
 
 mod arguments;
 mod compare;
+mod golden;
 mod linearize;
 mod methods;
 mod precision;
@@ -26,15 +27,17 @@ use thiserror::Error;
 
 use crate::Program;
 use crate::files::{FileError, console};
+use crate::golden::GoldenError;
 use crate::inputs::InputSettingError;
 use crate::linear::LinearError;
 use crate::output::OutputError;
 use crate::parameters::{self, SettingError};
 use crate::precision::measure::MeasureError;
 use crate::report::{self, Part};
+use crate::request::RequestError;
 use crate::samples::Unreadable;
 use crate::scenes::Fixed;
-use arguments::{Cli, Command};
+use arguments::{Cli, Command, GoldenCommand};
 
 /// Input that cannot be used.
 #[derive(Debug, Error)]
@@ -43,8 +46,8 @@ enum InputError {
     Setting(#[from] SettingError),
     #[error("{name} {}: must be {range}", parameters::number(*value))]
     Range { name: &'static str, value: f64, range: String },
-    #[error("--step {}: gives more than {most} rows until {t_end} s; choose a longer one", parameters::number(*step))]
-    Rows { step: f64, t_end: f64, most: f64 },
+    #[error("--{} {}: {}", .0.field.replace('_', "-"), parameters::number(.0.value), .0.fault)]
+    Request(#[from] RequestError),
     #[error("{place}: {fault}")]
     Fixed { place: String, fault: Fixed },
     #[error("{0}: neither a scene nor a run; the command `scene` lists the scenes")]
@@ -71,6 +74,8 @@ enum InputError {
     Unreadable(#[from] Unreadable),
     #[error(transparent)]
     Measure(#[from] MeasureError),
+    #[error(transparent)]
+    Golden(#[from] GoldenError),
 }
 
 impl From<crate::precision::case::CaseError> for InputError {
@@ -97,6 +102,8 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
     match command {
         Command::Run(arguments) => run::simulate(program, &arguments),
         Command::Precision(arguments) => precision::measure_all(program, &arguments),
+        Command::Golden(GoldenCommand::Record(arguments)) => golden::record(program, &arguments),
+        Command::Golden(GoldenCommand::Check(arguments)) => golden::check(program, &arguments),
         Command::Compare(arguments) => compare::compare(program, &arguments),
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&report::scenes(&program.scenes))),
@@ -124,11 +131,15 @@ fn command<Me: Mechanism>(program: &Program<Me>) -> clap::Command {
     );
     let texts = &program.texts;
     let command = Cli::command().name(texts.name.clone()).bin_name(texts.name.clone()).version(texts.version.clone());
-    let command = named(command.about(texts.about.clone()).after_help(help.clone()), program);
-    let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
-    let command =
-        names.into_iter().fold(command, |command, name| command.mut_subcommand(name, |own| named(own, program)));
+    let command = every(command.about(texts.about.clone()).after_help(help.clone()), program);
     command.mut_subcommand("run", |run| run.after_help(help))
+}
+
+/// `command` and all commands below it, each as [`named`] has it.
+fn every<Me>(command: clap::Command, program: &Program<Me>) -> clap::Command {
+    let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let command = named(command, program);
+    names.into_iter().fold(command, |command, name| command.mut_subcommand(name, |own| every(own, program)))
 }
 
 /// `command` with the names of scenes and cases where it takes any.

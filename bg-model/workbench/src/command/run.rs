@@ -4,11 +4,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use bg_model::integrator::Tolerances;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::Parameters;
 use bg_model::run::{Request, RunError, Simulation, State, Stopped, Trajectory, sample_times};
-use bg_model::simulation::{MissingColumn, Samples};
+use bg_model::simulation::MissingColumn;
 
 use super::arguments::{IntegrationArguments, RunArguments, Start};
 use super::progress::{over_time, ticks};
@@ -21,14 +20,6 @@ use crate::output::{Claimed, OutputError, Places, Table};
 use crate::parameters::{self, Chosen};
 use crate::scenes::{Scene, own_parameters};
 use crate::summary::Summary;
-
-/// The most rows of a CSV file: some hundred MB.
-const MOST_ROWS: f64 = 500_000.0;
-/// The most samples that figures and summary are made from: a long run has them farther apart.
-const MOST_FINE: f64 = 20_000.0;
-/// The most steps tried for each second of simulated time, and in all for a shorter run. The paper's hacksaw takes 5000 each
-/// second; parameters that need a thousand times as many are too stiff for an explicit method.
-const STEPS_PER_SECOND: f64 = 5e6;
 
 /// A run, and why it stopped before its end, if it did.
 pub struct Outcome {
@@ -52,7 +43,8 @@ pub fn simulate<Me: Scenes>(program: &Program<Me>, arguments: &RunArguments) -> 
     let scene = program.scene_called(&model.scene);
     let figures = (!arguments.no_figures).then(|| program.extras.figures(scene.description)).flatten();
     let places = Places::new(&arguments.out, arguments.csv.as_deref(), figures);
-    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin, places: &places };
+    let claim = || Ok(places.claim()?);
+    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin, claim };
     let (outcome, claimed) = Me::model(scene.index, run)?;
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
@@ -101,7 +93,7 @@ pub fn follow<Sc: Mechanism>(simulation: Simulation<'_, Sc>, request: &Request) 
 }
 
 /// Where a run begins.
-enum Begin {
+pub(super) enum Begin {
     Model,
     At(State),
     Equilibrium,
@@ -118,18 +110,18 @@ fn at_rest<Sc: Mechanism>(model: &Sc) -> Result<State, InputError> {
     Ok(state)
 }
 
-/// Makes a scene's model and runs it, with the places claimed before.
-struct Claiming<'a, P> {
-    scene: &'a Scene,
-    scenes: &'a [Scene],
-    chosen: &'a Chosen<P>,
-    request: Request,
-    begin: Begin,
-    places: &'a Places,
+/// Makes a scene's model and runs it; before that `claim` claims the places that the results go to.
+pub(super) struct Claiming<'a, P, F> {
+    pub scene: &'a Scene,
+    pub scenes: &'a [Scene],
+    pub chosen: &'a Chosen<P>,
+    pub request: Request,
+    pub begin: Begin,
+    pub claim: F,
 }
 
-impl<P: Parameters> MechanismVisitor for Claiming<'_, P> {
-    type Output = Result<(Outcome, Claimed), InputError>;
+impl<P: Parameters, C, F: FnOnce() -> Result<C, InputError>> MechanismVisitor for Claiming<'_, P, F> {
+    type Output = Result<(Outcome, C), InputError>;
 
     fn visit<Sc: Mechanism>(self) -> Self::Output {
         let model: Sc = model(self.scene, self.scenes, self.chosen)?;
@@ -141,7 +133,7 @@ impl<P: Parameters> MechanismVisitor for Claiming<'_, P> {
         };
         // What cannot be assembled is refused before anything is claimed.
         simulation.start()?;
-        let claimed = self.places.claim()?;
+        let claimed = (self.claim)()?;
         Ok((follow(simulation, &self.request)?, claimed))
     }
 }
@@ -182,36 +174,7 @@ fn report<Me>(
 
 /// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file, and every `finest` (s) where that is given.
 pub fn request(arguments: &IntegrationArguments, t0: f64, finest: Option<f64>) -> Result<Request, InputError> {
-    let above_zero = |name, value: f64| {
-        let range = "a finite number above 0".to_owned();
-        if value.is_finite() && value > 0.0 { Ok(value) } else { Err(InputError::Range { name, value, range }) }
-    };
-    let t_end = above_zero("--t-end", arguments.t_end)?;
-    if t_end <= t0 {
-        let range = format!("after {} s, where the state of --from is", parameters::number(t0));
-        return Err(InputError::Range { name: "--t-end", value: t_end, range });
-    }
-    let step = above_zero("--step", arguments.step)?;
-    let rtol = above_zero("--rtol", arguments.rtol)?;
-    let smallest = Tolerances::<0>::SMALLEST_RELATIVE;
-    if !(smallest..1.0).contains(&rtol) {
-        let range = format!("at least {smallest:.1e}, which rounding allows, and below 1");
-        return Err(InputError::Range { name: "--rtol", value: rtol, range });
-    }
-    let atol = arguments.atol.map(|atol| above_zero("--atol", atol)).transpose()?;
-    if (t_end - t0) / step > MOST_ROWS {
-        return Err(InputError::Rows { step, t_end, most: MOST_ROWS });
-    }
-    let fixed_step = above_zero("--fixed-step", arguments.fixed_step)?;
-    let mut times = sample_times(t0, step, t_end);
-    let finest = finest.map(|finest| finest.max((t_end - t0) / MOST_FINE));
-    times.extend(finest.into_iter().flat_map(|finest| sample_times(t0, finest, t_end)));
-    times.sort_unstable_by(f64::total_cmp);
-    times.dedup();
-    let step_limit = (STEPS_PER_SECOND * t_end.max(1.0)) as u64;
-    let method = arguments.method;
-    let samples = Samples::At(times);
-    Ok(Request { method, fixed_step, t_end, rtol, atol, samples, step_limit, ..Request::default() })
+    Ok(arguments.integration().request(t0, finest)?)
 }
 
 /// The parameters that differ from their defaults, as `name = value unit`.

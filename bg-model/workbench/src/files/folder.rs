@@ -37,6 +37,16 @@ pub struct RunFolder {
     _lock: File,
 }
 
+/// Whether `folder` can be one: neither it nor one above it is a file.
+///
+/// # Errors
+/// [`FileError::NotAFolder`].
+pub(crate) fn check_is_no_file(folder: &Path) -> Result<(), FileError> {
+    let file = folder.ancestors().find(|path| fs::metadata(path).is_ok_and(|present| !present.is_dir()));
+    let fault = |file: &Path| FileError::NotAFolder { folder: folder.to_owned(), file: file.to_owned() };
+    file.map_or(Ok(()), |file| Err(fault(file)))
+}
+
 impl RunFolder {
     /// Claims `folder`, which is made if it is not there, for a run that will write files called `names`. What is in it
     /// stays as it is.
@@ -49,9 +59,7 @@ impl RunFolder {
     /// A name is no plain file name, or begins with a dot.
     pub fn claim(folder: &Path, names: &[String]) -> Result<Self, FileError> {
         assert!(names.iter().all(|name| is_plain(name)), "plain file names: {names:?}");
-        if let Some(file) = folder.ancestors().find(|path| fs::metadata(path).is_ok_and(|present| !present.is_dir())) {
-            return Err(FileError::NotAFolder { folder: folder.to_owned(), file: file.to_owned() });
-        }
+        check_is_no_file(folder)?;
         // Before anything is made, so that a folder of other things gets no trace of a run that was refused.
         check_foreign(folder, &listed(folder)?, names)?;
         let own = folder.join(OWN);

@@ -13,6 +13,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 pub use folder::RunFolder;
+pub(crate) use folder::check_is_no_file;
 
 /// A result that does not reach its place.
 #[derive(Debug, Error)]

@@ -1,0 +1,46 @@
+//! The commands `golden record` and `golden check`.
+
+use std::process::ExitCode;
+
+use bg_model::mechanism::Scenes;
+
+use super::arguments::{CheckArguments, RecordArguments};
+use super::run::{Begin, Claiming, Outcome};
+use super::{InputError, ended};
+use crate::Program;
+use crate::files::console;
+use crate::golden::{Place, check_one, prepare};
+use crate::inputs;
+use crate::parameters;
+
+/// A run that stops before its end is not recorded.
+pub fn record<Me: Scenes>(program: &Program<Me>, arguments: &RecordArguments) -> Result<ExitCode, InputError> {
+    let RecordArguments { model, integration, out, name } = arguments;
+    let mut chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
+    chosen.inputs = inputs::chosen(&model.input, Me::describe().inputs)?;
+    let integration = integration.integration();
+    let request = integration.request(0.0, None)?;
+    let scene = program.scene_called(&model.scene);
+    let name = name.as_deref().unwrap_or(&scene.name);
+    let claim = || Ok(Place::claim(out, name, Me::describe().name)?);
+    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin: Begin::Model, claim };
+    let (Outcome { run, failure }, place) = Me::model(scene.index, run)?;
+    if let Some(failure) = failure {
+        return Ok(ended([format!("the run failed, nothing is recorded: {failure}")]));
+    }
+    let written = place.write(&scene.name, &model.input, integration, &chosen.values, &run);
+    Ok(ended(written.and_then(|line| console::print(&format!("{line}\n"))).err()))
+}
+
+pub fn check<Me: Scenes>(program: &Program<Me>, arguments: &CheckArguments) -> Result<ExitCode, InputError> {
+    let mut faults = Vec::new();
+    for prepared in prepare(program, &arguments.out, &arguments.names)? {
+        match check_one(program, &prepared) {
+            Ok(agreement) => {
+                faults.extend(console::print(&format!("{agreement}\n")).err().map(|fault| fault.to_string()))
+            }
+            Err(deviating) => faults.extend(deviating.lines()),
+        }
+    }
+    Ok(ended(faults))
+}

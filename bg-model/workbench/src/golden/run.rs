@@ -1,0 +1,76 @@
+//! A golden output run again.
+//!
+//! In: what was recorded, and the mechanism of now. Out: the run that the record asks for, or why there is none.
+
+use bg_model::input::Input;
+use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::run::{Request, RunError, Simulation, Trajectory};
+use thiserror::Error;
+
+use super::GoldenError;
+use super::file::Golden;
+use crate::inputs;
+use crate::parameters::{Chosen, set};
+use crate::scenes::{Fixed, Scene, own_parameters};
+
+/// A run that cannot be made any more.
+#[derive(Debug, Error)]
+pub enum RunFault {
+    /// The scene keeps a parameter that it left adjustable.
+    #[error(transparent)]
+    Fixed(#[from] Fixed),
+    /// The parameters cannot be.
+    #[error(transparent)]
+    Model(#[from] ParameterError),
+    /// It cannot be started, or stops before its end.
+    #[error("the run failed: {0}")]
+    Run(#[from] RunError),
+}
+
+/// A golden output that fits the mechanism with the parameters `P`.
+#[derive(Debug)]
+pub(crate) struct Prepared<'a, P> {
+    pub golden: Golden,
+    pub parameters: P,
+    inputs: Vec<Input>,
+    scene: &'a Scene,
+    scenes: &'a [Scene],
+    request: Request,
+}
+
+impl<'a, P: Parameters> Prepared<'a, P> {
+    /// Looks whether the mechanism with these scenes has what the record names.
+    pub fn new(golden: Golden, scenes: &'a [Scene]) -> Result<Self, GoldenError> {
+        let path = golden.files.toml();
+        let record = &golden.record;
+        let unknown = || GoldenError::Scene { path: path.clone(), scene: record.scene.clone() };
+        let scene = scenes.iter().find(|scene| scene.name == record.scene).ok_or_else(unknown)?;
+        let mut chosen = Chosen::<P>::default();
+        let place = path.display().to_string();
+        for (name, value) in &record.parameters {
+            set(&mut chosen, &place, name, *value)?;
+        }
+        let request =
+            record.run.request(0.0, None).map_err(|fault| GoldenError::Request { path: path.clone(), fault })?;
+        let inputs = inputs::chosen(&record.inputs, scene.description.inputs)?;
+        Ok(Self { parameters: chosen.values, inputs, scene, scenes, request, golden })
+    }
+
+    /// Makes the run.
+    pub fn run<Me: Scenes<Parameters = P>>(&self) -> Result<Trajectory, RunFault> {
+        Me::model(self.scene.index, Again(self))
+    }
+}
+
+struct Again<'a, 'b, P>(&'b Prepared<'a, P>);
+
+impl<P: Parameters> MechanismVisitor for Again<'_, '_, P> {
+    type Output = Result<Trajectory, RunFault>;
+
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        let Self(Prepared { parameters, inputs, scene, scenes, request, .. }) = self;
+        let model = Sc::make(own_parameters(scene, scenes, parameters)?, inputs)?;
+        Ok(Simulation::of(&model, request.clone()).run()?)
+    }
+}
