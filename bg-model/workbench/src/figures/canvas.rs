@@ -136,4 +136,11 @@ mod tests {
             "<tspan dy=\"0.25em\" font-size=\"75%\">2x</tspan><tspan dx=\"0.3em\" dy=\"-0.1875em\">in N m s</tspan>";
         assert_eq!(set, format!("<text>h{tspans}</text><text>t in s</text>"));
     }
+
+    #[test]
+    fn a_name_keeps_its_underline_in_text_and_heading() {
+        let name = literally("upper_angle");
+        let set = finish(&format!("<svg><text>{name}</text>"), &name);
+        assert!(set.contains("aria-label=\"upper_angle\"") && set.contains("<text>upper_angle</text>"), "{set}");
+    }
 }
