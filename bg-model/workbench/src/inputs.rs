@@ -84,6 +84,9 @@ fn other(near: Option<&str>, known: &str) -> String {
     }
 }
 
+/// What makes a table of times and values.
+type Make = fn(&[f64], &[f64]) -> Result<Table, TableError>;
+
 /// What stands before the name of a file whose rows a cubic spline joins.
 const CUBIC: &str = "cubic:";
 
@@ -122,7 +125,7 @@ fn input(setting: &str, value: &str) -> Result<Input, InputSettingError> {
             Err(InputSettingError::NotFinite(setting.to_owned()))
         };
     }
-    let (file, make): (&str, fn(&[f64], &[f64]) -> _) = match value.strip_prefix(CUBIC) {
+    let (file, make): (&str, Make) = match value.strip_prefix(CUBIC) {
         Some(file) => (file, Table::cubic),
         None => (value, Table::linear),
     };
