@@ -71,9 +71,9 @@ impl Data<'_> {
     fn out_of_plane(&self, link: u8) -> Result<(f64, f64), MissingColumn> {
         let mut axis = 0.0;
         for row in 1..=3 {
-            axis = f64::max(axis, largest_change(&self.values(&format!("R{link}_{row}3"))?));
+            axis = f64::max(axis, largest_change(self.values(&format!("R{link}_{row}3"))?));
         }
-        Ok((axis, largest_change(&self.values(&format!("C{link}_z"))?)))
+        Ok((axis, largest_change(self.values(&format!("C{link}_z"))?)))
     }
 
     fn crank_vectors(&self) -> Measured {
@@ -106,8 +106,8 @@ impl Data<'_> {
 
     fn crank_angular_momentum(&self) -> Measured {
         let [x, y, z] = AXES.map(|axis| self.values(&format!("h2_{axis}")));
-        let across = largest(&x?).max(largest(&y?));
-        let along = span(&z?);
+        let across = largest(x?).max(largest(y?));
+        let along = span(z?);
         Ok(Check {
             figure: "Fig. 5",
             statement: "Only the z component of the crank's angular momentum varies.",
@@ -179,7 +179,7 @@ impl Data<'_> {
 
     fn frame_slides(&self) -> Measured {
         let x = self.values("C4_x")?;
-        let (reversals, range) = (reversals(&x, MOVING), span(&x));
+        let (reversals, range) = (reversals(x, MOVING), span(x));
         Ok(Check {
             figure: "Fig. 15",
             statement: "The frame slides to and fro in x.",
