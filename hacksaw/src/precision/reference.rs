@@ -1,7 +1,7 @@
 //! Reference solutions: scenes integrated in double-double arithmetic, stored as tables with their own check.
 //!
 //! In: a scene with its parameters. Out: its outputs at the sample instants, rounded to `f64` once, at the end. The initial
-//! value problem is that of a run: the generated model in [`DoubleDouble`], from the start state that the model has in `f64`.
+//! value problem is that of a run: the generated model in `DoubleDouble`, from the start state that the model has in `f64`.
 //! Method: [`bg_model::extended`]. The check of each is a second computation of another order and tolerance; the
 //! largest differences between the two are stored beside the table. `cargo run --release -p hacksaw --example
 //! make_references` makes both files anew.

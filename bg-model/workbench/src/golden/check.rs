@@ -108,7 +108,7 @@ pub(crate) fn check_one<Me: Scenes>(
 ///
 /// ```no_run
 /// # use bg_model::bond_graph;
-/// # bond_graph! { pub graph Pendulum { 1 slide: translation; I body = 2; C spring = 50 start 0.1;
+/// # bond_graph! { pub graph Pendulum { param k: N/m = 50; 1 slide: translation; I body = 2; C spring = k start 0.1;
 /// #     slide -> body; slide -> spring; observe { x: m = spring.q } } }
 /// #[test]
 /// fn golden() -> Result<(), bg_workbench::golden::GoldenError> {
