@@ -93,8 +93,8 @@ mod model;
 mod solve;
 
 pub use model::{
-    assembly, capability, description, holding, input, linear, mechanism, parameters, requirement, scalar, series,
-    system,
+    assembly, capability, description, drawing, holding, input, linear, mechanism, parameters, requirement, scalar,
+    series, system,
 };
 pub use solve::{extended, failure, integrator, run, simulation, statistics};
 

@@ -7,8 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms from the ground up; those of one floor do not know each other.
-const FLOORS: [&[&str]; 12] = [
-    &["model::scalar", "model::description", "model::requirement", "model::holding", "model::nearest"],
+const FLOORS: [&[&str]; 14] = [
+    &["model::scalar", "model::requirement", "model::holding", "model::nearest"],
+    &["model::drawing"],
+    &["model::description"],
     &["model::input", "model::linear", "model::series", "model::origin", "model::parameters", "model::assembly"],
     &["model::capability"],
     &["model::system"],

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
 
-use bond_graph_tests::fuzz::{Input, KINDS, Kind, Outcome, Tally, corpus, examine, seeds};
+use bond_graph_tests::fuzz::{Input, KINDS, Kind, Outcome, Tally, corpus, examine, joined, lexemes, seeds, shrink};
 
 /// The folder of this package.
 fn here() -> &'static Path {
@@ -121,4 +121,21 @@ fn depth_and_length_are_faults_and_no_overflow() {
     let file = format!("torque = {}", repeated("[", "1", "]")).into_bytes();
     let outcome = examine(&Input::Settings { file, set: Vec::new() }).expect("no panic");
     assert_eq!(outcome, Outcome::Refused(BTreeSet::from(["toml".to_owned()])));
+}
+
+#[test]
+fn what_matters_is_left_of_a_text() {
+    let text = "graph G { let a = 1; let b = f(2, x); }".to_owned();
+    let mut holds = |input: &Input| input.text().contains('f') && input.text().contains('2');
+    assert_eq!(shrink(&Input::Call(text), &mut holds), Input::Call("f 2 ".to_owned()));
+}
+
+#[test]
+fn a_text_comes_apart_and_together() {
+    let text = "/// Doc.\ngraph G { let a = 1e-3*b.x->2; // no\n 1 j[3]: m^2; ";
+    let found = lexemes(text);
+    assert_eq!(found[..8], ["/// Doc.", "graph", "G", "{", "let", "a", "=", "1e-3"]);
+    assert!(found.contains(&"->".to_owned()) && !found.iter().any(|lexeme| lexeme.contains("no")));
+    assert!(joined(&found).ends_with("1 j [ 3 ] : m ^ 2 ; }"));
+    assert_eq!(joined(&[")", "(", "]"].map(str::to_owned)), "( )");
 }

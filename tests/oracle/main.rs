@@ -264,6 +264,14 @@ fn texts() -> Vec<(String, String)> {
     texts
 }
 
+/// Effort and flow of every bond.
+fn bonds(equations: &StateEquations) -> impl Iterator<Item = (&[Id], &[Id])> {
+    fn known(variable: &Option<Vec<Id>>) -> &[Id] {
+        variable.as_deref().expect("all is known of a whole graph")
+    }
+    equations.shown.bonds.iter().map(|[effort, flow]| (known(effort), known(flow)))
+}
+
 #[test]
 fn power_is_balanced_at_every_junction_and_two_port() {
     let mut nodes = 0;
@@ -273,9 +281,7 @@ fn power_is_balanced_at_every_junction_and_two_port() {
         let mut random = Random(4);
         for _ in 0..5 {
             let sample = Sample::random(graph, &equations, &mut random);
-            let powers: Vec<f64> = equations
-                .bonds
-                .iter()
+            let powers: Vec<f64> = bonds(&equations)
                 .map(|(effort, flow)| {
                     let (effort, flow) = (sample.values(&equations, effort), sample.values(&equations, flow));
                     effort.iter().zip(&flow).map(|(effort, flow)| effort * flow).sum()
@@ -329,9 +335,7 @@ fn is_balanced(model: &str, causal: &CausalGraph, equations: &mut StateEquations
     let [change, supplied, dissipated] = values[..] else { panic!("three values") };
     // The flow through a stiff spring and the power it carries cancel, so the scale is that of all bonds.
     // A body that turns freely has none: then it is its energy per second.
-    let scale: f64 = equations
-        .bonds
-        .iter()
+    let scale: f64 = bonds(equations)
         .flat_map(|(effort, flow)| {
             let (effort, flow) = (sample.values(equations, effort), sample.values(equations, flow));
             effort.into_iter().zip(flow).map(|(effort, flow)| (effort * flow).abs()).collect::<Vec<_>>()

@@ -14,7 +14,7 @@ fn peak(kind: &str, storage: &str, bonds: usize) -> u64 {
     let counted = allocation_counter::measure(|| {
         let causal = causality::assign(resolved).expect("strokes");
         let equations = equations::derive(&causal).expect("equations");
-        assert_eq!(equations.bonds.len(), bonds + 1);
+        assert_eq!(equations.shown.bonds.len(), bonds + 1);
     });
     counted.bytes_max
 }

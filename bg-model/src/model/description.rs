@@ -1,5 +1,7 @@
 //! The static description of a model: what it consists of, as tables that a program and a reader can use.
 
+use crate::model::drawing::Drawing;
+
 /// A model's tables. All texts are those of its source; units are SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
@@ -29,6 +31,8 @@ pub struct Description {
     pub equations: &'static [&'static str],
     /// The number of operations of each generated function.
     pub operations: &'static [(&'static str, OperationCount)],
+    /// What pictures show beside the outputs.
+    pub drawing: Drawing,
 }
 
 /// A parameter.

@@ -3,6 +3,7 @@
 pub mod assembly;
 pub mod capability;
 pub mod description;
+pub mod drawing;
 pub mod holding;
 pub mod input;
 pub mod linear;

@@ -115,6 +115,10 @@ pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: Syst
     /// The energy in all storage elements, J.
     fn stored_energy(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> S;
 
+    /// Appends what pictures show to `values`: poses, forces of joints, effort and flow of bonds, at the places that
+    /// `description().drawing` names. Nothing by default. Allocates; for pictures, not for steps.
+    fn shown(&self, _t: f64, _x: &SVector<f64, N>, _negative: &[bool; G], _values: &mut Vec<f64>) {}
+
     /// The powers over the model's boundary, W: d(stored)/dt = supplied - dissipated.
     fn powers(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> Powers<S>;
 }

@@ -7,7 +7,7 @@
 const PAIRS: [&str; 8] = ["->", "<=", ">=", "==", "!=", "&&", "||", "**"];
 
 /// The lexemes of a text; comments are left out, documentation comments are one lexeme each.
-pub(super) fn lexemes(text: &str) -> Vec<String> {
+pub fn lexemes(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut rest = text.trim_start();
     while let Some(first) = rest.chars().next() {
@@ -49,7 +49,7 @@ fn number_length(text: &str) -> usize {
 }
 
 /// The lexemes as a text in which every bracket is closed: a stray closing one is left out.
-pub(super) fn joined(lexemes: &[String]) -> String {
+pub fn joined(lexemes: &[String]) -> String {
     let mut text = String::new();
     let mut open = Vec::new();
     for lexeme in lexemes {
@@ -70,19 +70,4 @@ pub(super) fn joined(lexemes: &[String]) -> String {
         text.push_str(close);
     }
     text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_text_comes_apart_and_together() {
-        let text = "/// Doc.\ngraph G { let a = 1e-3*b.x->2; // no\n 1 j[3]: m^2; ";
-        let found = lexemes(text);
-        assert_eq!(found[..8], ["/// Doc.", "graph", "G", "{", "let", "a", "=", "1e-3"]);
-        assert!(found.contains(&"->".to_owned()) && !found.iter().any(|lexeme| lexeme.contains("no")));
-        assert!(joined(&found).ends_with("1 j [ 3 ] : m ^ 2 ; }"));
-        assert_eq!(joined(&[")", "(", "]"].map(str::to_owned)), "( )");
-    }
 }

@@ -21,6 +21,7 @@ mod vocabulary;
 
 use fastrand::Rng;
 
+pub use lexemes::{joined, lexemes};
 pub use outcome::{Outcome, Violation, examine};
 pub use shrink::{fewest, shrink};
 pub use tally::{Count, Tally};

@@ -60,15 +60,3 @@ pub fn fewest<T: Clone>(mut parts: Vec<T>, holds: &mut dyn FnMut(&[T]) -> bool) 
     }
     parts
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_matters_is_left() {
-        let text = "graph G { let a = 1; let b = f(2, x); }".to_owned();
-        let mut holds = |input: &Input| input.text().contains('f') && input.text().contains('2');
-        assert_eq!(shrink(&Input::Call(text), &mut holds), Input::Call("f 2 ".to_owned()));
-    }
-}

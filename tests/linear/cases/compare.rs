@@ -153,7 +153,7 @@ fn found(network: &Network, mut equations: StateEquations, states: &[DVector<f64
     let (stored, supplied, dissipated) = (equations.stored, equations.supplied, equations.dissipated);
     let change = derivative(&mut equations.pool, &[stored], &seeds)[0];
     let balance = equations.pool.linear(0.0, &[(supplied, 1.0), (dissipated, -1.0), (change, -1.0)]);
-    let bonds = equations.bonds.into_iter().flat_map(|(efforts, flows)| efforts.into_iter().chain(flows));
+    let bonds = equations.shown.bonds.into_iter().flatten().flatten().flatten();
     let roots: Vec<Id> = bonds.chain(rates).chain([stored, supplied, dissipated, balance]).collect();
     let storages = network.nodes.iter().zip(states);
     let values: Vec<f64> = storages

@@ -5,6 +5,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::drawing::drawing;
 use crate::graph::causality::{CausalGraph, End};
 use crate::graph::{BondGraph, NodeKind};
 use crate::pipeline::Compiled;
@@ -19,13 +20,13 @@ pub(super) fn description(model: &Compiled, costs: &[(&str, Counts)]) -> TokenSt
     let reduction = model.reduction.as_ref().map(ToString::to_string).unwrap_or_default();
     let (inputs, states, outputs) = (inputs(graph), states(equations), outputs(equations));
     let (switches, elements, bonds) = (switches(equations), elements(graph), bonds(causal));
-    let (lines, counts) = (&equations.texts, operations(costs));
+    let (lines, counts, drawing) = (&equations.texts, operations(costs), drawing(model));
     quote! {
         ::bg_model::description::Description {
             name: #name, doc: #doc, graph: #expanded, reduction: #reduction, parameters: PARAMETERS,
             inputs: &[#(#inputs,)*], states: &[#(#states,)*], outputs: &[#(#outputs,)*],
             switches: &[#(#switches,)*], elements: &[#(#elements,)*], bonds: &[#(#bonds,)*],
-            equations: &[#(#lines,)*], operations: &[#(#counts,)*],
+            equations: &[#(#lines,)*], operations: &[#(#counts,)*], drawing: #drawing,
         }
     }
 }

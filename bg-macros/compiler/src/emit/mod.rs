@@ -4,6 +4,7 @@
 
 mod description;
 mod documentation;
+mod drawing;
 mod elimination;
 mod items;
 mod model;

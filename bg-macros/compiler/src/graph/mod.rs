@@ -15,6 +15,7 @@ use crate::source::ast::Name;
 
 pub use crate::source::ast::{Axis, BinaryOperator, Comparison, Direction, ElementKind, Role, TrackKind};
 pub use crate::source::clause::{Allowed, Clause};
+pub use crate::source::drawing::{self, Drawing};
 pub use causality::{CausalGraph, End};
 pub use fault::GraphFault;
 pub use resolve::resolve;
@@ -56,6 +57,8 @@ pub struct BondGraph {
     pub guesses: Vec<Term>,
     /// Time integrals that outputs ask for, each one state.
     pub integrals: Vec<Integral>,
+    /// What the mechanism looks like.
+    pub drawing: Drawing<Term>,
 }
 
 /// Index of a node.

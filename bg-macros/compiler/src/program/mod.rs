@@ -22,6 +22,7 @@ mod rebuild;
 mod signs;
 mod statics;
 pub(crate) mod table;
+mod tape;
 #[cfg(test)]
 pub(crate) mod tests;
 
@@ -33,6 +34,8 @@ use plan::Plan;
 use statics::Statics;
 
 use crate::expr::{Function, Id, Pool, Symbol};
+
+pub use tape::Tape;
 
 pub use programs::{Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
 

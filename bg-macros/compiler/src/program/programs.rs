@@ -4,6 +4,7 @@
 //! with its table of constants.
 
 use super::pairs::{Paired, pair};
+use super::tape::{Tape, tape};
 use super::{Counts, Program, Request, Routine, schedule};
 use crate::expr::{Id, Pool};
 use crate::system::{Jacobian, SecondOrder, StateEquations};
@@ -28,6 +29,8 @@ pub struct Programs {
     pub required: [Option<Program<1>>; 2],
     /// What the laws give that can make numbers which are not finite, with its own constants.
     pub not_finite: Program<1>,
+    /// What pictures show.
+    pub shown: Tape,
 }
 
 /// The functions of the running model.
@@ -88,7 +91,8 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
     let required = [("required", false), ("required_at_start", true)]
         .map(|(name, is_of_start)| required(equations, name, is_of_start));
-    Programs { running, jacobian, second_order, holding, starting, required, not_finite }
+    let shown = tape(&equations.pool, &equations.shown.quantities());
+    Programs { running, jacobian, second_order, holding, starting, required, not_finite, shown }
 }
 
 /// The operations of the rate function as it would be generated from the equations.

@@ -5,6 +5,7 @@
 use proc_macro2::Span;
 
 use crate::source::clause::Clause;
+use crate::source::drawing::Drawing;
 
 /// All graphs of one macro call.
 #[derive(Clone, Debug)]
@@ -24,6 +25,8 @@ pub struct Graph {
     pub name: Name,
     /// The statements in their order.
     pub items: Vec<Item>,
+    /// What the mechanism looks like; empty while its words are there.
+    pub drawing: Drawing<Expression>,
 }
 
 /// A name, possibly dotted: `shaft`, `pin_b.force`.

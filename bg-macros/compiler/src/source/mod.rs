@@ -4,6 +4,7 @@
 
 pub mod ast;
 pub mod clause;
+pub mod drawing;
 pub mod mechanism;
 pub mod names;
 pub mod print;

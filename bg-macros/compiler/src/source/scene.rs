@@ -5,6 +5,7 @@
 
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::source::ast::{ElementKind, Graph, Item, Name, Rigid, Scene};
+use crate::source::drawing::Drawing;
 
 /// A fault of a scene.
 #[derive(Clone, Debug)]
@@ -99,7 +100,7 @@ fn watched(literal: &Graph, mut items: Vec<Item>, scene: &Scene) -> Graph {
         items.push(Item::Observe(scene.observe.clone()));
     }
     let docs = if scene.docs.is_empty() { literal.docs.clone() } else { scene.docs.clone() };
-    Graph { docs, visibility: literal.visibility.clone(), name: scene.name.clone(), items }
+    Graph { docs, visibility: literal.visibility.clone(), name: scene.name.clone(), items, drawing: Drawing::default() }
 }
 
 /// The items without some parts and the bonds that end at them.

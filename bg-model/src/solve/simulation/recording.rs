@@ -21,6 +21,8 @@ pub enum Part {
     Energy,
     /// The powers over the model's boundary: `supplied power` and `dissipated power`, W.
     Powers,
+    /// What pictures show, a column for each place of the description's drawing: `shown 0` and so on.
+    Shown,
 }
 
 /// A column of a recording: a quantity over time.
@@ -169,6 +171,7 @@ impl Part {
             Self::States => of.states.iter().map(|state| column(state.name, state.unit)).collect(),
             Self::Energy => vec![column("stored energy", "J")],
             Self::Powers => vec![column("supplied power", "W"), column("dissipated power", "W")],
+            Self::Shown => (0..of.drawing.tape.results.len()).map(|k| Column::new(format!("shown {k}"), "")).collect(),
         }
     }
 
@@ -194,6 +197,7 @@ impl Part {
                 let Powers { supplied, dissipated } = model.powers(t, x, negative);
                 row.extend([supplied, dissipated]);
             }
+            Self::Shown => model.shown(t, x, negative, row),
         }
     }
 }

@@ -5,6 +5,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::super::items::identifier;
 use super::{Emission, Shape};
 
 impl Emission<'_> {
@@ -12,6 +13,7 @@ impl Emission<'_> {
         let Shape { n, g, m } = &self.shape;
         let (start, started) = self.start();
         let (outputs, stored_energy, powers) = (self.outputs(), self.stored_energy(), self.powers());
+        let shown = self.shown();
         quote! {
             #started
             impl<S: Scalar> ::bg_model::system::Model<S, #n, #g, #m> for Model<S> {
@@ -22,6 +24,7 @@ impl Emission<'_> {
                 #outputs
                 #stored_energy
                 #powers
+                #shown
             }
         }
     }
@@ -33,6 +36,31 @@ impl Emission<'_> {
             fn outputs(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], y: &mut SVector<S, #m>) {
                 #body
                 y.data.0 = [[#(#outputs),*]];
+            }
+        }
+    }
+
+    /// What pictures show, from the tape.
+    fn shown(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let inputs: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
+        quote! {
+            fn shown(
+                &self, t: f64, x: &SVector<f64, #n>, negative: &[bool; #g], values: &mut ::std::vec::Vec<f64>,
+            ) {
+                let parameters: ::std::vec::Vec<f64> = (0..DESCRIPTION.parameters.len())
+                    .map(|index| ::bg_model::parameters::Parameters::value(&self.parameters, index))
+                    .collect();
+                DESCRIPTION.drawing.tape.evaluate(
+                    &::bg_model::drawing::Moment {
+                        t,
+                        states: x.as_slice(),
+                        parameters: &parameters,
+                        inputs: &[#([self.inputs.#inputs.value(t), self.inputs.#inputs.slope(t)]),*],
+                        negative,
+                    },
+                    values,
+                );
             }
         }
     }

@@ -2,7 +2,9 @@
 //!
 //! In: a routine and the table of constants that it reads. Out: its statements, and the tokens of its results.
 
-use proc_macro2::{Ident, TokenStream};
+use std::collections::{BTreeMap, BTreeSet};
+
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::super::pairs;
@@ -82,14 +84,15 @@ impl Emission<'_> {
         })
     }
 
-    /// A long routine of the running model in parts, each a function of its own: the hacksaw's crate then builds in 52 s
-    /// instead of 65 s.
+    /// A long routine of the running model in parts, each a function of its own. What a part gives to later ones or as a result
+    /// is in the array `v`; all else are `let`s of the part: rustc checks these twice as fast as places of an array.
     pub(super) fn in_parts(&self, routine: &Routine, constants: &Ident) -> Parts {
-        let count = routine.assignments.len();
+        let kept = kept(routine);
+        let count = kept.len();
         let (mut functions, mut calls) = (TokenStream::new(), TokenStream::new());
         for (index, part) in routine.assignments.chunks(PART).enumerate() {
             let name = format_ident!("{}_part_{index}", routine.name);
-            functions.extend(self.part(&name, &alone(routine, part, &[]), count, constants));
+            functions.extend(self.part(&name, &alone(routine, part, &[]), &kept, constants));
             calls.extend(quote!(self.#name(t, x, negative, &mut v);));
         }
         let bindings = self.dynamic_bindings(&alone(routine, &[], &routine.results));
@@ -100,25 +103,71 @@ impl Emission<'_> {
             #calls
             #bindings
         };
-        let results =
-            self.with_names(true, |names| routine.results.iter().map(|result| operand(result, names)).collect());
-        Parts { functions, body, results }
+        let result = |result: &Operand| match result {
+            Operand::Temporary(temporary) => place(kept[temporary]),
+            other => self.with_names(false, |names| operand(other, names)),
+        };
+        Parts { functions, body, results: routine.results.iter().map(result).collect() }
     }
 
-    /// The function of a part of a long routine of `count` assignments.
-    fn part(&self, name: &Ident, part: &Routine, count: usize, constants: &Ident) -> TokenStream {
+    /// The function of a part of a long routine; `kept` are the places of what more than one part needs.
+    fn part(&self, name: &Ident, part: &Routine, kept: &BTreeMap<u32, usize>, constants: &Ident) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
+        let count = kept.len();
         let bindings = self.dynamic_bindings(part);
-        let statements = self.with_names(true, |names| assignments(&part.assignments, names));
-        quote! {
-            #[inline(never)]
-            fn #name(&self, t: S, x: &[S; #n], negative: &[bool; #g], v: &mut [S; #count]) {
-                let c = &self.#constants;
-                #bindings
-                #statements
+        let own = |temporary: &u32| part.assignments.iter().any(|assignment| assignment.target == *temporary);
+        let read: BTreeSet<u32> = part.assignments.iter().flat_map(temporaries).filter(|read| !own(read)).collect();
+        let written: Vec<u32> =
+            part.assignments.iter().map(|a| a.target).filter(|target| kept.contains_key(target)).collect();
+        self.with_names(false, |names| {
+            let statements = assignments(&part.assignments, names);
+            let reads = read.iter().map(|&temporary| {
+                let (name, place) = (operand(&Operand::Temporary(temporary), names), place(kept[&temporary]));
+                quote!(let #name = #place;)
+            });
+            let writes = written.iter().map(|&temporary| {
+                let (name, place) = (operand(&Operand::Temporary(temporary), names), place(kept[&temporary]));
+                quote!(#place = #name;)
+            });
+            quote! {
+                #[inline(never)]
+                fn #name(&self, t: S, x: &[S; #n], negative: &[bool; #g], v: &mut [S; #count]) {
+                    let c = &self.#constants;
+                    #bindings
+                    #(#reads)*
+                    #statements
+                    #(#writes)*
+                }
             }
-        }
+        })
     }
+}
+
+/// The temporaries that more than one part of a long routine or its results need, each with its place.
+fn kept(routine: &Routine) -> BTreeMap<u32, usize> {
+    let part = |temporary: u32| temporary as usize / PART;
+    let results = routine.results.iter().filter_map(temporary);
+    let read = routine
+        .assignments
+        .iter()
+        .flat_map(|assignment| temporaries(assignment).filter(move |&read| part(read) != part(assignment.target)));
+    let kept: BTreeSet<u32> = results.chain(read).collect();
+    kept.into_iter().zip(0..).collect()
+}
+
+fn temporary(operand: &Operand) -> Option<u32> {
+    if let Operand::Temporary(temporary) = operand { Some(*temporary) } else { None }
+}
+
+/// The temporaries that an assignment reads.
+fn temporaries(assignment: &Assignment) -> impl Iterator<Item = u32> + use<> {
+    assignment.operation.operands().into_iter().filter_map(|operand| temporary(&operand))
+}
+
+/// A place of the array of what is kept.
+fn place(place: usize) -> TokenStream {
+    let place = Literal::usize_unsuffixed(place);
+    quote!(v[#place])
 }
 
 /// The routine with these assignments and results only.

@@ -12,7 +12,7 @@ use proc_macro2::Span;
 use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::typing::Shape;
 use super::{
-    BondGraph, Close, Element, GraphFault, Held, Input, Integral, JointId, Law, Let, Node, NodeId, NodeKind,
+    BondGraph, Close, Drawing, Element, GraphFault, Held, Input, Integral, JointId, Law, Let, Node, NodeId, NodeKind,
     Observation, Parameter, Storage, Track, domains,
 };
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
@@ -48,6 +48,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
         .collect();
     resolver.define(source);
     resolver.tracks(source);
+    resolver.graph.drawing = source.drawing.map(&mut |quantity| resolver.term(quantity, Place::Plain));
     connect::bonds(&mut resolver.graph, &chains, &resolver.names, &resolver.junctions, &mut resolver.faults);
     if resolver.graph.bonds.is_empty() && resolver.faults.is_empty() {
         let name = source.name.text.clone();
@@ -100,6 +101,7 @@ impl Resolver {
             observations: Vec::new(),
             guesses: Vec::new(),
             integrals: Vec::new(),
+            drawing: Drawing::default(),
         };
         Self {
             graph,

@@ -56,7 +56,8 @@ impl Expansion<'_> {
         let Some((a, b)) = self.ends(name, &joint.ends) else { return };
         if self.clauses(joint) {
             self.translations(joint, &a, &b);
-            self.rotations(joint, &a, &b);
+            let has_moment = self.rotations(joint, &a, &b);
+            self.draw_joint((name, joint.kind.to_string()), &joint.ends, (&a, &b), has_moment);
             self.motion(joint, &a, &b);
         }
     }
@@ -192,12 +193,13 @@ impl Expansion<'_> {
         }
     }
 
-    fn rotations(&mut self, joint: &Joint, a: &End, b: &End) {
+    /// The held rotations and the free one; false where there is neither.
+    fn rotations(&mut self, joint: &Joint, a: &End, b: &End) -> bool {
         let (name, span) = (&joint.name.text, joint.name.span);
         let spin = joint.kind.spin().filter(|_| self.is_used(joint, "spin"));
         let held = held_rotations(joint.kind, &a.body, &b.body);
         if held.is_empty() && spin.is_none() {
-            return;
+            return false;
         }
         self.text(
             span,
@@ -242,6 +244,7 @@ impl Expansion<'_> {
                 ),
             );
         }
+        true
     }
 
     fn held_rotation(&mut self, joint: &Joint, rotation: &HeldRotation) {

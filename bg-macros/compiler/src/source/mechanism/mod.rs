@@ -6,6 +6,7 @@
 
 mod attachment;
 mod body;
+mod drawing;
 mod fault;
 mod joint;
 
@@ -16,6 +17,7 @@ use proc_macro2::{Group, Span, TokenStream, TokenTree};
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
 use crate::source::ast::{Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name, Point};
 use crate::source::clause::{Clause, Given};
+use crate::source::drawing::Drawing;
 use crate::source::syntax;
 
 pub use fault::MechanismFault;
@@ -28,7 +30,7 @@ pub fn expand(source: &Graph) -> Staged<Graph> {
     let mut expansion = Expansion::new(source);
     expansion.run();
     if expansion.faults.is_empty() {
-        Ok(Graph { items: expansion.items, ..source.clone() })
+        Ok(Graph { drawing: expansion.drawn(), items: expansion.items, ..source.clone() })
     } else {
         Err(expansion.faults)
     }
@@ -59,6 +61,7 @@ const ORIGIN: &str = "origin";
 struct Expansion<'a> {
     source: &'a Graph,
     items: Vec<Item>,
+    drawing: Drawing<Expression>,
     bodies: BTreeMap<&'a str, &'a Body>,
     joints: BTreeMap<&'a str, &'a Joint>,
     ground: Option<&'a Ground>,
@@ -71,6 +74,7 @@ impl<'a> Expansion<'a> {
         let mut expansion = Self {
             source,
             items: Vec::new(),
+            drawing: Drawing::default(),
             bodies: BTreeMap::new(),
             joints: BTreeMap::new(),
             ground: None,
@@ -116,12 +120,15 @@ impl<'a> Expansion<'a> {
         }
         for item in &self.source.items {
             match item {
-                Item::Ground(_) => {}
+                Item::Ground(ground) => self.draw_ground(ground),
                 Item::Gravity(gravity) => {
                     let clause = Clause::new("the gravity", 3).given(Given::Source);
                     self.bind("gravity_field", "m/s^2", &gravity.acceleration, clause);
                 }
-                Item::Body(body) => self.body(body),
+                Item::Body(body) => {
+                    self.body(body);
+                    self.draw_body(body);
+                }
                 Item::Joint(joint) => self.joint(joint),
                 Item::Spring(spring) => self.spring(spring),
                 Item::Drive(drive) => self.drive(drive),

@@ -10,6 +10,7 @@ use proc_macro2::{Delimiter, TokenStream};
 
 use crate::fault::{Fault, Staged};
 use crate::source::ast::{Graph, Source};
+use crate::source::drawing::Drawing;
 use cursor::{Cursor, Parsed, Place};
 
 mod body;
@@ -71,6 +72,6 @@ fn graph(call: &mut Cursor, graphs: &mut Vec<Graph>) -> Parsed<()> {
         Ok(block) => (statement::items(block), Ok(())),
         Err(reported) => (Vec::new(), Err(reported)),
     };
-    graphs.push(Graph { docs: docs.text, visibility, name, items });
+    graphs.push(Graph { docs: docs.text, visibility, name, items, drawing: Drawing::default() });
     read
 }

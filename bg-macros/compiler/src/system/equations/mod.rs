@@ -14,6 +14,7 @@ mod loops;
 mod origin;
 mod reactions;
 mod requirements;
+mod shown;
 mod signals;
 mod storage;
 mod terms;
@@ -30,6 +31,7 @@ pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
 pub use origin::{Kind, Origin};
+pub use shown::{Quantity, Shown};
 
 /// The model as scalar expressions over one pool.
 #[derive(Clone, Debug)]
@@ -70,8 +72,8 @@ pub struct StateEquations {
     pub holding: Holding,
     /// Whether impulses of the rigid joints make the start velocities fit.
     pub impulse: bool,
-    /// Effort and flow of every bond, component by component.
-    pub bonds: Vec<(Vec<Id>, Vec<Id>)>,
+    /// What pictures show.
+    pub shown: Shown,
     /// What is asked of the values that parameters give.
     pub requirements: Requirements,
     /// The equations of the causal graph as text, one line each.

@@ -92,8 +92,8 @@ impl<'a> Signals<'a> {
     pub(super) fn derive(mut self) -> Staged<StateEquations> {
         self.prove_displacements();
         self.fallible.clear();
-        let bonds: Vec<(Vec<Id>, Vec<Id>)> =
-            (0..self.graph.bonds.len()).map(|k| (self.effort(BondId(k)).0, self.flow(BondId(k)).0)).collect();
+        let bonds = (0..self.graph.bonds.len()).map(BondId);
+        let bonds = bonds.map(|bond| [self.effort(bond), self.flow(bond)].map(|value| Some(value.0))).collect();
         self.rates();
         let stored = self.stored_energy();
         let (supplied, dissipated) = (self.supplied_power(), self.dissipated_power());
@@ -113,6 +113,7 @@ impl<'a> Signals<'a> {
         }
         let mut requirements = self.requirements();
         requirements.decide(&self.graph.parameters)?;
+        let shown = self.shown(bonds);
         Ok(StateEquations {
             pool: self.pool,
             parameters: self.graph.parameters.clone(),
@@ -132,7 +133,7 @@ impl<'a> Signals<'a> {
             reactions,
             holding,
             impulse: self.graph.impulse,
-            bonds,
+            shown,
             requirements,
             texts,
         })

@@ -34,6 +34,7 @@ pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report
     fallible.retain(|law| is_known(&equations.pool, law.value, &live, &switches));
     equations.fallible = fallible;
     equations.holding.prune(&equations.pool, &live, &switches);
+    equations.shown.prune(&equations.pool, &live, &switches);
     keep_states(equations, report, &live);
     keep_switches(equations, &branches);
 }
@@ -116,7 +117,6 @@ pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, k
         *state = numbers[*state];
     }
     equations.holding.renumber(&|state| is_kept(state).then(|| numbers[state]));
-    equations.bonds.clear();
     let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::state(number))).collect();
     equations.replace(&|symbol| symbol.as_state().map(|state| symbols[state]));
     report.keep(kept);

@@ -162,10 +162,6 @@ impl StateEquations {
         }
         roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
         roots.extend(self.projections.iter_mut().map(|(_, id)| id));
-        for (efforts, flows) in &mut self.bonds {
-            roots.extend(efforts);
-            roots.extend(flows);
-        }
         roots
     }
 
@@ -187,8 +183,9 @@ impl StateEquations {
         for (law, value) in self.fallible.iter_mut().zip(after) {
             law.value = value;
         }
-        // What is held comes after, so that it has no influence on the order of the rates' nodes.
+        // What is held and shown comes after, so that it has no influence on the order of the rates' nodes.
         self.holding.replace(&mut pool, replace, branch);
+        self.shown.replace(&mut pool, replace, branch);
         self.pool = pool;
     }
 }

@@ -1,0 +1,134 @@
+//! A tape: values that are wanted for pictures only, as a table that is interpreted and not as code that is compiled.
+//!
+//! In: quantities of the equations. Out: a [`Tape`]. Every step of it gives one value from values of earlier steps; its words
+//! are those of `bg_model::tape`, which reads it. A table of numbers costs the user's build next to nothing, and a picture
+//! asks for few evaluations.
+
+use std::collections::BTreeMap;
+
+use crate::expr::{Function, Id, Node, Number, Pool, Symbol};
+use crate::system::equations::Quantity;
+
+/// The steps and what is wanted of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tape {
+    /// The numbers that steps refer to.
+    pub numbers: Vec<f64>,
+    /// The steps, each an operation and its operands.
+    pub words: Vec<u32>,
+    /// For each wanted component the step that gives it.
+    pub results: Vec<u32>,
+    /// For each quantity the place of its first component among the results; none where it is not known.
+    pub places: Vec<Option<usize>>,
+}
+
+/// The tape that gives `quantities`, those with a symbol that has no value in a running model left out.
+#[must_use]
+pub fn tape(pool: &Pool, quantities: &[&Quantity]) -> Tape {
+    let has_values = |ids: &Vec<Id>| pool.symbols(ids).into_iter().all(|symbol| leaf(symbol).is_some());
+    let known: Vec<Option<&Vec<Id>>> =
+        quantities.iter().map(|quantity| quantity.as_ref().filter(|ids| has_values(ids))).collect();
+    let roots: Vec<Id> = known.iter().flatten().copied().flatten().copied().collect();
+    let mut writer = Writer::default();
+    for id in pool.reachable(&roots) {
+        writer.step(id, pool.node(id));
+    }
+    let mut tape = writer.tape;
+    for ids in known {
+        tape.places.push(ids.map(|_| tape.results.len()));
+        tape.results.extend(ids.into_iter().flatten().map(|id| writer.steps[id]));
+    }
+    tape
+}
+
+#[derive(Default)]
+struct Writer {
+    tape: Tape,
+    /// The step that gives each node.
+    steps: BTreeMap<Id, u32>,
+    numbers: BTreeMap<Number, u32>,
+}
+
+impl Writer {
+    fn step(&mut self, id: Id, node: &Node) {
+        let words = match node {
+            Node::Number(number) => vec![0, self.number(*number)],
+            Node::Symbol(symbol) => {
+                let (operation, index) = leaf(*symbol).expect("a symbol that has a value");
+                vec![operation, index]
+            }
+            Node::Sum { constant, terms } => {
+                let mut words = vec![6, self.number(*constant), count(terms.len())];
+                for (id, coefficient) in terms {
+                    words.extend([self.steps[id], self.number(*coefficient)]);
+                }
+                words
+            }
+            Node::Product(factors) => {
+                let mut words = vec![7, count(factors.len())];
+                for (id, exponent) in factors {
+                    words.extend([self.steps[id], exponent.cast_unsigned()]);
+                }
+                words
+            }
+            Node::Call(function, arguments) => {
+                let arguments = arguments.iter().map(|id| self.steps[id]);
+                [8, code(*function)].into_iter().chain(arguments).collect()
+            }
+            Node::Select { switch, negative, positive } => {
+                vec![9, *switch, self.steps[negative], self.steps[positive]]
+            }
+        };
+        self.tape.words.extend(words);
+        self.steps.insert(id, count(self.steps.len()));
+    }
+
+    /// The place of a number.
+    fn number(&mut self, number: Number) -> u32 {
+        let next = count(self.tape.numbers.len());
+        let place = *self.numbers.entry(number).or_insert(next);
+        if place == next {
+            self.tape.numbers.push(number.value());
+        }
+        place
+    }
+}
+
+/// The operation and the operand that read a symbol; none of one without a value in a running model.
+fn leaf(symbol: Symbol) -> Option<(u32, u32)> {
+    match symbol {
+        Symbol::Time => Some((1, 0)),
+        Symbol::State(index) => Some((2, index)),
+        Symbol::Parameter(index) => Some((3, index)),
+        Symbol::Input(index) => Some((4, index)),
+        Symbol::Slope(index) => Some((5, index)),
+        Symbol::Unknown(_)
+        | Symbol::Law(_)
+        | Symbol::Storage(_)
+        | Symbol::Flow(_)
+        | Symbol::Multiplier(_)
+        | Symbol::Loop
+        | Symbol::Rate(_) => None,
+    }
+}
+
+fn code(function: Function) -> u32 {
+    match function {
+        Function::Sqrt => 0,
+        Function::Sin => 1,
+        Function::Cos => 2,
+        Function::Tan => 3,
+        Function::Asin => 4,
+        Function::Acos => 5,
+        Function::Atan2 => 6,
+        Function::Exp => 7,
+        Function::Ln => 8,
+        Function::Tanh => 9,
+        Function::Abs => 10,
+        Function::Pow => 11,
+    }
+}
+
+fn count(of: usize) -> u32 {
+    u32::try_from(of).expect("fewer than 2^32 steps")
+}
