@@ -1,8 +1,9 @@
 //! A run of a mechanism, asked for in words and given as columns by name: the face without const generics.
 //!
 //! In: a [`Mechanism`] and what is asked of the run. Out: a [`Trajectory`], from which the run can go on. Underneath is
-//! [`simulation::integrate`](crate::simulation::integrate), which allocates nothing; what this face costs on top is the
-//! recording of the samples.
+//! [`simulation::integrate`](crate::simulation::integrate), which allocates nothing in a step. This face records the samples
+//! and asks after each step whether to go on: 0.4 % more instructions than a `Recorder` by itself, counted on 5 s of the
+//! paper's hacksaw with 501 samples.
 
 mod ending;
 mod instants;
