@@ -8,6 +8,7 @@ mod attachment;
 mod body;
 mod fault;
 mod joint;
+mod part;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,6 +20,7 @@ use crate::source::clause::{Clause, Given};
 use crate::source::syntax;
 
 pub use fault::MechanismFault;
+pub use part::{Part, part_of, parts};
 
 /// Replaces every mechanism word by its fragment of multibond graph.
 ///
