@@ -74,6 +74,12 @@ pub enum Level {
     Full,
 }
 
+/// A state with its unit, as [`Node::states`] has it: `rod.linear.p_x kg*m/s`; without the unit 1.
+#[must_use]
+pub fn quantity(name: &str, unit: &str) -> String {
+    if unit == "1" { name.to_owned() } else { format!("{name} {unit}") }
+}
+
 impl Bond {
     /// The node at the other end than `node`.
     #[must_use]

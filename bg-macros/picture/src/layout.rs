@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use crate::graph::Graph;
-use crate::place::{self, Cell, Problem};
+use crate::place::{self, Cell, Effort, Problem};
 use crate::route::{Plan, Rect, Routes, route};
 use crate::sheet::{Block, Group, Of, Sheet};
 use crate::shelves::{Point, Shelves};
@@ -76,19 +76,19 @@ struct Draft<'a> {
 impl Draft<'_> {
     fn layout(&self) -> (Layout, bool) {
         let mut problems: Vec<Problem> = (0..self.sheet.groups.len()).map(|group| problem(self.sheet, group)).collect();
-        let first = self.arrange(&problems);
+        let first = self.arrange(&problems, Effort::Rough);
         let shelves = self.shelves(&first);
         let rows = shelves.rows();
 
         self.add_pulls(&shelves.place(&rows), &first, &mut problems);
-        let groups = self.arrange(&problems);
+        let groups = self.arrange(&problems, Effort::Fine);
         let corners = self.shelves(&groups).place(&rows);
         self.routed(&groups, &corners)
     }
 
-    fn arrange(&self, problems: &[Problem]) -> Vec<Arranged> {
+    fn arrange(&self, problems: &[Problem], effort: Effort) -> Vec<Arranged> {
         let groups = self.sheet.groups.iter().zip(problems);
-        groups.map(|(group, problem)| self.arranged(group, &place::place(problem))).collect()
+        groups.map(|(group, problem)| self.arranged(group, &place::place(problem, effort))).collect()
     }
 
     /// A group in pitches: columns as wide as their widest block.
@@ -221,7 +221,7 @@ fn size(sheet: &Sheet, block: usize, of: &Block) -> Point {
 fn problem(sheet: &Sheet, group: usize) -> Problem {
     let members = &sheet.groups[group].blocks;
     let place = |block: usize| members.iter().position(|&member| member == block);
-    let size_cost = if sheet.groups[group].part.is_some() { 14 } else { 4 };
+    let size_cost = if sheet.groups[group].part.is_some() { 14 } else { 2 };
     let mut problem = Problem { count: members.len(), size_cost, ..Problem::default() };
     let mut inward: Vec<[Option<usize>; 2]> = vec![[None; 2]; members.len()];
     for link in &sheet.links {

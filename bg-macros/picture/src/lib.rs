@@ -46,6 +46,6 @@ mod text;
 
 pub use dot::dot;
 pub use exchange::Unreadable;
-pub use graph::{Bond, End, Graph, Level, Node, Part};
+pub use graph::{Bond, End, Graph, Level, Node, Part, quantity};
 pub use marks::{Mark, marks};
 pub use svg::svg;

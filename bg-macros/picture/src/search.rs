@@ -14,7 +14,7 @@ const BEND: i64 = 35;
 const CROSSING: i64 = 60;
 const FOREIGN: i64 = 12;
 const NEAR: i64 = 6;
-const OFF_CENTRE: i64 = 3;
+const OFF_CENTRE: i64 = 9;
 /// For a port beside one that another link has: half arrows and strokes want room.
 const BESIDE: i64 = 25;
 

@@ -40,7 +40,7 @@ pub fn graph(description: &Description) -> Graph {
         states: states
             .iter()
             .filter(|state| state.element == element.name)
-            .map(|state| format!("{} {}", state.name, state.unit))
+            .map(|state| bg_picture::quantity(state.name, state.unit))
             .collect(),
         part: parts.iter().position(|part| part.name == element.part),
     };

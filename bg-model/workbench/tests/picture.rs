@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use bg_picture::{Bond, End, Graph, Node};
+use bg_picture::Graph;
 use support::{Picture, faults, faults_in_words};
 
 /// The names of the examples, sorted.
@@ -43,29 +43,10 @@ fn drawn(example: &str, arguments: &[&str], option: &str) -> String {
     fs::read_to_string(file).expect("the file is there")
 }
 
-/// Nodes and bonds as the tables on the terminal have them.
+/// The graph as the printed tables have it.
 fn tables(example: &str, scene: &[&str]) -> Graph {
     let rows = |part: &str| printed(example, &[&["graph", "--part", part], scene].concat());
-    let mut graph = Graph::default();
-    for row in rows("elements").lines() {
-        let mut words = row.split_whitespace();
-        let [kind, name] = [words.next(), words.next()].map(|word| word.expect("a kind and a name").to_owned());
-        graph.nodes.push(Node { kind, name, ..Node::default() });
-    }
-    for row in rows("bonds").lines() {
-        let words: Vec<&str> = row.split_whitespace().collect();
-        let node = |name: &str| graph.nodes.iter().position(|node| node.name == name).expect("a node");
-        graph.bonds.push(Bond {
-            from: node(words[0]),
-            to: node(words[2]),
-            cardinality: if words[3] == "[3]" { 3 } else { 1 },
-            stroke: if words[1] == "->|" { End::To } else { End::From },
-            effort: String::new(),
-            flow: String::new(),
-        });
-    }
-    assert!(!graph.bonds.is_empty(), "{example}");
-    graph
+    support::tables(&rows("elements"), &rows("bonds"))
 }
 
 #[test]

@@ -39,7 +39,7 @@ pub(super) fn text(model: &Compiled) -> String {
             kind: node.kind.symbol().to_owned(),
             name: name.clone(),
             law: if let NodeKind::Element(element) = &node.kind { element.text.clone() } else { String::new() },
-            states: states.map(|state| format!("{} {}", state.name, state.unit)).collect(),
+            states: states.map(|state| bg_picture::quantity(&state.name, &state.unit)).collect(),
             part: mechanism::part_of(&parts, name),
         }
     });

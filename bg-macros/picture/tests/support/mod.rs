@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use bg_picture::{End, Graph};
+use bg_picture::{Bond, End, Graph, Node as GraphNode};
 use roxmltree::{Document, Node};
 
 /// A rectangle in pixels.
@@ -65,6 +65,31 @@ impl Area {
     fn of_segment(a: Point, b: Point) -> Self {
         Self { left: a.0.min(b.0), top: a.1.min(b.1), right: a.0.max(b.0), bottom: a.1.max(b.1) }
     }
+}
+
+/// Nodes and bonds as the tables of `graph --part elements` and `graph --part bonds` have them.
+#[allow(dead_code, reason = "for the suites that run programs")]
+pub fn tables(elements: &str, bonds: &str) -> Graph {
+    let mut graph = Graph::default();
+    for row in elements.lines() {
+        let mut words = row.split_whitespace();
+        let [kind, name] = [words.next(), words.next()].map(|word| word.expect("a kind and a name").to_owned());
+        graph.nodes.push(GraphNode { kind, name, ..GraphNode::default() });
+    }
+    for row in bonds.lines() {
+        let words: Vec<&str> = row.split_whitespace().collect();
+        let node = |name: &str| graph.nodes.iter().position(|node| node.name == name).expect("a node");
+        graph.bonds.push(Bond {
+            from: node(words[0]),
+            to: node(words[2]),
+            cardinality: if words[3] == "[3]" { 3 } else { 1 },
+            stroke: if words[1] == "->|" { End::To } else { End::From },
+            effort: String::new(),
+            flow: String::new(),
+        });
+    }
+    assert!(!graph.bonds.is_empty(), "{bonds}");
+    graph
 }
 
 /// All faults of the picture of `graph` at the full level.

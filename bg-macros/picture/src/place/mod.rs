@@ -2,10 +2,12 @@
 //!
 //! In: how many blocks, the links between them, where their links to other groups lead. Out: a cell for each block, no two
 //! the same. Method: threshold accepting (Dueck and Scheuer, J. Comput. Phys. 90, 1990) in whole numbers, from a greedy
-//! start. The cost counts what makes a drawing hard to read: length, bends, what a link runs over or across, two-ports and
-//! half arrows against the direction of reading, and distance to the side that a link leaves by.
+//! start. What a drawing costs, and why: [`cost`].
+
+mod cost;
 
 use crate::random::Random;
+use cost::Load;
 
 /// A cell: column to the right, row downwards.
 pub(crate) type Cell = (i32, i32);
@@ -24,23 +26,26 @@ pub(crate) struct Problem {
     pub size_cost: i64,
 }
 
-const LENGTH: i64 = 10;
-const BEND: i64 = 22;
-const OVER_BLOCK: i64 = 60;
-const OVERLAP: i64 = 40;
-const CROSSING: i64 = 30;
-const BACKWARDS: i64 = 5;
-const UPWARDS: i64 = 3;
-const KINK: i64 = 20;
-const PULL: i64 = 5;
+/// How long a good arrangement is looked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Effort {
+    /// To know about how large the group is.
+    Rough,
+    /// To draw it.
+    Fine,
+}
 
 /// Cells for all blocks; the least column and row are 0.
-pub(crate) fn place(problem: &Problem) -> Vec<Cell> {
+pub(crate) fn place(problem: &Problem, effort: Effort) -> Vec<Cell> {
+    let [first, second] = match effort {
+        Effort::Rough => [500, 100],
+        Effort::Fine => [2500, 1000],
+    };
     let mut board = Board::new(problem);
     board.start();
-    board.improve(60, 3000);
+    board.improve(60, first);
     board.turn();
-    board.improve(12, 1000);
+    board.improve(12, second);
     let (left, top) = corner(&board.cells);
     board.cells.iter().map(|&(x, y)| (x - left, y - top)).collect()
 }
@@ -51,20 +56,14 @@ fn corner(cells: &[Cell]) -> Cell {
     (least(|cell| cell.0), least(|cell| cell.1))
 }
 
-/// What lies on a cell.
-#[derive(Clone, Copy, Debug, Default)]
-struct Load {
-    is_taken: bool,
-    across: i64,
-    down: i64,
-}
-
 struct Board<'a> {
     problem: &'a Problem,
     side: i32,
     cells: Vec<Cell>,
     /// The blocks at the other ends of each block's links.
     neighbours: Vec<Vec<usize>>,
+    /// For each link that alone joins two pieces: the block at one end, and all blocks of the piece at the other.
+    branches: Vec<(usize, Vec<usize>)>,
     loads: Vec<Load>,
 }
 
@@ -81,7 +80,8 @@ impl<'a> Board<'a> {
             neighbours[to].push(from);
         }
         let loads = vec![Load::default(); (side * side) as usize];
-        Self { problem, side, cells: Vec::new(), neighbours, loads }
+        let branches = branches(problem, &neighbours);
+        Self { problem, side, cells: Vec::new(), neighbours, branches, loads }
     }
 
     fn index(&self, (x, y): Cell) -> usize {
@@ -153,16 +153,17 @@ impl<'a> Board<'a> {
         let mut random = Random::new(1);
         let mut cost = self.cost();
         let mut best = (cost, self.cells.clone());
+        let mut before = self.cells.clone();
         for step in 0..moves {
             let left = (moves - step) as i64;
             let threshold = first * left * left / (moves as i64 * moves as i64);
-            let before = self.cells.clone();
+            before.clone_from(&self.cells);
             if !self.shake(&mut random) {
                 continue;
             }
             let after = self.cost();
             if after > cost + threshold {
-                self.cells = before;
+                self.cells.clone_from(&before);
                 continue;
             }
             cost = after;
@@ -190,12 +191,12 @@ impl<'a> Board<'a> {
         self.cells = turned.into_iter().min_by_key(|(cost, _)| *cost).map_or(own, |(_, cells)| cells);
     }
 
-    /// Moves a block near one of its neighbours, or with all that hangs on it by a little. False if it cannot go there.
+    /// Moves a block near one of its neighbours, or a whole branch. False if it cannot go there.
     fn shake(&mut self, random: &mut Random) -> bool {
-        let block = random.below(self.problem.count);
-        if random.below(3) == 0 {
-            return self.shift(block, (random.offset(2), random.offset(2)));
+        if !self.branches.is_empty() && random.below(3) == 0 {
+            return self.swing(random);
         }
+        let block = random.below(self.problem.count);
         let near = &self.neighbours[block];
         let around = if near.is_empty() { block } else { near[random.below(near.len())] };
         let (x, y) = self.cells[around];
@@ -210,119 +211,53 @@ impl<'a> Board<'a> {
         true
     }
 
-    /// Moves a block and the blocks that have no other neighbour.
-    fn shift(&mut self, block: usize, (dx, dy): Cell) -> bool {
-        let mut moved = vec![block];
-        moved.extend(self.neighbours[block].iter().copied().filter(|&other| self.neighbours[other].len() == 1));
-        let goals: Vec<Cell> =
-            moved.iter().map(|&block| (self.cells[block].0 + dx, self.cells[block].1 + dy)).collect();
+    /// Turns a branch about the block that it hangs on, mirrors it there, or moves it by a little.
+    fn swing(&mut self, random: &mut Random) -> bool {
+        let (root, branch) = &self.branches[random.below(self.branches.len())];
+        let (x, y) = self.cells[*root];
+        let way = random.below(8);
+        let offset = (random.offset(2), random.offset(2));
+        let goal = |block: &usize| {
+            let (dx, dy) = (self.cells[*block].0 - x, self.cells[*block].1 - y);
+            match way {
+                0 => (x - dy, y + dx),
+                1 => (x + dy, y - dx),
+                2 => (x - dx, y + dy),
+                3 => (x + dx, y - dy),
+                _ => (x + dx + offset.0, y + dy + offset.1),
+            }
+        };
+        let goals: Vec<Cell> = branch.iter().map(goal).collect();
         let is_free = |goal: &Cell| {
             let at = self.cells.iter().position(|cell| cell == goal);
-            self.is_inside(*goal) && at.is_none_or(|at| moved.contains(&at))
+            self.is_inside(*goal) && at.is_none_or(|at| branch.contains(&at))
         };
-        if (dx, dy) == (0, 0) || !goals.iter().all(is_free) {
+        if !goals.iter().all(is_free) {
             return false;
         }
-        for (&block, goal) in moved.iter().zip(goals) {
+        for (&block, goal) in branch.iter().zip(goals) {
             self.cells[block] = goal;
         }
         true
     }
-
-    fn cost(&mut self) -> i64 {
-        self.loads.fill(Load::default());
-        for block in 0..self.cells.len() {
-            let index = self.index(self.cells[block]);
-            self.loads[index].is_taken = true;
-        }
-        let links: i64 = (0..self.problem.links.len()).map(|link| self.link_cost(link)).sum();
-        links + self.straightness() + self.frame_cost()
-    }
-
-    /// The cost of a link along the better of its routes, which it then occupies.
-    fn link_cost(&mut self, link: usize) -> i64 {
-        let (from, to) = self.problem.links[link];
-        let (a, b) = (self.cells[from], self.cells[to]);
-        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-        let mut cost = LENGTH * i64::from(dx.abs() + dy.abs());
-        cost += if dx < 0 { BACKWARDS } else { 0 } + if dy < 0 { UPWARDS } else { 0 };
-        if dx == 0 || dy == 0 {
-            cost += self.run_cost(a, b);
-            self.occupy(a, b);
-            return cost;
-        }
-        let over = |corner: Cell| {
-            let block = if self.loads[self.index(corner)].is_taken { OVER_BLOCK } else { 0 };
-            self.run_cost(a, corner) + block + self.run_cost(corner, b)
-        };
-        let corners = [(b.0, a.1), (a.0, b.1)];
-        let [first, second] = corners.map(over);
-        let corner = corners[usize::from(second < first)];
-        self.occupy(a, corner);
-        self.occupy(corner, b);
-        cost + BEND + first.min(second)
-    }
-
-    /// What a straight run meets between its ends.
-    fn run_cost(&self, a: Cell, b: Cell) -> i64 {
-        let mut cost = 0;
-        let is_across = a.1 == b.1;
-        each_between(a, b, |cell| {
-            let load = self.loads[self.index(cell)];
-            let (along, over) = if is_across { (load.across, load.down) } else { (load.down, load.across) };
-            cost += OVERLAP * along + CROSSING * over + if load.is_taken { OVER_BLOCK } else { 0 };
-        });
-        cost
-    }
-
-    fn occupy(&mut self, a: Cell, b: Cell) {
-        let (side, is_across) = (self.side, a.1 == b.1);
-        let loads = &mut self.loads;
-        each_between(a, b, |(x, y)| {
-            let load = &mut loads[(y * side + x) as usize];
-            if is_across { load.across += 1 } else { load.down += 1 }
-        });
-    }
-
-    fn straightness(&self) -> i64 {
-        let bent = |&&(first, second): &&(usize, usize)| {
-            let direction = |link: usize| {
-                let (from, to) = self.problem.links[link];
-                let (a, b) = (self.cells[from], self.cells[to]);
-                ((b.0 - a.0).signum(), (b.1 - a.1).signum())
-            };
-            direction(first) != direction(second)
-        };
-        KINK * self.problem.straight.iter().filter(bent).count() as i64
-    }
-
-    /// The group's size, and how far its outward links are from the sides that they leave by.
-    fn frame_cost(&self) -> i64 {
-        let range = |of: fn(&Cell) -> i32| {
-            let values = self.cells.iter().map(of);
-            (values.clone().min().unwrap_or_default(), values.max().unwrap_or_default())
-        };
-        let ((left, right), (top, bottom)) = (range(|cell| cell.0), range(|cell| cell.1));
-        let mut cost = self.problem.size_cost * i64::from(right - left + bottom - top);
-        for &(block, (to_right, down)) in &self.problem.pulls {
-            let (x, y) = self.cells[block];
-            let distance = |sign: i32, value: i32, least: i32, most: i32| match sign {
-                0 => 0,
-                sign if sign < 0 => value - least,
-                _ => most - value,
-            };
-            cost += PULL * i64::from(distance(to_right, x, left, right) + distance(down, y, top, bottom));
-        }
-        cost
-    }
 }
 
-/// Calls `each` for the cells strictly between `a` and `b`, which are in one row or column.
-fn each_between(a: Cell, b: Cell, mut each: impl FnMut(Cell)) {
-    let (dx, dy) = ((b.0 - a.0).signum(), (b.1 - a.1).signum());
-    let (mut x, mut y) = (a.0 + dx, a.1 + dy);
-    while (x, y) != b && (dx, dy) != (0, 0) {
-        each((x, y));
-        (x, y) = (x + dx, y + dy);
-    }
+/// The branches of a problem, both ways of each link.
+fn branches(problem: &Problem, neighbours: &[Vec<usize>]) -> Vec<(usize, Vec<usize>)> {
+    let both = problem.links.iter().flat_map(|&(from, to)| [(from, to), (to, from)]);
+    let branch = |(root, first): (usize, usize)| {
+        let mut branch = vec![first];
+        let mut next = 0;
+        while let Some(&block) = branch.get(next) {
+            next += 1;
+            for &other in &neighbours[block] {
+                let is_back = block == first && other == root;
+                if !is_back && !branch.contains(&other) {
+                    branch.push(other);
+                }
+            }
+        }
+        (!branch.contains(&root)).then_some((root, branch))
+    };
+    both.filter_map(branch).collect()
 }
