@@ -4,7 +4,7 @@
 //! and one for dark surroundings where the page sets none. Readers that know no variables take the line before.
 
 /// Name, light, dark.
-const COLOURS: [(&str, &str, &str); 11] = [
+const COLOURS: [(&str, &str, &str); 12] = [
     ("paper", "#ffffff", "#0f1419"),
     ("ink", "#1c2733", "#e3e9ef"),
     ("faint", "#5b6875", "#9aa7b4"),
@@ -16,10 +16,11 @@ const COLOURS: [(&str, &str, &str); 11] = [
     ("resistor", "#f1e9d2", "#473c18"),
     ("multiplier", "#f9c98a", "#8a4b00"),
     ("derivative", "#f5b5b5", "#8c2626"),
+    ("hover", "#c8401a", "#ff9a5a"),
 ];
 
 /// What has which colour: selector, property, colour.
-const RULES: [(&str, &str, &str); 19] = [
+const RULES: [(&str, &str, &str); 21] = [
     (".paper", "fill", "paper"),
     ("text", "fill", "ink"),
     (".name,.word", "fill", "faint"),
@@ -39,6 +40,8 @@ const RULES: [(&str, &str, &str); 19] = [
     (".line", "stroke", "bond"),
     (".arrow", "stroke", "bond"),
     (".stroke", "stroke", "bond"),
+    (".bond:hover .line,.bond:hover .arrow,.bond:hover .stroke", "stroke", "hover"),
+    (".node:hover .box,.part:hover .box", "stroke", "hover"),
 ];
 
 /// What has no colour.

@@ -181,7 +181,7 @@ fn node_title(graph: &Graph, node: usize, mark: Mark) -> String {
     let node = &graph.nodes[node];
     let mut title = format!("{} {}", node.kind, node.name);
     if !node.law.is_empty() {
-        title += &format!("\nlaw: {}", node.law);
+        title += &format!("\nlaw: {}", node.law.split_whitespace().collect::<Vec<_>>().join(" "));
     }
     if !node.states.is_empty() {
         title += &format!("\nstates: {}", node.states.join(", "));
