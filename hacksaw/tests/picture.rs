@@ -1,4 +1,5 @@
-//! The pictures of the hacksaw's graph, read back from their files and compared with the table of bonds that is printed.
+//! The pictures of the hacksaw's graph, read back from their files and compared with the table of bonds that is
+//! printed.
 
 #[path = "../../bg-macros/picture/tests/support/mod.rs"]
 mod support;

@@ -63,9 +63,7 @@ fn edge(graph: &Graph, sheet: &Sheet, link: &Link) -> String {
     let (head, tail) = (or_none(format!("{head}{arrow}")), or_none(tail.to_owned()));
     let bonds: Vec<_> = link.bonds.iter().map(|&bond| &graph.bonds[bond]).collect();
     let units = bonds.iter().map(|bond| format!("{}, {}", bond.effort, bond.flow)).collect::<Vec<_>>().join("; ");
-    let is_word = [link.from, link.to].iter().any(|&block| matches!(sheet.blocks[block].of, Of::Part(_)));
-    let double =
-        if is_word || bonds.iter().any(|bond| bond.cardinality > 1) { ", color=\"black:invis:black\"" } else { "" };
+    let double = if link.is_thick(graph, sheet) { ", color=\"black:invis:black\"" } else { "" };
     format!("dir=both, arrowhead={head}, arrowtail={tail}, tooltip={}{double}", quoted(&units))
 }
 

@@ -1,6 +1,7 @@
 //! A graph as one text, and back: how it is handed from one macro to another.
 //!
-//! In: a [`Graph`]. Out: a text of one line for each row of its tables, fields divided by tabs; or the graph of such a text.
+//! In: a [`Graph`]. Out: a text of one line for each row of its tables, fields divided by tabs; or the graph of such
+//! a text.
 
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;

@@ -1,8 +1,9 @@
 //! The whole drawing in pitches of the routing grid: blocks, frames, paths.
 //!
-//! In: a [`Sheet`] and its graph. Out: a [`Layout`]. Method: each group alone on a small grid ([`crate::place`]), the groups
-//! on shelves ([`crate::shelves`]), each group once more with its outward links drawn to the sides where they lead, then the
-//! paths ([`crate::route`]). Where the paths find no room, all distances grow and the drawing is made anew.
+//! In: a [`Sheet`] and its graph. Out: a [`Layout`]. Method: each group alone on a small grid ([`crate::place`]), the
+//! groups on shelves ([`crate::shelves`]), each group once more with its outward links drawn to the sides where they
+//! lead, then the paths ([`crate::route`]). Where the paths find no room, all distances grow and the drawing is made
+//! anew.
 
 use std::collections::BTreeSet;
 

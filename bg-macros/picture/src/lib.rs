@@ -1,7 +1,7 @@
 //! A bond graph as a picture: SVG with causal strokes, multibonds and groups, or DOT for Graphviz.
 //!
-//! In: a [`Graph`], tables of texts without equations. Out: text. Nothing here reads a file or a clock, and all arithmetic is
-//! that of whole numbers: the same graph gives the same bytes everywhere.
+//! In: a [`Graph`], tables of texts without equations. Out: text. Nothing here reads a file or a clock, and all
+//! arithmetic is that of whole numbers: the same graph gives the same bytes everywhere.
 //!
 //! ```
 //! use bg_picture::{Bond, End, Graph, Level, Node};

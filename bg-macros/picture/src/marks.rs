@@ -1,9 +1,10 @@
 //! Which storages are not free: in derivative causality, or under a multiplier.
 //!
-//! In: a [`Graph`]. Out: a [`Mark`] for each node. Method: a storage in integral causality receives what it integrates, an
-//! I the effort and a C the flow; the stroke says which (Karnopp, Margolis, Rosenberg, System Dynamics, ch. 5). A residual
-//! sink `rSe` of a rigid joint demands a flow; the strokes lead from it to the I that give this flow, and the sink's
-//! effort, the multiplier, keeps their motions together (Bos, Modelling multibody systems in terms of multibond graphs, 1986).
+//! In: a [`Graph`]. Out: a [`Mark`] for each node. Method: a storage in integral causality receives what it
+//! integrates, an I the effort and a C the flow; the stroke says which (Karnopp, Margolis, Rosenberg, System
+//! Dynamics, ch. 5). A residual sink `rSe` of a rigid joint demands a flow; the strokes lead from it to the I that
+//! give this flow, and the sink's effort, the multiplier, keeps their motions together (Bos, Modelling multibody
+//! systems in terms of multibond graphs, 1986).
 
 use crate::graph::Graph;
 

@@ -1,9 +1,10 @@
 //! The paths of the links: orthogonal, clear of labels, no two on each other.
 //!
-//! In: the grid with its obstacles, the rectangles that each link joins. Out: a path of grid points for each link. Method:
-//! A* (Hart, Nilsson, Raphael 1968) over points and directions with costs for length, bends and crossings, and negotiation
-//! about points that several links want (McMurchie and Ebeling, PathFinder, 1995): each round makes these dearer, until
-//! every link has its own. The first two steps at either end are straight and cross nothing: room for half arrow and stroke.
+//! In: the grid with its obstacles, the rectangles that each link joins. Out: a path of grid points for each link.
+//! Method: A* (Hart, Nilsson, Raphael 1968) over points and directions with costs for length, bends and crossings,
+//! and negotiation about points that several links want (McMurchie and Ebeling, PathFinder, 1995): each round makes
+//! these dearer, until every link has its own. The first two steps at either end are straight and cross nothing: room
+//! for half arrow and stroke.
 
 use crate::search::{Finder, Traffic};
 use crate::shelves::Point;

@@ -1,7 +1,7 @@
 //! One path over the grid, given what the other paths occupy.
 //!
-//! In: a plan, the traffic of the other links, a link, the price of a point that another link has. Out: the cheapest path,
-//! or an empty one where obstacles leave none.
+//! In: a plan, the traffic of the other links, a link, the price of a point that another link has. Out: the cheapest
+//! path, or an empty one where obstacles leave none.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -16,7 +16,7 @@ const FOREIGN: i64 = 12;
 const NEAR: i64 = 6;
 const OFF_CENTRE: i64 = 9;
 /// For a port beside one that another link has: half arrows and strokes want room.
-const BESIDE: i64 = 25;
+const BESIDE: i64 = 45;
 
 const DIRECTIONS: [Point; 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
@@ -108,9 +108,8 @@ impl Traffic {
             Use::Down => (down + sole, across),
             Use::Sole => (across + down + sole, 0),
         };
-        disputes * price
-            + crossings * CROSSING
-            + if disputes > 0 { i64::from(load.history) * 8 } else { i64::from(load.history) }
+        let history = i64::from(load.history) * if disputes > 0 { 8 } else { 1 };
+        disputes * price + crossings * CROSSING + history
     }
 }
 

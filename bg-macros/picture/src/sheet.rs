@@ -1,8 +1,8 @@
 //! What stands on the sheet at a level of detail: blocks, links between them, groups of blocks.
 //!
-//! In: a [`Graph`], a [`Level`]. Out: a [`Sheet`] without places. At the full level every node is a block and every bond a
-//! link. At the level of words a part is one block, and all bonds between it and another block are one link, whose half
-//! arrow and stroke are drawn where these bonds agree.
+//! In: a [`Graph`], a [`Level`]. Out: a [`Sheet`] without places. At the full level every node is a block and every
+//! bond a link. At the level of words a part is one block, and all bonds between it and another block are one link,
+//! whose half arrow and stroke are drawn where these bonds agree.
 
 use crate::graph::{Bond, End, Graph, Level};
 use crate::marks::{Mark, marks};
@@ -61,6 +61,15 @@ impl Sheet {
         let links = links(graph, &blocks, &block_of);
         let groups = groups(graph, &mut blocks, &links);
         Self { blocks, links, groups }
+    }
+}
+
+impl Link {
+    /// Whether it is drawn thick: a multibond, several bonds, or what joins two parts.
+    pub fn is_thick(&self, graph: &Graph, sheet: &Sheet) -> bool {
+        let is_part = |block: usize| matches!(sheet.blocks[block].of, Of::Part(_));
+        let is_multi = self.bonds.iter().any(|&bond| graph.bonds[bond].cardinality > 1);
+        is_multi || self.bonds.len() > 1 || (is_part(self.from) && is_part(self.to))
     }
 }
 

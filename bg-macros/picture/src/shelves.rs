@@ -1,8 +1,9 @@
 //! Where the groups stand: rows of rectangles, like books on shelves.
 //!
-//! In: the sizes of the groups, the links between points of different groups. Out: the upper left corner of each group, no
-//! two closer than the gap. Method: threshold accepting over the order of groups in rows, then each group slides within
-//! its place until its links are short and straight. Whole numbers throughout, in pitches of the routing grid.
+//! In: the sizes of the groups, the links between points of different groups. Out: the upper left corner of each
+//! group, no two closer than the gap. Method: threshold accepting over the order of groups in rows, then each group
+//! slides within its place until its links are short and straight. Whole numbers throughout, in pitches of the
+//! routing grid.
 
 use crate::random::Random;
 
@@ -107,7 +108,8 @@ impl Shelves {
         links + SIZE * i64::from(width.max(height * 3 / 2)) + self.disorder(&corners)
     }
 
-    /// How much links run over groups and across each other, if each were a straight line between the middles of two groups.
+    /// How much links run over groups and across each other, if each were a straight line between the middles of two
+    /// groups.
     fn disorder(&self, corners: &[Point]) -> i64 {
         const OVER_GROUP: i64 = 40;
         const CROSSING: i64 = 40;

@@ -1,7 +1,8 @@
 //! The colours of the picture.
 //!
-//! In: nothing. Out: a style sheet. Each colour is a variable of the page, such as `--bond-graph-ink`, with a value for light
-//! and one for dark surroundings where the page sets none. Readers that know no variables take the line before.
+//! In: nothing. Out: a style sheet. Each colour is a variable of the page, such as `--bond-graph-ink`, with a value
+//! for light and one for dark surroundings where the page sets none. Readers that know no variables take the line
+//! before.
 
 /// Name, light, dark.
 const COLOURS: [(&str, &str, &str); 12] = [
@@ -47,8 +48,8 @@ const RULES: [(&str, &str, &str); 21] = [
 /// What has no colour.
 const SHAPES: &str = "\
 .bond-graph{max-width:100%;height:auto}\
-.bond-graph text{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,\"DejaVu Sans\",sans-serif;\
-text-anchor:middle}\
+.bond-graph text{text-anchor:middle;\
+font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,\"DejaVu Sans\",sans-serif}\
 .bond-graph .kind{font-size:13px;font-weight:bold}\
 .bond-graph .name,.bond-graph .key{font-size:10px}\
 .bond-graph .part .name{font-size:13px;font-weight:bold}\

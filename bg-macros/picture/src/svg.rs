@@ -1,9 +1,10 @@
 //! The picture as SVG.
 //!
-//! In: a [`Graph`], a [`Level`]. Out: SVG text. Each bond is a `<g class="bond" data-bond="INDEX">` with a wide line that
-//! cannot be seen, for the pointer; each node a `<g class="node" data-element="INDEX">`; indices are those of the graph's
-//! tables. At the level of words a part is a `<g class="part" data-group="NAME">`, and a link's `data-bond` lists all its
-//! bonds. The half arrow's barb is on the side of the flow, below or to the right of the bond (Karnopp's convention).
+//! In: a [`Graph`], a [`Level`]. Out: SVG text. Each bond is a `<g class="bond" data-bond="INDEX">` with a wide line
+//! that cannot be seen, for the pointer; each node a `<g class="node" data-element="INDEX">`; indices are those of
+//! the graph's tables. At the level of words a part is a `<g class="part" data-group="NAME">`, and a link's
+//! `data-bond` lists all its bonds. The half arrow's barb is on the side of the flow, below or to the right of the
+//! bond (Karnopp's convention).
 
 use std::fmt::Write;
 
@@ -72,8 +73,7 @@ fn draw_link(out: &mut String, graph: &Graph, sheet: &Sheet, link: &Link, path: 
         return;
     }
     let bonds: Vec<_> = link.bonds.iter().map(|&bond| &graph.bonds[bond]).collect();
-    let is_word = [link.from, link.to].iter().any(|&block| matches!(sheet.blocks[block].of, Of::Part(_)));
-    let is_multi = is_word || bonds.iter().any(|bond| bond.cardinality > 1);
+    let is_multi = link.is_thick(graph, sheet);
     let class = if is_multi { "bond multi" } else { "bond" };
     let indices = link.bonds.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
     let title = bonds.iter().map(|bond| bond_title(graph, bond)).collect::<Vec<_>>().join("\n");

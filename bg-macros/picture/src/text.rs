@@ -1,7 +1,7 @@
 //! How wide a label is, and how text stands in XML.
 //!
-//! In: text. Out: widths in tenths of a pixel; escaped text. The widths are those of DejaVu Sans, the widest of the common
-//! sans-serif fonts, so that a label in any other of them is narrower than its place.
+//! In: text. Out: widths in tenths of a pixel; escaped text. The widths are those of DejaVu Sans, the widest of the
+//! common sans-serif fonts, so that a label in any other of them is narrower than its place.
 
 /// The width of `text` in tenths of a pixel at `size` pixels.
 #[must_use]

@@ -1,6 +1,8 @@
-//! The pictures of the examples' graphs, read back from their files and compared with the table of bonds that is printed.
+//! The pictures of the examples' graphs, read back from their files and compared with the table of bonds that is
+//! printed.
 //!
-//! Cargo builds the examples with `cargo test -p bg-workbench`; a run with `--test picture` alone takes those built before.
+//! Cargo builds the examples with `cargo test -p bg-workbench`; a run with `--test picture` alone takes those built
+//! before.
 
 #[path = "../../../bg-macros/picture/tests/support/mod.rs"]
 mod support;

@@ -1,7 +1,7 @@
 //! The documentation of a generated model.
 //!
-//! In: a [`Compiled`]. Out: markdown: tables of what the model has and what it costs. They stand after the user's own words
-//! and the picture of the graph.
+//! In: a [`Compiled`]. Out: markdown: tables of what the model has and what it costs. They stand after the user's own
+//! words and the picture of the graph.
 
 use std::fmt::Display;
 

@@ -1,7 +1,7 @@
 //! The picture of a model's graph in its documentation.
 //!
-//! In: a [`Compiled`]; later, while documentation is built, the text that became of it. Out: the graph as a string literal,
-//! of which the macro `picture!` makes HTML. A build without documentation leaves the literal unread.
+//! In: a [`Compiled`]; later, while documentation is built, the text that became of it. Out: the graph as a string
+//! literal, of which the macro `picture!` makes HTML. A build without documentation leaves the literal unread.
 
 use bg_picture::{Bond, End, Graph, Level, Node, Part};
 use proc_macro2::TokenStream;

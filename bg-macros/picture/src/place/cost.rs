@@ -1,7 +1,8 @@
 //! What makes a drawing of blocks on cells hard to read, as one number.
 //!
-//! In: a board with a cell for each block. Out: the cost: lengths, bends, what links run over or across, half arrows against
-//! the direction of reading, two-ports that are not run straight through, size, distance of outward links from their side.
+//! In: a board with a cell for each block. Out: the cost: lengths, bends, what links run over or across, half arrows
+//! against the direction of reading, two-ports that are not run straight through, size, distance of outward links
+//! from their side.
 
 use super::{Board, Cell};
 
@@ -21,8 +22,8 @@ const PULL: i64 = 5;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Load {
     is_taken: bool,
-    across: i64,
-    down: i64,
+    across: i16,
+    down: i16,
 }
 
 impl Board<'_> {
@@ -71,7 +72,8 @@ impl Board<'_> {
         each_between(a, b, |cell| {
             let load = self.loads[self.index(cell)];
             let (along, over) = if is_across { (load.across, load.down) } else { (load.down, load.across) };
-            cost += OVERLAP * along + CROSSING * over + if load.is_taken { OVER_BLOCK } else { 0 };
+            cost +=
+                OVERLAP * i64::from(along) + CROSSING * i64::from(over) + if load.is_taken { OVER_BLOCK } else { 0 };
         });
         cost
     }

@@ -1,8 +1,8 @@
 //! Where the blocks of one group stand: cells of a small grid.
 //!
-//! In: how many blocks, the links between them, where their links to other groups lead. Out: a cell for each block, no two
-//! the same. Method: threshold accepting (Dueck and Scheuer, J. Comput. Phys. 90, 1990) in whole numbers, from a greedy
-//! start. What a drawing costs, and why: [`cost`].
+//! In: how many blocks, the links between them, where their links to other groups lead. Out: a cell for each block,
+//! no two the same. Method: threshold accepting (Dueck and Scheuer, J. Comput. Phys. 90, 1990) in whole numbers, from
+//! a greedy start. What a drawing costs, and why: [`cost`].
 
 mod cost;
 

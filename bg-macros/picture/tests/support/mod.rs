@@ -1,7 +1,7 @@
 //! Reads a picture back from its SVG and finds what a reader would stumble over.
 //!
-//! In: the SVG, the graph that it should show. Out: faults as lines of text. Widths of labels are estimated here anew, not
-//! taken from the drawing: 0.58 of the font's size for a letter, 0.66 for a bold one.
+//! In: the SVG, the graph that it should show. Out: faults as lines of text. Widths of labels are estimated here
+//! anew, not taken from the drawing: 0.58 of the font's size for a letter, 0.66 for a bold one.
 
 use std::collections::BTreeMap;
 

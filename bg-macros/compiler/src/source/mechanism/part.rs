@@ -1,6 +1,7 @@
 //! Which mechanism words a graph has, and which one a node stands for.
 //!
-//! In: an `ast::Graph` with its mechanism words. Out: a [`Part`] for each, in the order of the source, the ground first.
+//! In: an `ast::Graph` with its mechanism words. Out: a [`Part`] for each, in the order of the source, the ground
+//! first.
 
 use super::GROUND;
 use crate::source::ast::{Graph, Item};
