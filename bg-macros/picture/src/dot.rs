@@ -14,7 +14,7 @@ use crate::sheet::{Link, Of, Sheet};
 pub fn dot(graph: &Graph, level: Level) -> String {
     let sheet = Sheet::new(graph, level);
     let mut out = format!(
-        "digraph {} {{\n  rankdir=LR;\n  node [shape=plaintext, fontname=\"Helvetica\", fontsize=11];\n  \
+        "digraph {} {{\n  rankdir=LR;\n  fontname=\"Helvetica\";\n  node [shape=plaintext, fontname=\"Helvetica\", fontsize=11];\n  \
          edge [fontname=\"Helvetica\", fontsize=9];\n",
         quoted(&graph.name)
     );
@@ -22,7 +22,7 @@ pub fn dot(graph: &Graph, level: Level) -> String {
         let part = group.part.map(|part| &graph.parts[part]);
         let indent = if part.is_some() { "    " } else { "  " };
         if let Some(part) = part {
-            let label = quoted(&format!("{} {}", part.word, part.name));
+            let label = quoted(&part.title());
             let _ = writeln!(out, "  subgraph cluster_{number} {{\n    label={label};\n    style=rounded;");
         }
         for &block in &group.blocks {

@@ -80,6 +80,14 @@ pub fn quantity(name: &str, unit: &str) -> String {
     if unit == "1" { name.to_owned() } else { format!("{name} {unit}") }
 }
 
+impl Part {
+    /// Its name and what it is: `pin_a revolute z`; only `ground` of the ground.
+    #[must_use]
+    pub fn title(&self) -> String {
+        if self.word == self.name { self.name.clone() } else { format!("{} {}", self.name, self.word) }
+    }
+}
+
 impl Bond {
     /// The node at the other end than `node`.
     #[must_use]

@@ -11,12 +11,12 @@ use crate::shelves::Point;
 
 const STEP: i64 = 10;
 const BEND: i64 = 35;
-const CROSSING: i64 = 60;
+const CROSSING: i64 = 90;
 const FOREIGN: i64 = 12;
 const NEAR: i64 = 6;
 const OFF_CENTRE: i64 = 9;
 /// For a port beside one that another link has: half arrows and strokes want room.
-const BESIDE: i64 = 45;
+const BESIDE: i64 = 35;
 
 const DIRECTIONS: [Point; 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 

@@ -60,12 +60,13 @@ fn draw_frame(out: &mut String, graph: &Graph, frame: &Frame) {
     let Rect { left, top, right, bottom } = frame.rect;
     let (x, y) = (left * PITCH + PITCH / 2, top * PITCH + PITCH / 2);
     let (width, height) = ((right - left - 1) * PITCH, (bottom - top - 1) * PITCH);
-    let (word, name) = (xml(&part.word), xml(&part.name));
+    let name = xml(&part.name);
+    let rest = xml(part.title()[part.name.len()..].trim());
     line!(out, "<g class=\"group\" data-group=\"{name}\">");
     line!(out, "<rect class=\"frame\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"6\"/>");
     let title = frame.title(graph);
     let (x, y) = (title.left * PITCH, title.top * PITCH + PITCH);
-    line!(out, "<text class=\"title\" x=\"{x}\" y=\"{y}\">{name} <tspan class=\"word\">{word}</tspan></text>\n</g>");
+    line!(out, "<text class=\"title\" x=\"{x}\" y=\"{y}\">{name} <tspan class=\"word\">{rest}</tspan></text>\n</g>");
 }
 
 fn draw_link(out: &mut String, graph: &Graph, sheet: &Sheet, link: &Link, path: &[Point]) {
@@ -144,10 +145,7 @@ fn draw_block(out: &mut String, graph: &Graph, block: &Block, rect: Rect) {
         }
         Of::Part(part) => {
             let part = &graph.parts[part];
-            (
-                format!("class=\"{}\" data-group=\"{}\"", classes(block), xml(&part.name)),
-                format!("{} {}", part.word, part.name),
-            )
+            (format!("class=\"{}\" data-group=\"{}\"", classes(block), xml(&part.name)), part.title())
         }
     };
     let (x, y) = (rect.left * PITCH + INSET, rect.top * PITCH + INSET);
