@@ -22,8 +22,7 @@ pub(super) fn tables(model: &Compiled, costs: &[(&str, Counts)]) -> String {
         operations(costs),
         jacobian(model),
     ];
-    // A blank line first: what stands before is a paragraph or HTML.
-    format!("\n{}", parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n\n"))
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n\n")
 }
 
 /// A table under a title; nothing where it has no rows.

@@ -78,9 +78,12 @@ impl Emission<'_> {
         let picture = picture::text(self.model);
         let tables = documentation::tables(self.model, costs);
         let table_fields = &constants.fields;
+        // The empty lines end a paragraph and HTML; rustdoc drops those inside a text at its ends.
         quote! {
             #[doc = #doc]
+            #[doc = ""]
             #[cfg_attr(doc, doc = ::bg_model::__private::picture!(#picture))]
+            #[doc = ""]
             #[doc = #tables]
             #[derive(Clone, Debug)]
             pub struct #name<#scalar: ::bg_model::scalar::Scalar = ::core::primitive::f64> {

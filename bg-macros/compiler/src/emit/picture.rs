@@ -71,7 +71,7 @@ pub fn picture(tokens: TokenStream) -> TokenStream {
 fn html(graph: &Graph) -> String {
     let level = if graph.nodes.len() > LARGE { Level::Words } else { Level::Full };
     let svg = bg_picture::svg(graph, level);
-    format!("\n# Bond graph\n\n<div style=\"overflow-x:auto;{COLOURS}\">\n{svg}</div>\n")
+    format!("# Bond graph\n\n<div style=\"overflow-x:auto;{COLOURS}\">\n{svg}</div>\n")
 }
 
 #[cfg(test)]
@@ -91,6 +91,8 @@ mod tests {
         );
         let start = code.find(":: picture !").expect("a picture");
         assert!(code[..start].trim_end().ends_with(":: bg_model :: __private"), "{}", &code[..start]);
+        // Without the empty line Markdown takes the next title for a part of the HTML.
+        assert!(code[start..].contains("\"))] # [doc = \"\"] # [doc = \"# Outputs"), "{}", &code[start..]);
         let literal = code[start..].split('"').nth(1).expect("a literal");
         let graph: Graph = literal.replace("\\n", "\n").replace("\\t", "\t").parse().expect("a graph");
         assert_eq!((graph.nodes.len(), graph.bonds.len()), (4, 3));
@@ -103,6 +105,6 @@ mod tests {
     fn html_has_no_blank_line_after_which_markdown_would_read_it_as_text() {
         let html = html(&Graph { nodes: vec![Node { law: "a\n\nb".into(), ..Node::default() }], ..Graph::default() });
         let (_, div) = html.split_once("<div").expect("a division");
-        assert!(!div.contains("\n\n") && html.starts_with("\n# Bond graph\n\n<div"), "{html}");
+        assert!(!div.contains("\n\n") && html.starts_with("# Bond graph\n\n<div"), "{html}");
     }
 }
