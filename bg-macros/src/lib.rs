@@ -820,3 +820,10 @@ use proc_macro::TokenStream;
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
     bg_compiler::compile(tokens.into()).into()
 }
+
+/// The picture of a bond graph as HTML, for the documentation of a generated model. Only generated code calls it.
+#[doc(hidden)]
+#[proc_macro]
+pub fn picture(tokens: TokenStream) -> TokenStream {
+    bg_compiler::emit::picture(tokens.into()).into()
+}

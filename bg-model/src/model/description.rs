@@ -23,6 +23,8 @@ pub struct Description {
     pub outputs: &'static [OutputInfo],
     /// Switches in the order of the guards.
     pub switches: &'static [SwitchInfo],
+    /// The mechanism words that elements and junctions stand for, the ground first.
+    pub parts: &'static [PartInfo],
     /// Elements and junctions.
     pub elements: &'static [ElementInfo],
     /// Bonds with their causal strokes.
@@ -85,6 +87,8 @@ pub struct StateInfo {
     pub kind: StateKind,
     /// Its causality: `integral`; a graph with a storage in derivative causality does not compile.
     pub causality: &'static str,
+    /// The element that stores it, or the junction that it follows; empty for an integral.
+    pub element: &'static str,
 }
 
 /// What a state is; of a vector or a matrix, which component.
@@ -141,6 +145,15 @@ pub struct SwitchInfo {
     pub guard: &'static str,
 }
 
+/// A mechanism word: what a group of elements and junctions stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PartInfo {
+    /// What it is: `ground`, `body`, `contact`, `spring`, `drive`, or a joint's kind with its axes, such as `revolute z`.
+    pub word: &'static str,
+    /// Its name.
+    pub name: &'static str,
+}
+
 /// An element or a junction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementInfo {
@@ -150,6 +163,8 @@ pub struct ElementInfo {
     pub name: &'static str,
     /// Its constitutive law as text; empty for a junction.
     pub law: &'static str,
+    /// The name of the mechanism word that it is a part of; empty for one written in bond-graph words.
+    pub part: &'static str,
 }
 
 /// A bond.

@@ -49,6 +49,7 @@
 //! | [`inputs`] | which inputs: numbers, or tables from files |
 //! | [`request`] | how it is integrated |
 //! | [`report`] | what a scene consists of and what it left out |
+//! | [`picture`] | what its graph looks like |
 //! | [`compare`] | how far two runs are apart |
 //! | [`golden`] | does what was recorded still come out |
 //! | [`precision`] | how exact a run is and what that costs |
@@ -71,6 +72,7 @@ pub mod linear;
 pub mod output;
 pub mod overview;
 pub mod parameters;
+pub mod picture;
 pub mod precision;
 pub mod program;
 pub mod report;

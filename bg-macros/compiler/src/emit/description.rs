@@ -10,6 +10,7 @@ use crate::graph::causality::{CausalGraph, End};
 use crate::graph::{BondGraph, NodeKind};
 use crate::pipeline::Compiled;
 use crate::program::Counts;
+use crate::source::mechanism::{self, Part};
 use crate::system::equations::{Origin, StateEquations};
 
 /// The `Description` literal; `PARAMETERS` is the parameter struct's table.
@@ -18,14 +19,17 @@ pub(super) fn description(model: &Compiled, costs: &[(&str, Counts)]) -> TokenSt
     let graph = &causal.graph;
     let (name, doc, expanded) = (&graph.name.text, &graph.docs, model.derived.expanded.to_string());
     let reduction = model.reduction.as_ref().map(ToString::to_string).unwrap_or_default();
-    let (inputs, states, outputs) = (inputs(graph), states(equations), outputs(equations));
-    let (switches, elements, bonds) = (switches(equations), elements(graph), bonds(causal));
+    let (inputs, states, outputs) = (inputs(graph), states(graph, equations), outputs(equations));
+    let parts = mechanism::parts(&model.source);
+    let (switches, elements, bonds) = (switches(equations), elements(graph, &parts), bonds(causal));
+    let parts =
+        parts.iter().map(|Part { word, name }| quote!(::bg_model::description::PartInfo { word: #word, name: #name }));
     let (lines, counts, drawing) = (&equations.texts, operations(costs), drawing(model));
     quote! {
         ::bg_model::description::Description {
             name: #name, doc: #doc, graph: #expanded, reduction: #reduction, parameters: PARAMETERS,
             inputs: &[#(#inputs,)*], states: &[#(#states,)*], outputs: &[#(#outputs,)*],
-            switches: &[#(#switches,)*], elements: &[#(#elements,)*], bonds: &[#(#bonds,)*],
+            switches: &[#(#switches,)*], parts: &[#(#parts,)*], elements: &[#(#elements,)*], bonds: &[#(#bonds,)*],
             equations: &[#(#lines,)*], operations: &[#(#counts,)*], drawing: #drawing,
         }
     }
@@ -38,11 +42,14 @@ fn inputs(graph: &BondGraph) -> impl Iterator<Item = TokenStream> {
     })
 }
 
-fn states(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
+fn states(graph: &BondGraph, equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
     equations.states.iter().map(|state| {
+        let element = element_of(graph, state.origin);
         let (name, unit, kind) = (&state.name, &state.unit, state_kind(state.origin));
         quote! {
-            ::bg_model::description::StateInfo { name: #name, unit: #unit, kind: #kind, causality: "integral" }
+            ::bg_model::description::StateInfo {
+                name: #name, unit: #unit, kind: #kind, causality: "integral", element: #element,
+            }
         }
     })
 }
@@ -63,11 +70,12 @@ fn switches(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
     })
 }
 
-fn elements(graph: &BondGraph) -> impl Iterator<Item = TokenStream> {
+fn elements(graph: &BondGraph, parts: &[Part]) -> impl Iterator<Item = TokenStream> {
     graph.nodes.iter().map(|node| {
+        let part = mechanism::part_of(parts, &node.name.text).map_or("", |part| &parts[part].name);
         let (kind, name) = (node.kind.symbol(), &node.name.text);
         let law = if let NodeKind::Element(element) = &node.kind { element.text.as_str() } else { "" };
-        quote!(::bg_model::description::ElementInfo { kind: #kind, name: #name, law: #law })
+        quote!(::bg_model::description::ElementInfo { kind: #kind, name: #name, law: #law, part: #part })
     })
 }
 
@@ -81,6 +89,18 @@ fn operations(costs: &[(&str, Counts)]) -> impl Iterator<Item = TokenStream> {
             })
         }
     })
+}
+
+/// The name of the element or junction that a state belongs to; none of an integral.
+pub(super) fn element_of(graph: &BondGraph, origin: Origin) -> &str {
+    let node = match origin {
+        Origin::Momentum(node, _) | Origin::Displacement(node, _) => node,
+        Origin::Position(track, _) | Origin::Orientation(track, ..) | Origin::Angle(track) => {
+            graph.tracks[track].junction
+        }
+        Origin::Integral(_) => return "",
+    };
+    &graph.node(node).name.text
 }
 
 fn state_kind(origin: Origin) -> TokenStream {

@@ -1,6 +1,7 @@
 //! The documentation of a generated model.
 //!
-//! In: a [`Compiled`]. Out: markdown: the user's own words, then tables of what the model has and what it costs.
+//! In: a [`Compiled`]. Out: markdown: tables of what the model has and what it costs. They stand after the user's own
+//! words and the picture of the graph.
 
 use std::fmt::Display;
 
@@ -9,11 +10,10 @@ use crate::pipeline::Compiled;
 use crate::program::Counts;
 use crate::system::equations::StateEquations;
 
-/// The generated type's documentation. `costs` are the functions with their operations.
-pub(super) fn documentation(model: &Compiled, costs: &[(&str, Counts)]) -> String {
+/// The tables of the generated type's documentation. `costs` are the functions with their operations.
+pub(super) fn tables(model: &Compiled, costs: &[(&str, Counts)]) -> String {
     let (graph, equations) = (&model.derived.causal.graph, &model.equations);
     let parts = [
-        graph.docs.clone(),
         parameters(&equations.parameters),
         inputs(&graph.inputs),
         outputs(equations),

@@ -9,9 +9,11 @@ mod elimination;
 mod items;
 mod model;
 mod pairs;
+mod picture;
 pub mod routine;
 mod series;
 mod stub;
 
 pub use model::model;
+pub use picture::picture;
 pub use stub::stub;

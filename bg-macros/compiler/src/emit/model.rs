@@ -18,7 +18,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::items::{Given, identifier};
-use super::{description, documentation};
+use super::{description, documentation, picture};
 use crate::pipeline::Compiled;
 use crate::program::Counts;
 use tables::Tables;
@@ -72,12 +72,19 @@ impl Emission<'_> {
     }
 
     /// The model's struct.
-    fn definition(&self, given: &Given, costs: &[(&str, Counts)], tables: &Tables) -> TokenStream {
+    fn definition(&self, given: &Given, costs: &[(&str, Counts)], constants: &Tables) -> TokenStream {
         let (name, scalar, fields) = (identifier(given.name), given.scalar(), given.fields());
-        let doc = documentation::documentation(self.model, costs);
-        let table_fields = &tables.fields;
+        let doc = &self.model.derived.causal.graph.docs;
+        let picture = picture::text(self.model);
+        let tables = documentation::tables(self.model, costs);
+        let table_fields = &constants.fields;
+        // The empty lines end a paragraph and HTML; rustdoc drops those inside a text at its ends.
         quote! {
             #[doc = #doc]
+            #[doc = ""]
+            #[cfg_attr(doc, doc = ::bg_model::__private::picture!(#picture))]
+            #[doc = ""]
+            #[doc = #tables]
             #[derive(Clone, Debug)]
             pub struct #name<#scalar: ::bg_model::scalar::Scalar = ::core::primitive::f64> {
                 #fields

@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::methods::integrator;
 use crate::golden::FOLDER;
+use crate::picture::Level;
 use crate::report::Part;
 use crate::request::Integration;
 
@@ -30,15 +31,8 @@ pub enum Command {
         #[arg(value_name = "NAME", id = "scene")]
         scene: Option<String>,
     },
-    /// Print the multibond graph of a scene: elements, bonds with causal strokes, states, equations, operations
-    Graph {
-        /// The scene. All of one mechanism have the same graph but for what they are without; states, operations differ
-        #[arg(long, value_name = "NAME")]
-        scene: String,
-        /// What to print; without it, an overview of counts, states and operations
-        #[arg(long, value_name = "PART", value_enum)]
-        part: Option<Part>,
-    },
+    /// Print or draw the multibond graph of a scene: elements, bonds with causal strokes, states, equations, operations
+    Graph(GraphArguments),
     /// List the states of a scene: name, unit, storage, causality
     States {
         /// The scene
@@ -66,6 +60,30 @@ pub enum Command {
         #[arg(long)]
         toml: bool,
     },
+}
+
+/// Which graph, and what of it.
+#[derive(Debug, Args)]
+pub struct GraphArguments {
+    /// The scene. All of one mechanism have the same graph but for what they are without; states, operations differ
+    #[arg(long, value_name = "NAME")]
+    pub scene: String,
+
+    /// What to print; without it, an overview of counts, states and operations
+    #[arg(long, value_name = "PART", value_enum, conflicts_with_all = ["svg", "dot"])]
+    pub part: Option<Part>,
+
+    /// Draw the graph into this file: half arrows, causal strokes, multibonds thick. Replaces a file that is there
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+
+    /// Write the graph into this file in the language of Graphviz. Replaces a file that is there
+    #[arg(long, value_name = "FILE")]
+    pub dot: Option<PathBuf>,
+
+    /// How much of it is drawn
+    #[arg(long, value_name = "LEVEL", value_enum, default_value_t)]
+    pub level: Level,
 }
 
 /// What is run, and how.

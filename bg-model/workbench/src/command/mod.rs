@@ -6,6 +6,7 @@
 mod arguments;
 mod compare;
 mod golden;
+mod graph;
 mod linearize;
 mod methods;
 mod precision;
@@ -98,7 +99,7 @@ pub(crate) fn main<Me: Scenes>(program: &Program<Me>, arguments: impl IntoIterat
 }
 
 fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode, InputError> {
-    let graph = |scene: &str, part| Ok(say(&report::graph(program.scene_called(scene), part)));
+    let print = |scene: &str, part| Ok(say(&report::graph(program.scene_called(scene), Some(part))));
     match command {
         Command::Run(arguments) => run::simulate(program, &arguments),
         Command::Precision(arguments) => precision::measure_all(program, &arguments),
@@ -110,9 +111,9 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
         Command::Scene { scene: Some(name) } => {
             Ok(say(&report::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))
         }
-        Command::Graph { scene, part } => graph(&scene, part),
-        Command::States { scene } => graph(&scene, Some(Part::States)),
-        Command::Equations { scene } => graph(&scene, Some(Part::Equations)),
+        Command::Graph(arguments) => graph::graph(program, &arguments),
+        Command::States { scene } => print(&scene, Part::States),
+        Command::Equations { scene } => print(&scene, Part::Equations),
         Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&Me::Parameters::default()))),
         Command::Parameters { toml: false } => Ok(say(&parameters::table::<Me::Parameters>())),
     }

@@ -9,6 +9,7 @@ mod body;
 mod drawing;
 mod fault;
 mod joint;
+mod part;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,6 +22,7 @@ use crate::source::drawing::Drawing;
 use crate::source::syntax;
 
 pub use fault::MechanismFault;
+pub use part::{Part, part_of, parts};
 
 /// Replaces every mechanism word by its fragment of multibond graph.
 ///
