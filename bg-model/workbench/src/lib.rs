@@ -70,6 +70,7 @@ pub mod inputs;
 pub mod linear;
 pub mod output;
 pub mod overview;
+pub mod page;
 pub mod parameters;
 pub mod precision;
 pub mod program;

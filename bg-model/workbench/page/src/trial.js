@@ -1,0 +1,66 @@
+// What a test sees of the page: with `#test` in the address it plays, scrubs, looks, and writes what it finds into the
+// document, as JSON in `<pre id="verdict">`.
+
+import { element } from "./page.js";
+
+const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
+/** The next frame of the screen; a browser that draws none while nothing moves is not waited for. */
+const frame = () => Promise.race([pause(200), new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); })]);
+
+/** How many colours the machine's picture has; 0 without one. */
+function colours(view) {
+  if (view === null) return 0;
+  view.renderer.render(view.scene, view.camera);
+  const copy = element("canvas", { width: 160, height: 120 });
+  const context = copy.getContext("2d");
+  context.drawImage(view.canvas, 0, 0, 160, 120);
+  const bytes = context.getImageData(0, 0, 160, 120).data;
+  const found = new Set();
+  for (let k = 0; k < bytes.length; k += 4) found.add((bytes[k] << 16) | (bytes[k + 1] << 8) | bytes[k + 2]);
+  return found.size;
+}
+
+/** Presses at a part of a chart's width, 0 to 1. */
+function press(over, part) {
+  const { left, top, width } = over.getBoundingClientRect();
+  const options = { clientX: left + part * width, clientY: top + 5, button: 0, pointerId: 1, bubbles: true };
+  over.setPointerCapture = () => {};
+  over.dispatchEvent(new PointerEvent("pointerdown", options));
+}
+
+export async function trial(page) {
+  const verdict = { ready_ms: page.ready, faults: page.faults };
+  await found(verdict, page).catch((fault) => page.faults.push(fault.stack ?? String(fault)));
+  document.body.append(element("pre", { id: "verdict", hidden: true }, JSON.stringify(verdict)));
+}
+
+async function found(verdict, { clock, charts, view, picture }) {
+  await frame();
+  clock.speed = (clock.end - clock.start) / 2;
+  clock.play();
+  await pause(400);
+  clock.pause();
+  verdict.played_to = clock.time;
+  const poses = () => view?.bodies.map(({ group }) => group.position.toArray()) ?? [];
+  clock.seek(clock.end);
+  await frame();
+  verdict.at_end = { time: clock.time, positions: poses() };
+  const slider = document.querySelector("#player input[type=range]");
+  slider.value = slider.max / 2;
+  slider.dispatchEvent(new Event("input"));
+  await frame();
+  verdict.at_middle = { time: clock.time, positions: poses() };
+  const drawn = charts.all.filter((chart) => chart.over !== null);
+  verdict.charts = { all: charts.all.length, drawn: drawn.length, line: drawn[0]?.lineTime ?? null };
+  if (drawn.length > 0) press(drawn[0].over, 0.25);
+  await frame();
+  verdict.pressed_to = clock.time;
+  verdict.colours = colours(view);
+  if (picture) {
+    picture.show(0);
+    await frame();
+    verdict.bond_charts = document.querySelectorAll(".bond-panel .chart").length;
+  }
+  const { scrollWidth, clientWidth } = document.documentElement;
+  verdict.overflow = scrollWidth - clientWidth;
+}
