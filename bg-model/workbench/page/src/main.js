@@ -21,11 +21,19 @@ const section = (name) => document.getElementById(name);
 const clock = new Clock(data.times[0] ?? 0, data.times.at(-1) ?? 0);
 const charts = new Charts(clock);
 
-player(section("player"), clock, data.events);
-const view = data.animation ? motion(section("machine"), data.animation, clock) : null;
-for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
-for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
-const picture = data.bonds ? graph(section("picture"), data.bonds, charts) : null;
-if (data.modes && view) modes(section("modes"), data.modes, view, clock);
+/** After the next frame: what comes then does not keep the page from being seen. */
+const painted = () => new Promise((resolve) => { requestAnimationFrame(() => setTimeout(resolve)); });
 
-if (location.hash === "#test") trial({ clock, charts, view, picture, faults, ready: performance.now() });
+async function start() {
+  player(section("player"), clock, data.events);
+  for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
+  for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
+  const picture = data.bonds ? graph(section("picture"), data.bonds, charts) : null;
+  if (data.animation) await painted();
+  const view = data.animation ? motion(section("machine"), data.animation, clock) : null;
+  if (data.modes && view) modes(section("modes"), data.modes, view, clock);
+  return { clock, charts, view, picture, faults };
+}
+
+if (location.hash === "#test") trial(start);
+else start();

@@ -29,7 +29,7 @@ pub struct Visit {
     pub console: Vec<String>,
 }
 
-/// Opens a file with `fragment` behind `#` and waits until the page has been busy for some seconds of its own time.
+/// Opens a file with `fragment` behind `#` and waits until the page says that it is loaded.
 pub fn visit(browser: &str, page: &Path, fragment: &str, arguments: &[&str]) -> Visit {
     let folder = tempfile::tempdir().expect("a folder for the browser's profile");
     let out = folder.path().join("document");
@@ -37,7 +37,7 @@ pub fn visit(browser: &str, page: &Path, fragment: &str, arguments: &[&str]) -> 
     let mut child = Command::new(browser)
         .args(["--headless=new", "--no-sandbox", "--no-first-run", "--disable-extensions", "--hide-scrollbars"])
         .args(["--enable-unsafe-swiftshader", "--use-gl=angle", "--use-angle=swiftshader", "--enable-logging=stderr"])
-        .args(["--virtual-time-budget=12000", "--dump-dom"])
+        .arg("--dump-dom")
         .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
         .args(arguments)
         .arg(format!("file://{}#{fragment}", page.display()))

@@ -89,6 +89,27 @@ pub fn animation(run: &Trajectory) -> Animation {
     }
 }
 
+/// The machine where it hangs at rest, one sample.
+pub fn at_rest() -> Animation {
+    let (run, _) = run(0.01);
+    let mut rest = animation(&run);
+    rest.times.truncate(1);
+    for (body, y) in rest.bodies.iter_mut().zip([-0.25, -0.85]) {
+        body.position = vec![[0.0, y, 0.0]];
+        body.orientation = vec![[0.0, 0.0, 0.0, 1.0]];
+    }
+    rest
+}
+
+/// The modes there.
+pub fn modes() -> Vec<bg_workbench::linear::Mode> {
+    let parameters = DoublePendulumParameters { upper_angle: 0.1, lower_angle: 0.05, ..Default::default() };
+    let model = DoublePendulum::new(parameters).unwrap();
+    let start: Vec<f64> = Simulation::new(&model).start().unwrap().states.iter().map(|(_, value)| *value).collect();
+    let rest = bg_workbench::linear::equilibrium(&model, 0.0, &start).unwrap();
+    bg_workbench::linear::linearise(&model, 0.0, &rest.x).unwrap().modes
+}
+
 /// A picture in which every bond is a line, with efforts and flows that are known: bond `index` has the effort `index + t`, the
 /// flow 2, in each component.
 pub fn picture(times: &[f64]) -> Picture {
