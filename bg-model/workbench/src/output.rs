@@ -9,14 +9,14 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use bg_model::description::{Description, ParameterInfo};
+use bg_model::description::Description;
 use bg_model::simulation::Recording;
 
 use crate::extras::Page as Texts;
 use crate::figures::{Figure, FigureError, outputs};
 use crate::files::{FileError, RunFolder, whole};
 use crate::overview;
-use crate::page::{self, Report, Views};
+use crate::page::{self, Parameter, Report, Views};
 use crate::summary::Summary;
 
 /// The names of the files beside the figures.
@@ -226,7 +226,7 @@ pub struct Exhibits<'a> {
     /// What the scene is, in words; may be empty.
     pub scene: &'a str,
     /// The parameters of the mechanism with their values.
-    pub parameters: &'a [(ParameterInfo, f64)],
+    pub parameters: &'a [Parameter],
     /// More drawings, each with its title: SVG texts.
     pub drawings: &'a [(String, String)],
     /// What is known beyond the run.

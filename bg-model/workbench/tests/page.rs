@@ -8,12 +8,13 @@ mod machine;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use base64::Engine;
 use bg_model::description::{Description, ParameterInfo};
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::Parameters;
 use bg_model::run::Trajectory;
 use bg_workbench::extras::{Extras, Page, Plain};
-use bg_workbench::page::{Linearised, Report, Views, glb, page};
+use bg_workbench::page::{Linearised, Parameter, Report, Views, glb, page};
 use bg_workbench::samples;
 use bg_workbench::summary::{Additions, Summary};
 use machine::DoublePendulum;
@@ -22,10 +23,11 @@ use serde_json::Value;
 /// What `report` would write of a run, with these views.
 fn written(run: &Trajectory, rows: &[f64], texts: &Page, description: &'static Description, views: &Views) -> String {
     let summary = Summary::new("literal", run, None, Additions::default());
-    let parameters: Vec<(ParameterInfo, f64)> = <DoublePendulum as Mechanism>::Parameters::table()
-        .iter()
-        .map(|info| (info.clone(), if info.name == "gravity" { 1.62 } else { info.default }))
-        .collect();
+    let parameter = |info: &ParameterInfo| {
+        let value = if info.name == "gravity" { 1.62 } else { info.default };
+        Parameter { info: info.clone(), value, source: "" }
+    };
+    let parameters: Vec<Parameter> = <DoublePendulum as Mechanism>::Parameters::table().iter().map(parameter).collect();
     let (scene, parameters, summary) = ("", &parameters[..], &summary);
     page(&Report { texts, description, scene, parameters, summary, run, rows, figures: &[], drawings: &[], views })
 }
@@ -45,6 +47,14 @@ fn data(html: &str) -> Value {
     let start = "<script type=\"application/json\" id=\"data\">";
     let text = html.split_once(start).expect("the page has data").1.split_once("</script>").expect("they end").0;
     serde_json::from_str(text).expect("they are JSON")
+}
+
+/// A packed text of a page.
+fn unpacked(html: &str, id: &str) -> String {
+    let start = format!("<script type=\"text/plain\" id=\"{id}\">");
+    let text = html.split_once(&start).expect("the page has it").1.split_once("</script>").expect("it ends").0;
+    let bytes = base64::engine::general_purpose::STANDARD.decode(text).expect("base64");
+    String::from_utf8(miniz_oxide::inflate::decompress_to_vec(&bytes).expect("deflated")).expect("text")
 }
 
 /// Value `k` of a series, which is one number where it never changes.
@@ -99,11 +109,12 @@ fn poses_and_forces_are_the_run_s() {
         motion["bodies"][0]["solids"][1]["shape"],
         serde_json::json!({ "kind": "cylinder", "radius": 0.035, "length": 0.05, "axis": 2 })
     );
-    let bond = &data["bonds"]["bonds"][7];
-    let effort = bond["effort"][0].as_u64().unwrap() as usize;
-    let last = data["bonds"]["times"].as_array().unwrap().len() - 1;
-    let at = value(&data["bonds"]["times"], last);
-    assert!((value(&data["bonds"]["series"][effort], last) - 7.0 - at).abs() < 1e-3);
+    let bonds: Value = serde_json::from_str(&unpacked(&html, "bonds")).unwrap();
+    let series = |bond: usize, of: &str| &bonds["series"][bonds["bonds"][bond][of][0].as_u64().unwrap() as usize];
+    let last = bonds["times"].as_array().unwrap().len() - 1;
+    let at = value(&bonds["times"], last);
+    assert!(last > 400 && (value(series(7, "effort"), last) - 7.0 - at).abs() < 1e-3);
+    assert_eq!(series(7, "flow"), 2.0);
 }
 
 #[test]

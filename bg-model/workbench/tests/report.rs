@@ -76,8 +76,11 @@ fn one_page_beside_the_trajectory_has_its_numbers() {
 fn modes_drawings_and_a_csv_elsewhere() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
-    fs::write(path.join("work_and_precision.svg"), "<svg xmlns=\"http://www.w3.org/2000/svg\"><!-- 5 % & #1 --></svg>")
-        .unwrap();
+    fs::write(
+        path.join("work_and_precision.svg"),
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"123\" height=\"50\"><!-- 5 % #1 --></svg>",
+    )
+    .unwrap();
     let mut arguments =
         vec!["report", "--t-end", "0.2", "--modes", "--show", "work_and_precision.svg", "--csv", "run.csv"];
     let told = text("pendulum", path, &arguments);
@@ -90,6 +93,10 @@ fn modes_drawings_and_a_csv_elsewhere() {
     // sqrt(3 g / (2 l)) of a rod over 2 pi, less what its thickness and the pin's compliance take.
     let modes = html.split_once("id=\"modes\"").unwrap().1.split_once("</section>").unwrap().0;
     assert!(modes.contains("<td class=\"number\">0.7879<"), "{modes}");
+    if let Some(browser) = browser::browser() {
+        let visit = browser::visit(browser, &path.join("out/pendulum.html"), "test", &["--window-size=800,700"]);
+        assert!(visit.console.is_empty() && visit.document.contains("\"drawings\":[123]"), "{:?}", visit.console);
+    }
     fs::write(path.join("no.svg"), "text").unwrap();
     arguments[5] = "no.svg";
     for (file, told) in [

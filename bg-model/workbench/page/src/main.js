@@ -1,5 +1,5 @@
 // The report page: reads the data that the program wrote into it and makes its sections move.
-// In: `<script type="application/json" id="data">`, whose form bg-workbench's `page/data.rs` says. Out: the page in motion.
+// In: `<script type="application/json" id="data">` and the packed texts, whose form bg-workbench's `page/data.rs` says. Out: the page in motion.
 
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
@@ -11,6 +11,8 @@ import { graph } from "./graph.js";
 import { modes } from "./modes.js";
 import { motion } from "./motion.js";
 import { trial } from "./trial.js";
+
+/* global unpacked */
 
 const faults = [];
 window.addEventListener("error", ({ message }) => faults.push(message));
@@ -24,16 +26,28 @@ const charts = new Charts(clock);
 /** After the next frame: what comes then does not keep the page from being seen. */
 const painted = () => new Promise((resolve) => { requestAnimationFrame(() => setTimeout(resolve)); });
 
+/** Hands the images their SVG texts. */
+async function draw() {
+  const images = [...document.querySelectorAll("img[data-drawing]")];
+  if (images.length === 0) return;
+  const texts = JSON.parse(await unpacked("drawings"));
+  for (const image of images) {
+    image.src = URL.createObjectURL(new Blob([texts[Number(image.dataset.drawing)]], { type: "image/svg+xml" }));
+  }
+}
+
 async function start() {
   player(section("player"), clock, data.events);
   for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
   for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
-  const picture = data.bonds ? graph(section("picture"), data.bonds, charts) : null;
-  if (data.animation) await painted();
+  await painted();
   const view = data.animation ? motion(section("machine"), data.animation, clock) : null;
   if (data.modes && view) modes(section("modes"), data.modes, view, clock);
+  const bonds = JSON.parse(await unpacked("bonds"));
+  const picture = bonds && section("picture") ? graph(section("picture"), bonds, charts) : null;
+  await draw();
   return { clock, charts, view, picture, faults };
 }
 
 if (location.hash === "#test") trial(start);
-else start();
+else start().catch((fault) => console.error(fault));

@@ -1,12 +1,13 @@
 // What a test sees of the page: with `#test` in the address it plays, scrubs, looks, and writes what it finds into the
-// document, as JSON in `<pre id="verdict">`. The page is not loaded before that is done, which a browser that writes out its
-// document waits for: a frame whose document is open holds it.
+// document, as JSON in `<pre id="verdict">`. A browser that writes out its document waits for that: the loader holds it.
 
 import { element } from "./page.js";
 
 const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
 /** The next frame of the screen; a browser that draws none while nothing moves is not waited for. */
 const frame = () => Promise.race([pause(200), new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); })]);
+
+/* global hold */
 
 /** How many colours the machine's picture has; 0 without one. */
 function colours(view) {
@@ -30,14 +31,11 @@ function press(over, part) {
 }
 
 export async function trial(start) {
-  const frame = element("iframe", { hidden: true });
-  document.body.append(frame);
-  frame.contentDocument.open();
   const page = await start();
   const verdict = { ready_ms: performance.now(), faults: page.faults };
   await found(verdict, page).catch((fault) => page.faults.push(fault.stack ?? String(fault)));
   document.body.append(element("pre", { id: "verdict", hidden: true }, JSON.stringify(verdict)));
-  frame.contentDocument.close();
+  hold?.contentDocument.close();
 }
 
 async function found(verdict, { clock, charts, view, picture }) {
@@ -69,5 +67,8 @@ async function found(verdict, { clock, charts, view, picture }) {
     verdict.bond_charts = document.querySelectorAll(".bond-panel .chart").length;
   }
   const { scrollWidth, clientWidth } = document.documentElement;
+  const drawings = [...document.querySelectorAll("img[data-drawing]")];
+  await Promise.all(drawings.map((image) => image.decode()));
+  verdict.drawings = drawings.map((image) => image.naturalWidth);
   verdict.overflow = scrollWidth - clientWidth;
 }

@@ -19,7 +19,7 @@ use crate::files::{console, whole};
 use crate::inputs;
 use crate::linear::equilibrium;
 use crate::output::{Claimed, Exhibits, OutputError, Places, Table};
-use crate::page::Views;
+use crate::page::{Parameter, Views};
 use crate::parameters::{self, Chosen};
 use crate::scenes::{Scene, own_parameters};
 use crate::summary::Summary;
@@ -61,7 +61,7 @@ pub fn simulate<Me: Scenes>(
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
     let rows = sample_times(t0, integration.step, integration.t_end);
-    let values = values(&chosen.values);
+    let values = values(&chosen.values, |name| program.extras.source(name));
     let shown = look.map(|look| (look, &views));
     let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, &values, shown) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
@@ -173,7 +173,7 @@ fn report<Me>(
     outcome: Outcome,
     rows: &[f64],
     claimed: Claimed,
-    values: &[(ParameterInfo, f64)],
+    values: &[Parameter],
     shown: Option<(&Look, &Views)>,
 ) -> Result<Vec<OutputError>, MissingColumn> {
     let Outcome { run, failure } = outcome;
@@ -204,15 +204,20 @@ pub fn request(arguments: &IntegrationArguments, t0: f64, finest: Option<f64>) -
 }
 
 /// The parameters with their values.
-fn values<P: Parameters>(values: &P) -> Vec<(ParameterInfo, f64)> {
-    P::table().iter().enumerate().map(|(index, info)| (info.clone(), values.value(index))).collect()
+fn values<P: Parameters>(values: &P, source: impl Fn(&str) -> &'static str) -> Vec<Parameter> {
+    let table = P::table().iter().enumerate();
+    let value = |(index, info): (usize, &ParameterInfo)| Parameter {
+        info: info.clone(),
+        value: values.value(index),
+        source: source(info.name),
+    };
+    table.map(value).collect()
 }
 
 /// The parameters that differ from their defaults, as `name = value unit`.
-fn changed(values: &[(ParameterInfo, f64)]) -> Vec<String> {
-    let changed = values.iter().filter(|(info, value)| *value != info.default);
-    let text = |(info, value): &(ParameterInfo, f64)| {
+fn changed(values: &[Parameter]) -> Vec<String> {
+    let text = |Parameter { info, value, .. }: &Parameter| {
         format!("{} = {} {}", info.name, parameters::number(*value), info.unit).trim_end().to_owned()
     };
-    changed.map(text).collect()
+    values.iter().filter(|parameter| parameter.is_changed()).map(text).collect()
 }

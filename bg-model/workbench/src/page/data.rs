@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::animation::{Animation, BodyTrack, JointTrack, NamedPoint, Shape, Solid};
 use super::charts::{self, Balance};
 use super::modes::Modes;
-use super::picture::{BondSeries, Picture};
+use super::picture::Picture;
 use super::samples::{DIGITS, Instant, Series, instants, rounded};
 
 /// All data of a page.
@@ -27,7 +27,6 @@ pub struct Data {
     /// Energies, and what is left over.
     pub balance: Vec<Chart>,
     pub animation: Option<Motion>,
-    pub bonds: Option<Bonds>,
     pub modes: Option<Modes>,
 }
 
@@ -93,7 +92,7 @@ struct Joint {
     force: [Series; 3],
 }
 
-/// Series that several bonds share stand here once.
+/// Effort and flow of the bonds, JSON of its own. Series that several bonds share stand here once.
 #[derive(Debug, Serialize)]
 pub struct Bonds {
     times: Vec<f64>,
@@ -112,7 +111,7 @@ struct Bond {
 }
 
 /// The most numbers of all bonds together, and the digits of each.
-const MOST_OF_BONDS: usize = 40_000;
+const MOST_OF_BONDS: usize = 80_000;
 const DIGITS_OF_BONDS: usize = 5;
 
 impl Data {
@@ -122,12 +121,10 @@ impl Data {
         run: &Recording,
         rows: &[f64],
         animation: Option<&Animation>,
-        picture: Option<&Picture>,
         modes: Option<Modes>,
     ) -> Self {
-        let moves = |values: &[f64]| values.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits());
-        let moving = run.columns.iter().filter(|column| moves(&column.values)).count();
-        let samples = instants(&run.times, rows, moving);
+        let curves = run.columns.iter().filter(|column| changes(&column.values)).count();
+        let samples = instants(&run.times, rows, curves);
         let charts = charts::charts(description, run);
         let curve = |(name, column): (String, &'static str)| {
             let values = run.column(column).unwrap_or_default();
@@ -144,8 +141,7 @@ impl Data {
             events: run.events.iter().map(|&t| rounded(t, DIGITS)).collect(),
             charts: charts.collect(),
             balance: Balance::of(description, run).map_or_else(Vec::new, |balance| of_balance(&balance, &samples)),
-            animation: animation.map(Motion::new),
-            bonds: picture.and_then(|picture| Bonds::new(description.bonds, picture)),
+            animation: animation.map(|animation| Motion::new(animation, rows)),
             modes,
         }
     }
@@ -181,25 +177,40 @@ fn of_balance(balance: &Balance, samples: &[Instant]) -> Vec<Chart> {
 }
 
 impl Motion {
-    fn new(animation: &Animation) -> Self {
+    /// The machine at samples that are few enough, those at `rows` first.
+    fn new(animation: &Animation, rows: &[f64]) -> Self {
         let Animation { times, bodies, ground, joints } = animation;
+        let all: usize = bodies.iter().map(|body| moving(&body.position) + moving(&body.orientation)).sum();
+        let of_joints: usize = joints.iter().map(|joint| moving(&joint.place) + moving(&joint.force)).sum();
+        let samples = instants(times, rows, all + of_joints);
         Self {
-            times: times.clone(),
-            bodies: bodies.iter().map(Body::new).collect(),
+            times: samples.iter().map(|sample| times[sample.index]).collect(),
+            bodies: bodies.iter().map(|body| Body::new(body, &samples)).collect(),
             ground: ground.iter().map(Point::new).collect(),
-            joints: joints.iter().map(Joint::new).collect(),
+            joints: joints.iter().map(|joint| Joint::new(joint, &samples)).collect(),
         }
     }
 }
 
+/// How many components of a track change.
+fn moving<const K: usize>(track: &[[f64; K]]) -> usize {
+    let component = |axis: usize| track.iter().map(|value| value[axis]).collect::<Vec<f64>>();
+    (0..K).filter(|&axis| changes(&component(axis))).count()
+}
+
+/// Whether a quantity ever changes.
+fn changes(values: &[f64]) -> bool {
+    values.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits())
+}
+
 impl Body {
-    fn new(BodyTrack { name, solids, points, position, orientation }: &BodyTrack) -> Self {
+    fn new(BodyTrack { name, solids, points, position, orientation }: &BodyTrack, samples: &[Instant]) -> Self {
         Self {
             name: name.clone(),
             solids: solids.iter().map(Part::new).collect(),
             points: points.iter().map(Point::new).collect(),
-            position: components(position),
-            orientation: components(orientation),
+            position: components(position, samples),
+            orientation: components(orientation, samples),
         }
     }
 }
@@ -222,33 +233,30 @@ impl Point {
 }
 
 impl Joint {
-    fn new(JointTrack { name, kind, place, force, .. }: &JointTrack) -> Self {
-        Self { name: name.clone(), kind: kind.clone(), place: components(place), force: components(force) }
+    fn new(JointTrack { name, kind, place, force, .. }: &JointTrack, samples: &[Instant]) -> Self {
+        let (place, force) = (components(place, samples), components(force, samples));
+        Self { name: name.clone(), kind: kind.clone(), place, force }
     }
 }
 
 /// A series for each component.
-fn components<const K: usize>(track: &[[f64; K]]) -> [Series; K] {
-    std::array::from_fn(|axis| Series::rounded(track.iter().map(|value| value[axis]), DIGITS))
+fn components<const K: usize>(track: &[[f64; K]], samples: &[Instant]) -> [Series; K] {
+    std::array::from_fn(|axis| Series::rounded(samples.iter().map(|sample| track[sample.index][axis]), DIGITS))
 }
 
 impl Bonds {
     /// The bonds' series at samples that are few enough; `None` where there are none.
-    fn new(infos: &'static [BondInfo], picture: &Picture) -> Option<Self> {
+    pub fn new(infos: &'static [BondInfo], picture: &Picture) -> Option<Self> {
         if picture.bonds.is_empty() || picture.times.is_empty() {
             return None;
         }
-        let all = |bond: &BondSeries| bond.effort.len() + bond.flow.len();
-        let curves: usize = picture.bonds.iter().map(all).sum();
-        let stride = (picture.times.len() * curves).div_ceil(MOST_OF_BONDS).max(1);
-        let every = |values: &[f64]| -> Vec<f64> { values.iter().copied().step_by(stride).collect() };
         let mut series = Vec::new();
         let mut known = std::collections::BTreeMap::new();
         let mut place = |values: &Vec<f64>| {
-            let few: Vec<f64> = every(values).into_iter().map(|value| rounded(value, DIGITS_OF_BONDS)).collect();
-            let bits: Vec<u64> = few.iter().map(|value| value.to_bits()).collect();
+            let near: Vec<f64> = values.iter().map(|&value| rounded(value, DIGITS_OF_BONDS)).collect();
+            let bits: Vec<u64> = near.iter().map(|value| value.to_bits()).collect();
             *known.entry(bits).or_insert_with(|| {
-                series.push(Series::new(few));
+                series.push(near);
                 series.len() - 1
             })
         };
@@ -260,12 +268,22 @@ impl Bonds {
             flow: bond.flow.iter().map(&mut place).collect(),
         });
         let bonds = bonds.collect();
-        Some(Self { times: every(&picture.times), series, bonds })
+        let curves = series.iter().filter(|values| changes(values)).count();
+        let stride = (picture.times.len() * curves).div_ceil(MOST_OF_BONDS).max(1);
+        let every = |values: &[f64]| -> Vec<f64> { values.iter().copied().step_by(stride).collect() };
+        let times = every(&picture.times);
+        Some(Self { times, series: series.iter().map(|values| Series::new(every(values))).collect(), bonds })
+    }
+
+    /// JSON; it is packed, so it may have anything in it.
+    pub fn json(&self) -> String {
+        serde_json::to_string(self).expect("the data have text keys only")
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::picture::BondSeries;
     use super::*;
     use bg_model::description::BondEnd;
 
@@ -275,7 +293,7 @@ mod tests {
         const BOND: BondInfo =
             BondInfo { from: "a", to: "b", cardinality: 1, stroke: BondEnd::To, effort: "N", flow: "m/s" };
         let bond = |effort: [f64; 3]| BondSeries { effort: vec![effort.to_vec()], flow: vec![vec![2.0; 3]] };
-        let bonds = vec![bond([1.0, 2.0, 3.0]), bond([1.0, 2.0, 3.000_000_01])];
+        let bonds = vec![bond([1.0, 2.0, 3.0]), bond([1.0, 2.0, 3.000_001])];
         let picture = Picture { svg: String::new(), times: vec![0.0, 1.0, 2.0], bonds };
         let made = Bonds::new(&BONDS, &picture).unwrap();
         assert_eq!(made.series, [Series::Moving(vec![1.0, 2.0, 3.0]), Series::Still(2.0)]);

@@ -2,8 +2,8 @@
 //!
 //! In: texts and tables. Out: HTML in which every text is escaped; what moves is added by the page's script.
 
-use super::Report;
 use super::charts::Balance;
+use super::{Parameter, Report};
 use crate::linear::Mode;
 use crate::overview::{checks, escaped, write_into};
 use crate::parameters::{number, one_line};
@@ -115,30 +115,22 @@ pub struct Drawing<'a> {
     pub svg: &'a str,
 }
 
-/// Drawings, each an image of its own, so that their styles do not meet.
+/// Drawings, each an image of its own, so that their styles do not meet. The script hands them their SVG texts.
 pub fn drawings(page: &mut String, heading: &str, about: &str, drawings: &[Drawing<'_>]) {
     write_into(page, format_args!("<section id=\"figures\"><h2>{}</h2>\n", escaped(heading)));
     if !about.is_empty() {
         write_into(page, format_args!("<p>{}</p>\n", escaped(about)));
     }
     *page += "<div class=\"figures\">\n";
-    for Drawing { title, caption, svg } in drawings {
+    for (index, Drawing { title, caption, .. }) in drawings.iter().enumerate() {
         let caption = match *caption {
             "" => String::new(),
             caption => format!("<figcaption>{}</figcaption>", escaped(caption)),
         };
-        let (title, address) = (escaped(title), address(svg));
-        let image =
-            format_args!("<figure><img src=\"{address}\" alt=\"{title}\" decoding=\"async\">{caption}</figure>\n");
-        write_into(page, image);
+        let title = escaped(title);
+        write_into(page, format_args!("<figure><img data-drawing=\"{index}\" alt=\"{title}\">{caption}</figure>\n"));
     }
     *page += "</div></section>\n";
-}
-
-/// An SVG text as an address.
-fn address(svg: &str) -> String {
-    let plain = svg.replace('%', "%25").replace('#', "%23").replace('"', "%22").replace('\n', "%0A");
-    format!("data:image/svg+xml;charset=utf-8,{}", escaped(&plain))
 }
 
 /// The numbers of the run, all of them.
@@ -152,18 +144,24 @@ pub fn statistics(page: &mut String, summary: &Summary) {
 
 /// The parameters; those that differ from their defaults are marked.
 pub fn parameters(page: &mut String, report: &Report<'_>) {
+    let has_sources = report.parameters.iter().any(|parameter| !parameter.source.is_empty());
+    let sources = if has_sources { "<th>from</th>" } else { "" };
     *page += "<section id=\"parameters\"><h2>Parameters</h2><div class=\"scroll\"><table>\n";
-    *page += "<tr><th>name</th><th>value</th><th>unit</th><th>meaning</th></tr>\n";
-    for (info, value) in report.parameters {
-        let is_changed = info.default != *value;
-        let class = if is_changed { " class=\"changed\"" } else { "" };
-        let default = if is_changed { format!(" (default {})", number(info.default)) } else { String::new() };
+    write_into(page, format_args!("<tr><th>name</th><th>value</th><th>unit</th>{sources}<th>meaning</th></tr>\n"));
+    for parameter in report.parameters {
+        let Parameter { info, value, source } = parameter;
+        let (class, default) = match parameter.is_changed() {
+            true => (" class=\"changed\"", format!(" (default {})", number(info.default))),
+            false => ("", String::new()),
+        };
+        let source = if has_sources { format!("<td>{}</td>", escaped(source)) } else { String::new() };
         let meaning = escaped(&(one_line(info.doc) + &default));
         let (name, value, unit) = (escaped(info.name), number(*value), escaped(&super::charts::unit(info.unit)));
         write_into(
             page,
             format_args!(
-                "<tr{class}><td><code>{name}</code></td><td class=\"number\">{value}</td><td>{unit}</td><td>{meaning}</td></tr>\n"
+                "<tr{class}><td><code>{name}</code></td><td class=\"number\">{value}</td><td>{unit}</td>{source}\
+                 <td>{meaning}</td></tr>\n"
             ),
         );
     }
@@ -182,4 +180,10 @@ pub fn equations(page: &mut String, equations: &[&str]) {
         page,
         format_args!("<pre class=\"equations\">{}</pre></details></section>\n", escaped(&equations.join("\n"))),
     );
+}
+
+/// What the page is made with, and the bar that the script fills.
+pub fn foot(page: &mut String, licences: &str) {
+    *page += "<footer><details><summary>Made by bg-workbench with three.js and uPlot</summary>";
+    write_into(page, format_args!("<pre>{}</pre></details></footer>\n<div id=\"player\"></div>\n", escaped(licences)));
 }

@@ -3,7 +3,7 @@
 //! In: a run, what is known of its model, and where they are there what the machine looks like, the picture of its graph and its
 //! modes. Out: HTML with style, script and data in it; the same as binary glTF. The script moves the machine, draws the charts
 //! and links both by one time. It is bundled from `page/` of this package (`npm ci && npm run build`), with three.js and uPlot
-//! inside; their licence stands at its head.
+//! inside; their licence stands at the foot of the page. Script and drawings are packed, the data are plain JSON.
 
 pub mod animation;
 mod charts;
@@ -12,6 +12,7 @@ pub mod glb;
 mod html;
 mod mesh;
 mod modes;
+mod packed;
 mod picture;
 mod samples;
 
@@ -20,18 +21,22 @@ use bg_model::simulation::Recording;
 
 use crate::extras::Page as Texts;
 use crate::figures::Figure;
+use crate::figures::compact::compact;
 use crate::linear::Mode;
 use crate::overview::{escaped, write_into};
 use crate::summary::Summary;
 use animation::Animation;
 use charts::Balance;
-use data::Data;
+use data::{Bonds, Data};
 use html::Drawing;
 use modes::Modes;
+use packed::packed;
 
 pub use picture::{BondSeries, Picture};
 
+const LOADER: &str = include_str!("../../page/loader.js");
 const SCRIPT: &str = include_str!("../../page/dist/report.js");
+const LICENCES: &str = include_str!("../../page/dist/THIRD-PARTY.txt");
 const STYLE: &str = include_str!("../../page/dist/report.css");
 
 /// What a report is about.
@@ -44,7 +49,7 @@ pub struct Report<'a> {
     /// What the scene is, in words; may be empty.
     pub scene: &'a str,
     /// The parameters of the mechanism with their values.
-    pub parameters: &'a [(ParameterInfo, f64)],
+    pub parameters: &'a [Parameter],
     /// The numbers of the run.
     pub summary: &'a Summary,
     /// The samples of the run.
@@ -57,6 +62,25 @@ pub struct Report<'a> {
     pub drawings: &'a [(String, String)],
     /// What is known beyond the run.
     pub views: &'a Views,
+}
+
+/// A parameter of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name, unit, default, meaning.
+    pub info: ParameterInfo,
+    /// Its value in the run.
+    pub value: f64,
+    /// Where the default is from, such as `paper`; empty where nothing is said.
+    pub source: &'static str,
+}
+
+impl Parameter {
+    /// Whether the run has another value than the default.
+    #[must_use]
+    pub fn is_changed(&self) -> bool {
+        self.value != self.info.default
+    }
 }
 
 /// What a report shows beside a run, as far as it is there.
@@ -87,7 +111,7 @@ pub fn page(report: &Report<'_>) -> String {
     let at_rest = modes.as_ref().zip(animation).and_then(|(modes, _)| Some((modes, modes.rest.as_ref()?)));
     let swings = at_rest.map(|(modes, rest)| Modes::new(&modes.modes, rest));
     let can_swing = swings.is_some();
-    let data = Data::new(report.description, report.run, report.rows, animation, picture.as_ref(), swings);
+    let data = Data::new(report.description, report.run, report.rows, animation, swings);
     let balance = Balance::of(report.description, report.run);
     let drawings = drawings(report);
     let heading = if report.figures.is_empty() { "Drawings" } else { &report.texts.gallery };
@@ -135,10 +159,17 @@ pub fn page(report: &Report<'_>) -> String {
     html::statistics(&mut page, report.summary);
     page += "</div>\n";
     html::equations(&mut page, report.description.equations);
-    page += "</main>\n<footer>Made by bg-workbench. The script has three.js and uPlot in it, both under the MIT licence.</footer>\n";
-    page += "<div id=\"player\"></div>\n";
+    page += "</main>\n";
+    html::foot(&mut page, LICENCES);
     write_into(&mut page, format_args!("<script type=\"application/json\" id=\"data\">{}</script>\n", data.json()));
-    write_into(&mut page, format_args!("<script>{SCRIPT}</script>\n</body>\n</html>\n"));
+    let svgs: Vec<String> = drawings.iter().map(|drawing| compact(drawing.svg)).collect();
+    let svgs = serde_json::to_string(&svgs).expect("texts are JSON");
+    let bonds = picture.as_ref().and_then(|picture| Bonds::new(report.description.bonds, picture));
+    let bonds = bonds.map_or_else(|| "null".to_owned(), |bonds| bonds.json());
+    for (id, text) in [("bonds", bonds.as_str()), ("drawings", &svgs), ("script", SCRIPT)] {
+        write_into(&mut page, format_args!("<script type=\"text/plain\" id=\"{id}\">{}</script>\n", packed(text)));
+    }
+    write_into(&mut page, format_args!("<script>\n{LOADER}</script>\n</body>\n</html>\n"));
     page
 }
 

@@ -32,6 +32,9 @@ pub fn instants(times: &[f64], rows: &[f64], curves: usize) -> Vec<Instant> {
         wanted.peek() == Some(&&t)
     };
     let all: Vec<Instant> = times.iter().enumerate().map(|(index, &t)| Instant { index, is_row: is_row(t) }).collect();
+    if all.len() <= most {
+        return all;
+    }
     let mut kept = vec![false; all.len()];
     let of_rows: Vec<usize> = all.iter().filter(|instant| instant.is_row).map(|instant| instant.index).collect();
     keep(&mut kept, &of_rows, most);
