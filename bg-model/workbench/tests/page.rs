@@ -35,7 +35,8 @@ fn written(run: &Trajectory, rows: &[f64], texts: &Page, description: &'static D
 fn double_pendulum(t_end: f64) -> (Trajectory, Vec<f64>, String) {
     let (run, rows) = machine::run(t_end);
     let animation = Some(machine::animation(&run));
-    let modes = Some(Linearised { modes: machine::modes(), rest: Some(machine::at_rest()) });
+    let modes =
+        Some(Linearised { modes: machine::modes(), place: "at rest".to_owned(), rest: Some(machine::at_rest()) });
     let views = Views { animation, picture: Some(machine::picture(&run.times)), modes };
     let description = DoublePendulum::describe();
     let html = written(&run, &rows, &Plain.page(description), description, &views);

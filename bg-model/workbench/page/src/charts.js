@@ -75,11 +75,15 @@ class Chart {
   #plot = null;
   #line = element("div", { class: "now" });
   #isSeen = false;
-  #hidden = new Set();
+  #hidden;
 
   constructor(charts, parent, times, { title, unit, curves }, height) {
     Object.assign(this, { charts, times, curves, height });
     this.values = curves.map((curve) => curve.values);
+    // Of many curves those that stay as they are would only hide the others.
+    const isStill = (values) => values.every((value) => value === values[0]);
+    const still = curves.length > 3 ? curves.flatMap((_, index) => (isStill(this.values[index]) ? [index] : [])) : [];
+    this.#hidden = new Set(still.length < curves.length ? still : []);
     this.legend = curves.map((curve, index) => this.#entry(curve, index));
     this.canvas = element("div", { class: "canvas", style: `height:${height}px` });
     const head = element("figcaption", { class: "head" });
@@ -94,7 +98,7 @@ class Chart {
   #entry(curve, index) {
     const value = element("output");
     const button = element("button", {
-      type: "button", class: "key", "aria-pressed": "true", title: "Show or hide this curve",
+      type: "button", class: "key", "aria-pressed": String(!this.#hidden.has(index)), title: "Show or hide this curve",
       style: `--hue: var(--hue-${index % 7})`, onclick: () => this.#toggle(index),
     }, element("span", { class: "name" }, curve.name), value);
     return { button, value };

@@ -24,7 +24,32 @@ export function curvesOf(data, index) {
   ];
 }
 
+/** The smallest scale at which labels can be read. */
+const LEGIBLE = 0.7;
+
+/** Fits the picture into its frame as long as it can be read; buttons show all of it or enlarge it. */
+function sizes(section) {
+  const frame = section.querySelector(".picture");
+  const picture = frame?.querySelector("svg");
+  if (!picture) return;
+  const { width } = picture.viewBox.baseVal;
+  const fit = () => Math.min(frame.clientWidth / width, 1.2);
+  let scale = Math.max(fit(), Math.min(LEGIBLE, 1));
+  const show = (next) => {
+    scale = Math.min(Math.max(next, 0.1), 4);
+    picture.style.width = `${scale * width}px`;
+  };
+  const button = (text, title, act) => element("button", { type: "button", title, onclick: act }, text);
+  section.append(element("div", { class: "sizes" },
+    button("all", "Show all of it", () => show(fit())),
+    button("\u2212", "Smaller", () => show(scale / 1.25)),
+    button("+", "Larger", () => show(scale * 1.25))));
+  show(scale);
+}
+
 export function graph(section, data, charts) {
+  sizes(section);
+  if (data === null) return null;
   const groups = [...section.querySelectorAll("g.bond[data-bond]")];
   const panel = element("div", { class: "bond-panel" });
   section.append(panel);

@@ -44,7 +44,7 @@ async function start() {
   const view = data.animation ? motion(section("machine"), data.animation, clock) : null;
   if (data.modes && view) modes(section("modes"), data.modes, view, clock);
   const bonds = JSON.parse(await unpacked("bonds"));
-  const picture = bonds && section("picture") ? graph(section("picture"), bonds, charts) : null;
+  const picture = section("picture") ? graph(section("picture"), bonds, charts) : null;
   await draw();
   return { clock, charts, view, picture, faults };
 }

@@ -171,9 +171,9 @@ pub struct ReportArguments {
     #[arg(long)]
     pub glb: bool,
 
-    /// Linearise at the equilibrium near the start and show the modes
-    #[arg(long)]
-    pub modes: bool,
+    /// Linearise and show the modes: where the run is at this time, s; without a number at the equilibrium near the start
+    #[arg(long, value_name = "SECONDS", num_args = 0..=1, value_parser = real, allow_negative_numbers = true)]
+    pub modes: Option<Option<f64>>,
 
     /// Show an SVG file in the report, such as a diagram of `precision` or `linearize`; can be given again and again
     #[arg(long, value_name = "FILE.svg")]

@@ -4,13 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use bg_model::mechanism::{Mechanism, Scenes};
-use bg_model::run::Simulation;
 
 use super::InputError;
-use super::arguments::ReportArguments;
+use super::arguments::{IntegrationArguments, ReportArguments};
+use super::linearize::{check_time, linearised};
 use super::run::simulate;
 use crate::Program;
-use crate::linear::{equilibrium, linearise};
 use crate::output::ReportFiles;
 use crate::page::{Linearised, Views};
 
@@ -20,8 +19,10 @@ pub struct Look {
     pub files: ReportFiles,
     /// More drawings, each with its title: SVG texts.
     pub drawings: Vec<(String, String)>,
-    /// Whether to linearise.
-    pub modes: bool,
+    /// Where to linearise, if at all: at a time, s, or at the equilibrium.
+    pub modes: Option<Option<f64>>,
+    /// How the run is integrated.
+    pub integration: IntegrationArguments,
 }
 
 pub fn report<Me: Scenes>(program: &Program<Me>, arguments: &ReportArguments) -> Result<ExitCode, InputError> {
@@ -29,7 +30,9 @@ pub fn report<Me: Scenes>(program: &Program<Me>, arguments: &ReportArguments) ->
     let name = &program.texts.name;
     let files = ReportFiles { page: format!("{name}.html"), glb: glb.then(|| format!("{name}.glb")) };
     let drawings = show.iter().map(|path| drawing(path)).collect::<Result<_, _>>()?;
-    simulate(program, run, Some(&Look { files, drawings, modes: *modes }))
+    check_time("--modes", modes.flatten())?;
+    let integration = run.integration.clone();
+    simulate(program, run, Some(&Look { files, drawings, modes: *modes, integration }))
 }
 
 /// A drawing with its file's name as title.
@@ -46,15 +49,13 @@ fn drawing(path: &Path) -> Result<(String, String), InputError> {
 impl Look {
     /// What is known of the model before it is run.
     pub fn before<Sc: Mechanism>(&self, model: &Sc) -> Result<Views, InputError> {
-        let modes = if self.modes { Some(linearised(model)?) } else { None };
+        let modes = self.modes.map(|at| self.linearised(model, at)).transpose()?;
         Ok(Views { modes, ..Views::default() })
     }
-}
 
-/// The modes at the equilibrium near the start, inputs as at t = 0.
-fn linearised<Sc: Mechanism>(model: &Sc) -> Result<Linearised, InputError> {
-    let start: Vec<f64> = Simulation::new(model).start()?.states.iter().map(|(_, value)| *value).collect();
-    let rest = equilibrium(model, 0.0, &start)?;
-    let space = linearise(model, 0.0, &rest.x)?;
-    Ok(Linearised { modes: space.modes, rest: None })
+    fn linearised<Sc: Mechanism>(&self, model: &Sc, at: Option<f64>) -> Result<Linearised, InputError> {
+        let to = |t: f64| IntegrationArguments { t_end: t, step: t, ..self.integration.clone() };
+        let (space, place) = linearised(model, at, to)?;
+        Ok(Linearised { modes: space.modes, place, rest: None })
+    }
 }

@@ -110,8 +110,11 @@ struct Bond {
     flow: Vec<usize>,
 }
 
+/// The most numbers of all charts together, and of the tracks of bodies and joints: some hundred kB each.
+const MOST_OF_CHARTS: usize = 48_000;
+const MOST_OF_TRACKS: usize = 32_000;
 /// The most numbers of all bonds together, and the digits of each.
-const MOST_OF_BONDS: usize = 80_000;
+const MOST_OF_BONDS: usize = 60_000;
 const DIGITS_OF_BONDS: usize = 5;
 
 impl Data {
@@ -124,7 +127,7 @@ impl Data {
         modes: Option<Modes>,
     ) -> Self {
         let curves = run.columns.iter().filter(|column| changes(&column.values)).count();
-        let samples = instants(&run.times, rows, curves);
+        let samples = instants(&run.times, rows, curves, MOST_OF_CHARTS);
         let charts = charts::charts(description, run);
         let curve = |(name, column): (String, &'static str)| {
             let values = run.column(column).unwrap_or_default();
@@ -182,7 +185,7 @@ impl Motion {
         let Animation { times, bodies, ground, joints } = animation;
         let all: usize = bodies.iter().map(|body| moving(&body.position) + moving(&body.orientation)).sum();
         let of_joints: usize = joints.iter().map(|joint| moving(&joint.place) + moving(&joint.force)).sum();
-        let samples = instants(times, rows, all + of_joints);
+        let samples = instants(times, rows, all + of_joints, MOST_OF_TRACKS);
         Self {
             times: samples.iter().map(|sample| times[sample.index]).collect(),
             bodies: bodies.iter().map(|body| Body::new(body, &samples)).collect(),

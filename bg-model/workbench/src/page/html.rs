@@ -3,8 +3,7 @@
 //! In: texts and tables. Out: HTML in which every text is escaped; what moves is added by the page's script.
 
 use super::charts::Balance;
-use super::{Parameter, Report};
-use crate::linear::Mode;
+use super::{Linearised, Parameter, Report};
 use crate::overview::{checks, escaped, write_into};
 use crate::parameters::{number, one_line};
 use crate::summary::Summary;
@@ -68,8 +67,10 @@ pub fn picture(page: &mut String, svg: &str) {
 }
 
 /// The modes, each with the button that lets the machine swing in it where there is a machine.
-pub fn modes(page: &mut String, modes: &[Mode], can_swing: bool) {
-    *page += "<section id=\"modes\" class=\"modes\"><h2>Modes</h2><div class=\"scroll\"><table>\n";
+pub fn modes(page: &mut String, Linearised { modes, place, .. }: &Linearised, can_swing: bool) {
+    let place = escaped(place);
+    write_into(page, format_args!("<section id=\"modes\" class=\"modes\"><h2>Modes <small>{place}</small></h2>\n"));
+    *page += "<div class=\"scroll\"><table>\n";
     *page +=
         "<tr><th></th><th>frequency in Hz</th><th>damping</th><th>eigenvalue in 1/s</th><th>what moves</th></tr>\n";
     for (index, mode) in modes.iter().enumerate() {

@@ -99,6 +99,8 @@ pub struct Views {
 pub struct Linearised {
     /// The modes.
     pub modes: Vec<Mode>,
+    /// Where it was linearised, in words.
+    pub place: String,
     /// The machine there, one sample; `None` of one without bodies.
     pub rest: Option<Animation>,
 }
@@ -144,8 +146,8 @@ pub fn page(report: &Report<'_>) -> String {
     if let Some(balance) = &balance {
         html::balance(&mut page, balance);
     }
-    if let Some(Linearised { modes, .. }) = modes {
-        html::modes(&mut page, modes, can_swing);
+    if let Some(linearised) = modes {
+        html::modes(&mut page, linearised, can_swing);
     }
     if has_checks {
         html::statements(&mut page, report.summary);

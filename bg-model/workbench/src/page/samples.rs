@@ -4,8 +4,6 @@
 
 use serde::Serialize;
 
-/// The most numbers of all curves together: about a megabyte.
-const MOST_NUMBERS: usize = 48_000;
 /// However many curves there are, so many samples stay.
 const FEWEST: usize = 200;
 /// However few there are, more samples than these are not seen.
@@ -22,10 +20,11 @@ pub struct Instant {
     pub is_row: bool,
 }
 
-/// The samples of a page with `curves` curves that move: the rows, every n-th of them where they are too many, and between
-/// them other samples of the run as far as there is room. Both lists ascend; rows are instants of the run.
-pub fn instants(times: &[f64], rows: &[f64], curves: usize) -> Vec<Instant> {
-    let most = (MOST_NUMBERS / curves.max(1)).clamp(FEWEST, MOST);
+/// The samples of a page with `curves` curves that move and may have `numbers` numbers together: the rows, every n-th of them
+/// where they are too many, and between them other samples of the run as far as there is room. Both lists ascend; rows are
+/// instants of the run.
+pub fn instants(times: &[f64], rows: &[f64], curves: usize, numbers: usize) -> Vec<Instant> {
+    let most = (numbers / curves.max(1)).clamp(FEWEST, MOST);
     let mut wanted = rows.iter().peekable();
     let mut is_row = |t: f64| {
         while wanted.next_if(|&&row| row < t).is_some() {}
@@ -103,17 +102,17 @@ mod tests {
             all.sort_unstable_by(f64::total_cmp);
             all
         };
-        let few = instants(&times, &rows, 5);
+        let few = instants(&times, &rows, 5, 48_000);
         assert_eq!((few.len(), few.iter().filter(|instant| instant.is_row).count()), (2501, 501));
-        let many = instants(&times, &rows, 40);
+        let many = instants(&times, &rows, 40, 48_000);
         assert_eq!(many.iter().filter(|instant| instant.is_row).count(), 501);
         assert!((600..=1300).contains(&many.len()), "{}", many.len());
         assert!(many.is_sorted_by(|a, b| a.index < b.index));
-        let thin = instants(&times, &rows, 400);
+        let thin = instants(&times, &rows, 400, 48_000);
         assert!((FEWEST / 2..=FEWEST + 2).contains(&thin.len()), "{}", thin.len());
         assert!(thin.iter().all(|instant| instant.is_row), "rows come first");
         assert_eq!((thin[0].index, thin.last().unwrap().index), (0, 2500));
-        assert!(instants(&[], &[], 3).is_empty());
+        assert!(instants(&[], &[], 3, 48_000).is_empty());
     }
 
     #[test]
