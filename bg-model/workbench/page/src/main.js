@@ -23,8 +23,8 @@ const section = (name) => document.getElementById(name);
 const clock = new Clock(data.times[0] ?? 0, data.times.at(-1) ?? 0);
 const charts = new Charts(clock);
 
-/** After the next frame: what comes then does not keep the page from being seen. */
-const painted = () => new Promise((resolve) => { requestAnimationFrame(() => setTimeout(resolve)); });
+/** After the first frame is on the screen: what comes then does not keep the page from being seen. */
+const painted = () => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve))); });
 
 /** Hands the images their SVG texts. */
 async function draw() {

@@ -16,7 +16,7 @@ pub fn head(page: &mut String, report: &Report<'_>, sections: &[(&str, &str)]) {
     let title = escaped(&report.texts.title);
     write_into(page, format_args!("<header>\n<h1>{title}</h1>\n<p>{}</p>\n", escaped(&report.texts.introduction)));
     if !report.scene.is_empty() && report.scene != report.texts.introduction {
-        write_into(page, format_args!("<p>{}</p>\n", escaped(&report.scene)));
+        write_into(page, format_args!("<p>{}</p>\n", escaped(report.scene)));
     }
     if let Some(failure) = &report.summary.failure {
         let reached = report.summary.reached_s;
