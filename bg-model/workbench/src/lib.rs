@@ -56,6 +56,7 @@
 //! | [`linear`] | where the mechanism is in equilibrium, and how it moves near a state |
 //! | [`summary`] | what a run comes to in numbers |
 //! | [`overview`] | all of it on one page |
+//! | [`page`] | the same in motion, in one file that needs nothing else |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
 //! | [`cookbook`] | short programs for what comes up after the first run |

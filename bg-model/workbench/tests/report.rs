@@ -126,3 +126,30 @@ fn a_circuit_has_a_page_without_a_machine() {
     assert_eq!(visit.console, [""; 0]);
     assert!(visit.document.contains("\"faults\":[]"), "{}", visit.document.len());
 }
+
+#[test]
+fn every_example_has_a_page_whose_data_are_whole() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    for file in fs::read_dir(examples).unwrap().map(|file| file.unwrap().path()) {
+        let example = file.file_stem().unwrap().to_string_lossy().into_owned();
+        let folder = tempfile::tempdir().unwrap();
+        text(&example, folder.path(), &["report", "--t-end", "0.05", "--step", "1e-3", "--out", "o"]);
+        let pages: Vec<String> = files(&folder.path().join("o")).into_iter().filter(|f| f.ends_with(".html")).collect();
+        assert_eq!(pages.len(), 1, "{example}");
+        let html = fs::read_to_string(folder.path().join("o").join(&pages[0])).unwrap();
+        let data = data(&html);
+        let count = data["times"].as_array().unwrap().len();
+        assert_eq!(data["rows"].as_array().unwrap().len(), 51, "{example}");
+        let curves = data["charts"].as_array().unwrap().iter().flat_map(|chart| chart["curves"].as_array().unwrap());
+        let shown: Vec<&Value> = curves.collect();
+        let csv = fs::read_to_string(folder.path().join("o/trajectory.csv")).unwrap();
+        assert_eq!(
+            shown.len() + 1,
+            csv.lines().next().unwrap().split(',').count(),
+            "{example}: every output is in a chart"
+        );
+        let is_whole =
+            |values: &Value| values.is_f64() || values.as_array().is_some_and(|values| values.len() == count);
+        assert!(shown.iter().all(|curve| is_whole(&curve["values"])), "{example}");
+    }
+}
