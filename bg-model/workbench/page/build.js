@@ -1,5 +1,5 @@
-// Bundles the page's script and style: `npm ci && npm run build` writes dist/; `npm run check` says whether dist/ is what the
-// sources give. The licences of what is inside are in dist/THIRD-PARTY.txt, which the page shows.
+// Bundles the page's script and style: `npm ci && npm run build` writes dist/; `npm run check` says whether dist/ is
+// what the sources give. The licences of what is inside are in dist/THIRD-PARTY.txt, which the page shows.
 
 import { readFile } from "node:fs/promises";
 import { build } from "esbuild";

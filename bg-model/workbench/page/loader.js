@@ -1,5 +1,5 @@
-// The first script of a page: unpacks the texts that stand in it as base64 of deflated UTF-8, and starts the script among them.
-// Not bundled; `src/page/mod.rs` writes it into the page as it is.
+// The first script of a page: unpacks the texts that stand in it as base64 of deflated UTF-8, and starts the script
+// among them. Not bundled; `src/page/mod.rs` writes it into the page as it is.
 const unpacked = async (id) => {
   const text = document.getElementById(id).textContent;
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -9,10 +9,13 @@ const unpacked = async (id) => {
 const hold = location.hash === "#test" ? document.body.appendChild(document.createElement("iframe")) : null;
 hold?.setAttribute("hidden", "");
 hold?.contentDocument.open();
-unpacked("script").then((text) => {
-  const script = document.createElement("script");
-  script.textContent = text;
-  document.body.append(script);
-}, (fault) => {
-  document.getElementById("charts").append(`Charts and motion need a browser of 2023 or later: ${fault.message}`);
-});
+unpacked("script").then(
+  (text) => {
+    const script = document.createElement("script");
+    script.textContent = text;
+    document.body.append(script);
+  },
+  (fault) => {
+    document.getElementById("charts").append(`Charts and motion need a browser of 2023 or later: ${fault.message}`);
+  },
+);

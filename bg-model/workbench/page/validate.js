@@ -1,4 +1,5 @@
-// Holds a glTF file against the specification: `node validate.js FILE.glb`. Exit code 1 and the findings where there are any.
+// Holds a glTF file against the specification: `node validate.js FILE.glb`. Exit code 1 and the findings where there
+// are any.
 
 import { readFile } from "node:fs/promises";
 import validator from "gltf-validator";

@@ -57,6 +57,7 @@
 //! | [`summary`] | what a run comes to in numbers |
 //! | [`overview`] | all of it on one page |
 //! | [`page`] | the same in motion, in one file that needs nothing else |
+//! | [`shown`] | which page shows a run, and with which files |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
 //! | [`cookbook`] | short programs for what comes up after the first run |
@@ -79,6 +80,7 @@ pub mod report;
 pub mod request;
 pub mod samples;
 pub mod scenes;
+pub mod shown;
 pub mod summary;
 
 #[doc = include_str!("../cookbook.md")]

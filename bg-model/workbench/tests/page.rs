@@ -183,6 +183,9 @@ fn a_browser_shows_plays_and_scrubs() {
     assert!((number(&verdict["pressed_to"]) - 0.5).abs() < 0.02, "the time follows a press in a chart: {verdict}");
     assert!(number(&verdict["colours"]) > 50.0, "the machine is drawn: {verdict}");
     assert_eq!(verdict["bond_charts"], 3);
+    let swing = &verdict["swing"];
+    assert!(number(&swing["moved"]) >= 1e-3 && swing["pressed"] == "true", "a mode moves the machine: {swing}");
+    assert!(number(&swing["back"]) < 1e-6, "setting the time ends that: {swing}");
     assert_eq!(verdict["overflow"], 0, "nothing is wider than the window");
 }
 

@@ -1,6 +1,6 @@
 // Joint forces as arrows.
-// In: the joints of the page's data. Out: an arrow each, from the joint along the force on its second body; the longest force
-// of the run is a quarter of the machine long.
+// In: the joints of the page's data. Out: an arrow each, from the joint along the force on its second body; the
+// longest force of the run is a quarter of the machine long.
 
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { between } from "./clock.js";
@@ -12,7 +12,8 @@ const SHARE = 0.25;
 export function largestForce(joints) {
   let square = 0;
   for (const { force } of joints) {
-    for (let k = 0; k < force.length; k += 3) square = Math.max(square, force[k] ** 2 + force[k + 1] ** 2 + force[k + 2] ** 2);
+    for (let k = 0; k < force.length; k += 3)
+      square = Math.max(square, force[k] ** 2 + force[k + 1] ** 2 + force[k + 2] ** 2);
   }
   return Math.sqrt(square);
 }

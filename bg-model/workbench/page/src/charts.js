@@ -1,6 +1,6 @@
 // Charts over time, each with a line at the page's time.
-// In: an element, curves, a clock. Out: uPlot charts. Press and drag in one sets the time; double click shows all of it again;
-// Ctrl and the wheel zoom all charts in time.
+// In: an element, curves, a clock. Out: uPlot charts. Press and drag in one sets the time; double click shows all of
+// it again; Ctrl and the wheel zoom all charts in time.
 
 import uPlot from "uplot";
 import { between } from "./clock.js";
@@ -32,9 +32,13 @@ export class Charts {
 
   constructor(clock) {
     this.clock = clock;
-    this.#seen = new IntersectionObserver((entries) => {
-      for (const entry of entries) this.#charts.find((chart) => chart.place === entry.target)?.see(entry.isIntersecting);
-    }, { rootMargin: "200px" });
+    this.#seen = new IntersectionObserver(
+      (entries) => {
+        for (const entry of entries)
+          this.#charts.find((chart) => chart.place === entry.target)?.see(entry.isIntersecting);
+      },
+      { rootMargin: "200px" },
+    );
     clock.subscribe(() => this.#charts.forEach((chart) => chart.follow()));
     onScheme(() => this.#charts.forEach((chart) => chart.rebuild()));
   }
@@ -97,10 +101,19 @@ class Chart {
 
   #entry(curve, index) {
     const value = element("output");
-    const button = element("button", {
-      type: "button", class: "key", "aria-pressed": String(!this.#hidden.has(index)), title: "Show or hide this curve",
-      style: `--hue: var(--hue-${index % 7})`, onclick: () => this.#toggle(index),
-    }, element("span", { class: "name" }, curve.name), value);
+    const button = element(
+      "button",
+      {
+        type: "button",
+        class: "key",
+        "aria-pressed": String(!this.#hidden.has(index)),
+        title: "Show or hide this curve",
+        style: `--hue: var(--hue-${index % 7})`,
+        onclick: () => this.#toggle(index),
+      },
+      element("span", { class: "name" }, curve.name),
+      value,
+    );
     return { button, value };
   }
 
@@ -167,22 +180,37 @@ class Chart {
 
   #build() {
     const axis = {
-      stroke: colour("pencil"), font: FONT, grid: { stroke: colour("grid"), width: 1 },
+      stroke: colour("pencil"),
+      font: FONT,
+      grid: { stroke: colour("grid"), width: 1 },
       ticks: { stroke: colour("grid"), width: 1, size: 4 },
     };
     const [min, max] = this.charts.span;
     const labels = (_, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6))).replaceAll("-", "\u2212"));
     const options = {
-      width: Math.max(this.canvas.clientWidth, 50), height: this.height, legend: { show: false }, padding: [8, 12, 0, 0],
+      width: Math.max(this.canvas.clientWidth, 50),
+      height: this.height,
+      legend: { show: false },
+      padding: [8, 12, 0, 0],
       cursor: { drag: { x: false, y: false }, y: false, points: { show: false }, bind: { dblclick: () => null } },
       scales: { x: { time: false, min, max }, y: { range: (_, least, largest) => range(least, largest) } },
       axes: [
         { ...axis, values: labels, size: 26, gap: 4 },
-        { ...axis, values: labels, size: (plot, found) => Math.max(52, 18 + 7 * Math.max(3, ...(found ?? []).map((text) => text.length))) },
+        {
+          ...axis,
+          values: labels,
+          size: (plot, found) => Math.max(52, 18 + 7 * Math.max(3, ...(found ?? []).map((text) => text.length))),
+        },
       ],
-      series: [{}, ...this.curves.map((_, index) => ({
-        stroke: hue(index), width: 1.6, points: { show: false }, show: !this.#hidden.has(index),
-      }))],
+      series: [
+        {},
+        ...this.curves.map((_, index) => ({
+          stroke: hue(index),
+          width: 1.6,
+          points: { show: false },
+          show: !this.#hidden.has(index),
+        })),
+      ],
       hooks: { setSize: [() => this.follow()], setScale: [() => this.follow()] },
     };
     this.#plot = new uPlot(options, [this.times, ...this.values], this.canvas);
@@ -207,15 +235,19 @@ class Chart {
       if (over.hasPointerCapture(event.pointerId)) seek(event);
     });
     over.addEventListener("dblclick", () => charts.show(null));
-    over.addEventListener("wheel", (event) => {
-      if (!event.ctrlKey && !event.metaKey) return;
-      event.preventDefault();
-      const at = this.#plot.posToVal(event.clientX - over.getBoundingClientRect().left, "x");
-      const factor = Math.exp(0.002 * event.deltaY);
-      const [start, end] = charts.span.map((edge) => at + factor * (edge - at));
-      const { clock } = charts;
-      const isAll = start <= clock.start && end >= clock.end;
-      charts.show(isAll ? null : [Math.max(start, clock.start), Math.min(end, clock.end)]);
-    }, { passive: false });
+    over.addEventListener(
+      "wheel",
+      (event) => {
+        if (!event.ctrlKey && !event.metaKey) return;
+        event.preventDefault();
+        const at = this.#plot.posToVal(event.clientX - over.getBoundingClientRect().left, "x");
+        const factor = Math.exp(0.002 * event.deltaY);
+        const [start, end] = charts.span.map((edge) => at + factor * (edge - at));
+        const { clock } = charts;
+        const isAll = start <= clock.start && end >= clock.end;
+        charts.show(isAll ? null : [Math.max(start, clock.start), Math.min(end, clock.end)]);
+      },
+      { passive: false },
+    );
   }
 }

@@ -26,9 +26,17 @@ function speedText(speed) {
 export function player(bar, clock, events) {
   const duration = clock.end - clock.start;
   const symbol = icon(PLAY);
-  const button = element("button", { class: "play", "aria-label": "Play", onclick: () => clock.toggle() }, symbol.drawing);
+  const button = element(
+    "button",
+    { class: "play", "aria-label": "Play", onclick: () => clock.toggle() },
+    symbol.drawing,
+  );
   const slider = element("input", {
-    type: "range", min: 0, max: STEPS, step: 1, "aria-label": "Time",
+    type: "range",
+    min: 0,
+    max: STEPS,
+    step: 1,
+    "aria-label": "Time",
     oninput: (event) => clock.seek(clock.start + (duration * event.target.value) / STEPS),
   });
   const marks = element("div", { class: "marks", "aria-hidden": "true" });
@@ -38,7 +46,10 @@ export function player(bar, clock, events) {
   }
   const shown = element("output", { class: "time" });
   const chosen = element("select", {
-    "aria-label": "Speed", onchange: (event) => { clock.speed = Number(event.target.value); },
+    "aria-label": "Speed",
+    onchange: (event) => {
+      clock.speed = Number(event.target.value);
+    },
   });
   for (const speed of [...speeds(clock.speed)].reverse()) {
     chosen.append(element("option", { value: speed, selected: speed === clock.speed }, speedText(speed)));

@@ -1,6 +1,6 @@
 // The data of the page, with a value for each sample where the file has one number for all of them.
-// In: the JSON text that bg-workbench's `page/data.rs` writes. Out: the same as objects; tracks of bodies and joints as arrays
-// of numbers, x y z (w) of one sample after the other.
+// In: the JSON text that bg-workbench's `page/data.rs` writes. Out: the same as objects; tracks of bodies and joints
+// as arrays of numbers, x y z (w) of one sample after the other.
 
 /** A series as an array of `count` values. */
 export function filled(series, count) {
@@ -29,7 +29,8 @@ function motion({ times, bodies, ground, joints }) {
 export function read(text) {
   const data = JSON.parse(text);
   const chart = ({ curves, ...rest }) => ({
-    ...rest, curves: curves.map((curve) => ({ ...curve, values: filled(curve.values, data.times.length) })),
+    ...rest,
+    curves: curves.map((curve) => ({ ...curve, values: filled(curve.values, data.times.length) })),
   });
   return {
     ...data,

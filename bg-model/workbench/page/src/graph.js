@@ -1,5 +1,6 @@
 // The bond-graph picture: hover a bond for its effort, flow and power over time.
-// In: the section with the SVG, the bonds of the page's data, the charts. Out: a panel with the bond's charts; a click keeps it.
+// In: the section with the SVG, the bonds of the page's data, the charts. Out: a panel with the bond's charts; a click
+// keeps it.
 
 import { filled } from "./data.js";
 import { element } from "./page.js";
@@ -15,7 +16,9 @@ export function power(effort, flow) {
 /** What the panel shows of bond `index`: its charts' curves. */
 export function curvesOf(data, index) {
   const bond = data.bonds[index];
-  const [effort, flow] = [bond.effort, bond.flow].map((list) => list.map((at) => filled(data.series[at], data.times.length)));
+  const [effort, flow] = [bond.effort, bond.flow].map((list) =>
+    list.map((at) => filled(data.series[at], data.times.length)),
+  );
   const named = (all) => all.map((values, axis) => ({ name: all.length > 1 ? AXES[axis] : "", values }));
   return [
     { title: "effort", unit: bond.effort_unit, curves: named(effort) },
@@ -40,10 +43,15 @@ function sizes(section) {
     picture.style.width = `${scale * width}px`;
   };
   const button = (text, title, act) => element("button", { type: "button", title, onclick: act }, text);
-  section.append(element("div", { class: "sizes" },
-    button("all", "Show all of it", () => show(fit())),
-    button("\u2212", "Smaller", () => show(scale / 1.25)),
-    button("+", "Larger", () => show(scale * 1.25))));
+  section.append(
+    element(
+      "div",
+      { class: "sizes" },
+      button("all", "Show all of it", () => show(fit())),
+      button("\u2212", "Smaller", () => show(scale / 1.25)),
+      button("+", "Larger", () => show(scale * 1.25)),
+    ),
+  );
   show(scale);
 }
 
@@ -65,7 +73,11 @@ export function graph(section, data, charts) {
       groups.forEach((other) => other.classList.toggle("chosen", other.dataset.bond === group.dataset.bond));
       const heading = element("h3", { class: "bond-name" }, data.bonds[index].name);
       panel.replaceChildren(heading);
-      shown = { index, charts: curvesOf(data, index).map((chart) => charts.add(panel, data.times, chart, HEIGHT)), isKept };
+      shown = {
+        index,
+        charts: curvesOf(data, index).map((chart) => charts.add(panel, data.times, chart, HEIGHT)),
+        isKept,
+      };
     }
     shown.isKept = isKept;
     panel.classList.toggle("kept", isKept);
@@ -77,7 +89,9 @@ export function graph(section, data, charts) {
     });
     const keep = () => show(group, !(shown.isKept && shown.index === Number(group.dataset.bond)));
     group.addEventListener("click", keep);
-    group.addEventListener("keydown", (event) => { if (event.key === "Enter") keep(); });
+    group.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") keep();
+    });
   }
   return { show: (index) => show(section.querySelector(`g.bond[data-bond="${index}"]`), false) };
 }

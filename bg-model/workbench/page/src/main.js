@@ -1,8 +1,12 @@
 // The report page: reads the data that the program wrote into it and makes its sections move.
-// In: `<script type="application/json" id="data">` and the packed texts, whose form bg-workbench's `page/data.rs` says. Out: the page in motion.
+// In: `<script type="application/json" id="data">` and the packed texts, whose form bg-workbench's `page/data.rs`
+// says. Out: the page in motion.
 
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import "./view.css";
+import "./charts.css";
+import "./player.css";
 import { Charts } from "./charts.js";
 import { Clock } from "./clock.js";
 import { player } from "./controls.js";
@@ -24,7 +28,10 @@ const clock = new Clock(data.times[0] ?? 0, data.times.at(-1) ?? 0);
 const charts = new Charts(clock);
 
 /** After the first frame is on the screen: what comes then does not keep the page from being seen. */
-const painted = () => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve))); });
+const painted = () =>
+  new Promise((resolve) => {
+    requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve)));
+  });
 
 /** Hands the images their SVG texts. */
 async function draw() {

@@ -1,6 +1,7 @@
 // The modes of the linearised machine: a table, each with a button that lets the machine swing in it.
-// In: the modes of the page's data, the view, the clock. Out: buttons. The swing is scaled to be seen: the point that moves
-// most moves a tenth of the machine, or a body turns by a quarter of a radian; every mode is shown with the same period.
+// In: the modes of the page's data, the view, the clock. Out: buttons. The swing is scaled to be seen: the point that
+// moves most moves a tenth of the machine, or a body turns by a quarter of a radian; every mode is shown with the same
+// period.
 
 import { Quaternion, Vector3 } from "three";
 

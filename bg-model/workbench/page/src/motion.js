@@ -11,7 +11,9 @@ export function motion(section, animation, clock) {
   try {
     view = new MachineView(place, animation, clock);
   } catch (fault) {
-    place.append(element("p", { class: "note" }, `The machine cannot be drawn: this browser gives no WebGL (${fault.message}).`));
+    place.append(
+      element("p", { class: "note" }, `The machine cannot be drawn: this browser gives no WebGL (${fault.message}).`),
+    );
     return null;
   }
   place.append(viewButtons(view));
@@ -24,7 +26,8 @@ export function motion(section, animation, clock) {
 }
 
 function viewButtons(view) {
-  const button = (name) => element("button", { type: "button", title: `Look at all of it: ${name}`, onclick: () => view.look(name) }, name);
+  const button = (name) =>
+    element("button", { type: "button", title: `Look at all of it: ${name}`, onclick: () => view.look(name) }, name);
   return element("div", { class: "views" }, ...Object.keys(VIEWS).map(button));
 }
 
@@ -41,17 +44,30 @@ function tips(place, view) {
     tip.style.left = `${Math.min(event.clientX - left + 12, width - tip.offsetWidth - 4)}px`;
     tip.style.top = `${event.clientY - top + 14}px`;
   });
-  place.addEventListener("pointerleave", () => { tip.hidden = true; });
+  place.addEventListener("pointerleave", () => {
+    tip.hidden = true;
+  });
 }
 
 function forceOptions(view) {
   const box = element("input", { type: "checkbox", checked: true, onchange: () => view.forces(box.checked) });
   const scale = element("input", {
-    type: "range", min: -1, max: 2, step: 0.01, value: 0, "aria-label": "Length of the arrows",
+    type: "range",
+    min: -1,
+    max: 2,
+    step: 0.01,
+    value: 0,
+    "aria-label": "Length of the arrows",
     oninput: () => view.forces(box.checked, 10 ** Number(scale.value)),
   });
   const most = `up to ${number(view.arrows.largest, 3)} N`;
-  return element("div", { class: "option" }, element("label", { class: "check" }, box, "joint forces"), scale, element("span", { class: "note" }, most));
+  return element(
+    "div",
+    { class: "option" },
+    element("label", { class: "check" }, box, "joint forces"),
+    scale,
+    element("span", { class: "note" }, most),
+  );
 }
 
 function traceOptions(view) {
@@ -61,10 +77,25 @@ function traceOptions(view) {
       chip.setAttribute("aria-pressed", String(isShown));
       view.trace(point, isShown);
     };
-    const chip = element("button", { type: "button", class: "chip", "aria-pressed": "false", style: `--hue: var(--hue-${point.body % 7})`, onclick: toggle }, point.name);
+    const chip = element(
+      "button",
+      {
+        type: "button",
+        class: "chip",
+        "aria-pressed": "false",
+        style: `--hue: var(--hue-${point.body % 7})`,
+        onclick: toggle,
+      },
+      point.name,
+    );
     if (index === 0) toggle();
     return chip;
   });
   const list = element("div", { class: "chips" }, ...chips);
-  return element("details", { class: "option traces", open: chips.length <= 8 }, element("summary", {}, "paths of points"), list);
+  return element(
+    "details",
+    { class: "option traces", open: chips.length <= 8 },
+    element("summary", {}, "paths of points"),
+    list,
+  );
 }

@@ -1,9 +1,26 @@
 // The machine in motion.
-// In: the animation of the page's data, a clock. Out: a view that can be turned, with bodies, ground, traces and forces.
+// In: the animation of the page's data, a clock. Out: a view that can be turned, with bodies, ground, traces and
+// forces.
 
 import {
-  AmbientLight, AxesHelper, Box3, Color, ConeGeometry, DirectionalLight, GridHelper, Group, HemisphereLight, Mesh, MeshStandardMaterial,
-  PerspectiveCamera, Quaternion, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
+  AmbientLight,
+  AxesHelper,
+  Box3,
+  Color,
+  ConeGeometry,
+  DirectionalLight,
+  GridHelper,
+  Group,
+  HemisphereLight,
+  Mesh,
+  MeshStandardMaterial,
+  PerspectiveCamera,
+  Quaternion,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Arrows } from "./arrows.js";
@@ -52,14 +69,19 @@ export class MachineView {
     this.controls.enableZoom = false;
     this.controls.addEventListener("change", () => this.draw());
     // The wheel scrolls the page until the reader has clicked into the view or holds Ctrl.
-    const zooms = (event) => { this.controls.enableZoom = event.ctrlKey || event.metaKey || document.activeElement === this.canvas; };
+    const zooms = (event) => {
+      this.controls.enableZoom = event.ctrlKey || event.metaKey || document.activeElement === this.canvas;
+    };
     place.addEventListener("wheel", zooms, { capture: true, passive: true });
     this.look("3-D");
 
     new ResizeObserver(() => this.#resize()).observe(place);
     this.#resize();
     clock.subscribe(() => this.#follow());
-    onScheme(() => { this.#tint(); this.draw(); });
+    onScheme(() => {
+      this.#tint();
+      this.draw();
+    });
   }
 
   /** What the machine passes over the run. */
@@ -69,8 +91,14 @@ export class MachineView {
     for (const { at } of ground) box.expandByPoint(new Vector3(...at));
     for (const track of bodies) {
       const near = track.solids.flatMap(({ at, shape }) => {
-        const reach = Math.max(...(shape.edges ?? []).map((edge) => edge / 2), shape.radius ?? 0, (shape.length ?? 0) / 2);
-        return [-1, 1].flatMap((sign) => [0, 1, 2].map((axis) => at.map((x, k) => (k === axis ? x + 0.7 * sign * reach : x))));
+        const reach = Math.max(
+          ...(shape.edges ?? []).map((edge) => edge / 2),
+          shape.radius ?? 0,
+          (shape.length ?? 0) / 2,
+        );
+        return [-1, 1].flatMap((sign) =>
+          [0, 1, 2].map((axis) => at.map((x, k) => (k === axis ? x + 0.7 * sign * reach : x))),
+        );
       });
       const points = [[0, 0, 0], ...track.points.map(({ at }) => at), ...near];
       const stride = Math.max(1, Math.floor(times.length / 300));
@@ -81,7 +109,10 @@ export class MachineView {
 
   #light() {
     this.scene.add(new AmbientLight(0xffffff, 0.55), new HemisphereLight(0xffffff, 0x8090a0, 1.1));
-    for (const [direction, strength] of [[[0.6, 1, 0.9], 1.9], [[-0.8, 0.3, 0.5], 0.6]]) {
+    for (const [direction, strength] of [
+      [[0.6, 1, 0.9], 1.9],
+      [[-0.8, 0.3, 0.5], 0.6],
+    ]) {
       const light = new DirectionalLight(0xffffff, strength);
       light.position.set(...direction);
       this.scene.add(light);
@@ -95,14 +126,21 @@ export class MachineView {
     const cell = 10 ** Math.floor(Math.log10(this.size / 2));
     const cells = 2 * Math.ceil(this.size / cell);
     this.grid = new GridHelper(cells * cell, cells);
-    this.grid.position.set(cell * Math.round(middle.x / cell), min.y - 0.05 * this.size, cell * Math.round(middle.z / cell));
+    this.grid.position.set(
+      cell * Math.round(middle.x / cell),
+      min.y - 0.05 * this.size,
+      cell * Math.round(middle.z / cell),
+    );
     this.axes = new AxesHelper(0.09 * this.size);
     this.axes.position.set(min.x - 0.08 * this.size, this.grid.position.y, max.z + 0.04 * this.size);
     this.support = new MeshStandardMaterial({ roughness: 0.8 });
     const height = 0.035 * this.size;
     const supports = new Group();
     for (const { name, at } of this.animation.ground) {
-      const cone = new Mesh(new ConeGeometry(0.6 * height, height, 4).rotateY(Math.PI / 4).translate(0, -height / 2, 0), this.support);
+      const cone = new Mesh(
+        new ConeGeometry(0.6 * height, height, 4).rotateY(Math.PI / 4).translate(0, -height / 2, 0),
+        this.support,
+      );
       cone.position.set(...at);
       cone.userData.label = `ground.${name}`;
       supports.add(cone);
@@ -129,7 +167,12 @@ export class MachineView {
     const count = this.animation.times.length;
     const all = this.animation.bodies.flatMap((track, index) => {
       const own = [{ name: "centre", at: [0, 0, 0] }, ...track.points];
-      return own.map(({ name, at }) => ({ key: `${index}:${name}`, name: `${track.name}.${name}`, body: index, path: path(track, at, count) }));
+      return own.map(({ name, at }) => ({
+        key: `${index}:${name}`,
+        name: `${track.name}.${name}`,
+        body: index,
+        path: path(track, at, count),
+      }));
     });
     return all.sort((a, b) => lengthOf(b.path) - lengthOf(a.path));
   }
@@ -206,7 +249,7 @@ export class MachineView {
     this.draw();
   }
 
-  /** Shows the poses of `swing(now)`, which gives the bodies' positions and orientations, in place of the run's; `null` ends that. */
+  /** Shows the poses that `swing(now)` gives, positions and orientations, in place of the run's; `null` ends that. */
   swinging(swing) {
     this.swing = swing;
     this.arrows.group.visible = this.showsForces !== false && !swing;
@@ -242,7 +285,9 @@ export class MachineView {
     const at = new Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height);
     const ray = new Raycaster();
     ray.setFromCamera(at, this.camera);
-    const hit = ray.intersectObjects(this.scene.children, true).find(({ object }) => object.userData.label && shown(object));
+    const hit = ray
+      .intersectObjects(this.scene.children, true)
+      .find(({ object }) => object.userData.label && shown(object));
     if (!hit) return null;
     const joint = this.arrows.arrows.findIndex(({ shaft, tip }) => hit.object === shaft || hit.object === tip);
     const { label } = hit.object.userData;

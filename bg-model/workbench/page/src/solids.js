@@ -2,8 +2,18 @@
 // In: a body of the page's data, the size of the machine (m). Out: a group in the body's axes.
 
 import {
-  BoxGeometry, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshStandardMaterial,
-  Quaternion, SphereGeometry, Vector3,
+  BoxGeometry,
+  CylinderGeometry,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  MeshStandardMaterial,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
 } from "three";
 
 const UP = new Vector3(0, 1, 0);
@@ -51,7 +61,13 @@ export function ball(at, radius, material) {
 /** The materials of a body: its faces, its edges. */
 export function materials() {
   return {
-    faces: new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }),
+    faces: new MeshStandardMaterial({
+      roughness: 0.55,
+      metalness: 0.05,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    }),
     edges: new LineBasicMaterial({ transparent: true, opacity: 0.55 }),
   };
 }
@@ -72,6 +88,8 @@ export function body({ name, solids, points }, size, { faces, edges }) {
     }
     group.add(ball([0, 0, 0], 2.6 * thin, faces));
   }
-  group.traverse((part) => { if (part.isMesh) part.userData.label = name; });
+  group.traverse((part) => {
+    if (part.isMesh) part.userData.label = name;
+  });
   return group;
 }

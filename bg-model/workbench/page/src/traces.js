@@ -1,7 +1,18 @@
 // Paths of points of the bodies over the run.
 // In: a body's track and a point in its axes. Out: a faint line of the whole path and a strong one of what has passed.
 
-import { BufferAttribute, BufferGeometry, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3 } from "three";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Group,
+  Line,
+  LineBasicMaterial,
+  Mesh,
+  MeshBasicMaterial,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
+} from "three";
 import { between } from "./clock.js";
 
 /** The place of a point of the body at sample `k`, m. */
@@ -35,7 +46,9 @@ export class Trace {
     this.strong = new LineBasicMaterial();
     this.dot = new Mesh(new SphereGeometry(0.009 * size, 16, 12), new MeshBasicMaterial());
     this.group = new Group().add(new Line(geometry, this.faint), new Line(this.passed, this.strong), this.dot);
-    this.group.children.forEach((part) => { part.frustumCulled = false; });
+    this.group.children.forEach((part) => {
+      part.frustumCulled = false;
+    });
   }
 
   tint(shade) {

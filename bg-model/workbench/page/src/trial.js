@@ -1,11 +1,21 @@
 // What a test sees of the page: with `#test` in the address it plays, scrubs, looks, and writes what it finds into the
-// document, as JSON in `<pre id="verdict">`. A browser that writes out its document waits for that: the loader holds it.
+// document, as JSON in `<pre id="verdict">`. A browser that writes out its document waits for that: the loader holds
+// it.
 
 import { element } from "./page.js";
 
-const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
+const pause = (milliseconds) =>
+  new Promise((resolve) => {
+    setTimeout(resolve, milliseconds);
+  });
 /** The next frame of the screen; a browser that draws none while nothing moves is not waited for. */
-const frame = () => Promise.race([pause(200), new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); })]);
+const frame = () =>
+  Promise.race([
+    pause(200),
+    new Promise((resolve) => {
+      requestAnimationFrame(() => requestAnimationFrame(resolve));
+    }),
+  ]);
 
 /* global hold */
 
@@ -38,6 +48,25 @@ export async function trial(start) {
   hold?.contentDocument.close();
 }
 
+/** How far a body moves in the first mode, m, and how far off it is when the time is set again. */
+async function swing(view, clock, poses) {
+  const button = document.querySelector("button[data-mode]:not([hidden])");
+  if (!view || !button) return null;
+  const before = poses();
+  button.click();
+  const apart = (a, b) => Math.max(...a.map((place, body) => Math.hypot(...place.map((x, k) => x - b[body][k]))));
+  await pause(300);
+  const first = poses();
+  // A busy machine may be slow with the next frame.
+  for (let waited = 0; apart(first, poses()) < 1e-3 && waited < 5000; waited += 50) await pause(50);
+  const moved = apart(first, poses());
+  const pressed = button.getAttribute("aria-pressed");
+  clock.seek(clock.time * 0.5);
+  clock.seek(clock.time * 2);
+  await frame();
+  return { moved, pressed, back: apart(before, poses()) };
+}
+
 async function found(verdict, { clock, charts, view, picture }) {
   await frame();
   clock.speed = (clock.end - clock.start) / 2;
@@ -61,6 +90,7 @@ async function found(verdict, { clock, charts, view, picture }) {
   await frame();
   verdict.pressed_to = clock.time;
   verdict.colours = colours(view);
+  verdict.swing = await swing(view, clock, poses);
   if (picture) {
     picture.show(0);
     await frame();

@@ -18,10 +18,11 @@ use crate::Program;
 use crate::files::{console, whole};
 use crate::inputs;
 use crate::linear::equilibrium;
-use crate::output::{Claimed, Exhibits, OutputError, Places, Table};
+use crate::output::{Claimed, OutputError, Places, Table};
 use crate::page::{Parameter, Views};
 use crate::parameters::{self, Chosen};
 use crate::scenes::{Scene, own_parameters};
+use crate::shown::Exhibits;
 use crate::summary::Summary;
 
 /// A run, and why it stopped before its end, if it did.
