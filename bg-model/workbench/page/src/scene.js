@@ -4,14 +4,16 @@
 
 import {
   AmbientLight,
-  AxesHelper,
   Box3,
+  BufferGeometry,
   Color,
   ConeGeometry,
   DirectionalLight,
   GridHelper,
   Group,
   HemisphereLight,
+  Line,
+  LineBasicMaterial,
   Mesh,
   MeshStandardMaterial,
   PerspectiveCamera,
@@ -131,7 +133,7 @@ export class MachineView {
       min.y - 0.05 * this.size,
       cell * Math.round(middle.z / cell),
     );
-    this.axes = new AxesHelper(0.09 * this.size);
+    this.axes = triad(0.09 * this.size);
     this.axes.position.set(min.x - 0.08 * this.size, this.grid.position.y, max.z + 0.04 * this.size);
     this.support = new MeshStandardMaterial({ roughness: 0.8 });
     const height = 0.035 * this.size;
@@ -158,7 +160,7 @@ export class MachineView {
     this.support.color.set(colour("axis"));
     this.grid.material.vertexColors = false;
     this.grid.material.color.set(colour("grid"));
-    this.axes.setColors(...["hue-1", "hue-2", "hue-0"].map((name) => new Color(colour(name))));
+    this.axes.children.forEach((line, axis) => line.material.color.set(hue(axis)));
     for (const [key, trace] of this.traces) trace.tint(hue(Number(key.split(":")[0])));
   }
 
@@ -308,4 +310,13 @@ export class MachineView {
 /** Whether an object and all it is part of are visible. */
 function shown(object) {
   return object === null || (object.visible && shown(object.parent));
+}
+
+/** Three lines along x, y and z, which get the colours of these components in the charts. */
+function triad(length) {
+  const line = (axis) => {
+    const end = new Vector3().setComponent(axis, length);
+    return new Line(new BufferGeometry().setFromPoints([new Vector3(), end]), new LineBasicMaterial());
+  };
+  return new Group().add(...[0, 1, 2].map(line));
 }

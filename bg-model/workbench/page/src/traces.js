@@ -8,7 +8,7 @@ import {
   Line,
   LineBasicMaterial,
   Mesh,
-  MeshBasicMaterial,
+  MeshStandardMaterial,
   Quaternion,
   SphereGeometry,
   Vector3,
@@ -44,7 +44,7 @@ export class Trace {
     this.passed = new BufferGeometry().setAttribute("position", new BufferAttribute(places, 3));
     this.faint = new LineBasicMaterial({ transparent: true, opacity: 0.28 });
     this.strong = new LineBasicMaterial();
-    this.dot = new Mesh(new SphereGeometry(0.009 * size, 16, 12), new MeshBasicMaterial());
+    this.dot = new Mesh(new SphereGeometry(0.009 * size, 16, 12), new MeshStandardMaterial({ roughness: 0.5 }));
     this.group = new Group().add(new Line(geometry, this.faint), new Line(this.passed, this.strong), this.dot);
     this.group.children.forEach((part) => {
       part.frustumCulled = false;
