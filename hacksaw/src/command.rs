@@ -14,7 +14,7 @@ use crate::columns::{has_reference_columns, reference_columns};
 use crate::figures::FIGURES;
 use crate::mechanism::Hacksaw;
 use crate::precision::case;
-use crate::{checks, summary};
+use crate::{checks, sources, summary};
 
 /// Does what the arguments ask for and gives the exit code.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -47,6 +47,10 @@ impl Extras for Paper {
 
     fn columns(&self, run: &Recording) -> Option<Vec<String>> {
         has_reference(run).then(reference_columns)
+    }
+
+    fn source(&self, name: &str) -> &'static str {
+        sources::source(name)
     }
 
     fn page(&self, _: &'static Description) -> Page {

@@ -20,4 +20,5 @@ pub mod figures;
 pub mod mechanism;
 pub mod precision;
 pub mod scenes;
+mod sources;
 pub mod summary;

@@ -29,6 +29,11 @@ pub trait Extras {
         None
     }
 
+    /// Where the value of the parameter called `name` is from, such as `paper` or `assumed`; empty where nothing is said.
+    fn source(&self, _name: &str) -> &'static str {
+        ""
+    }
+
     /// The texts of the overview page.
     fn page(&self, model: &'static Description) -> Page {
         Page {

@@ -57,6 +57,8 @@
 //! | [`linear`] | where the mechanism is in equilibrium, and how it moves near a state |
 //! | [`summary`] | what a run comes to in numbers |
 //! | [`overview`] | all of it on one page |
+//! | [`page`] | the same in motion, in one file that needs nothing else |
+//! | [`shown`] | which page shows a run, and with which files |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
 //! | [`cookbook`] | short programs for what comes up after the first run |
@@ -71,6 +73,7 @@ pub mod inputs;
 pub mod linear;
 pub mod output;
 pub mod overview;
+pub mod page;
 pub mod parameters;
 pub mod picture;
 pub mod precision;
@@ -79,6 +82,7 @@ pub mod report;
 pub mod request;
 pub mod samples;
 pub mod scenes;
+pub mod shown;
 pub mod summary;
 
 #[doc = include_str!("../cookbook.md")]

@@ -14,14 +14,13 @@ use bg_model::simulation::Recording;
 use crate::extras::Page as Texts;
 use crate::figures::{Figure, FigureError};
 use crate::files::{FileError, RunFolder, whole};
-use crate::overview;
+use crate::shown::{Exhibits, OVERVIEW, Page};
 use crate::summary::Summary;
 
 /// The names of the files beside the figures.
 const CSV: &str = "trajectory.csv";
 const TEXT: &str = "summary.txt";
 const JSON: &str = "summary.json";
-const PAGE: &str = "index.html";
 
 /// Where the files of a run go.
 #[derive(Clone, Debug)]
@@ -32,6 +31,17 @@ pub struct Places {
     pub folder: Option<PathBuf>,
     /// The figures that are wanted, with the overview page; `None` without a page.
     pub figures: Option<Vec<Figure>>,
+    /// The report that is wanted in place of the overview page; the figures are then in it.
+    pub report: Option<ReportFiles>,
+}
+
+/// The names of the files of a report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReportFiles {
+    /// The page.
+    pub page: String,
+    /// The machine in motion as binary glTF, where that is wanted.
+    pub glb: Option<String>,
 }
 
 /// An output that fails.
@@ -70,16 +80,27 @@ impl Places {
             csv: csv.filter(|csv| *csv != folder.join(CSV)).map(Path::to_owned),
             folder: (figures.is_some() || csv.is_none()).then(|| folder.to_owned()),
             figures,
+            report: None,
         }
+    }
+
+    /// The same with a report in `folder`.
+    #[must_use]
+    pub fn with_report(self, folder: &Path, report: ReportFiles) -> Self {
+        Self { folder: Some(folder.to_owned()), report: Some(report), ..self }
     }
 
     /// The names of the files that may go into the folder.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let csv = self.csv.is_none().then_some(CSV);
+        let names = csv.into_iter().chain([TEXT, JSON]).map(str::to_owned);
+        if let Some(ReportFiles { page, glb }) = &self.report {
+            return names.chain([page.clone()]).chain(glb.clone()).collect();
+        }
         let figures = self.figures.iter().flatten().map(|figure| figure.file.clone());
-        let page = self.figures.as_ref().map(|_| PAGE);
-        csv.into_iter().chain([TEXT, JSON]).chain(page).map(str::to_owned).chain(figures).collect()
+        let page = self.figures.as_ref().map(|_| OVERVIEW.to_owned());
+        names.chain(page).chain(figures).collect()
     }
 
     /// Claims the folder and tries the CSV file, without changing what is there.
@@ -136,16 +157,23 @@ pub struct Written {
     pub csv: Option<PathBuf>,
     /// The folder and the number of the run's files in it.
     pub folder: Option<(PathBuf, usize)>,
-    /// Whether the overview page is in it.
-    pub page: bool,
+    /// The page in it that shows the run.
+    pub page: Option<String>,
     /// What failed.
     pub faults: Vec<OutputError>,
 }
 
 impl Claimed {
     /// Writes the CSV file from `output` and everything else from `run` and `summary`, whose list of files it fills. `texts` are
-    /// those of the page.
-    pub fn write(self, output: &Table<'_>, run: &Recording, texts: &Texts, summary: &mut Summary) -> Written {
+    /// those of the page; `report` is what the report shows beside them, where one is wanted.
+    pub fn write(
+        self,
+        output: &Table<'_>,
+        run: &Recording,
+        texts: &Texts,
+        report: Option<&Exhibits<'_>>,
+        summary: &mut Summary,
+    ) -> Written {
         let mut written = Written::default();
         if let Some(csv) = &self.places.csv {
             match whole::write(csv, |file| output.write(file)) {
@@ -160,35 +188,35 @@ impl Claimed {
             None => own.map(|_| PathBuf::from(CSV)),
         };
         let mut figures = Vec::new();
-        // A run that failed before its first sample has nothing to draw.
         let has_page = self.places.figures.is_some();
-        for figure in self.places.figures.into_iter().flatten().filter(|_| !run.times.is_empty()) {
+        // A run that failed before its first sample has nothing to draw; a report has charts of the usual ones.
+        let is_drawn = |figure: &Figure| !run.times.is_empty() && report.is_none_or(|report| report.is_own(figure));
+        for figure in self.places.figures.into_iter().flatten().filter(is_drawn) {
             match (figure.draw)(run) {
                 Ok(svg) => figures.push((figure, svg)),
                 Err(source) => written.faults.push(OutputError::Figure { file: figure.file, source }),
             }
         }
-        let page = has_page.then_some(Page { texts, figures, data });
         summary.files = written.csv.iter().cloned().collect();
+        let page = match (&self.places.report, report) {
+            (Some(files), Some(exhibits)) => {
+                Some(Page::Report { files, exhibits, texts, figures, run, rows: &output.samples.times })
+            }
+            _ => has_page.then_some(Page::Overview { texts, figures, data }),
+        };
         match fill(folder, &path, own, page.as_ref(), summary) {
-            Ok(count) => (written.folder, written.page) = (Some((path, count)), page.is_some()),
+            Ok(count) => {
+                written.folder = Some((path, count));
+                written.page = page.map(|page| page.name().to_owned());
+            }
             Err(fault) => written.faults.push(fault.into()),
         }
         written
     }
 }
 
-/// What is on the overview page.
-struct Page<'a> {
-    texts: &'a Texts,
-    /// The figures, drawn.
-    figures: Vec<(Figure, String)>,
-    /// The CSV file as seen from the page, where it is below it.
-    data: Option<PathBuf>,
-}
-
 /// Writes the files of the folder at `path` and gives their number: the CSV file where there is an `output` to write, the
-/// page and its figures where there is one, and the summary.
+/// page and what comes with it where there is one, and the summary.
 fn fill(
     mut folder: RunFolder,
     path: &Path,
@@ -196,23 +224,22 @@ fn fill(
     page: Option<&Page<'_>>,
     summary: &mut Summary,
 ) -> Result<usize, FileError> {
-    let figures = page.map_or(&[][..], |page| &page.figures);
-    let names = output.map(|_| CSV).into_iter().chain([TEXT, JSON]).chain(page.map(|_| PAGE)).map(str::to_owned);
-    let names = names.chain(figures.iter().map(|(figure, _)| figure.file.clone()));
+    let more = page.map_or_else(Vec::new, Page::more);
+    let names = output.map(|_| CSV).into_iter().chain([TEXT, JSON]).chain(page.map(Page::name)).map(str::to_owned);
+    let names = names.chain(more.iter().map(|(name, _)| name.clone()));
     summary.files.extend(names.map(|name| path.join(name)));
 
     if let Some(output) = output {
         folder.write(CSV, |file| output.write(file))?;
     }
-    for (figure, svg) in figures {
-        folder.write_text(&figure.file, svg)?;
+    for (name, bytes) in &more {
+        folder.write(name, |file| file.write_all(bytes))?;
     }
     folder.write_text(TEXT, &summary.to_string())?;
     let json = serde_json::to_string_pretty(summary).expect("a summary has text keys only");
     folder.write_text(JSON, &(json + "\n"))?;
-    if let Some(Page { texts, figures, data }) = page {
-        let drawn: Vec<Figure> = figures.iter().map(|(figure, _)| figure.clone()).collect();
-        folder.write_text(PAGE, &overview::page(texts, summary, &drawn, data.as_deref()))?;
+    if let Some(page) = page {
+        folder.write_text(page.name(), &page.html(summary))?;
     }
     Ok(folder.publish()?.len())
 }
@@ -251,6 +278,12 @@ mod tests {
         let alone = Places::new(out, Some(csv), None);
         assert_eq!((alone.csv.as_deref(), alone.folder), (Some(csv), None));
         assert_eq!(Places::new(out, None, None).names(), [CSV, TEXT, JSON]);
+        let report = ReportFiles { page: "p.html".to_owned(), glb: Some("p.glb".to_owned()) };
+        let report = Places::new(out, Some(csv), None).with_report(out, report);
+        assert_eq!(
+            (report.folder.as_deref(), report.names().join(" ").as_str()),
+            (Some(out), "summary.txt summary.json p.html p.glb")
+        );
         // The place that the trajectory has anyway.
         let usual = Places::new(out, Some(&out.join(CSV)), figures());
         assert_eq!((usual.csv.as_deref(), usual.names().len()), (None, 6));

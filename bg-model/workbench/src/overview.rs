@@ -66,7 +66,8 @@ pub fn page(texts: &Page, summary: &Summary, figures: &[Figure], data: Option<&P
     page
 }
 
-fn checks(page: &mut String, summary: &Summary) {
+/// The statements with what was measured, as a table below its heading.
+pub(crate) fn checks(page: &mut String, summary: &Summary) {
     write_into(page, format_args!("<h2>{}</h2>\n<table>\n", escaped(summary.heading())));
     *page += "<tr><th>Figure</th><th>Statement</th><th>Measured</th><th></th></tr>\n";
     for check in &summary.checks {
@@ -107,7 +108,7 @@ fn gallery(page: &mut String, texts: &Page, figures: &[Figure]) {
     *page += "</div>\n";
 }
 
-fn write_into(page: &mut String, text: std::fmt::Arguments) {
+pub(crate) fn write_into(page: &mut String, text: std::fmt::Arguments) {
     page.write_fmt(text).expect("writing to a string cannot fail");
 }
 
@@ -118,7 +119,8 @@ fn address(path: &Path) -> String {
     bytes.map(|&byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
 }
 
-fn escaped(text: &str) -> String {
+/// `text` as it stands between tags and in attributes.
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

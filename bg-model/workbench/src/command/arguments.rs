@@ -25,6 +25,8 @@ pub struct Cli {
 pub enum Command {
     /// Run the mechanism (also what the program alone does)
     Run(RunArguments),
+    /// Run the mechanism and write one HTML file that shows it: in motion, in charts, as a graph, with equations and parameters
+    Report(ReportArguments),
     /// List the scenes, or say what a scene left out of the literal model and why
     Scene {
         /// The scene to report on; without it, one line for each
@@ -175,6 +177,25 @@ pub struct RunArguments {
     /// Draw no figures and no overview page; together with --csv nothing is written but that file
     #[arg(long)]
     pub no_figures: bool,
+}
+
+/// A report takes what a run takes; its page is in place of `index.html` and the figures' files.
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    #[command(flatten)]
+    pub run: RunArguments,
+
+    /// Write the machine in motion as binary glTF as well, for other programs
+    #[arg(long)]
+    pub glb: bool,
+
+    /// Linearise and show the modes: where the run is at this time, s; without a number at the equilibrium near the start
+    #[arg(long, value_name = "SECONDS", num_args = 0..=1, value_parser = real, allow_negative_numbers = true)]
+    pub modes: Option<Option<f64>>,
+
+    /// Show an SVG file in the report, such as a diagram of `precision` or `linearize`; can be given again and again
+    #[arg(long, value_name = "FILE.svg")]
+    pub show: Vec<PathBuf>,
 }
 
 /// Where a run starts.

@@ -23,8 +23,9 @@ pub fn record<Me: Scenes>(program: &Program<Me>, arguments: &RecordArguments) ->
     let scene = program.scene_called(&model.scene);
     let name = name.as_deref().unwrap_or(&scene.name);
     let claim = || Ok(Place::claim(out, name, Me::describe().name)?);
-    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin: Begin::Model, claim };
-    let (Outcome { run, failure }, place) = Me::model(scene.index, run)?;
+    let run =
+        Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin: Begin::Model, look: None, claim };
+    let (Outcome { run, failure }, _, place) = Me::model(scene.index, run)?;
     if let Some(failure) = failure {
         return Ok(ended([format!("the run failed, nothing is recorded: {failure}")]));
     }

@@ -6,7 +6,7 @@ use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::Parameters;
 use bg_model::run::{Request, Simulation};
 
-use super::arguments::LinearizeArguments;
+use super::arguments::{IntegrationArguments, LinearizeArguments};
 use super::run::{follow, model, request};
 use super::{InputError, ended};
 use crate::Program;
@@ -30,9 +30,7 @@ const IN_DECADE: f64 = 100.0;
 const MOST_FREQUENCIES: f64 = 2000.0;
 
 pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArguments) -> Result<ExitCode, InputError> {
-    if let Some(value) = arguments.at.filter(|at| !(at.is_finite() && *at >= 0.0)) {
-        return Err(InputError::Range { name: "--at", value, range: "a finite number, at least 0".to_owned() });
-    }
+    check_time("--at", arguments.at)?;
     let values = &arguments.model;
     let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
     chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
@@ -46,6 +44,14 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArgumen
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
     let printed = console::print(&format!("{text}\nwritten: {written}\n"));
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
+}
+
+/// Refuses a time that no run reaches.
+pub fn check_time(name: &'static str, at: Option<f64>) -> Result<(), InputError> {
+    match at.filter(|at| !(at.is_finite() && *at >= 0.0)) {
+        Some(value) => Err(InputError::Range { name, value, range: "a finite number, at least 0".to_owned() }),
+        None => Ok(()),
+    }
 }
 
 /// The names of all files that may be written.
@@ -76,32 +82,40 @@ impl<P: Parameters> MechanismVisitor for Here<'_, P> {
 
     fn visit<Sc: Mechanism>(self) -> Self::Output {
         let model: Sc = model(self.scene, self.scenes, self.chosen)?;
-        match self.arguments.at {
-            None => {
-                let start = values(&Simulation::new(&model).start()?);
-                let rest = equilibrium(&model, 0.0, &start)?;
-                Ok((linearise(&model, 0.0, &rest.x)?, rest.sentence()))
-            }
-            Some(t) => {
-                let x = values(&self.state_at(&model, t)?);
-                Ok((linearise(&model, t, &x)?, format!("where the run is at t = {t:?} s")))
-            }
-        }
+        linearised(&model, self.arguments.at, |t| self.arguments.integration(t))
     }
 }
 
-impl<P> Here<'_, P> {
-    /// The state that a run reaches at `t` (s).
-    fn state_at<Sc: Mechanism>(&self, model: &Sc, t: f64) -> Result<bg_model::run::State, InputError> {
-        if t == 0.0 {
-            return Ok(Simulation::new(model).start()?);
-        }
-        let request = Request { t_end: t, ..request(&self.arguments.integration(t), 0.0, None)? };
-        let outcome = follow(Simulation::of(model, request.clone()), &request)?;
-        match outcome.failure {
-            None => Ok(outcome.run.last),
-            Some(failure) => Err(InputError::NotReached { t, failure }),
-        }
+/// The linear model at `at`, s, and a sentence on where that is; without `at` it is the equilibrium near the start. A run to
+/// `t` (s) is made as `integration` says.
+pub fn linearised<Sc: Mechanism>(
+    model: &Sc,
+    at: Option<f64>,
+    integration: impl Fn(f64) -> IntegrationArguments,
+) -> Result<(StateSpace, String), InputError> {
+    let Some(t) = at else {
+        let start = values(&Simulation::new(model).start()?);
+        let rest = equilibrium(model, 0.0, &start)?;
+        return Ok((linearise(model, 0.0, &rest.x)?, rest.sentence()));
+    };
+    let x = values(&state_at(model, t, &integration(t))?);
+    Ok((linearise(model, t, &x)?, format!("where the run is at t = {t:?} s")))
+}
+
+/// The state that a run reaches at `t` (s).
+fn state_at<Sc: Mechanism>(
+    model: &Sc,
+    t: f64,
+    integration: &IntegrationArguments,
+) -> Result<bg_model::run::State, InputError> {
+    if t == 0.0 {
+        return Ok(Simulation::new(model).start()?);
+    }
+    let request = Request { t_end: t, ..request(integration, 0.0, None)? };
+    let outcome = follow(Simulation::of(model, request.clone()), &request)?;
+    match outcome.failure {
+        None => Ok(outcome.run.last),
+        Some(failure) => Err(InputError::NotReached { t, failure }),
     }
 }
 

@@ -11,6 +11,7 @@ mod linearize;
 mod methods;
 mod precision;
 mod progress;
+mod report;
 mod run;
 
 use std::ffi::OsString;
@@ -34,7 +35,7 @@ use crate::linear::LinearError;
 use crate::output::OutputError;
 use crate::parameters::{self, SettingError};
 use crate::precision::measure::MeasureError;
-use crate::report::{self, Part};
+use crate::report::{self as tables, Part};
 use crate::request::RequestError;
 use crate::samples::Unreadable;
 use crate::scenes::Fixed;
@@ -61,6 +62,8 @@ enum InputError {
     NotReached { t: f64, failure: String },
     #[error("--from {}: {fault}", path.display())]
     From { path: PathBuf, fault: String },
+    #[error("--show {}: {fault}; give an SVG file", path.display())]
+    Show { path: PathBuf, fault: String },
     #[error(transparent)]
     Model(#[from] ParameterError),
     #[error(transparent)]
@@ -92,24 +95,25 @@ pub(crate) fn main<Me: Scenes>(program: &Program<Me>, arguments: impl IntoIterat
         Err(fault) if fault.use_stderr() => return refuse(&one_line(&fault)),
         // Help and version.
         Err(help) => Ok(ended(console::printed(help.print()).err())),
-        Ok(Cli { command: None, run }) => run::simulate(program, &run),
+        Ok(Cli { command: None, run }) => run::simulate(program, &run, None),
         Ok(Cli { command: Some(command), .. }) => obey(program, command),
     };
     outcome.unwrap_or_else(|fault| refuse(&fault))
 }
 
 fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode, InputError> {
-    let print = |scene: &str, part| Ok(say(&report::graph(program.scene_called(scene), Some(part))));
+    let print = |scene: &str, part| Ok(say(&tables::graph(program.scene_called(scene), Some(part))));
     match command {
-        Command::Run(arguments) => run::simulate(program, &arguments),
+        Command::Run(arguments) => run::simulate(program, &arguments, None),
+        Command::Report(arguments) => report::report(program, &arguments),
         Command::Precision(arguments) => precision::measure_all(program, &arguments),
         Command::Golden(GoldenCommand::Record(arguments)) => golden::record(program, &arguments),
         Command::Golden(GoldenCommand::Check(arguments)) => golden::check(program, &arguments),
         Command::Compare(arguments) => compare::compare(program, &arguments),
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
-        Command::Scene { scene: None } => Ok(say(&report::scenes(&program.scenes))),
+        Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.scenes))),
         Command::Scene { scene: Some(name) } => {
-            Ok(say(&report::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))
+            Ok(say(&tables::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))
         }
         Command::Graph(arguments) => graph::graph(program, &arguments),
         Command::States { scene } => print(&scene, Part::States),
@@ -133,6 +137,7 @@ fn command<Me: Mechanism>(program: &Program<Me>) -> clap::Command {
     let texts = &program.texts;
     let command = Cli::command().name(texts.name.clone()).bin_name(texts.name.clone()).version(texts.version.clone());
     let command = every(command.about(texts.about.clone()).after_help(help.clone()), program);
+    let command = command.mut_subcommand("report", |report| report.after_help(help.clone()));
     command.mut_subcommand("run", |run| run.after_help(help))
 }
 

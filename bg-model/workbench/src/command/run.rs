@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
+use bg_model::description::ParameterInfo;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::Parameters;
 use bg_model::run::{Request, RunError, Simulation, State, Stopped, Trajectory, sample_times};
@@ -11,14 +12,17 @@ use bg_model::simulation::MissingColumn;
 
 use super::arguments::{IntegrationArguments, RunArguments, Start};
 use super::progress::{over_time, ticks};
+use super::report::Look;
 use super::{InputError, ended};
 use crate::Program;
 use crate::files::{console, whole};
 use crate::inputs;
 use crate::linear::equilibrium;
 use crate::output::{Claimed, OutputError, Places, Table};
+use crate::page::{Parameter, Views};
 use crate::parameters::{self, Chosen};
 use crate::scenes::{Scene, own_parameters};
+use crate::shown::Exhibits;
 use crate::summary::Summary;
 
 /// A run, and why it stopped before its end, if it did.
@@ -27,7 +31,12 @@ pub struct Outcome {
     pub failure: Option<String>,
 }
 
-pub fn simulate<Me: Scenes>(program: &Program<Me>, arguments: &RunArguments) -> Result<ExitCode, InputError> {
+/// Runs and writes; `look` is what a report is to show beside the run, where one is wanted.
+pub fn simulate<Me: Scenes>(
+    program: &Program<Me>,
+    arguments: &RunArguments,
+    look: Option<&Look>,
+) -> Result<ExitCode, InputError> {
     let RunArguments { model, integration, .. } = arguments;
     let mut chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
     chosen.inputs = inputs::chosen(&model.input, Me::describe().inputs)?;
@@ -43,13 +52,19 @@ pub fn simulate<Me: Scenes>(program: &Program<Me>, arguments: &RunArguments) -> 
     let scene = program.scene_called(&model.scene);
     let figures = (!arguments.no_figures).then(|| program.extras.figures(scene.description)).flatten();
     let places = Places::new(&arguments.out, arguments.csv.as_deref(), figures);
+    let places = match look {
+        Some(look) => places.with_report(&arguments.out, look.files.clone()),
+        None => places,
+    };
     let claim = || Ok(places.claim()?);
-    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin, claim };
-    let (outcome, claimed) = Me::model(scene.index, run)?;
+    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin, look, claim };
+    let (outcome, views, claimed) = Me::model(scene.index, run)?;
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
     let rows = sample_times(t0, integration.step, integration.t_end);
-    let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, changed(&chosen.values)) {
+    let values = values(&chosen.values, |name| program.extras.source(name));
+    let shown = look.map(|look| (look, &views));
+    let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, &values, shown) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
     };
@@ -117,11 +132,12 @@ pub(super) struct Claiming<'a, P, F> {
     pub chosen: &'a Chosen<P>,
     pub request: Request,
     pub begin: Begin,
+    pub look: Option<&'a Look>,
     pub claim: F,
 }
 
 impl<P: Parameters, C, F: FnOnce() -> Result<C, InputError>> MechanismVisitor for Claiming<'_, P, F> {
-    type Output = Result<(Outcome, C), InputError>;
+    type Output = Result<(Outcome, Views, C), InputError>;
 
     fn visit<Sc: Mechanism>(self) -> Self::Output {
         let model: Sc = model(self.scene, self.scenes, self.chosen)?;
@@ -133,8 +149,9 @@ impl<P: Parameters, C, F: FnOnce() -> Result<C, InputError>> MechanismVisitor fo
         };
         // What cannot be assembled is refused before anything is claimed.
         simulation.start()?;
+        let views = self.look.map(|look| look.before(&model)).transpose()?.unwrap_or_default();
         let claimed = (self.claim)()?;
-        Ok((follow(simulation, &self.request)?, claimed))
+        Ok((follow(simulation, &self.request)?, views, claimed))
     }
 }
 
@@ -157,16 +174,26 @@ fn report<Me>(
     outcome: Outcome,
     rows: &[f64],
     claimed: Claimed,
-    changed_parameters: Vec<String>,
+    values: &[Parameter],
+    shown: Option<(&Look, &Views)>,
 ) -> Result<Vec<OutputError>, MissingColumn> {
     let Outcome { run, failure } = outcome;
     let extras = &program.extras;
     let mut summary = Summary::new(&scene.name, &run, failure, extras.additions(&run)?);
-    summary.changed_parameters = changed_parameters;
+    summary.changed_parameters = changed(values);
     let columns = extras.columns(&run);
     let table = Table { samples: &run.at(rows), columns: columns.as_deref() };
-    let mut written = claimed.write(&table, &run, &extras.page(scene.description), &mut summary);
-    let page = if written.page { "; open index.html there" } else { "" };
+    let texts = extras.page(scene.description);
+    let about = scene.summary();
+    let exhibits = shown.map(|(look, views)| Exhibits {
+        description: scene.description,
+        scene: &about,
+        parameters: values,
+        drawings: &look.drawings,
+        views,
+    });
+    let mut written = claimed.write(&table, &run, &texts, exhibits.as_ref(), &mut summary);
+    let page = written.page.as_ref().map_or_else(String::new, |page| format!("; open {page} there"));
     let printed = console::print(&format!("{summary}\nwritten: {written}{page}\n"));
     written.faults.extend(printed.err().map(OutputError::from));
     Ok(written.faults)
@@ -177,14 +204,21 @@ pub fn request(arguments: &IntegrationArguments, t0: f64, finest: Option<f64>) -
     Ok(arguments.integration().request(t0, finest)?)
 }
 
-/// The parameters that differ from their defaults, as `name = value unit`.
-fn changed<P: Parameters>(values: &P) -> Vec<String> {
+/// The parameters with their values.
+fn values<P: Parameters>(values: &P, source: impl Fn(&str) -> &'static str) -> Vec<Parameter> {
     let table = P::table().iter().enumerate();
-    let changed = table.filter(|(index, info)| values.value(*index) != info.default);
-    changed
-        .map(|(index, info)| {
-            let text = format!("{} = {} {}", info.name, parameters::number(values.value(index)), info.unit);
-            text.trim_end().to_owned()
-        })
-        .collect()
+    let value = |(index, info): (usize, &ParameterInfo)| Parameter {
+        info: info.clone(),
+        value: values.value(index),
+        source: source(info.name),
+    };
+    table.map(value).collect()
+}
+
+/// The parameters that differ from their defaults, as `name = value unit`.
+fn changed(values: &[Parameter]) -> Vec<String> {
+    let text = |Parameter { info, value, .. }: &Parameter| {
+        format!("{} = {} {}", info.name, parameters::number(*value), info.unit).trim_end().to_owned()
+    };
+    values.iter().filter(|parameter| parameter.is_changed()).map(text).collect()
 }

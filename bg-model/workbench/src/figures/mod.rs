@@ -5,6 +5,7 @@
 
 pub mod bode;
 pub mod canvas;
+pub mod compact;
 pub mod outputs;
 pub mod palette;
 pub mod panel;

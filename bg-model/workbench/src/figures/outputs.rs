@@ -22,8 +22,12 @@ const MOST: usize = 60;
 /// A figure for each observed quantity.
 #[must_use]
 pub fn figures(description: &'static Description) -> Vec<Figure> {
-    let quantities = description.outputs.chunk_by(|a, b| a.of == b.of).take(MOST);
-    quantities.map(quantity).collect()
+    quantities(description).take(MOST).map(quantity).collect()
+}
+
+/// The observed quantities, each with its components.
+pub(crate) fn quantities(description: &'static Description) -> impl Iterator<Item = &'static [OutputInfo]> {
+    description.outputs.chunk_by(|a, b| a.of == b.of)
 }
 
 /// The figure of one quantity, given its components.
@@ -99,7 +103,7 @@ fn least_span(range: &Range<f64>) -> f64 {
 }
 
 /// A unit as it is set in print: `kg*m^2/s` as kg·m²/s.
-fn set_unit(unit: &str) -> String {
+pub(crate) fn set_unit(unit: &str) -> String {
     let mut parts = unit.split('^');
     let mut set = parts.next().unwrap_or_default().to_owned();
     for part in parts {

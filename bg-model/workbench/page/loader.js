@@ -1,0 +1,21 @@
+// The first script of a page: unpacks the texts that stand in it as base64 of deflated UTF-8, and starts the script
+// among them. Not bundled; `src/page/mod.rs` writes it into the page as it is.
+const unpacked = async (id) => {
+  const text = document.getElementById(id).textContent;
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).text();
+};
+// A test waits until the page says that it is done: a frame whose document is open keeps it from being loaded.
+const hold = location.hash === "#test" ? document.body.appendChild(document.createElement("iframe")) : null;
+hold?.setAttribute("hidden", "");
+hold?.contentDocument.open();
+unpacked("script").then(
+  (text) => {
+    const script = document.createElement("script");
+    script.textContent = text;
+    document.body.append(script);
+  },
+  (fault) => {
+    document.getElementById("charts").append(`Charts and motion need a browser of 2023 or later: ${fault.message}`);
+  },
+);

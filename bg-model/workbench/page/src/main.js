@@ -1,0 +1,60 @@
+// The report page: reads the data that the program wrote into it and makes its sections move.
+// In: `<script type="application/json" id="data">` and the packed texts, whose form bg-workbench's `page/data.rs`
+// says. Out: the page in motion.
+
+import "uplot/dist/uPlot.min.css";
+import "./style.css";
+import "./view.css";
+import "./charts.css";
+import "./player.css";
+import { Charts } from "./charts.js";
+import { Clock } from "./clock.js";
+import { player } from "./controls.js";
+import { read } from "./data.js";
+import { graph } from "./graph.js";
+import { modes } from "./modes.js";
+import { motion } from "./motion.js";
+import { trial } from "./trial.js";
+
+/* global unpacked */
+
+const faults = [];
+window.addEventListener("error", ({ message }) => faults.push(message));
+window.addEventListener("unhandledrejection", ({ reason }) => faults.push(String(reason)));
+
+const data = read(document.getElementById("data").textContent);
+const section = (name) => document.getElementById(name);
+const clock = new Clock(data.times[0] ?? 0, data.times.at(-1) ?? 0);
+const charts = new Charts(clock);
+
+/** After the first frame is on the screen: what comes then does not keep the page from being seen. */
+const painted = () =>
+  new Promise((resolve) => {
+    requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve)));
+  });
+
+/** Hands the images their SVG texts. */
+async function draw() {
+  const images = [...document.querySelectorAll("img[data-drawing]")];
+  if (images.length === 0) return;
+  const texts = JSON.parse(await unpacked("drawings"));
+  for (const image of images) {
+    image.src = URL.createObjectURL(new Blob([texts[Number(image.dataset.drawing)]], { type: "image/svg+xml" }));
+  }
+}
+
+async function start() {
+  player(section("player"), clock, data.events);
+  for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
+  for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
+  await painted();
+  const view = data.animation ? motion(section("machine"), data.animation, clock) : null;
+  if (data.modes && view) modes(section("modes"), data.modes, view, clock);
+  const bonds = JSON.parse(await unpacked("bonds"));
+  const picture = section("picture") ? graph(section("picture"), bonds, charts) : null;
+  await draw();
+  return { clock, charts, view, picture, faults };
+}
+
+if (location.hash === "#test") trial(start);
+else start().catch((fault) => console.error(fault));

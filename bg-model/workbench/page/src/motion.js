@@ -1,0 +1,101 @@
+// The section of the moving machine: the view and what can be chosen of it.
+// In: the page's data, a clock. Out: the view, or `null` where there is nothing to show it with.
+
+import { element, number } from "./page.js";
+import { MachineView, VIEWS } from "./scene.js";
+
+export function motion(section, animation, clock) {
+  const place = element("div", { class: "view" });
+  section.append(place);
+  let view;
+  try {
+    view = new MachineView(place, animation, clock);
+  } catch (fault) {
+    place.append(
+      element("p", { class: "note" }, `The machine cannot be drawn: this browser gives no WebGL (${fault.message}).`),
+    );
+    return null;
+  }
+  place.append(viewButtons(view));
+  tips(place, view);
+  const options = element("div", { class: "options" });
+  if (view.arrows.largest > 0) options.append(forceOptions(view));
+  options.append(traceOptions(view));
+  section.append(options);
+  return view;
+}
+
+function viewButtons(view) {
+  const button = (name) =>
+    element("button", { type: "button", title: `Look at all of it: ${name}`, onclick: () => view.look(name) }, name);
+  return element("div", { class: "views" }, ...Object.keys(VIEWS).map(button));
+}
+
+/** The name of what the pointer is on. */
+function tips(place, view) {
+  const tip = element("div", { class: "tip", hidden: true });
+  place.append(tip);
+  place.addEventListener("pointermove", (event) => {
+    const text = event.buttons === 0 && event.target === view.canvas ? view.under(event) : null;
+    tip.hidden = text === null;
+    if (text === null) return;
+    const { left, top, width } = place.getBoundingClientRect();
+    tip.textContent = text;
+    tip.style.left = `${Math.min(event.clientX - left + 12, width - tip.offsetWidth - 4)}px`;
+    tip.style.top = `${event.clientY - top + 14}px`;
+  });
+  place.addEventListener("pointerleave", () => {
+    tip.hidden = true;
+  });
+}
+
+function forceOptions(view) {
+  const box = element("input", { type: "checkbox", checked: true, onchange: () => view.forces(box.checked) });
+  const scale = element("input", {
+    type: "range",
+    min: -1,
+    max: 2,
+    step: 0.01,
+    value: 0,
+    "aria-label": "Length of the arrows",
+    oninput: () => view.forces(box.checked, 10 ** Number(scale.value)),
+  });
+  const most = `up to ${number(view.arrows.largest, 3)} N`;
+  return element(
+    "div",
+    { class: "option" },
+    element("label", { class: "check" }, box, "joint forces"),
+    scale,
+    element("span", { class: "note" }, most),
+  );
+}
+
+function traceOptions(view) {
+  const chips = view.points().map((point, index) => {
+    const toggle = () => {
+      const isShown = chip.getAttribute("aria-pressed") !== "true";
+      chip.setAttribute("aria-pressed", String(isShown));
+      view.trace(point, isShown);
+    };
+    const chip = element(
+      "button",
+      {
+        type: "button",
+        class: "chip",
+        "aria-pressed": "false",
+        style: `--hue: var(--hue-${point.body % 7})`,
+        onclick: toggle,
+      },
+      point.name,
+    );
+    if (index === 0) toggle();
+    return chip;
+  });
+  const list = element("div", { class: "chips" }, ...chips);
+  return element(
+    "details",
+    { class: "option traces", open: chips.length <= 8 },
+    element("summary", {}, "paths of points"),
+    list,
+  );
+}

@@ -1,0 +1,61 @@
+//! The command `report`: a run, and one page that shows it.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use bg_model::mechanism::{Mechanism, Scenes};
+
+use super::InputError;
+use super::arguments::{IntegrationArguments, ReportArguments};
+use super::linearize::{check_time, linearised};
+use super::run::simulate;
+use crate::Program;
+use crate::output::ReportFiles;
+use crate::page::{Linearised, Views};
+
+/// What a report is to show beside the run.
+pub struct Look {
+    /// Its files.
+    pub files: ReportFiles,
+    /// More drawings, each with its title: SVG texts.
+    pub drawings: Vec<(String, String)>,
+    /// Where to linearise, if at all: at a time, s, or at the equilibrium.
+    pub modes: Option<Option<f64>>,
+    /// How the run is integrated.
+    pub integration: IntegrationArguments,
+}
+
+pub fn report<Me: Scenes>(program: &Program<Me>, arguments: &ReportArguments) -> Result<ExitCode, InputError> {
+    let ReportArguments { run, glb, modes, show } = arguments;
+    let name = &program.texts.name;
+    let files = ReportFiles { page: format!("{name}.html"), glb: glb.then(|| format!("{name}.glb")) };
+    let drawings = show.iter().map(|path| drawing(path)).collect::<Result<_, _>>()?;
+    check_time("--modes", modes.flatten())?;
+    let integration = run.integration.clone();
+    simulate(program, run, Some(&Look { files, drawings, modes: *modes, integration }))
+}
+
+/// A drawing with its file's name as title.
+fn drawing(path: &Path) -> Result<(String, String), InputError> {
+    let failed = |fault: String| InputError::Show { path: PathBuf::from(path), fault };
+    let svg = std::fs::read_to_string(path).map_err(|fault| failed(format!("cannot be read: {fault}")))?;
+    if !svg.contains("<svg") {
+        return Err(failed("has no <svg".to_owned()));
+    }
+    let title = path.file_stem().unwrap_or_default().to_string_lossy().replace('_', " ");
+    Ok((title, svg))
+}
+
+impl Look {
+    /// What is known of the model before it is run.
+    pub fn before<Sc: Mechanism>(&self, model: &Sc) -> Result<Views, InputError> {
+        let modes = self.modes.map(|at| self.linearised(model, at)).transpose()?;
+        Ok(Views { modes, ..Views::default() })
+    }
+
+    fn linearised<Sc: Mechanism>(&self, model: &Sc, at: Option<f64>) -> Result<Linearised, InputError> {
+        let to = |t: f64| IntegrationArguments { t_end: t, step: t, ..self.integration.clone() };
+        let (space, place) = linearised(model, at, to)?;
+        Ok(Linearised { modes: space.modes, place, rest: None })
+    }
+}
