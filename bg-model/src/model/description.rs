@@ -3,7 +3,7 @@
 use crate::model::drawing::Drawing;
 
 /// A model's tables. All texts are those of its source; units are SI.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Description {
     /// The graph's name.
     pub name: &'static str,

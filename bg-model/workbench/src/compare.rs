@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use bg_model::simulation::{Column, Recording};
 
-use crate::report::table;
+use crate::tables::table;
 
 /// The largest difference in one column.
 #[derive(Clone, Debug, PartialEq)]

@@ -48,7 +48,7 @@
 //! | [`parameters`] | which values the parameters have in this run |
 //! | [`inputs`] | which inputs: numbers, or tables from files |
 //! | [`request`] | how it is integrated |
-//! | [`report`] | what a scene consists of and what it left out |
+//! | [`tables`] | what a scene consists of and what it left out |
 //! | [`picture`] | what its graph looks like |
 //! | [`compare`] | how far two runs are apart |
 //! | [`golden`] | does what was recorded still come out |
@@ -78,12 +78,12 @@ pub mod parameters;
 pub mod picture;
 pub mod precision;
 pub mod program;
-pub mod report;
 pub mod request;
 pub mod samples;
 pub mod scenes;
 pub mod shown;
 pub mod summary;
+pub mod tables;
 
 #[doc = include_str!("../cookbook.md")]
 pub mod cookbook {}

@@ -9,8 +9,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::methods::integrator;
 use crate::golden::FOLDER;
 use crate::picture::Level;
-use crate::report::Part;
 use crate::request::Integration;
+use crate::tables::Part;
 
 #[derive(Debug, Parser)]
 #[command(name = "program", version, args_conflicts_with_subcommands = true)]

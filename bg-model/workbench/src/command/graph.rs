@@ -8,13 +8,13 @@ use bg_model::mechanism::Scenes;
 use super::arguments::GraphArguments;
 use super::{InputError, say};
 use crate::files::whole;
-use crate::{Program, picture, report};
+use crate::{Program, picture, tables};
 
 pub(super) fn graph<Me: Scenes>(program: &Program<Me>, arguments: &GraphArguments) -> Result<ExitCode, InputError> {
     let scene = program.scene_called(&arguments.scene);
     let GraphArguments { part, svg, dot, level, .. } = arguments;
     if svg.is_none() && dot.is_none() {
-        return Ok(say(&report::graph(scene, *part)));
+        return Ok(say(&tables::graph(scene, *part)));
     }
     let graph = picture::graph(scene.description);
     let write = |path: &Path, text: String| whole::write(path, |file| file.write_all(text.as_bytes()));

@@ -35,10 +35,10 @@ use crate::linear::LinearError;
 use crate::output::OutputError;
 use crate::parameters::{self, SettingError};
 use crate::precision::measure::MeasureError;
-use crate::report::{self as tables, Part};
 use crate::request::RequestError;
 use crate::samples::Unreadable;
 use crate::scenes::Fixed;
+use crate::tables::{self, Part};
 use arguments::{Cli, Command, GoldenCommand};
 
 /// Input that cannot be used.

@@ -11,7 +11,8 @@ use super::linearize::{check_time, linearised};
 use super::run::simulate;
 use crate::Program;
 use crate::output::ReportFiles;
-use crate::page::{Linearised, Views};
+use crate::page::Linearised;
+use crate::page::film::Film;
 
 /// What a report is to show beside the run.
 pub struct Look {
@@ -47,15 +48,16 @@ fn drawing(path: &Path) -> Result<(String, String), InputError> {
 }
 
 impl Look {
-    /// What is known of the model before it is run.
-    pub fn before<Sc: Mechanism>(&self, model: &Sc) -> Result<Views, InputError> {
-        let modes = self.modes.map(|at| self.linearised(model, at)).transpose()?;
-        Ok(Views { modes, ..Views::default() })
+    /// The modes, where they are wanted.
+    pub fn modes<Sc: Mechanism>(&self, model: &Sc) -> Result<Option<Linearised>, InputError> {
+        self.modes.map(|at| self.linearised(model, at)).transpose()
     }
 
     fn linearised<Sc: Mechanism>(&self, model: &Sc, at: Option<f64>) -> Result<Linearised, InputError> {
         let to = |t: f64| IntegrationArguments { t_end: t, step: t, ..self.integration.clone() };
         let (space, place) = linearised(model, at, to)?;
-        Ok(Linearised { modes: space.modes, place, rest: None })
+        let x: Vec<f64> = space.point.iter().map(|state| state.value).collect();
+        let rest = Film::still(model, space.t, &x).animation();
+        Ok(Linearised { modes: space.modes, place, rest })
     }
 }

@@ -8,7 +8,7 @@ use bg_model::description::ParameterInfo;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::Parameters;
 use bg_model::run::{Request, RunError, Simulation, State, Stopped, Trajectory, sample_times};
-use bg_model::simulation::MissingColumn;
+use bg_model::simulation::{MissingColumn, Part};
 
 use super::arguments::{IntegrationArguments, RunArguments, Start};
 use super::progress::{over_time, ticks};
@@ -19,6 +19,7 @@ use crate::files::{console, whole};
 use crate::inputs;
 use crate::linear::equilibrium;
 use crate::output::{Claimed, OutputError, Places, Table};
+use crate::page::film::Film;
 use crate::page::{Parameter, Views};
 use crate::parameters::{self, Chosen};
 use crate::scenes::{Scene, own_parameters};
@@ -63,7 +64,7 @@ pub fn simulate<Me: Scenes>(
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
     let rows = sample_times(t0, integration.step, integration.t_end);
     let values = values(&chosen.values, |name| program.extras.source(name));
-    let shown = look.map(|look| (look, &views));
+    let shown = look.zip(views.as_ref());
     let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, &values, shown) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
@@ -137,11 +138,15 @@ pub(super) struct Claiming<'a, P, F> {
 }
 
 impl<P: Parameters, C, F: FnOnce() -> Result<C, InputError>> MechanismVisitor for Claiming<'_, P, F> {
-    type Output = Result<(Outcome, Views, C), InputError>;
+    type Output = Result<(Outcome, Option<Views>, C), InputError>;
 
     fn visit<Sc: Mechanism>(self) -> Self::Output {
         let model: Sc = model(self.scene, self.scenes, self.chosen)?;
-        let simulation = Simulation::of(&model, self.request.clone());
+        let mut request = self.request;
+        if self.look.is_some() {
+            request.parts.push(Part::Shown);
+        }
+        let simulation = Simulation::of(&model, request.clone());
         let simulation = match self.begin {
             Begin::Model => simulation,
             Begin::At(state) => simulation.from(&state),
@@ -149,9 +154,12 @@ impl<P: Parameters, C, F: FnOnce() -> Result<C, InputError>> MechanismVisitor fo
         };
         // What cannot be assembled is refused before anything is claimed.
         simulation.start()?;
-        let views = self.look.map(|look| look.before(&model)).transpose()?.unwrap_or_default();
+        let modes = self.look.map(|look| look.modes(&model)).transpose()?.flatten();
         let claimed = (self.claim)()?;
-        Ok((follow(simulation, &self.request)?, views, claimed))
+        let mut outcome = follow(simulation, &request)?;
+        let film = self.look.map(|_| Film::taken(Sc::describe(), &mut outcome.run));
+        let views = film.map(|film| Views { animation: film.animation(), picture: Some(film.picture()), modes });
+        Ok((outcome, views, claimed))
     }
 }
 

@@ -9,7 +9,7 @@ use bg_model::input::Input;
 use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::nalgebra::{DMatrix, DVector, SVector};
 use bg_model::parameters::ParameterError;
-use bg_model::scalar::Dual;
+use bg_model::scalar::{Dual, Scalar};
 use bg_model::system::Model;
 
 use super::carry::{Carry, carried};
@@ -235,19 +235,19 @@ where
 }
 
 /// The branches of the switches at time `t` (s) and state `x`.
-pub(super) fn branches<Mo, const N: usize, const G: usize, const M: usize>(
+pub(crate) fn branches<S: Scalar, Mo, const N: usize, const G: usize, const M: usize>(
     model: &Mo,
     t: f64,
-    x: &SVector<Dual, N>,
+    x: &SVector<S, N>,
 ) -> [bool; G]
 where
-    Mo: Model<Dual, N, G, M>,
+    Mo: Model<S, N, G, M>,
 {
-    let (mut negative, mut guards) = ([false; G], SVector::repeat(Dual::new(0.0, 0.0)));
+    let (mut negative, mut guards) = ([false; G], SVector::repeat(S::from_f64(0.0)));
     // A guard may depend on another switch's branch.
     for _ in 0..G {
-        model.guards(Dual::new(t, 0.0), x, &negative, &mut guards);
-        negative = guards.data.0[0].map(|guard| guard.value < 0.0);
+        model.guards(S::from_f64(t), x, &negative, &mut guards);
+        negative = guards.data.0[0].map(|guard| guard.to_f64() < 0.0);
     }
     negative
 }

@@ -123,6 +123,7 @@ impl Balance {
 mod tests {
     use super::*;
     use bg_model::simulation::Column;
+    use std::sync::LazyLock;
 
     const fn output(name: &'static str, of: &'static str, unit: &'static str) -> OutputInfo {
         OutputInfo { name, of, unit }
@@ -141,21 +142,8 @@ mod tests {
     ];
 
     fn description() -> &'static Description {
-        static DESCRIPTION: Description = Description {
-            name: "Test",
-            doc: "",
-            graph: "",
-            reduction: "",
-            parameters: &[],
-            inputs: &[],
-            states: &[],
-            outputs: &OUTPUTS,
-            switches: &[],
-            elements: &[],
-            bonds: &[],
-            equations: &[],
-            operations: &[],
-        };
+        static DESCRIPTION: LazyLock<Description> =
+            LazyLock::new(|| Description { name: "Test", outputs: &OUTPUTS, ..Description::default() });
         &DESCRIPTION
     }
 

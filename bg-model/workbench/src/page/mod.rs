@@ -8,6 +8,7 @@
 pub mod animation;
 mod charts;
 mod data;
+pub(crate) mod film;
 pub mod glb;
 mod html;
 mod mesh;

@@ -7,7 +7,7 @@ use super::measure::{Counts, Entry};
 use crate::figures::{Curve, FigureError, work_precision};
 use crate::files::RunFolder;
 use crate::output::OutputError;
-use crate::report;
+use crate::tables;
 
 /// The entries as a table, one line each.
 #[must_use]
@@ -56,7 +56,7 @@ pub fn table(entries: &[Entry]) -> String {
         let row: [String; HEAD.len()] = row.try_into().expect("a cell for each head");
         row
     });
-    let mut text = report::table(&std::iter::once(HEAD.map(str::to_owned)).chain(rows).collect::<Vec<_>>());
+    let mut text = tables::table(&std::iter::once(HEAD.map(str::to_owned)).chain(rows).collect::<Vec<_>>());
     for entry in entries {
         if let Some(failure) = &entry.failure {
             text += &format!("{} by {}: {failure}\n", entry.case, entry.integrator);
