@@ -42,7 +42,6 @@ export const VIEWS = {
 export class MachineView {
   constructor(place, animation, clock) {
     Object.assign(this, { place, animation, clock });
-    const { times } = animation;
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.canvas = this.renderer.domElement;
@@ -55,16 +54,11 @@ export class MachineView {
     this.box = this.#extent();
     this.size = Math.max(this.box.getSize(new Vector3()).length(), 1e-6);
     this.#light();
-    this.bodies = animation.bodies.map((track) => {
-      const material = materials();
-      const group = body(track, this.size, material);
-      this.scene.add(group);
-      return { track, group, material };
-    });
-    this.#ground();
-    this.arrows = new Arrows(times, animation.joints, this.size);
-    this.scene.add(this.arrows.group);
+    this.listeners = [];
     this.traces = new Map();
+    this.bodies = animation.bodies.map(() => ({ material: materials() }));
+    this.#ground();
+    this.#machine();
     this.#tint();
 
     this.controls = new OrbitControls(this.camera, this.canvas);
@@ -121,7 +115,53 @@ export class MachineView {
     }
   }
 
-  /** A grid below the machine, axes at its corner, a support at each point of the ground. */
+  /** Bodies, supports and forces, as the animation has them. */
+  #machine() {
+    const { times, bodies, ground, joints } = this.animation;
+    for (const part of [...this.bodies.map(({ group }) => group), this.supports, this.arrows?.group]) part?.removeFromParent();
+    this.bodies = this.bodies.map(({ material }, index) => {
+      const group = body(bodies[index], this.size, material);
+      return { track: bodies[index], group, material };
+    });
+    this.supports = new Group().add(...ground.map(({ name, at }) => this.#supportAt(name, at)));
+    this.arrows = new Arrows(times, joints, this.size);
+    this.scene.add(...this.bodies.map(({ group }) => group), this.supports, this.arrows.group);
+  }
+
+  #supportAt(name, at) {
+    const height = 0.035 * this.size;
+    const shape = new ConeGeometry(0.6 * height, height, 4).rotateY(Math.PI / 4).translate(0, -height / 2, 0);
+    const cone = new Mesh(shape, this.support);
+    cone.position.set(...at);
+    cone.userData.label = `ground.${name}`;
+    return cone;
+  }
+
+  /** The machine in another run; the reader still looks from where they did. */
+  update(animation) {
+    this.swinging(null);
+    this.animation = animation;
+    this.box = this.#extent();
+    const { scale } = this.arrows;
+    this.#machine();
+    const keys = [...this.traces.keys()];
+    for (const key of keys) {
+      this.trace(key, false);
+      this.trace(key, true);
+    }
+    this.#tint();
+    this.forces(this.showsForces !== false, scale);
+    this.#follow();
+    this.listeners.forEach((listener) => listener());
+  }
+
+  /** Calls `listener` now and after each update. */
+  onUpdate(listener) {
+    this.listeners.push(listener);
+    listener();
+  }
+
+  /** A grid below the machine, axes at its corner. */
   #ground() {
     const { min, max } = this.box;
     const middle = this.box.getCenter(new Vector3());
@@ -136,18 +176,7 @@ export class MachineView {
     this.axes = triad(0.09 * this.size);
     this.axes.position.set(min.x - 0.08 * this.size, this.grid.position.y, max.z + 0.04 * this.size);
     this.support = new MeshStandardMaterial({ roughness: 0.8 });
-    const height = 0.035 * this.size;
-    const supports = new Group();
-    for (const { name, at } of this.animation.ground) {
-      const cone = new Mesh(
-        new ConeGeometry(0.6 * height, height, 4).rotateY(Math.PI / 4).translate(0, -height / 2, 0),
-        this.support,
-      );
-      cone.position.set(...at);
-      cone.userData.label = `ground.${name}`;
-      supports.add(cone);
-    }
-    this.scene.add(this.grid, this.axes, supports);
+    this.scene.add(this.grid, this.axes);
   }
 
   #tint() {
@@ -164,7 +193,7 @@ export class MachineView {
     for (const [key, trace] of this.traces) trace.tint(hue(Number(key.split(":")[0])));
   }
 
-  /** All points that can be traced: `{ key, name, body, at, path }`, the one that goes farthest first. */
+  /** All points that can be traced: `{ key, name, body, at }`, the one that goes farthest first. */
   points() {
     const count = this.animation.times.length;
     const all = this.animation.bodies.flatMap((track, index) => {
@@ -173,22 +202,24 @@ export class MachineView {
         key: `${index}:${name}`,
         name: `${track.name}.${name}`,
         body: index,
-        path: path(track, at, count),
+        at,
+        length: lengthOf(path(track, at, count)),
       }));
     });
-    return all.sort((a, b) => lengthOf(b.path) - lengthOf(a.path));
+    return all.sort((a, b) => b.length - a.length);
   }
 
-  /** Draws or takes away the trace of a point. */
-  trace(point, isShown) {
-    if (!isShown) {
-      this.scene.remove(this.traces.get(point.key)?.group);
-      this.traces.delete(point.key);
-    } else if (!this.traces.has(point.key)) {
-      const trace = new Trace(this.animation.times, point.path, this.size);
+  /** Draws or takes away the trace of the point of this key. */
+  trace(key, isShown) {
+    this.traces.get(key)?.group.removeFromParent();
+    this.traces.delete(key);
+    const point = isShown ? this.points().find((other) => other.key === key) : null;
+    if (point) {
+      const { times, bodies } = this.animation;
+      const trace = new Trace(times, path(bodies[point.body], point.at, times.length), this.size);
       trace.tint(hue(point.body));
       trace.show(this.clock.time);
-      this.traces.set(point.key, trace);
+      this.traces.set(key, trace);
       this.scene.add(trace.group);
     }
     this.draw();
