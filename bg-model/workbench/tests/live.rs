@@ -95,6 +95,28 @@ fn an_answer_says_what_the_run_says_or_why_there_is_none() {
 }
 
 #[test]
+fn a_model_that_cannot_be_had_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("no.wasm"), "text").unwrap();
+    let refused = |argument: &str, rustc: &str| {
+        let mut run = Command::new(program());
+        run.current_dir(folder.path()).args(["report", argument, "--t-end", "0.1"]).env("RUSTC", rustc);
+        let output = run.output().expect("the example was built");
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && told.lines().count() == 1, "{told}");
+        assert!(!folder.path().join("out").exists(), "nothing was claimed");
+        told
+    };
+    assert!(refused("--live=no.wasm", "rustc").starts_with("error: --live: no.wasm: not a program of bg-workbench"));
+    assert!(refused("--live=absent.wasm", "rustc").starts_with("error: --live: cannot read absent.wasm: "));
+    assert!(refused("--live", "no-such-rustc").starts_with("error: --live: no-such-rustc cannot be started: "));
+    if cfg!(unix) {
+        let told = refused("--live", "true");
+        assert!(told.ends_with("is not installed; rustup target add wasm32-unknown-unknown\n"), "{told}");
+    }
+}
+
+#[test]
 fn node_gives_the_bits_that_the_native_program_gives() {
     if !Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success()) {
         println!("skipped: node is not installed");

@@ -14,44 +14,43 @@ const MANY = 10;
 class Runner {
   #script;
   #bytes;
-  #worker = null;
-  #begin = null;
+  #worker;
+  #current = null;
   #next = null;
 
-  /** `told` is called with each answer. */
-  constructor(script, bytes, told) {
+  constructor(script, bytes) {
     this.#script = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
     this.#bytes = bytes;
-    this.told = told;
     this.#start();
   }
 
   #start() {
     this.#worker?.terminate();
-    this.#begin = null;
+    this.#current = null;
     this.#worker = new Worker(this.#script);
     this.#worker.postMessage(this.#bytes);
     this.#worker.onmessage = ({ data }) => {
-      const total = performance.now() - this.#begin;
-      this.#begin = null;
-      if (this.#next !== null) this.order(this.#next);
-      this.told({ ...data, total });
+      const { told } = this.#current;
+      this.#current = null;
+      if (this.#next !== null) this.order(this.#next.text, this.#next.told);
+      told(data);
     };
   }
 
-  order(text) {
-    if (this.#begin !== null && performance.now() - this.#begin > PATIENCE) this.#start();
-    if (this.#begin !== null) {
-      this.#next = text;
+  /** Orders a run; `told` is called with its answer, unless a newer order takes its place. */
+  order(text, told) {
+    if (this.isBusy && performance.now() - this.#current.begin > PATIENCE) this.#start();
+    if (this.isBusy) {
+      this.#next = { text, told };
       return;
     }
     this.#next = null;
-    this.#begin = performance.now();
+    this.#current = { begin: performance.now(), told };
     this.#worker.postMessage(text);
   }
 
   get isBusy() {
-    return this.#begin !== null;
+    return this.#current !== null;
   }
 }
 
@@ -135,7 +134,9 @@ export class Tuning {
       ...(parameters.length > MANY ? [this.#search()] : []),
       list,
     );
-    this.#runner = new Runner(script, bytes, (told) => this.#told(told));
+    this.#runner = new Runner(script, bytes);
+    // The run that the page shows already: a browser compiles better what has run.
+    this.#runner.order(JSON.stringify(order), () => this.status.classList.remove("busy"));
   }
 
   #search() {
@@ -170,7 +171,8 @@ export class Tuning {
       else parameters[parameter.name] = value;
     }
     const integration = { ...this.order.integration, t_end: Number(this.end.value) };
-    this.#runner.order(JSON.stringify({ ...this.order, parameters, integration }));
+    const order = JSON.stringify({ ...this.order, parameters, integration });
+    this.#runner.order(order, (answer) => this.#told(answer));
     setTimeout(() => this.status.classList.toggle("busy", this.#runner.isBusy), 150);
   }
 

@@ -3,14 +3,16 @@
 
 import { answering } from "./module.js";
 
-let answer = null;
+/** What answers, as soon as it is compiled. */
+let model = null;
 
 addEventListener("message", async ({ data }) => {
+  if (model === null) {
+    model = WebAssembly.compile(data).then(answering);
+    return;
+  }
   try {
-    if (answer === null) {
-      answer = await answering(await WebAssembly.compile(data));
-      return;
-    }
+    const answer = await model;
     const begin = performance.now();
     const text = await answer(data);
     postMessage({ answer: text, milliseconds: performance.now() - begin });

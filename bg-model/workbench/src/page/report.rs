@@ -66,7 +66,7 @@ pub fn page(report: &Report<'_>) -> String {
     let has_checks = !report.summary.checks.is_empty();
     let sections = [
         (animation.is_some(), "machine", "Machine"),
-        (report.live.is_some(), "controls", "Try"),
+        (report.live.is_some(), "controls", "Try other values"),
         (true, "charts", "Outputs"),
         (picture.is_some(), "picture", "Bond graph"),
         (balance.is_some(), "balance", "Energy balance"),
