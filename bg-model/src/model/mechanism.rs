@@ -35,7 +35,7 @@ pub trait Mechanism: Clone {
 }
 
 /// A mechanism with the models of its graph.
-pub trait Scenes: Mechanism {
+pub trait Scenes: Mechanism + 'static {
     /// How many models there are: the mechanism itself and its scenes. A scene has none but itself.
     const MODELS: usize;
 

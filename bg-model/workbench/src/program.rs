@@ -98,10 +98,7 @@ impl<Me: Scenes> Program<Me> {
     /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output failed,
     /// 2 the input cannot be used. In WebAssembly there are no arguments: the program answers a page from then on, see
     /// [`live`](crate::live).
-    pub fn main(self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode
-    where
-        Me: 'static,
-    {
+    pub fn main(self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cfg_select! {
             target_arch = "wasm32" => {
                 drop(arguments);

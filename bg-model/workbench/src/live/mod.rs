@@ -125,7 +125,7 @@ pub fn answer<Me: Scenes>(program: &Program<Me>, text: &str) -> String {
 
 /// Registers what answers a page, for the one scene that the module is built for.
 #[cfg(target_arch = "wasm32")]
-pub(crate) fn register<Me: Scenes + 'static>(program: Program<Me>) {
+pub(crate) fn register<Me: Scenes>(program: Program<Me>) {
     const MODEL: usize = match option_env!("BG_LIVE_MODEL") {
         Some(text) => match usize::from_str_radix(text, 10) {
             Ok(index) => index,
