@@ -57,7 +57,7 @@ class Runner {
 /** A row of the panel: the parameter's slider and field. `changed` is called when its value changes. */
 class Control {
   constructor(parameter, changed) {
-    Object.assign(this, { parameter, changed, value: parameter.value });
+    Object.assign(this, { parameter, changed, value: parameter.value, range: rangeOf(parameter, parameter.value) });
     const { name, unit, meaning } = parameter;
     this.slider = element("input", {
       type: "range",
@@ -99,7 +99,9 @@ class Control {
   }
 
   show() {
-    this.range = rangeOf(this.parameter, this.value);
+    const [low, high] = this.range;
+    // A value beyond the slider's ends, from the field, moves them.
+    if (this.value < low || this.value > high) this.range = rangeOf(this.parameter, this.value);
     [this.slider.min, this.slider.max] = this.range;
     this.slider.value = this.value;
     this.field.value = Number(this.value.toPrecision(12));
