@@ -10,6 +10,12 @@ const PATIENCE = 2000;
 /** With more parameters than these there is a field to find one. */
 const MANY = 10;
 
+/** A number as a person types it: `1e7`, not `10000000`. */
+function written(value) {
+  const [plain, scientific] = [String(Number(value.toPrecision(12))), value.toExponential().replace("e+", "e")];
+  return plain.length > 6 && scientific.length < plain.length ? scientific : plain;
+}
+
 /** The model in a worker. Of the orders that arrive while one is under way, only the newest waits. */
 class Runner {
   #script;
@@ -104,7 +110,7 @@ class Control {
     if (this.value < low || this.value > high) this.range = rangeOf(this.parameter, this.value);
     [this.slider.min, this.slider.max] = this.range;
     this.slider.value = this.value;
-    this.field.value = Number(this.value.toPrecision(12));
+    this.field.value = written(this.value);
     const isUsual = this.value === this.parameter.default;
     this.row.classList.toggle("changed", !isUsual);
     this.reset.disabled = isUsual;
