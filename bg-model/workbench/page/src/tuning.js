@@ -194,7 +194,7 @@ export class Tuning {
     const isShown = told.fault === undefined && told.data.times.length > 0;
     this.fault = told.fault ?? (told.failure === null ? "" : `The run failed: ${told.failure}`);
     this.milliseconds = milliseconds;
-    const time = `Run and shown: ${number(milliseconds / 1000, 3)} s of computing.`;
+    const time = `Run again in ${number(milliseconds / 1000, 3)} s.`;
     this.status.textContent = this.fault || time;
     this.status.classList.toggle("failure", this.fault !== "");
     this.status.classList.toggle("busy", this.#runner.isBusy);
