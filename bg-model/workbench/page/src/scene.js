@@ -39,18 +39,28 @@ export const VIEWS = {
   top: [0, 1, 0.0001],
 };
 
+/** What draws; an error where the browser gives no WebGL. */
+export function webgl() {
+  const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+  renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+  return renderer;
+}
+
 export class MachineView {
-  constructor(place, animation, clock) {
-    Object.assign(this, { place, animation, clock });
+  constructor(place, renderer, animation, clock) {
+    Object.assign(this, { place, renderer, animation, clock });
     const { times } = animation;
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("aria-label", "The machine in motion; drag to turn it, Ctrl and the wheel to come nearer");
     place.prepend(this.canvas);
 
     this.scene = new Scene();
+    // The machine as its inertial axes have it, turned so that y is up.
+    this.upright = new Quaternion(...animation.upright);
+    this.machine = new Group();
+    this.machine.quaternion.copy(this.upright);
+    this.scene.add(this.machine);
     this.camera = new PerspectiveCamera(32, 1, 0.001, 1000);
     this.box = this.#extent();
     this.size = Math.max(this.box.getSize(new Vector3()).length(), 1e-6);
@@ -58,12 +68,12 @@ export class MachineView {
     this.bodies = animation.bodies.map((track) => {
       const material = materials();
       const group = body(track, this.size, material);
-      this.scene.add(group);
+      this.machine.add(group);
       return { track, group, material };
     });
     this.#ground();
     this.arrows = new Arrows(times, animation.joints, this.size);
-    this.scene.add(this.arrows.group);
+    this.machine.add(this.arrows.group);
     this.traces = new Map();
     this.#tint();
 
@@ -86,11 +96,12 @@ export class MachineView {
     });
   }
 
-  /** What the machine passes over the run. */
+  /** What the machine passes over the run, y up. */
   #extent() {
     const { times, bodies, ground } = this.animation;
     const box = new Box3();
-    for (const { at } of ground) box.expandByPoint(new Vector3(...at));
+    const pass = (place) => box.expandByPoint(place.applyQuaternion(this.upright));
+    for (const { at } of ground) pass(new Vector3(...at));
     for (const track of bodies) {
       const near = track.solids.flatMap(({ at, shape }) => {
         const reach = Math.max(
@@ -104,7 +115,7 @@ export class MachineView {
       });
       const points = [[0, 0, 0], ...track.points.map(({ at }) => at), ...near];
       const stride = Math.max(1, Math.floor(times.length / 300));
-      for (let k = 0; k < times.length; k += stride) points.forEach((at) => box.expandByPoint(placeAt(track, at, k)));
+      for (let k = 0; k < times.length; k += stride) points.forEach((at) => pass(placeAt(track, at, k)));
     }
     return box;
   }
@@ -134,6 +145,7 @@ export class MachineView {
       cell * Math.round(middle.z / cell),
     );
     this.axes = triad(0.09 * this.size);
+    this.axes.quaternion.copy(this.upright);
     this.axes.position.set(min.x - 0.08 * this.size, this.grid.position.y, max.z + 0.04 * this.size);
     this.support = new MeshStandardMaterial({ roughness: 0.8 });
     const height = 0.035 * this.size;
@@ -143,7 +155,7 @@ export class MachineView {
         new ConeGeometry(0.6 * height, height, 4).rotateY(Math.PI / 4).translate(0, -height / 2, 0),
         this.support,
       );
-      cone.position.set(...at);
+      cone.position.set(...at).applyQuaternion(this.upright);
       cone.userData.label = `ground.${name}`;
       supports.add(cone);
     }
@@ -182,14 +194,14 @@ export class MachineView {
   /** Draws or takes away the trace of a point. */
   trace(point, isShown) {
     if (!isShown) {
-      this.scene.remove(this.traces.get(point.key)?.group);
+      this.machine.remove(this.traces.get(point.key)?.group);
       this.traces.delete(point.key);
     } else if (!this.traces.has(point.key)) {
       const trace = new Trace(this.animation.times, point.path, this.size);
       trace.tint(hue(point.body));
       trace.show(this.clock.time);
       this.traces.set(point.key, trace);
-      this.scene.add(trace.group);
+      this.machine.add(trace.group);
     }
     this.draw();
   }
