@@ -5,8 +5,9 @@ const unpacked = async (id) => {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).text();
 };
-// A test waits until the page says that it is done: a frame whose document is open keeps it from being loaded.
-const hold = location.hash === "#test" ? document.body.appendChild(document.createElement("iframe")) : null;
+// Who tests the page or takes a picture of it waits until it is done: a frame whose document is open keeps it from being
+// loaded.
+const hold = /^#(test$|still=)/.test(location.hash) ? document.body.appendChild(document.createElement("iframe")) : null;
 hold?.setAttribute("hidden", "");
 hold?.contentDocument.open();
 unpacked("script").then(

@@ -7,6 +7,7 @@ import "./style.css";
 import "./view.css";
 import "./charts.css";
 import "./player.css";
+import "./still.css";
 import { Charts } from "./charts.js";
 import { Clock } from "./clock.js";
 import { player } from "./controls.js";
@@ -14,6 +15,7 @@ import { read } from "./data.js";
 import { graph } from "./graph.js";
 import { modes } from "./modes.js";
 import { motion } from "./motion.js";
+import { still } from "./still.js";
 import { trial } from "./trial.js";
 
 /* global unpacked */
@@ -57,4 +59,5 @@ async function start() {
 }
 
 if (location.hash === "#test") trial(start);
+else if (location.hash.startsWith("#still=")) still(start);
 else start().catch((fault) => console.error(fault));
