@@ -23,7 +23,8 @@ fn the_page_of_the_paper_s_run_is_small_and_has_the_numbers_of_the_csv_file() {
     assert_eq!((rows.len(), csv.times.len()), (501, 501));
     let mut columns = 0;
     for curve in data["charts"].as_array().unwrap().iter().flat_map(|chart| chart["curves"].as_array().unwrap()) {
-        let column = csv.column(curve["column"].as_str().unwrap()).unwrap();
+        // The hacksaw's CSV file has the columns of the reference; the page shows all outputs.
+        let Some(column) = csv.column(curve["column"].as_str().unwrap()) else { continue };
         columns += 1;
         for (row, &k) in rows.iter().enumerate() {
             assert_eq!(value(&curve["values"], k).to_bits(), column[row].to_bits(), "{}", curve["column"]);
