@@ -140,6 +140,7 @@ fn a_graph_lists_its_scenes() {
     }
     assert_eq!((0..Slide::MODELS).map(|index| Slide::model(index, Name)).collect::<Vec<_>>(), ["Slide", "Fast"]);
     assert_eq!((Fast::MODELS, Fast::model(0, Name)), (1, "Fast"));
+    assert_eq!((Slide::only::<1, _>(Name), Fast::only::<0, _>(Name)), ("Fast", "Fast"));
 }
 
 #[test]

@@ -8,8 +8,7 @@ use std::f64::consts::TAU;
 use bg_model::simulation::{MissingColumn, Recording};
 use bg_workbench::summary::Check;
 
-use crate::columns::AXES;
-use crate::figures::continued;
+use crate::columns::{AXES, continued};
 
 /// What stands still moves less than this: m, rad or a part of the moving component. The model is exact there; what is
 /// left is rounding.

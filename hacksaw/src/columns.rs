@@ -1,5 +1,7 @@
 //! The columns of a run of the hacksaw: those of the reference trajectory, and the links' angles.
 
+use std::f64::consts::{PI, TAU};
+
 use bg_model::scalar::Scalar;
 use bg_model::simulation::{Column, MissingColumn, Recording};
 
@@ -29,6 +31,26 @@ pub fn has_reference_columns<'n>(names: impl Iterator<Item = &'n str> + Clone) -
     reference_columns().iter().all(|column| names.clone().any(|name| name == column))
 }
 
+/// The angles without their jumps by a whole turn: from sample to sample less than half a turn.
+#[must_use]
+pub fn continued(angles: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let mut turns = 0.0;
+    let mut before: Option<f64> = None;
+    angles
+        .into_iter()
+        .map(|angle| {
+            let jump = before.map_or(0.0, |before| angle - before);
+            if jump > PI {
+                turns -= 1.0;
+            } else if jump < -PI {
+                turns += 1.0;
+            }
+            before = Some(angle);
+            angle + turns * TAU
+        })
+        .collect()
+}
+
 /// Appends the links' angles about z, rad, which the orientations of a plane motion determine.
 ///
 /// # Errors
@@ -40,4 +62,18 @@ pub fn add_angles(run: &mut Recording) -> Result<(), MissingColumn> {
         run.columns.push(Column { values, ..Column::new(name, "rad") });
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_turns_are_counted() {
+        let angles = (0..100).map(|k| {
+            let angle = f64::from(k) * 0.5;
+            angle.sin().atan2(angle.cos())
+        });
+        assert!((continued(angles).last().unwrap() - 49.5).abs() < 1e-12);
+    }
 }

@@ -7,26 +7,30 @@ use bg_model::description::Description;
 use bg_model::simulation::{MissingColumn, Recording};
 use bg_workbench::Program;
 use bg_workbench::extras::{Extras, Page};
+#[cfg(not(target_arch = "wasm32"))]
 use bg_workbench::figures::Figure;
 use bg_workbench::summary::Additions;
 
 use crate::columns::{has_reference_columns, reference_columns};
+#[cfg(not(target_arch = "wasm32"))]
 use crate::figures::FIGURES;
 use crate::mechanism::Hacksaw;
+#[cfg(not(target_arch = "wasm32"))]
 use crate::precision::case;
 use crate::{checks, sources, summary};
 
 /// Does what the arguments ask for and gives the exit code.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    Program::<Hacksaw>::new()
+    let program = Program::<Hacksaw>::new()
         .version(env!("CARGO_PKG_VERSION"))
         .about(
             "Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says about them",
         )
         .scene("paper")
-        .cases(case::cases(), &["paper", "full-offset", "rigid"])
-        .extras(Paper)
-        .main(arguments)
+        .extras(Paper);
+    #[cfg(not(target_arch = "wasm32"))]
+    let program = program.cases(case::cases(), &["paper", "full-offset", "rigid"]);
+    program.main(arguments)
 }
 
 /// What the program adds.
@@ -34,6 +38,7 @@ struct Paper;
 
 impl Extras for Paper {
     /// Figures are drawn from the reference columns.
+    #[cfg(not(target_arch = "wasm32"))]
     fn figures(&self, model: &'static Description) -> Option<Vec<Figure>> {
         let has_columns = has_reference_columns(model.outputs.iter().map(|output| output.name));
         has_columns.then(|| FIGURES.map(|figure| figure.drawn()).to_vec())

@@ -12,12 +12,15 @@
 //! | [`precision`] | which cases are measured, and their stored solutions |
 //! | [`command`] | the program |
 
+#[cfg(not(target_arch = "wasm32"))]
 pub mod agreement;
 pub mod checks;
 pub mod columns;
 pub mod command;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod figures;
 pub mod mechanism;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod precision;
 pub mod scenes;
 mod sources;

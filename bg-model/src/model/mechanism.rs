@@ -35,7 +35,7 @@ pub trait Mechanism: Clone {
 }
 
 /// A mechanism with the models of its graph.
-pub trait Scenes: Mechanism {
+pub trait Scenes: Mechanism + 'static {
     /// How many models there are: the mechanism itself and its scenes. A scene has none but itself.
     const MODELS: usize;
 
@@ -44,6 +44,13 @@ pub trait Scenes: Mechanism {
     /// # Panics
     /// `index` is not below [`Scenes::MODELS`].
     fn model<V: MechanismVisitor>(index: usize, visitor: V) -> V::Output;
+
+    /// Hands the type of model `INDEX` to `visitor`, as [`model`](Scenes::model) does. What the visitor does with the other models
+    /// is not compiled.
+    ///
+    /// # Panics
+    /// `INDEX` is not below [`Scenes::MODELS`].
+    fn only<const INDEX: usize, V: MechanismVisitor>(visitor: V) -> V::Output;
 }
 
 /// Something to do with a model, whatever its numbers of states, switches and outputs.

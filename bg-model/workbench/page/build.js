@@ -7,7 +7,7 @@ import { build } from "esbuild";
 const folder = new URL(".", import.meta.url).pathname;
 const { outputFiles } = await build({
   absWorkingDir: folder,
-  entryPoints: { report: "src/main.js" },
+  entryPoints: { report: "src/main.js", worker: "src/worker.js" },
   outdir: "dist",
   bundle: true,
   minify: true,

@@ -1,10 +1,12 @@
 // The first script of a page: unpacks the texts that stand in it as base64 of deflated UTF-8, and starts the script
 // among them. Not bundled; `src/page/mod.rs` writes it into the page as it is.
-const unpacked = async (id) => {
+const inflated = (id) => {
   const text = document.getElementById(id).textContent;
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).text();
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw")));
 };
+const unpacked = (id) => inflated(id).text();
+const unpackedBytes = (id) => inflated(id).arrayBuffer();
 // Who tests the page or takes a picture of it waits until it is done: a frame whose document is open keeps it from being
 // loaded.
 const hold = /^#(test$|still=)/.test(location.hash) ? document.body.appendChild(document.createElement("iframe")) : null;

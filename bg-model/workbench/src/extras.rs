@@ -6,12 +6,15 @@ use bg_model::description::Description;
 use bg_model::simulation::{Column, MissingColumn, Recording};
 use serde_json::json;
 
+#[cfg(not(target_arch = "wasm32"))]
 use crate::figures::{Figure, outputs};
 use crate::summary::{Additions, Entry};
 
 /// What a program adds to the workbench. Every method has a default that serves any mechanism.
 pub trait Extras {
-    /// The figures of a run of this model; `None` where it gets no figures and no overview page.
+    /// The figures of a run of this model; `None` where it gets no figures and no overview page. Not in WebAssembly: a page draws
+    /// no figures.
+    #[cfg(not(target_arch = "wasm32"))]
     fn figures(&self, model: &'static Description) -> Option<Vec<Figure>> {
         Some(outputs::figures(model))
     }

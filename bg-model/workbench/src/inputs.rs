@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use bg_model::description::InputInfo;
 use bg_model::input::{Input, Table, TableError};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::parameters::nearest;
@@ -84,8 +85,42 @@ fn other(near: Option<&str>, known: &str) -> String {
     }
 }
 
-/// What makes a table of times and values.
-type Make = fn(&[f64], &[f64]) -> Result<Table, TableError>;
+/// What an input is set to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Setting {
+    /// The same value at all times, in the input's unit.
+    Constant(f64),
+    /// The rows of a table.
+    Table {
+        /// Their times, s, ascending.
+        times: Vec<f64>,
+        /// Their values, in the input's unit.
+        values: Vec<f64>,
+        /// Whether a cubic spline joins them; else straight lines.
+        cubic: bool,
+    },
+}
+
+impl Default for Setting {
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
+}
+
+impl Setting {
+    /// The input.
+    ///
+    /// # Errors
+    /// The rows are no table.
+    pub fn input(&self) -> Result<Input, TableError> {
+        match self {
+            Self::Constant(value) => Ok(Input::constant(*value)),
+            Self::Table { times, values, cubic: true } => Ok(Input::table(Table::cubic(times, values)?)),
+            Self::Table { times, values, cubic: false } => Ok(Input::table(Table::linear(times, values)?)),
+        }
+    }
+}
 
 /// What stands before the name of a file whose rows a cubic spline joins.
 const CUBIC: &str = "cubic:";
@@ -95,14 +130,23 @@ const CUBIC: &str = "cubic:";
 /// # Errors
 /// The first setting that cannot be used.
 pub fn chosen(settings: &[String], infos: &[InputInfo]) -> Result<Vec<Input>, InputSettingError> {
-    let mut inputs = vec![Input::default(); infos.len()];
+    let inputs = self::settings(settings, infos)?;
+    Ok(inputs.iter().map(|setting| setting.input().expect("a setting was checked when it was read")).collect())
+}
+
+/// The same as values and rows of tables.
+///
+/// # Errors
+/// The first setting that cannot be used.
+pub fn settings(settings: &[String], infos: &[InputInfo]) -> Result<Vec<Setting>, InputSettingError> {
+    let mut inputs = vec![Setting::default(); infos.len()];
     for setting in settings {
         let (name, value) = setting.split_once('=').ok_or_else(|| InputSettingError::NoValue(setting.clone()))?;
         let name = name.trim();
         let Some(index) = infos.iter().position(|info| info.name == name) else {
             return Err(unknown(setting, name, infos));
         };
-        inputs[index] = input(setting, value.trim())?;
+        inputs[index] = read(setting, value.trim())?;
     }
     Ok(inputs)
 }
@@ -117,17 +161,17 @@ fn unknown(setting: &str, name: &str, infos: &[InputInfo]) -> InputSettingError 
 }
 
 /// A number, or a table from a file.
-fn input(setting: &str, value: &str) -> Result<Input, InputSettingError> {
+fn read(setting: &str, value: &str) -> Result<Setting, InputSettingError> {
     if let Ok(number) = value.parse::<f64>() {
         return if number.is_finite() {
-            Ok(Input::constant(number))
+            Ok(Setting::Constant(number))
         } else {
             Err(InputSettingError::NotFinite(setting.to_owned()))
         };
     }
-    let (file, make): (&str, Make) = match value.strip_prefix(CUBIC) {
-        Some(file) => (file, Table::cubic),
-        None => (value, Table::linear),
+    let (file, cubic) = match value.strip_prefix(CUBIC) {
+        Some(file) => (file, true),
+        None => (value, false),
     };
     // A file may have a colon in its name.
     let (path, column) = match file.rsplit_once(':') {
@@ -135,9 +179,11 @@ fn input(setting: &str, value: &str) -> Result<Input, InputSettingError> {
         _ => (file, None),
     };
     let (times, values) = rows(setting, Path::new(path), column)?;
-    let table =
-        make(&times, &values).map_err(|fault| InputSettingError::Table { setting: setting.to_owned(), fault })?;
-    Ok(Input::table(table))
+    let table = Setting::Table { times, values, cubic };
+    match table.input() {
+        Ok(_) => Ok(table),
+        Err(fault) => Err(InputSettingError::Table { setting: setting.to_owned(), fault }),
+    }
 }
 
 /// The first column of a CSV file with a header, and the one called `column` or the second.

@@ -58,32 +58,54 @@
 //! | [`summary`] | what a run comes to in numbers |
 //! | [`overview`] | all of it on one page |
 //! | [`page`] | the same in motion, in one file that needs nothing else |
+//! | [`live`] | the same with the model inside, so that the page can run it again |
 //! | [`shown`] | which page shows a run, and with which files |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
 //! | [`cookbook`] | short programs for what comes up after the first run |
 
+// In a page a program answers orders, see `live`: what that has no use for is not built there.
+#![cfg_attr(
+    target_arch = "wasm32",
+    allow(dead_code, reason = "what is shared is also for reports, which a page does not write")
+)]
+
+#[cfg(not(target_arch = "wasm32"))]
 pub mod command;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod compare;
-pub mod extras;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod figures;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod files;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod golden;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod output;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod overview;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod picture;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod samples;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod shown;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod tables;
+
+pub mod extras;
 pub mod inputs;
 pub mod linear;
-pub mod output;
-pub mod overview;
+pub mod live;
 pub mod page;
 pub mod parameters;
-pub mod picture;
 pub mod precision;
 pub mod program;
+mod quantities;
 pub mod request;
-pub mod samples;
+mod running;
 pub mod scenes;
-pub mod shown;
 pub mod summary;
-pub mod tables;
 
 #[doc = include_str!("../cookbook.md")]
 pub mod cookbook {}
@@ -96,7 +118,7 @@ pub use bg_model;
 pub use program::Program;
 
 /// Does what the program's arguments ask for of the mechanism `Me`, and gives the exit code: 0 done, 1 the run or an output
-/// failed, 2 the input cannot be used.
+/// failed, 2 the input cannot be used. In WebAssembly it answers a page from then on, see [`live`].
 #[must_use]
 pub fn main<Me: Scenes>() -> ExitCode {
     Program::<Me>::new().main(std::env::args_os())

@@ -27,6 +27,12 @@ impl From<Level> for bg_picture::Level {
     }
 }
 
+/// The whole graph of a description as an SVG text.
+#[must_use]
+pub fn svg(description: &Description) -> String {
+    bg_picture::svg(&graph(description), bg_picture::Level::Full)
+}
+
 /// The graph of a description.
 #[must_use]
 pub fn graph(description: &Description) -> Graph {

@@ -6,7 +6,6 @@ use std::process::ExitCode;
 
 use bg_model::mechanism::Scenes;
 
-use crate::command;
 use crate::extras::{Extras, Plain};
 use crate::precision::case::Case;
 use crate::scenes::{Scene, scenes};
@@ -97,12 +96,21 @@ impl<Me: Scenes> Program<Me> {
     }
 
     /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output failed,
-    /// 2 the input cannot be used.
-    pub fn main(&self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-        command::main(self, arguments)
+    /// 2 the input cannot be used. In WebAssembly there are no arguments: the program answers a page from then on, see
+    /// [`live`](crate::live).
+    pub fn main(self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+        cfg_select! {
+            target_arch = "wasm32" => {
+                drop(arguments);
+                crate::live::register(self);
+                ExitCode::SUCCESS
+            }
+            _ => crate::command::main(&self, arguments),
+        }
     }
 
     /// The scene called `name`.
+    #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn scene_called(&self, name: &str) -> &Scene {
         let scene = self.scenes.iter().find(|scene| scene.name == name);
         scene.expect("the command line takes the names of scenes only")

@@ -6,7 +6,7 @@
 use bg_model::integrator::{Integrator, Tolerances};
 use bg_model::run::{Request, sample_times};
 use bg_model::simulation::Samples;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use thiserror::Error;
 
 use crate::parameters::number;
@@ -20,7 +20,7 @@ const MOST_FINE: f64 = 20_000.0;
 const STEPS_PER_SECOND: f64 = 5e6;
 
 /// How a run is integrated.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Integration {
     /// The end of the run, s.
@@ -28,7 +28,7 @@ pub struct Integration {
     /// The interval of the rows of the CSV file, s.
     pub step: f64,
     /// The integrator.
-    #[serde(deserialize_with = "from_name")]
+    #[serde(deserialize_with = "from_name", serialize_with = "as_name")]
     pub method: Integrator,
     /// Relative tolerance of each step.
     pub rtol: f64,
@@ -40,6 +40,10 @@ pub struct Integration {
 
 fn from_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Integrator, D::Error> {
     String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+}
+
+fn as_name<S: Serializer>(method: &Integrator, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(method.name())
 }
 
 /// A number of an [`Integration`] that cannot be.

@@ -10,6 +10,7 @@ use bg_model::simulation::Recording;
 
 use crate::extras::Page as Texts;
 use crate::figures::{Figure, outputs};
+use crate::live::Live;
 use crate::output::ReportFiles;
 use crate::overview;
 use crate::page::{self, Parameter, Report, Views};
@@ -31,6 +32,8 @@ pub struct Exhibits<'a> {
     pub drawings: &'a [(String, String)],
     /// What is known beyond the run.
     pub views: &'a Views,
+    /// The model inside, where the page is to run it again.
+    pub live: Option<&'a Live>,
 }
 
 impl Exhibits<'_> {
@@ -90,7 +93,7 @@ impl Page<'_> {
                 overview::page(texts, summary, &drawn, data.as_deref())
             }
             Self::Report { exhibits, texts, figures, run, rows, .. } => {
-                let Exhibits { description, scene, parameters, drawings, views } = **exhibits;
+                let Exhibits { description, scene, parameters, drawings, views, live } = **exhibits;
                 page::page(&Report {
                     texts,
                     description,
@@ -102,6 +105,7 @@ impl Page<'_> {
                     figures,
                     drawings,
                     views,
+                    live,
                 })
             }
         }

@@ -29,7 +29,19 @@ fn written(run: &Trajectory, rows: &[f64], texts: &Page, description: &'static D
     };
     let parameters: Vec<Parameter> = <DoublePendulum as Mechanism>::Parameters::table().iter().map(parameter).collect();
     let (scene, parameters, summary) = ("", &parameters[..], &summary);
-    page(&Report { texts, description, scene, parameters, summary, run, rows, figures: &[], drawings: &[], views })
+    page(&Report {
+        texts,
+        description,
+        scene,
+        parameters,
+        summary,
+        run,
+        rows,
+        figures: &[],
+        drawings: &[],
+        views,
+        live: None,
+    })
 }
 
 fn double_pendulum(t_end: f64) -> (Trajectory, Vec<f64>, String) {

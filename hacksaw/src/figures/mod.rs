@@ -12,8 +12,6 @@ use std::sync::Arc;
 use bg_model::simulation::Recording;
 use bg_workbench::figures::{self, FigureError};
 
-pub use orientation::continued;
-
 /// What a figure shows of its link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {

@@ -3,12 +3,12 @@
 //! The sphere is seen from the front, a little from the right and from above (orthographic projection): x to the right,
 //! y up, z toward the reader. Beside it the angle about z and the tilt of the link's z axis away from the inertial one.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::columns::AXES;
+use crate::columns::{AXES, continued};
 use bg_model::simulation::Recording;
 use bg_workbench::figures::FigureError;
 use bg_workbench::figures::canvas::{Area, Rectangle, UNITS, drawing, figure, text, write};
@@ -58,25 +58,6 @@ pub fn draw(heading: &str, trajectory: &Recording, link: u8) -> Result<String, F
         }
         Ok(())
     })
-}
-
-/// The angles without their jumps by a whole turn: from sample to sample less than half a turn.
-pub fn continued(angles: impl IntoIterator<Item = f64>) -> Vec<f64> {
-    let mut turns = 0.0;
-    let mut before: Option<f64> = None;
-    angles
-        .into_iter()
-        .map(|angle| {
-            let jump = before.map_or(0.0, |before| angle - before);
-            if jump > PI {
-                turns -= 1.0;
-            } else if jump < -PI {
-                turns += 1.0;
-            }
-            before = Some(angle);
-            angle + turns * TAU
-        })
-        .collect()
 }
 
 /// Where a point of space is seen: to the right and up.
@@ -144,15 +125,6 @@ fn along(axis: usize, length: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn whole_turns_are_counted() {
-        let angles = (0..100).map(|k| {
-            let angle = f64::from(k) * 0.5;
-            angle.sin().atan2(angle.cos())
-        });
-        assert!((continued(angles).last().unwrap() - 49.5).abs() < 1e-12);
-    }
 
     #[test]
     fn the_view_is_orthographic() {

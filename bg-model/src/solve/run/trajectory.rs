@@ -25,7 +25,7 @@ pub struct Trajectory {
     pub statistics: Statistics,
     /// The methods that made the steps, from when (s) on; the first from the start.
     pub methods: Vec<Change>,
-    /// Time on the wall clock.
+    /// Time on the wall clock; zero in WebAssembly, which has none.
     pub wall: Duration,
     /// Where the run has come to.
     pub last: State,

@@ -53,6 +53,18 @@ export class Charts {
     return made;
   }
 
+  /** Shows other charts in `parent`; where they are those that are there, with other values, they stay as they are seen. */
+  replace(parent, times, charts) {
+    const old = this.#charts.filter((chart) => chart.place.parentElement === parent);
+    const isSame = old.length === charts.length && old.every((chart, index) => chart.fits(charts[index]));
+    if (isSame) {
+      old.forEach((chart, index) => chart.update(times, charts[index].curves));
+      return;
+    }
+    old.forEach((chart) => this.remove(chart));
+    charts.forEach((chart) => this.add(parent, times, chart));
+  }
+
   remove(chart) {
     this.#seen.unobserve(chart.place);
     this.#charts = this.#charts.filter((other) => other !== chart);
@@ -82,7 +94,7 @@ class Chart {
   #hidden;
 
   constructor(charts, parent, times, { title, unit, curves }, height) {
-    Object.assign(this, { charts, times, curves, height });
+    Object.assign(this, { charts, times, title, unit, curves, height });
     this.values = curves.map((curve) => curve.values);
     // Of many curves those that stay as they are would only hide the others.
     const isStill = (values) => values.every((value) => value === values[0]);
@@ -122,6 +134,20 @@ class Chart {
     if (!show) this.#hidden.add(index);
     this.legend[index].button.setAttribute("aria-pressed", String(show));
     this.#plot?.setSeries(index + 1, { show });
+  }
+
+  /** Whether a chart has these curves. */
+  fits({ title, unit, curves }) {
+    const isSame = title === this.title && unit === this.unit && curves.length === this.curves.length;
+    return isSame && curves.every(({ name }, index) => name === this.curves[index].name);
+  }
+
+  /** The same curves of another run. */
+  update(times, curves) {
+    this.times = times;
+    this.values = curves.map((curve) => curve.values);
+    this.#plot?.setData([times, ...this.values], false);
+    this.zoom();
   }
 
   see(isSeen) {

@@ -41,6 +41,13 @@ export class Clock {
     listener(this);
   }
 
+  /** Another run, from `start` to `end`, s: the time stays where it is, or is at its nearer end. */
+  span(start, end) {
+    this.start = start;
+    this.end = Math.max(end, start);
+    this.seek(this.time);
+  }
+
   /** Goes to `time`, s; what is outside the run is its nearer end. */
   seek(time) {
     this.time = Math.min(Math.max(time, this.start), this.end);

@@ -1,5 +1,6 @@
 // The bar at the foot of the page: play, time, speed.
-// In: a clock and the element of the bar. Out: a bar that follows the clock and sets it.
+// In: a clock and the element of the bar. Out: a bar that follows the clock and sets it, and what marks the events of
+// another run on it.
 
 import { speeds } from "./clock.js";
 import { element, seconds } from "./page.js";
@@ -24,7 +25,7 @@ function speedText(speed) {
 }
 
 export function player(bar, clock, events) {
-  const duration = clock.end - clock.start;
+  const duration = () => clock.end - clock.start;
   const symbol = icon(PLAY);
   const button = element(
     "button",
@@ -37,13 +38,15 @@ export function player(bar, clock, events) {
     max: STEPS,
     step: 1,
     "aria-label": "Time",
-    oninput: (event) => clock.seek(clock.start + (duration * event.target.value) / STEPS),
+    oninput: (event) => clock.seek(clock.start + (duration() * event.target.value) / STEPS),
   });
   const marks = element("div", { class: "marks", "aria-hidden": "true" });
-  for (const event of events.slice(0, 200)) {
-    const place = duration > 0 ? (event - clock.start) / duration : 0;
-    marks.append(element("i", { style: `left:${(100 * place).toFixed(3)}%` }));
-  }
+  const mark = (all) => {
+    const place = (event) => (duration() > 0 ? (event - clock.start) / duration() : 0);
+    const made = (event) => element("i", { style: `left:${(100 * place(event)).toFixed(3)}%` });
+    marks.replaceChildren(...all.slice(0, 200).map(made));
+  };
+  mark(events);
   const shown = element("output", { class: "time" });
   const chosen = element("select", {
     "aria-label": "Speed",
@@ -58,18 +61,19 @@ export function player(bar, clock, events) {
   clock.subscribe(({ time, playing }) => {
     symbol.show(playing ? PAUSE : PLAY);
     button.setAttribute("aria-label", playing ? "Pause" : "Play");
-    const part = duration > 0 ? (time - clock.start) / duration : 0;
+    const part = duration() > 0 ? (time - clock.start) / duration() : 0;
     slider.value = Math.round(STEPS * part);
     slider.style.setProperty("--part", `${100 * part}%`);
-    shown.textContent = seconds(time, duration);
+    shown.textContent = seconds(time, duration());
   });
   // The space bar plays and the arrow keys step, unless they are for the element in focus.
   document.addEventListener("keydown", (event) => {
     if (event.target.closest("input, select, button, summary, a, textarea") || event.ctrlKey || event.metaKey) return;
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     if (event.key === " ") clock.toggle();
-    else if (step) clock.seek(clock.time + (step * duration) / 200);
+    else if (step) clock.seek(clock.time + (step * duration()) / 200);
     else return;
     event.preventDefault();
   });
+  return mark;
 }

@@ -1,5 +1,5 @@
 // The data of the page, with a value for each sample where the file has one number for all of them.
-// In: the JSON text that bg-workbench's `page/data.rs` writes. Out: the same as objects; tracks of bodies and joints
+// In: the JSON that bg-workbench's `page/data.rs` writes. Out: the same as objects; tracks of bodies and joints
 // as arrays of numbers, x y z (w) of one sample after the other.
 
 /** A series as an array of `count` values. */
@@ -26,8 +26,8 @@ function motion({ times, bodies, joints, ...rest }) {
   };
 }
 
-export function read(text) {
-  const data = JSON.parse(text);
+/** The data of a run. */
+export function read(data) {
   const chart = ({ curves, ...rest }) => ({
     ...rest,
     curves: curves.map((curve) => ({ ...curve, values: filled(curve.values, data.times.length) })),

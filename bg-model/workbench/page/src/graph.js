@@ -1,6 +1,6 @@
 // The bond-graph picture: hover a bond for its effort, flow and power over time.
 // In: the section with the SVG, the bonds of the page's data, the charts. Out: a panel with the bond's charts; a click
-// keeps it.
+// keeps it; another run's bonds take their place by `update`.
 
 import { filled } from "./data.js";
 import { element } from "./page.js";
@@ -55,9 +55,10 @@ function sizes(section) {
   show(scale);
 }
 
-export function graph(section, data, charts) {
+export function graph(section, bonds, charts) {
   sizes(section);
-  if (data === null) return null;
+  if (bonds === null) return null;
+  let data = bonds;
   const groups = [...section.querySelectorAll("g.bond[data-bond]")];
   const panel = element("div", { class: "bond-panel" });
   section.append(panel);
@@ -93,5 +94,13 @@ export function graph(section, data, charts) {
       if (event.key === "Enter") keep();
     });
   }
-  return { show: (index) => show(section.querySelector(`g.bond[data-bond="${index}"]`), false) };
+  const update = (next) => {
+    if (next === null) return;
+    data = next;
+    if (shown.index === null) return;
+    // The panel's charts are those of effort, flow and power of one bond, whatever the run.
+    charts.replace(panel, data.times, curvesOf(data, shown.index));
+    shown.charts = charts.all.filter((chart) => chart.place.parentElement === panel);
+  };
+  return { show: (index) => show(section.querySelector(`g.bond[data-bond="${index}"]`), false), update };
 }

@@ -8,6 +8,7 @@ import "./view.css";
 import "./charts.css";
 import "./player.css";
 import "./still.css";
+import "./tuning.css";
 import { Charts } from "./charts.js";
 import { Clock } from "./clock.js";
 import { player } from "./controls.js";
@@ -16,15 +17,17 @@ import { graph } from "./graph.js";
 import { modes } from "./modes.js";
 import { motion } from "./motion.js";
 import { still } from "./still.js";
+import { texts } from "./texts.js";
 import { trial } from "./trial.js";
+import { Tuning } from "./tuning.js";
 
-/* global unpacked */
+/* global unpacked, unpackedBytes */
 
 const faults = [];
 window.addEventListener("error", ({ message }) => faults.push(message));
 window.addEventListener("unhandledrejection", ({ reason }) => faults.push(String(reason)));
 
-const data = read(document.getElementById("data").textContent);
+const data = read(JSON.parse(document.getElementById("data").textContent));
 const section = (name) => document.getElementById(name);
 const clock = new Clock(data.times[0] ?? 0, data.times.at(-1) ?? 0);
 const charts = new Charts(clock);
@@ -45,8 +48,28 @@ async function draw() {
   }
 }
 
+/** The sliders of a live page; what else is on it follows them. */
+async function tuning({ mark, view, picture }) {
+  if (!section("live")) return null;
+  const settings = JSON.parse(section("live").textContent);
+  const defaults = new Map(settings.parameters.map((parameter) => [parameter.name, parameter.default]));
+  const show = (answer, milliseconds) => {
+    const { times, events, animation, ...shown } = read(answer.data);
+    clock.span(times[0], times.at(-1));
+    mark(events);
+    charts.replace(section("chart-list"), times, shown.charts);
+    if (section("balance-charts")) charts.replace(section("balance-charts"), times, shown.balance);
+    if (animation) view?.update(animation);
+    picture?.update(answer.bonds);
+    texts(answer, milliseconds, made.values, defaults);
+  };
+  const [script, bytes] = await Promise.all([unpacked("worker"), unpackedBytes("module")]);
+  const made = new Tuning(section("controls"), settings, script, bytes, show);
+  return made;
+}
+
 async function start() {
-  player(section("player"), clock, data.events);
+  const mark = player(section("player"), clock, data.events);
   for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
   for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
   await painted();
@@ -54,8 +77,9 @@ async function start() {
   if (data.modes && view) modes(section("modes"), data.modes, view, clock);
   const bonds = JSON.parse(await unpacked("bonds"));
   const picture = section("picture") ? graph(section("picture"), bonds, charts) : null;
+  const live = await tuning({ mark, view, picture });
   await draw();
-  return { clock, charts, view, picture, faults };
+  return { clock, charts, view, picture, live, faults };
 }
 
 if (location.hash === "#test") trial(start);

@@ -61,13 +61,16 @@ function forceOptions(view) {
     "aria-label": "Length of the arrows",
     oninput: () => view.forces(box.checked, 10 ** Number(scale.value)),
   });
-  const most = `up to ${number(view.arrows.largest, 3)} N`;
+  const most = element("span", { class: "note" });
+  view.onUpdate(() => {
+    most.textContent = `up to ${number(view.arrows.largest, 3)} N`;
+  });
   return element(
     "div",
     { class: "option" },
     element("label", { class: "check" }, box, "joint forces"),
     scale,
-    element("span", { class: "note" }, most),
+    most,
   );
 }
 
@@ -76,7 +79,7 @@ function traceOptions(view) {
     const toggle = () => {
       const isShown = chip.getAttribute("aria-pressed") !== "true";
       chip.setAttribute("aria-pressed", String(isShown));
-      view.trace(point, isShown);
+      view.trace(point.key, isShown);
     };
     const chip = element(
       "button",

@@ -49,32 +49,25 @@ export function webgl() {
 export class MachineView {
   constructor(place, renderer, animation, clock) {
     Object.assign(this, { place, renderer, animation, clock });
-    const { times } = animation;
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("aria-label", "The machine in motion; drag to turn it, Ctrl and the wheel to come nearer");
     place.prepend(this.canvas);
 
     this.scene = new Scene();
-    // The machine as its inertial axes have it, turned so that y is up.
-    this.upright = new Quaternion(...animation.upright);
-    this.machine = new Group();
-    this.machine.quaternion.copy(this.upright);
-    this.scene.add(this.machine);
+    // What has inertial axes, turned so that y is up.
+    this.world = new Group();
+    this.scene.add(this.world);
+    this.#stand();
     this.camera = new PerspectiveCamera(32, 1, 0.001, 1000);
     this.box = this.#extent();
     this.size = Math.max(this.box.getSize(new Vector3()).length(), 1e-6);
     this.#light();
-    this.bodies = animation.bodies.map((track) => {
-      const material = materials();
-      const group = body(track, this.size, material);
-      this.machine.add(group);
-      return { track, group, material };
-    });
-    this.#ground();
-    this.arrows = new Arrows(times, animation.joints, this.size);
-    this.machine.add(this.arrows.group);
+    this.listeners = [];
     this.traces = new Map();
+    this.bodies = animation.bodies.map(() => ({ material: materials() }));
+    this.#ground();
+    this.#machine();
     this.#tint();
 
     this.controls = new OrbitControls(this.camera, this.canvas);
@@ -94,6 +87,12 @@ export class MachineView {
       this.#tint();
       this.draw();
     });
+  }
+
+  /** Turns inertial axes so that things fall along -y. */
+  #stand() {
+    this.upright = new Quaternion(...this.animation.upright);
+    this.world.quaternion.copy(this.upright);
   }
 
   /** What the machine passes over the run, y up. */
@@ -132,7 +131,55 @@ export class MachineView {
     }
   }
 
-  /** A grid below the machine, axes at its corner, a support at each point of the ground. */
+  /** Bodies, supports and forces, as the animation has them. */
+  #machine() {
+    const { times, bodies, ground, joints } = this.animation;
+    for (const part of [...this.bodies.map(({ group }) => group), this.supports, this.arrows?.group]) part?.removeFromParent();
+    this.bodies = this.bodies.map(({ material }, index) => {
+      const group = body(bodies[index], this.size, material);
+      return { track: bodies[index], group, material };
+    });
+    this.supports = new Group().add(...ground.map(({ name, at }) => this.#supportAt(name, at)));
+    this.arrows = new Arrows(times, joints, this.size);
+    this.world.add(...this.bodies.map(({ group }) => group), this.arrows.group);
+    this.scene.add(this.supports);
+  }
+
+  #supportAt(name, at) {
+    const height = 0.035 * this.size;
+    const shape = new ConeGeometry(0.6 * height, height, 4).rotateY(Math.PI / 4).translate(0, -height / 2, 0);
+    const cone = new Mesh(shape, this.support);
+    cone.position.set(...at).applyQuaternion(this.upright);
+    cone.userData.label = `ground.${name}`;
+    return cone;
+  }
+
+  /** The machine in another run; the reader still looks from where they did. */
+  update(animation) {
+    this.swinging(null);
+    this.animation = animation;
+    this.#stand();
+    this.box = this.#extent();
+    const { scale } = this.arrows;
+    this.#machine();
+    const keys = [...this.traces.keys()];
+    for (const key of keys) {
+      this.trace(key, false);
+      this.trace(key, true);
+    }
+    this.#tint();
+    this.forces(this.showsForces !== false, scale);
+    this.#follow();
+    this.listeners.forEach((listener) => listener());
+  }
+
+  /** Calls `listener` now and after each update. */
+  onUpdate(listener) {
+    this.listeners.push(listener);
+    listener();
+  }
+
+  /** A grid below the machine, axes at its corner. */
   #ground() {
     const { min, max } = this.box;
     const middle = this.box.getCenter(new Vector3());
@@ -148,18 +195,7 @@ export class MachineView {
     this.axes.quaternion.copy(this.upright);
     this.axes.position.set(min.x - 0.08 * this.size, this.grid.position.y, max.z + 0.04 * this.size);
     this.support = new MeshStandardMaterial({ roughness: 0.8 });
-    const height = 0.035 * this.size;
-    const supports = new Group();
-    for (const { name, at } of this.animation.ground) {
-      const cone = new Mesh(
-        new ConeGeometry(0.6 * height, height, 4).rotateY(Math.PI / 4).translate(0, -height / 2, 0),
-        this.support,
-      );
-      cone.position.set(...at).applyQuaternion(this.upright);
-      cone.userData.label = `ground.${name}`;
-      supports.add(cone);
-    }
-    this.scene.add(this.grid, this.axes, supports);
+    this.scene.add(this.grid, this.axes);
   }
 
   #tint() {
@@ -176,7 +212,7 @@ export class MachineView {
     for (const [key, trace] of this.traces) trace.tint(hue(Number(key.split(":")[0])));
   }
 
-  /** All points that can be traced: `{ key, name, body, at, path }`, the one that goes farthest first. */
+  /** All points that can be traced: `{ key, name, body, at }`, the one that goes farthest first. */
   points() {
     const count = this.animation.times.length;
     const all = this.animation.bodies.flatMap((track, index) => {
@@ -185,23 +221,25 @@ export class MachineView {
         key: `${index}:${name}`,
         name: `${track.name}.${name}`,
         body: index,
-        path: path(track, at, count),
+        at,
+        length: lengthOf(path(track, at, count)),
       }));
     });
-    return all.sort((a, b) => lengthOf(b.path) - lengthOf(a.path));
+    return all.sort((a, b) => b.length - a.length);
   }
 
-  /** Draws or takes away the trace of a point. */
-  trace(point, isShown) {
-    if (!isShown) {
-      this.machine.remove(this.traces.get(point.key)?.group);
-      this.traces.delete(point.key);
-    } else if (!this.traces.has(point.key)) {
-      const trace = new Trace(this.animation.times, point.path, this.size);
+  /** Draws or takes away the trace of the point of this key. */
+  trace(key, isShown) {
+    this.traces.get(key)?.group.removeFromParent();
+    this.traces.delete(key);
+    const point = isShown ? this.points().find((other) => other.key === key) : null;
+    if (point) {
+      const { times, bodies } = this.animation;
+      const trace = new Trace(times, path(bodies[point.body], point.at, times.length), this.size);
       trace.tint(hue(point.body));
       trace.show(this.clock.time);
-      this.traces.set(point.key, trace);
-      this.machine.add(trace.group);
+      this.traces.set(key, trace);
+      this.world.add(trace.group);
     }
     this.draw();
   }

@@ -189,6 +189,11 @@ pub struct ReportArguments {
     #[arg(long)]
     pub glb: bool,
 
+    /// Put the model into the page, with a slider for each parameter: a move of one runs it again. Needs the target
+    /// wasm32-unknown-unknown; or give the program compiled for it
+    #[arg(long, value_name = "FILE.wasm", num_args = 0..=1, require_equals = true)]
+    pub live: Option<Option<PathBuf>>,
+
     /// Linearise and show the modes: where the run is at this time, s; without a number at the equilibrium near the start
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, value_parser = real, allow_negative_numbers = true)]
     pub modes: Option<Option<f64>>,

@@ -9,12 +9,13 @@ use bg_model::run::Request;
 use bg_model::simulation::Recording;
 
 use super::arguments::CompareArguments;
-use super::run::{Outcome, integrate, model, request};
+use super::run::{integrate, model, request};
 use super::{InputError, ended, say};
 use crate::Program;
 use crate::compare::text;
 use crate::inputs;
 use crate::parameters::{self, Chosen};
+use crate::running::Outcome;
 use crate::samples::read_file;
 use crate::scenes::Scene;
 

@@ -5,13 +5,14 @@ use std::process::ExitCode;
 use bg_model::mechanism::Scenes;
 
 use super::arguments::{CheckArguments, RecordArguments};
-use super::run::{Begin, Claiming, Outcome};
+use super::run::Claiming;
 use super::{InputError, ended};
 use crate::Program;
 use crate::files::console;
 use crate::golden::{Place, check_one, prepare};
 use crate::inputs;
 use crate::parameters;
+use crate::running::{Begin, Outcome};
 
 /// A run that stops before its end is not recorded.
 pub fn record<Me: Scenes>(program: &Program<Me>, arguments: &RecordArguments) -> Result<ExitCode, InputError> {

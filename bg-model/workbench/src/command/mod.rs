@@ -32,10 +32,12 @@ use crate::files::{FileError, console};
 use crate::golden::GoldenError;
 use crate::inputs::InputSettingError;
 use crate::linear::LinearError;
+use crate::live::ModuleError;
 use crate::output::OutputError;
 use crate::parameters::{self, SettingError};
 use crate::precision::measure::MeasureError;
 use crate::request::RequestError;
+use crate::running::BeginError;
 use crate::samples::Unreadable;
 use crate::scenes::Fixed;
 use crate::tables::{self, Part};
@@ -80,6 +82,17 @@ enum InputError {
     Measure(#[from] MeasureError),
     #[error(transparent)]
     Golden(#[from] GoldenError),
+    #[error("--live: {0}")]
+    Live(#[from] ModuleError),
+}
+
+impl From<BeginError> for InputError {
+    fn from(fault: BeginError) -> Self {
+        match fault {
+            BeginError::Run(fault) => fault.into(),
+            BeginError::Linear(fault) => fault.into(),
+        }
+    }
 }
 
 impl From<crate::precision::case::CaseError> for InputError {

@@ -10,6 +10,7 @@ use super::arguments::{IntegrationArguments, ReportArguments};
 use super::linearize::{check_time, linearised};
 use super::run::simulate;
 use crate::Program;
+use crate::live::Module;
 use crate::output::ReportFiles;
 use crate::page::Linearised;
 use crate::page::film::Film;
@@ -24,16 +25,19 @@ pub struct Look {
     pub modes: Option<Option<f64>>,
     /// How the run is integrated.
     pub integration: IntegrationArguments,
+    /// Where the program is from that runs in the page, where one is wanted.
+    pub module: Option<Module>,
 }
 
 pub fn report<Me: Scenes>(program: &Program<Me>, arguments: &ReportArguments) -> Result<ExitCode, InputError> {
-    let ReportArguments { run, glb, modes, show } = arguments;
+    let ReportArguments { run, glb, modes, show, live } = arguments;
     let name = &program.texts.name;
     let files = ReportFiles { page: format!("{name}.html"), glb: glb.then(|| format!("{name}.glb")) };
     let drawings = show.iter().map(|path| drawing(path)).collect::<Result<_, _>>()?;
     check_time("--modes", modes.flatten())?;
     let integration = run.integration.clone();
-    simulate(program, run, Some(&Look { files, drawings, modes: *modes, integration }))
+    let module = live.as_ref().map(|file| Module::from(file.clone()));
+    simulate(program, run, Some(&Look { files, drawings, modes: *modes, integration, module }))
 }
 
 /// A drawing with its file's name as title.

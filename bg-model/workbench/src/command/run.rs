@@ -1,13 +1,13 @@
 //! The command `run`: a scene integrated, its files written, its summary printed.
 
-use std::ops::ControlFlow;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 
 use bg_model::description::ParameterInfo;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::Parameters;
-use bg_model::run::{Request, RunError, Simulation, State, Stopped, Trajectory, sample_times};
+use bg_model::run::{Request, RunError, Simulation, State, sample_times};
 use bg_model::simulation::{MissingColumn, Part};
 
 use super::arguments::{IntegrationArguments, RunArguments, Start};
@@ -17,20 +17,16 @@ use super::{InputError, ended};
 use crate::Program;
 use crate::files::{console, whole};
 use crate::inputs;
-use crate::linear::equilibrium;
+use crate::live::{Live, Order, changed};
 use crate::output::{Claimed, OutputError, Places, Table};
 use crate::page::film::Film;
 use crate::page::{Parameter, Views};
 use crate::parameters::{self, Chosen};
+use crate::picture;
+use crate::running::{self, Begin, Outcome};
 use crate::scenes::{Scene, own_parameters};
 use crate::shown::Exhibits;
 use crate::summary::Summary;
-
-/// A run, and why it stopped before its end, if it did.
-pub struct Outcome {
-    pub run: Trajectory,
-    pub failure: Option<String>,
-}
 
 /// Runs and writes; `look` is what a report is to show beside the run, where one is wanted.
 pub fn simulate<Me: Scenes>(
@@ -46,7 +42,7 @@ pub fn simulate<Me: Scenes>(
         (None, Start::Model) => Begin::Model,
         (None, Start::Equilibrium) => Begin::Equilibrium,
     };
-    let t0 = if let Begin::At(state) = &begin { state.t } else { 0.0 };
+    let t0 = begin.time();
     let finest = program.extras.finest(integration.t_end);
     let request = request(integration, t0, Some(finest))?;
     arguments.save_state.iter().try_for_each(|path| whole::probe(path))?;
@@ -57,6 +53,19 @@ pub fn simulate<Me: Scenes>(
         Some(look) => places.with_report(&arguments.out, look.files.clone()),
         None => places,
     };
+    let live = match look.and_then(|look| look.module.as_ref()) {
+        Some(module) => Some(Live {
+            module: module.wasm(scene.index)?,
+            order: Order {
+                scene: scene.name.clone(),
+                parameters: differing(&chosen.values),
+                inputs: inputs::settings(&model.input, Me::describe().inputs)?,
+                integration: integration.integration(),
+                begin: begin.clone(),
+            },
+        }),
+        None => None,
+    };
     let claim = || Ok(places.claim()?);
     let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin, look, claim };
     let (outcome, views, claimed) = Me::model(scene.index, run)?;
@@ -64,7 +73,7 @@ pub fn simulate<Me: Scenes>(
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
     let rows = sample_times(t0, integration.step, integration.t_end);
     let values = values(&chosen.values, |name| program.extras.source(name));
-    let shown = look.zip(views.as_ref());
+    let shown = look.zip(views.as_ref()).map(|(look, views)| (look, views, live.as_ref()));
     let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, &values, shown) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
@@ -92,38 +101,9 @@ pub fn integrate<Sc: Mechanism>(model: &Sc, request: Request) -> Result<Outcome,
 /// The same of a simulation that may start elsewhere.
 pub fn follow<Sc: Mechanism>(simulation: Simulation<'_, Sc>, request: &Request) -> Result<Outcome, RunError> {
     let bar = over_time(request.t_end);
-    let told = |t| {
-        bar.set_position(ticks(t));
-        ControlFlow::Continue(())
-    };
-    let run = simulation.each_step(told).run();
+    let outcome = running::follow(simulation, |t| bar.set_position(ticks(t)));
     bar.finish_and_clear();
-    match run {
-        Ok(run) => Ok(Outcome { run, failure: None }),
-        Err(RunError::Stopped(stopped)) => {
-            let Stopped { cause, trajectory } = *stopped;
-            Ok(Outcome { run: trajectory, failure: Some(cause.to_string()) })
-        }
-        Err(fault) => Err(fault),
-    }
-}
-
-/// Where a run begins.
-pub(super) enum Begin {
-    Model,
-    At(State),
-    Equilibrium,
-}
-
-/// The equilibrium near the start, with the inputs as at t = 0.
-fn at_rest<Sc: Mechanism>(model: &Sc) -> Result<State, InputError> {
-    let mut state = Simulation::new(model).start()?;
-    let guess: Vec<f64> = state.states.iter().map(|(_, value)| *value).collect();
-    let rest = equilibrium(model, 0.0, &guess)?;
-    for ((_, value), at_rest) in state.states.iter_mut().zip(rest.x) {
-        *value = at_rest;
-    }
-    Ok(state)
+    outcome
 }
 
 /// Makes a scene's model and runs it; before that `claim` claims the places that the results go to.
@@ -146,19 +126,17 @@ impl<P: Parameters, C, F: FnOnce() -> Result<C, InputError>> MechanismVisitor fo
         if self.look.is_some() {
             request.parts.push(Part::Shown);
         }
-        let simulation = Simulation::of(&model, request.clone());
-        let simulation = match self.begin {
-            Begin::Model => simulation,
-            Begin::At(state) => simulation.from(&state),
-            Begin::Equilibrium => simulation.from(&at_rest(&model)?),
-        };
         // What cannot be assembled is refused before anything is claimed.
-        simulation.start()?;
+        let simulation = self.begin.simulation(&model, request.clone())?;
         let modes = self.look.map(|look| look.modes(&model)).transpose()?.flatten();
         let claimed = (self.claim)()?;
         let mut outcome = follow(simulation, &request)?;
         let film = self.look.map(|_| Film::taken(Sc::describe(), &mut outcome.run));
-        let views = film.map(|film| Views { animation: film.animation(), picture: Some(film.picture()), modes });
+        let views = film.map(|film| Views {
+            animation: film.animation(),
+            picture: Some(film.picture(picture::svg(Sc::describe()))),
+            modes,
+        });
         Ok((outcome, views, claimed))
     }
 }
@@ -183,22 +161,23 @@ fn report<Me>(
     rows: &[f64],
     claimed: Claimed,
     values: &[Parameter],
-    shown: Option<(&Look, &Views)>,
+    shown: Option<(&Look, &Views, Option<&Live>)>,
 ) -> Result<Vec<OutputError>, MissingColumn> {
     let Outcome { run, failure } = outcome;
     let extras = &program.extras;
     let mut summary = Summary::new(&scene.name, &run, failure, extras.additions(&run)?);
-    summary.changed_parameters = changed(values);
+    summary.changed_parameters = changed(values.iter().map(|parameter| (&parameter.info, parameter.value)));
     let columns = extras.columns(&run);
     let table = Table { samples: &run.at(rows), columns: columns.as_deref() };
     let texts = extras.page(scene.description);
     let about = scene.summary();
-    let exhibits = shown.map(|(look, views)| Exhibits {
+    let exhibits = shown.map(|(look, views, live)| Exhibits {
         description: scene.description,
         scene: &about,
         parameters: values,
         drawings: &look.drawings,
         views,
+        live,
     });
     let mut written = claimed.write(&table, &run, &texts, exhibits.as_ref(), &mut summary);
     let page = written.page.as_ref().map_or_else(String::new, |page| format!("; open {page} there"));
@@ -223,10 +202,8 @@ fn values<P: Parameters>(values: &P, source: impl Fn(&str) -> &'static str) -> V
     table.map(value).collect()
 }
 
-/// The parameters that differ from their defaults, as `name = value unit`.
-fn changed(values: &[Parameter]) -> Vec<String> {
-    let text = |Parameter { info, value, .. }: &Parameter| {
-        format!("{} = {} {}", info.name, parameters::number(*value), info.unit).trim_end().to_owned()
-    };
-    values.iter().filter(|parameter| parameter.is_changed()).map(text).collect()
+/// The parameters that differ from their defaults.
+fn differing<P: Parameters>(values: &P) -> BTreeMap<String, f64> {
+    let all = P::table().iter().enumerate().map(|(index, info)| (info, values.value(index)));
+    all.filter(|(info, value)| *value != info.default).map(|(info, value)| (info.name.to_owned(), value)).collect()
 }

@@ -13,8 +13,9 @@ use plotters::style::text_anchor::HPos;
 
 use super::canvas::{Rectangle, figure, literally, text, write};
 use super::palette::{AXES, INK};
-use super::panel::{CAPTION, OverTime, RIGHT, STILL, VALUE_LABELS, extent, row_plot, superscript, time_span, widened};
+use super::panel::{CAPTION, OverTime, RIGHT, STILL, VALUE_LABELS, row_plot, time_span, widened};
 use super::{Figure, FigureError};
+use crate::quantities::{extent, quantities, set_unit};
 
 /// The most outputs that get figures of their own; a run with more has them in its CSV file.
 const MOST: usize = 60;
@@ -23,11 +24,6 @@ const MOST: usize = 60;
 #[must_use]
 pub fn figures(description: &'static Description) -> Vec<Figure> {
     quantities(description).take(MOST).map(quantity).collect()
-}
-
-/// The observed quantities, each with its components.
-pub(crate) fn quantities(description: &'static Description) -> impl Iterator<Item = &'static [OutputInfo]> {
-    description.outputs.chunk_by(|a, b| a.of == b.of)
 }
 
 /// The figure of one quantity, given its components.
@@ -102,28 +98,9 @@ fn least_span(range: &Range<f64>) -> f64 {
     if magnitude < NOTHING { STILL } else { STILL * magnitude }
 }
 
-/// A unit as it is set in print: `kg*m^2/s` as kg·m²/s.
-pub(crate) fn set_unit(unit: &str) -> String {
-    let mut parts = unit.split('^');
-    let mut set = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let (power, rest) = part.split_at(part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len()));
-        set += &superscript(power);
-        set += rest;
-    }
-    set.replace('*', "\u{B7}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_unit_is_set_as_in_print() {
-        assert_eq!(set_unit("kg*m^2/s"), "kg\u{B7}m\u{B2}/s");
-        assert_eq!(set_unit("W/m^2/K^4"), "W/m\u{B2}/K\u{2074}");
-        assert_eq!(set_unit("N"), "N");
-    }
 
     #[test]
     fn a_small_quantity_fills_its_panel_and_noise_does_not() {

@@ -14,6 +14,9 @@ use super::FigureError;
 use super::canvas::{Area, Rectangle, UNITS, drawing, label, text, write};
 use super::palette::{AXIS, GRID};
 use super::thinning;
+use crate::quantities::superscript;
+
+pub use crate::quantities::extent;
 
 /// Height of a caption above its panel, CSS pixels.
 pub const CAPTION: i32 = 20;
@@ -90,15 +93,6 @@ fn ticks(range: &Range<f64>, step: f64) -> Vec<f64> {
     }
 }
 
-/// An exponent in raised digits.
-pub(super) fn superscript(exponent: &str) -> String {
-    const RAISED: [char; 10] = [
-        '\u{2070}', '\u{B9}', '\u{B2}', '\u{B3}', '\u{2074}', '\u{2075}', '\u{2076}', '\u{2077}', '\u{2078}',
-        '\u{2079}',
-    ];
-    exponent.chars().map(|c| c.to_digit(10).map_or('\u{207B}', |digit| RAISED[digit as usize])).collect()
-}
-
 impl Ranged for Axis {
     type FormatOption = plotters::coord::ranged1d::NoDefaultFormatting;
     type ValueType = f64;
@@ -134,15 +128,6 @@ fn round_step(rough: f64, down: usize) -> f64 {
     let power = 10f64.powf(rough.log10().floor());
     let first = LADDER.iter().position(|m| m * power >= rough * (1.0 - 1e-9)).unwrap_or(6);
     LADDER[first.saturating_sub(down)] * power
-}
-
-/// The range of the finite values of `curve`.
-pub fn extent(curve: impl IntoIterator<Item = f64>) -> Range<f64> {
-    let range = curve
-        .into_iter()
-        .filter(|value| value.is_finite())
-        .fold(f64::INFINITY..f64::NEG_INFINITY, |range, value| range.start.min(value)..range.end.max(value));
-    if range.start <= range.end { range } else { 0.0..0.0 }
 }
 
 /// `range` with a margin at both ends; `smallest` wide at least, so that rounding noise does not fill a panel.

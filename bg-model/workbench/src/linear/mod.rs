@@ -36,6 +36,7 @@ mod error;
 mod independent;
 mod manifold;
 mod modes;
+#[cfg(not(target_arch = "wasm32"))]
 mod npz;
 mod plant;
 mod response;

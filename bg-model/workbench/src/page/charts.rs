@@ -6,8 +6,7 @@
 use bg_model::description::{Description, OutputInfo};
 use bg_model::simulation::Recording;
 
-use crate::figures::outputs::{quantities, set_unit};
-use crate::figures::panel::extent;
+use crate::quantities::{extent, quantities, set_unit};
 
 /// Curves of one unit.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -151,6 +151,18 @@ impl Data {
         }
     }
 
+    /// Which of `all` samples the charts show, and of the `of_csv` rows of the CSV file, in words.
+    pub fn note(&self, all: usize, of_csv: usize) -> String {
+        let (shown, rows) = (self.times.len(), self.rows.len());
+        let thinned =
+            if shown < all { format!("{shown} of {all} samples are shown") } else { format!("{shown} samples") };
+        let of_rows = if rows < of_csv { format!("{rows} of {of_csv} rows") } else { format!("all {rows} rows") };
+        format!(
+            "{thinned}, among them {of_rows} of the CSV file. Press or drag in a chart to set the time; Ctrl and the wheel zoom, \
+             a double click shows all."
+        )
+    }
+
     /// JSON in which nothing ends the `<script>` that it stands in.
     pub fn json(&self) -> String {
         let json = serde_json::to_string(self).expect("the data have text keys only");

@@ -14,7 +14,6 @@ use bg_model::system::Model;
 use super::animation::{Animation, BodyTrack, JointTrack, NamedPoint, Shape, Solid};
 use super::picture::{BondSeries, Picture};
 use crate::linear::branches;
-use crate::picture;
 
 /// What is shown of a run, by its columns.
 pub struct Film {
@@ -48,10 +47,8 @@ impl Film {
         (!bodies.is_empty()).then(|| Animation { times: self.times.clone(), bodies, ground, gravity, joints })
     }
 
-    /// The picture of the graph, with what its bonds do.
-    pub fn picture(&self) -> Picture {
-        let graph = picture::graph(self.description);
-        let svg = bg_picture::svg(&graph, bg_picture::Level::Full);
+    /// What the bonds do, with the picture of the graph, an SVG text.
+    pub fn picture(&self, svg: String) -> Picture {
         Picture { svg, times: self.times.clone(), bonds: self.bonds() }
     }
 

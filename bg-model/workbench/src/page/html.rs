@@ -3,7 +3,8 @@
 //! In: texts and tables. Out: HTML in which every text is escaped; what moves is added by the page's script.
 
 use super::charts::Balance;
-use super::{Linearised, Parameter, Report};
+use super::report::Report;
+use super::{Linearised, Parameter};
 use crate::overview::{checks, escaped, write_into};
 use crate::parameters::{number, one_line};
 use crate::summary::Summary;
@@ -41,17 +42,21 @@ fn with_code(text: &str) -> String {
     parts.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part }).collect()
 }
 
-/// The machine and the charts, which the script fills.
-pub fn stage(page: &mut String, is_moving: bool, note: &str) {
-    *page += "<div class=\"stage\">\n";
+/// The machine, what sets its parameters where the page can run it, and the charts: the script fills them.
+pub fn stage(page: &mut String, is_moving: bool, is_live: bool, note: &str) {
+    *page += "<div class=\"stage\">\n<div class=\"aside\">\n";
     if is_moving {
         *page += "<section id=\"machine\"></section>\n";
     }
+    if is_live {
+        *page += "<section id=\"controls\"></section>\n";
+    }
+    *page += "</div>\n";
     write_into(
         page,
         format_args!(
             "<section id=\"charts\"><h2>Outputs <small>over t in s</small></h2><div class=\"charts\" id=\"chart-list\"></div>\
-             <p class=\"note\">{}</p></section>\n</div>\n",
+             <p class=\"note\" id=\"samples\">{}</p></section>\n</div>\n",
             escaped(note)
         ),
     );

@@ -4,4 +4,5 @@ pub mod case;
 pub mod errors;
 pub mod measure;
 pub mod reference;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod report;

@@ -54,6 +54,11 @@ impl Given<'_> {
         let count = Literal::usize_unsuffixed(names.len() + 1);
         let places = (1..=names.len()).map(Literal::usize_unsuffixed);
         let scenes = names.iter().map(|name| identifier(name));
+        let models = quote! {
+            0 => visitor.visit::<Self>(),
+            #(#places => visitor.visit::<#scenes>(),)*
+            _ => ::core::panic!("there is no model of this number"),
+        };
         quote! {
             #[allow(clippy::all, clippy::pedantic)]
             impl ::bg_model::mechanism::Scenes for #name {
@@ -61,11 +66,12 @@ impl Given<'_> {
                 fn model<__Visitor: ::bg_model::mechanism::MechanismVisitor>(
                     index: ::core::primitive::usize, visitor: __Visitor,
                 ) -> __Visitor::Output {
-                    match index {
-                        0 => visitor.visit::<Self>(),
-                        #(#places => visitor.visit::<#scenes>(),)*
-                        _ => ::core::panic!("there is no model of this number"),
-                    }
+                    match index { #models }
+                }
+                fn only<const INDEX: ::core::primitive::usize, __Visitor: ::bg_model::mechanism::MechanismVisitor>(
+                    visitor: __Visitor,
+                ) -> __Visitor::Output {
+                    match INDEX { #models }
                 }
             }
         }

@@ -1,0 +1,12 @@
+// Runs a module as a page does: `node live.js FILE.wasm < orders`, an order in each line; writes an answer in each.
+
+import { readFileSync } from "node:fs";
+import { answering } from "./src/module.js";
+
+const answer = await answering(await WebAssembly.compile(readFileSync(process.argv[2])));
+for (const order of readFileSync(0, "utf8").split("\n").filter(Boolean)) {
+  const begin = performance.now();
+  const text = await answer(order);
+  console.error(`${(performance.now() - begin).toFixed(1)} ms, ${text.length} characters`);
+  process.stdout.write(`${text}\n`);
+}

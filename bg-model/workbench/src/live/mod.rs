@@ -1,0 +1,213 @@
+//! A page that runs its model again: what it asks for, and what it is answered.
+//!
+//! In: an [`Order`] as JSON. Out: JSON again: what the page shows of the run, or why there is none. The report that
+//! `report --live` writes has the program inside, compiled for WebAssembly; there [`Program::main`] registers what answers. The
+//! same function answers natively, so that a test can hold one against the other, byte for byte.
+//!
+//! Compiled for WebAssembly a program has the modules below and no others: no command line, no files, no figures. Of the
+//! mechanism's scenes it has the one whose number the variable `BG_LIVE_MODEL` says at its build, as [`Scenes::only`] counts them.
+
+#[cfg(not(target_arch = "wasm32"))]
+mod module;
+
+use std::collections::BTreeMap;
+
+use bg_model::description::{Description, ParameterInfo};
+use bg_model::input::{Input, TableError};
+use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::run::{RunError, sample_times};
+use bg_model::simulation::{MissingColumn, Part};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::Program;
+use crate::extras::Extras;
+use crate::inputs::Setting;
+use crate::page::film::Film;
+use crate::page::{Balance, Bonds, Data};
+use crate::parameters::number;
+use crate::request::{Integration, RequestError};
+use crate::running::{Begin, BeginError, Outcome, follow};
+use crate::scenes::{Fixed, Scene, own_parameters};
+use crate::summary::{Check, Summary};
+
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use module::{Module, ModuleError};
+
+/// What a page asks for: a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Order {
+    /// The scene, by its name on the command line.
+    pub scene: String,
+    /// The parameters that are not at their defaults.
+    pub parameters: BTreeMap<String, f64>,
+    /// The inputs in the order of the model's description; those that are missing are 0.
+    pub inputs: Vec<Setting>,
+    /// How it is integrated.
+    pub integration: Integration,
+    /// Where it begins.
+    pub begin: Begin,
+}
+
+/// A report that can run its model again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Live {
+    /// The program, compiled for WebAssembly for the order's scene.
+    pub module: Vec<u8>,
+    /// The run that the page shows first.
+    pub order: Order,
+}
+
+/// A run that was not made.
+#[derive(Debug, Error)]
+enum Refusal {
+    #[error("the order cannot be read: {0}")]
+    Order(#[from] serde_json::Error),
+    #[error("the model inside is not that of the scene `{0}`")]
+    Scene(String),
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    #[error(transparent)]
+    Fixed(#[from] Fixed),
+    #[error(transparent)]
+    Input(#[from] TableError),
+    #[error("{} {}: {}", .0.field, number(.0.value), .0.fault)]
+    Request(#[from] RequestError),
+    #[error(transparent)]
+    Begin(#[from] BeginError),
+    #[error(transparent)]
+    Run(#[from] RunError),
+    #[error(transparent)]
+    Column(#[from] MissingColumn),
+}
+
+/// What a page is answered.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Answer {
+    Refused { fault: String },
+    Run(Box<Shown>),
+}
+
+/// What a page shows of a run. Nothing in it depends on the clock.
+#[derive(Serialize)]
+struct Shown {
+    /// Why the run stopped before its end, if it did.
+    failure: Option<String>,
+    /// Charts, energy balance, animation.
+    data: Data,
+    /// Effort and flow of the bonds.
+    bonds: Option<Bonds>,
+    /// Which samples the charts show, in words.
+    note: String,
+    /// What the energy balance says.
+    balance: Option<String>,
+    /// Names and texts of the summary.
+    lines: Vec<(String, String)>,
+    /// Statements about the run.
+    checks: Vec<Check>,
+}
+
+/// The line of the summary that only a clock can tell.
+const WALL_TIME: &str = "wall time";
+
+/// The answer to the order `text`, JSON both.
+#[must_use]
+pub fn answer<Me: Scenes>(program: &Program<Me>, text: &str) -> String {
+    told(serde_json::from_str(text).map_err(Refusal::from).and_then(|order: Order| {
+        let scene = program.scenes.iter().find(|scene| scene.name == order.scene);
+        let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
+        Me::model(scene.index, Running { program, scene, order: &order })
+    }))
+}
+
+/// Registers what answers a page, for the one scene that the module is built for.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn register<Me: Scenes>(program: Program<Me>) {
+    const MODEL: usize = match option_env!("BG_LIVE_MODEL") {
+        Some(text) => match usize::from_str_radix(text, 10) {
+            Ok(index) => index,
+            Err(_) => panic!("BG_LIVE_MODEL is the number of a scene"),
+        },
+        None => 0,
+    };
+    bg_live::register(move |text| {
+        told(serde_json::from_str(text).map_err(Refusal::from).and_then(|order: Order| {
+            let scene = program.scenes.iter().find(|scene| scene.index == MODEL && scene.name == order.scene);
+            let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
+            Me::only::<MODEL, _>(Running { program: &program, scene, order: &order })
+        }))
+    });
+}
+
+fn told(outcome: Result<Shown, Refusal>) -> String {
+    let answer = match outcome {
+        Ok(shown) => Answer::Run(Box::new(shown)),
+        Err(refusal) => Answer::Refused { fault: refusal.to_string() },
+    };
+    serde_json::to_string(&answer).expect("an answer has text keys only")
+}
+
+/// Runs a scene as it is asked for.
+struct Running<'a, Me> {
+    program: &'a Program<Me>,
+    scene: &'a Scene,
+    order: &'a Order,
+}
+
+impl<Me: Mechanism> MechanismVisitor for Running<'_, Me> {
+    type Output = Result<Shown, Refusal>;
+
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        let Self { program, scene, order } = self;
+        let mut values = Me::Parameters::default();
+        order.parameters.iter().try_for_each(|(name, value)| values.set(name, *value))?;
+        let inputs: Vec<Input> = order.inputs.iter().map(Setting::input).collect::<Result<_, _>>()?;
+        let model = Sc::make(own_parameters(scene, &program.scenes, &values)?, &inputs)?;
+        let Integration { t_end, step, .. } = order.integration;
+        let t0 = order.begin.time();
+        let mut request = order.integration.request(t0, Some(program.extras.finest(t_end)))?;
+        request.parts.push(Part::Shown);
+        let outcome = follow(order.begin.simulation(&model, request)?, |_| ())?;
+        let table = Me::Parameters::table().iter().enumerate();
+        let changed = changed(table.map(|(index, info)| (info, values.value(index))));
+        Ok(shown(&*program.extras, scene, outcome, &sample_times(t0, step, t_end), changed)?)
+    }
+}
+
+/// What a page shows of a run whose CSV file would have the rows `rows`, s.
+fn shown(
+    extras: &dyn Extras,
+    scene: &Scene,
+    outcome: Outcome,
+    rows: &[f64],
+    changed: Vec<String>,
+) -> Result<Shown, MissingColumn> {
+    let Outcome { mut run, failure } = outcome;
+    let description: &'static Description = scene.description;
+    let film = Film::taken(description, &mut run);
+    let animation = film.animation().filter(|animation| !animation.times.is_empty());
+    let data = Data::new(description, &run, rows, animation.as_ref(), None);
+    let mut summary = Summary::new(&scene.name, &run, failure, extras.additions(&run)?);
+    summary.changed_parameters = changed;
+    let lines = summary.lines().into_iter().filter(|(name, _)| *name != WALL_TIME);
+    Ok(Shown {
+        note: data.note(run.times.len(), rows.iter().filter(|&&row| row <= summary.reached_s).count()),
+        data,
+        bonds: Bonds::new(description.bonds, &film.picture(String::new())),
+        balance: Balance::of(description, &run).map(|balance| balance.sentence()),
+        lines: lines.map(|(name, text)| (name.to_owned(), text)).collect(),
+        failure: summary.failure.clone(),
+        checks: summary.checks,
+    })
+}
+
+/// Those of the parameters that are not at their defaults, as `name = value unit`.
+pub(crate) fn changed<'a>(values: impl Iterator<Item = (&'a ParameterInfo, f64)>) -> Vec<String> {
+    let text = |(info, value): (&ParameterInfo, f64)| {
+        format!("{} = {} {}", info.name, number(value), info.unit).trim_end().to_owned()
+    };
+    values.filter(|(info, value)| *value != info.default).map(text).collect()
+}
