@@ -116,6 +116,7 @@ fn what_else_is_shown_of_the_literal_model() {
         near(&at(&run, sample, rope.force, 3), &output("pull"));
         near(&at(&run, sample, pin.moment.expect("held rotations"), 3), &output("twist"));
         near(&at(&run, sample, drawing.ground[1].place, 3), &[1.0, 1.0, 0.0]);
+        near(&at(&run, sample, drawing.gravity.expect("gravity acts"), 3), &[0.0, -9.81, 0.0]);
     }
 }
 

@@ -13,7 +13,7 @@ use bg_model::nalgebra::SVector;
 use bg_model::run::{Request, Simulation, sample_times};
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::Model;
-use bg_workbench::report::{rate_operations, table};
+use bg_workbench::tables::{rate_operations, table};
 use hacksaw::agreement::{Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
 use hacksaw::scenes::Scene;

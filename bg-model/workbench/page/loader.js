@@ -7,8 +7,9 @@ const inflated = (id) => {
 };
 const unpacked = (id) => inflated(id).text();
 const unpackedBytes = (id) => inflated(id).arrayBuffer();
-// A test waits until the page says that it is done: a frame whose document is open keeps it from being loaded.
-const hold = location.hash === "#test" ? document.body.appendChild(document.createElement("iframe")) : null;
+// Who tests the page or takes a picture of it waits until it is done: a frame whose document is open keeps it from being
+// loaded.
+const hold = /^#(test$|still=)/.test(location.hash) ? document.body.appendChild(document.createElement("iframe")) : null;
 hold?.setAttribute("hidden", "");
 hold?.contentDocument.open();
 unpacked("script").then(

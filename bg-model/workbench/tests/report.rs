@@ -113,6 +113,66 @@ fn modes_drawings_and_a_csv_elsewhere() {
     }
 }
 
+/// Value `k` of a series, which is one number where it never changes.
+fn value(series: &Value, k: usize) -> f64 {
+    series.as_f64().or_else(|| series[k].as_f64()).unwrap_or(f64::NAN)
+}
+
+#[test]
+fn the_machine_and_the_graph_are_those_of_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("o");
+    text("double_pendulum", folder.path(), &["report", "--t-end", "1", "--modes", "0", "--glb", "--out", "o"]);
+    let html = fs::read_to_string(out.join("double-pendulum.html")).unwrap();
+    let csv = bg_workbench::samples::read(fs::File::open(out.join("trajectory.csv")).unwrap()).unwrap();
+    let data = data(&html);
+    let motion = &data["animation"];
+    assert_eq!(motion["upright"], serde_json::json!([0.0, 0.0, 0.0, 1.0]));
+    let [upper, lower] = [0, 1].map(|body| &motion["bodies"][body]);
+    assert_eq!([&upper["name"], &lower["name"], &motion["joints"][1]["name"]], ["upper", "lower", "elbow"]);
+    let times = motion["times"].as_array().unwrap();
+    let mut rows = 0;
+    for (k, t) in times.iter().enumerate() {
+        let Some(row) = csv.times.iter().position(|&time| Some(time) == t.as_f64()) else { continue };
+        rows += 1;
+        let of = |name: &str| csv.column(name).unwrap()[row];
+        // Six digits are in the page.
+        let near = |series: &Value, exact: f64| {
+            let shown = value(series, k);
+            assert!((shown - exact).abs() <= 5e-6 * exact.abs() + 1e-9, "{shown} and {exact} at {t} s");
+        };
+        for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+            near(&lower["position"][axis], of(&format!("lower_position_{letter}")));
+            // Undamped: the force on the lower rod is what the gap's spring gives.
+            near(&motion["joints"][1]["force"][axis], -1e5 * of(&format!("elbow_gap_{letter}")));
+        }
+        near(&upper["orientation"][2], (of("upper_angle") / 2.0).sin());
+    }
+    assert_eq!(rows, 101, "every row of the CSV file is in the motion");
+
+    let bonds = html.matches("data-bond=\"").count();
+    assert!(bonds > 30 && html.contains("<button type=\"button\" data-mode=\"0\">swing</button>"), "{bonds} bonds");
+    let glb = fs::read(out.join("double-pendulum.glb")).unwrap();
+    assert_eq!(&glb[..4], b"glTF");
+    let Some(browser) = browser::browser() else { return };
+    let visit = browser::visit(browser, &out.join("double-pendulum.html"), "test", &["--window-size=1000,800"]);
+    assert_eq!(visit.console, [""; 0]);
+    assert!(visit.document.contains("\"faults\":[]") && visit.document.contains("\"positions\":[["));
+}
+
+#[test]
+fn what_is_up_comes_from_gravity() {
+    let folder = tempfile::tempdir().unwrap();
+    text("spinning_top", folder.path(), &["report", "--t-end", "0.1", "--out", "o"]);
+    let html = fs::read_to_string(folder.path().join("o/spinning-top.html")).unwrap();
+    // A quarter turn about x, which takes z to y.
+    let upright = &data(&html)["animation"]["upright"];
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    for (part, expected) in [-half, 0.0, 0.0, half].into_iter().enumerate() {
+        assert!((value(upright, part) - expected).abs() < 1e-6, "{upright}");
+    }
+}
+
 #[test]
 fn a_circuit_has_a_page_without_a_machine() {
     let folder = tempfile::tempdir().unwrap();

@@ -20,16 +20,18 @@ pub(super) fn drawing(model: &Compiled) -> TokenStream {
     let (shown, tape) = (&model.equations.shown, &model.programs.shown);
     let mut places = tape.places.iter().map(place);
     let mut next = || places.next().expect("a place for each quantity");
-    let Drawing { bodies, ground, joints } = shown.drawing.map(&mut |_| next());
+    let Drawing { bodies, ground, gravity, joints } = shown.drawing.map(&mut |_| next());
     let bonds: Vec<TokenStream> = shown.bonds.iter().map(|_| (next(), next())).map(|(e, f)| quote!([#e, #f])).collect();
     let bodies = bodies.iter().zip(&shown.drawing.bodies).map(|(body, quantities)| {
         let states = states(&model.equations, &[&quantities.position, &quantities.orientation]);
         body_info(body, &states)
     });
-    let (ground, joints, tape) = (points(&ground), joints.iter().map(joint), words(tape));
+    let (ground, gravity, tape) = (points(&ground), optional(gravity.as_ref()), words(tape));
+    let joints = joints.iter().map(joint);
     quote! {
         ::bg_model::drawing::Drawing {
-            bodies: &[#(#bodies,)*], ground: #ground, joints: &[#(#joints,)*], bonds: &[#(#bonds,)*], tape: #tape,
+            bodies: &[#(#bodies,)*], ground: #ground, gravity: #gravity, joints: &[#(#joints,)*],
+            bonds: &[#(#bonds,)*], tape: #tape,
         }
     }
 }

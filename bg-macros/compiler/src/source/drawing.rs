@@ -12,6 +12,8 @@ pub struct Drawing<T> {
     pub bodies: Vec<Body<T>>,
     /// Named points of the ground, inertial axes, m.
     pub ground: Vec<Point<T>>,
+    /// The acceleration of gravity, inertial axes, m/s^2; none where there is no gravity.
+    pub gravity: Option<T>,
     /// Joints, springs and contacts in the order of declaration.
     pub joints: Vec<Joint<T>>,
 }
@@ -88,7 +90,7 @@ pub struct Joint<T> {
 
 impl<T> Default for Drawing<T> {
     fn default() -> Self {
-        Self { bodies: Vec::new(), ground: Vec::new(), joints: Vec::new() }
+        Self { bodies: Vec::new(), ground: Vec::new(), gravity: None, joints: Vec::new() }
     }
 }
 
@@ -98,6 +100,7 @@ impl<T> Drawing<T> {
         Drawing {
             bodies: self.bodies.iter().map(|body| body.map(make)).collect(),
             ground: points(&self.ground, make),
+            gravity: self.gravity.as_ref().map(&mut *make),
             joints: self.joints.iter().map(|joint| joint.map(make)).collect(),
         }
     }

@@ -19,6 +19,8 @@ pub struct Drawing {
     pub bodies: &'static [Body],
     /// Named points of the ground, inertial axes, m.
     pub ground: &'static [Point],
+    /// The acceleration of gravity, inertial axes, m/s^2; none where there is no gravity.
+    pub gravity: Option<Place>,
     /// Joints, springs and contacts in the order of declaration.
     pub joints: &'static [Joint],
     /// Effort and flow of each bond of the description's table.

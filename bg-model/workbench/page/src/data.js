@@ -16,11 +16,11 @@ function woven(components, count) {
   return all;
 }
 
-function motion({ times, bodies, ground, joints }) {
+function motion({ times, bodies, joints, ...rest }) {
   const track = (components) => woven(components, times.length);
   return {
+    ...rest,
     times,
-    ground,
     bodies: bodies.map((body) => ({ ...body, position: track(body.position), orientation: track(body.orientation) })),
     joints: joints.map((joint) => ({ ...joint, place: track(joint.place), force: track(joint.force) })),
   };

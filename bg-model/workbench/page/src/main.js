@@ -7,6 +7,7 @@ import "./style.css";
 import "./view.css";
 import "./charts.css";
 import "./player.css";
+import "./still.css";
 import "./tuning.css";
 import { Charts } from "./charts.js";
 import { Clock } from "./clock.js";
@@ -15,6 +16,7 @@ import { read } from "./data.js";
 import { graph } from "./graph.js";
 import { modes } from "./modes.js";
 import { motion } from "./motion.js";
+import { still } from "./still.js";
 import { texts } from "./texts.js";
 import { trial } from "./trial.js";
 import { Tuning } from "./tuning.js";
@@ -81,4 +83,5 @@ async function start() {
 }
 
 if (location.hash === "#test") trial(start);
+else if (location.hash.startsWith("#still=")) still(start);
 else start().catch((fault) => console.error(fault));

@@ -2,20 +2,21 @@
 // In: the page's data, a clock. Out: the view, or `null` where there is nothing to show it with.
 
 import { element, number } from "./page.js";
-import { MachineView, VIEWS } from "./scene.js";
+import { MachineView, VIEWS, webgl } from "./scene.js";
 
 export function motion(section, animation, clock) {
   const place = element("div", { class: "view" });
   section.append(place);
-  let view;
+  let renderer;
   try {
-    view = new MachineView(place, animation, clock);
+    renderer = webgl();
   } catch (fault) {
     place.append(
       element("p", { class: "note" }, `The machine cannot be drawn: this browser gives no WebGL (${fault.message}).`),
     );
     return null;
   }
+  const view = new MachineView(place, renderer, animation, clock);
   place.append(viewButtons(view));
   tips(place, view);
   const options = element("div", { class: "options" });

@@ -39,17 +39,26 @@ export const VIEWS = {
   top: [0, 1, 0.0001],
 };
 
+/** What draws; an error where the browser gives no WebGL. */
+export function webgl() {
+  const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+  renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+  return renderer;
+}
+
 export class MachineView {
-  constructor(place, animation, clock) {
-    Object.assign(this, { place, animation, clock });
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+  constructor(place, renderer, animation, clock) {
+    Object.assign(this, { place, renderer, animation, clock });
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("aria-label", "The machine in motion; drag to turn it, Ctrl and the wheel to come nearer");
     place.prepend(this.canvas);
 
     this.scene = new Scene();
+    // What has inertial axes, turned so that y is up.
+    this.world = new Group();
+    this.scene.add(this.world);
+    this.#stand();
     this.camera = new PerspectiveCamera(32, 1, 0.001, 1000);
     this.box = this.#extent();
     this.size = Math.max(this.box.getSize(new Vector3()).length(), 1e-6);
@@ -80,11 +89,18 @@ export class MachineView {
     });
   }
 
-  /** What the machine passes over the run. */
+  /** Turns inertial axes so that things fall along -y. */
+  #stand() {
+    this.upright = new Quaternion(...this.animation.upright);
+    this.world.quaternion.copy(this.upright);
+  }
+
+  /** What the machine passes over the run, y up. */
   #extent() {
     const { times, bodies, ground } = this.animation;
     const box = new Box3();
-    for (const { at } of ground) box.expandByPoint(new Vector3(...at));
+    const pass = (place) => box.expandByPoint(place.applyQuaternion(this.upright));
+    for (const { at } of ground) pass(new Vector3(...at));
     for (const track of bodies) {
       const near = track.solids.flatMap(({ at, shape }) => {
         const reach = Math.max(
@@ -98,7 +114,7 @@ export class MachineView {
       });
       const points = [[0, 0, 0], ...track.points.map(({ at }) => at), ...near];
       const stride = Math.max(1, Math.floor(times.length / 300));
-      for (let k = 0; k < times.length; k += stride) points.forEach((at) => box.expandByPoint(placeAt(track, at, k)));
+      for (let k = 0; k < times.length; k += stride) points.forEach((at) => pass(placeAt(track, at, k)));
     }
     return box;
   }
@@ -125,14 +141,15 @@ export class MachineView {
     });
     this.supports = new Group().add(...ground.map(({ name, at }) => this.#supportAt(name, at)));
     this.arrows = new Arrows(times, joints, this.size, this.arrows?.material);
-    this.scene.add(...this.bodies.map(({ group }) => group), this.supports, this.arrows.group);
+    this.world.add(...this.bodies.map(({ group }) => group), this.arrows.group);
+    this.scene.add(this.supports);
   }
 
   #supportAt(name, at) {
     const height = 0.035 * this.size;
     const shape = new ConeGeometry(0.6 * height, height, 4).rotateY(Math.PI / 4).translate(0, -height / 2, 0);
     const cone = new Mesh(shape, this.support);
-    cone.position.set(...at);
+    cone.position.set(...at).applyQuaternion(this.upright);
     cone.userData.label = `ground.${name}`;
     return cone;
   }
@@ -141,6 +158,7 @@ export class MachineView {
   update(animation) {
     this.swinging(null);
     this.animation = animation;
+    this.#stand();
     this.box = this.#extent();
     const { scale } = this.arrows;
     this.#machine();
@@ -174,6 +192,7 @@ export class MachineView {
       cell * Math.round(middle.z / cell),
     );
     this.axes = triad(0.09 * this.size);
+    this.axes.quaternion.copy(this.upright);
     this.axes.position.set(min.x - 0.08 * this.size, this.grid.position.y, max.z + 0.04 * this.size);
     this.support = new MeshStandardMaterial({ roughness: 0.8 });
     this.scene.add(this.grid, this.axes);
@@ -220,7 +239,7 @@ export class MachineView {
       trace.tint(hue(point.body));
       trace.show(this.clock.time);
       this.traces.set(key, trace);
-      this.scene.add(trace.group);
+      this.world.add(trace.group);
     }
     this.draw();
   }

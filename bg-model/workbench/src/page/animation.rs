@@ -11,8 +11,24 @@ pub struct Animation {
     pub bodies: Vec<BodyTrack>,
     /// Points of the ground.
     pub ground: Vec<NamedPoint>,
+    /// The acceleration of gravity, m/s^2; zero where there is none.
+    pub gravity: [f64; 3],
     /// The joints.
     pub joints: Vec<JointTrack>,
+}
+
+impl Animation {
+    /// The turn after which things fall along -y: a unit quaternion x, y, z, w.
+    #[must_use]
+    pub fn upright(&self) -> [f64; 4] {
+        let [x, y, z] = self.gravity;
+        let length = x.hypot(y).hypot(z);
+        let [x, y, z] = if length > 0.0 { [x, y, z].map(|part| -part / length) } else { [0.0, 1.0, 0.0] };
+        // The turn from (x, y, z) to (0, 1, 0), of length one: about their vector product.
+        let turn = [-z, 0.0, x, 1.0 + y];
+        let length = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
+        if length > 1e-9 { turn.map(|part| part / length) } else { [1.0, 0.0, 0.0, 0.0] }
+    }
 }
 
 /// A body over the run. One without solids is drawn as rods from its origin to its points.
@@ -87,4 +103,25 @@ pub struct JointTrack {
     pub force: Vec<[f64; 3]>,
     /// The torque on its second body at each sample; empty where it is not known.
     pub torque: Vec<[f64; 3]>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh::turned;
+    use super::*;
+
+    #[test]
+    fn things_fall_along_minus_y() {
+        for gravity in [[0.0, -9.81, 0.0], [0.0, 0.0, -1.62], [3.0, 4.0, 0.0], [0.0, 2.0, 0.0], [1.0, -1.0, 1.0]] {
+            let upright = Animation { gravity, ..Animation::default() }.upright();
+            let fallen = turned(upright, gravity);
+            let length = gravity.iter().map(|part| part * part).sum::<f64>().sqrt();
+            assert!(
+                fallen.iter().zip([0.0, -length, 0.0]).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{gravity:?}: {fallen:?}"
+            );
+        }
+        assert_eq!(Animation::default().upright(), [0.0, 0.0, 0.0, 1.0]);
+        assert_eq!(Animation { gravity: [0.0, -9.81, 0.0], ..Animation::default() }.upright(), [0.0, 0.0, 0.0, 1.0]);
+    }
 }

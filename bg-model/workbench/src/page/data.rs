@@ -51,6 +51,8 @@ pub struct Motion {
     times: Vec<f64>,
     bodies: Vec<Body>,
     ground: Vec<Point>,
+    /// How it is turned so that y is up: a unit quaternion x, y, z, w.
+    upright: [f64; 4],
     joints: Vec<Joint>,
 }
 
@@ -194,7 +196,7 @@ fn of_balance(balance: &Balance, samples: &[Instant]) -> Vec<Chart> {
 impl Motion {
     /// The machine at samples that are few enough, those at `rows` first.
     fn new(animation: &Animation, rows: &[f64]) -> Self {
-        let Animation { times, bodies, ground, joints } = animation;
+        let Animation { times, bodies, ground, joints, .. } = animation;
         let all: usize = bodies.iter().map(|body| moving(&body.position) + moving(&body.orientation)).sum();
         let of_joints: usize = joints.iter().map(|joint| moving(&joint.place) + moving(&joint.force)).sum();
         let samples = instants(times, rows, all + of_joints, MOST_OF_TRACKS);
@@ -202,6 +204,7 @@ impl Motion {
             times: samples.iter().map(|sample| times[sample.index]).collect(),
             bodies: bodies.iter().map(|body| Body::new(body, &samples)).collect(),
             ground: ground.iter().map(Point::new).collect(),
+            upright: animation.upright().map(|x| rounded(x, DIGITS)),
             joints: joints.iter().map(|joint| Joint::new(joint, &samples)).collect(),
         }
     }

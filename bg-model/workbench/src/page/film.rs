@@ -40,11 +40,11 @@ impl Film {
 
     /// The machine in motion; none where no body is known.
     pub fn animation(&self) -> Option<Animation> {
-        let Drawing { bodies, joints, ground, .. } = &self.description.drawing;
+        let Drawing { bodies, joints, ground, gravity, .. } = &self.description.drawing;
         let bodies: Vec<BodyTrack> = bodies.iter().filter_map(|body| self.body(body)).collect();
         let joints = joints.iter().filter_map(|joint| self.joint(joint)).collect();
-        let ground = self.points(ground);
-        (!bodies.is_empty()).then(|| Animation { times: self.times.clone(), bodies, ground, joints })
+        let (ground, gravity) = (self.points(ground), self.still_at(gravity.flatten()).unwrap_or_default());
+        (!bodies.is_empty()).then(|| Animation { times: self.times.clone(), bodies, ground, gravity, joints })
     }
 
     /// What the bonds do, with the picture of the graph, an SVG text.

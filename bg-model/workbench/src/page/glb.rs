@@ -1,6 +1,7 @@
 //! The machine in motion as binary glTF 2.0, for other programs.
 //!
-//! In: an animation. Out: the bytes of a `.glb` file: a node for each body, moved by one animation, with meshes of its solids.
+//! In: an animation. Out: the bytes of a `.glb` file: a node for each body, moved by one animation, with meshes of its solids,
+//! and one that turns them so that they fall along -y.
 //! Source: the glTF 2.0 specification of the Khronos Group (ISO/IEC 12113:2022), sections 3 and 4.4. Lengths in m, y up, as glTF
 //! has it; times in s from the first sample.
 
@@ -45,11 +46,12 @@ pub fn glb(animation: &Animation) -> Option<Vec<u8>> {
             samplers.push(json!({ "input": times, "output": output, "interpolation": "LINEAR" }));
         }
     }
-    let scene: Vec<usize> = (0..nodes.len()).collect();
+    let bodies: Vec<usize> = (0..nodes.len()).collect();
+    nodes.push(json!({ "name": "machine", "rotation": animation.upright(), "children": bodies }));
     let document = json!({
         "asset": { "version": "2.0", "generator": "bg-workbench" },
         "scene": 0,
-        "scenes": [{ "nodes": scene }],
+        "scenes": [{ "nodes": [nodes.len() - 1] }],
         "nodes": nodes,
         "meshes": meshes_of_bodies,
         "materials": materials(animation.bodies.len()),

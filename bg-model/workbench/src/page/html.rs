@@ -15,9 +15,10 @@ const FACTS: [&str; 6] = ["scene", "simulated time", "integrator", "states", "st
 /// Title, documentation, settings, links to the sections.
 pub fn head(page: &mut String, report: &Report<'_>, sections: &[(&str, &str)]) {
     let title = escaped(&report.texts.title);
-    write_into(page, format_args!("<header>\n<h1>{title}</h1>\n<p>{}</p>\n", escaped(&report.texts.introduction)));
-    if !report.scene.is_empty() && report.scene != report.texts.introduction {
-        write_into(page, format_args!("<p>{}</p>\n", escaped(report.scene)));
+    let introduction = &report.texts.introduction;
+    write_into(page, format_args!("<header>\n<h1>{title}</h1>\n<p>{}</p>\n", with_code(introduction)));
+    if !introduction.starts_with(report.scene) {
+        write_into(page, format_args!("<p>{}</p>\n", with_code(report.scene)));
     }
     if let Some(failure) = &report.summary.failure {
         let reached = report.summary.reached_s;
@@ -33,6 +34,12 @@ pub fn head(page: &mut String, report: &Report<'_>, sections: &[(&str, &str)]) {
         write_into(page, format_args!("<a href=\"#{anchor}\">{name}</a>\n"));
     }
     *page += "</nav>\n</header>\n";
+}
+
+/// A text with what stands between backticks as code.
+fn with_code(text: &str) -> String {
+    let parts = text.split('`').map(escaped).enumerate();
+    parts.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part }).collect()
 }
 
 /// The machine, what sets its parameters where the page can run it, and the charts: the script fills them.
@@ -161,7 +168,7 @@ pub fn parameters(page: &mut String, report: &Report<'_>) {
             false => ("", String::new()),
         };
         let source = if has_sources { format!("<td>{}</td>", escaped(source)) } else { String::new() };
-        let meaning = escaped(&(one_line(info.doc) + &default));
+        let meaning = with_code(&(one_line(info.doc) + &default));
         let (name, value, unit) = (escaped(info.name), number(*value), escaped(&super::charts::unit(info.unit)));
         write_into(
             page,

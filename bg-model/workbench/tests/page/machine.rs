@@ -82,6 +82,7 @@ pub fn animation(run: &Trajectory) -> Animation {
             },
         ],
         ground: vec![NamedPoint { name: "O".to_owned(), at: [0.0; 3] }],
+        gravity: [0.0, -9.81, 0.0],
         joints: vec![
             joint("shoulder", tip(&upper, &|k| shoulder[k], half), force("shoulder_gap")),
             joint("elbow", tip(&lower, &|k| shoulder[k] + elbow[k], other), force("elbow_gap")),

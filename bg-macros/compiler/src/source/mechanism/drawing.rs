@@ -3,7 +3,7 @@
 //! In: bodies, the ground, joints, springs and contacts. Out: a [`Drawing`] over the names that their fragments define.
 
 use super::{End, Expansion, expression};
-use crate::source::ast::{self, Body, Ends, Expression, Ground, Name, Part};
+use crate::source::ast::{self, Body, Ends, Expression, Gravity, Ground, Name, Part};
 use crate::source::drawing::{self, Drawing};
 
 impl Expansion<'_> {
@@ -31,6 +31,11 @@ impl Expansion<'_> {
             let place = expression(ground.span, &format!("ground.{name}.position"));
             self.drawing.ground.push(drawing::Point { name, place });
         }
+    }
+
+    /// Which way things fall.
+    pub(super) fn draw_gravity(&mut self, gravity: &Gravity) {
+        self.drawing.gravity = Some(expression(gravity.span, "gravity_field"));
     }
 
     /// A word between two ends: their places, the force on the second body and, where there is one, the moment.

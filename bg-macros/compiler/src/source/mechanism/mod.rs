@@ -126,6 +126,7 @@ impl<'a> Expansion<'a> {
                 Item::Gravity(gravity) => {
                     let clause = Clause::new("the gravity", 3).given(Given::Source);
                     self.bind("gravity_field", "m/s^2", &gravity.acceleration, clause);
+                    self.draw_gravity(gravity);
                 }
                 Item::Body(body) => {
                     self.body(body);

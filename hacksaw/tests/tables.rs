@@ -1,7 +1,7 @@
 //! What is said of the hacksaw's scenes and graphs.
 
-use bg_workbench::report::{Part, graph};
 use bg_workbench::scenes::{self, Scene};
+use bg_workbench::tables::{Part, graph};
 use clap::ValueEnum;
 use hacksaw::mechanism::Hacksaw;
 
