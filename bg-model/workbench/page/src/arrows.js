@@ -44,9 +44,8 @@ class Arrow {
 }
 
 export class Arrows {
-  constructor(times, joints, size) {
-    Object.assign(this, { times, joints });
-    this.material = new MeshStandardMaterial({ roughness: 0.5 });
+  constructor(times, joints, size, material = new MeshStandardMaterial({ roughness: 0.5 })) {
+    Object.assign(this, { times, joints, material });
     this.largest = largestForce(joints);
     this.unit = this.largest > 0 ? (SHARE * size) / this.largest : 0;
     this.scale = 1;

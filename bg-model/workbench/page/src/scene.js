@@ -134,13 +134,13 @@ export class MachineView {
   /** Bodies, supports and forces, as the animation has them. */
   #machine() {
     const { times, bodies, ground, joints } = this.animation;
-    for (const part of [...this.bodies.map(({ group }) => group), this.supports, this.arrows?.group]) part?.removeFromParent();
+    for (const part of [...this.bodies.map(({ group }) => group), this.supports, this.arrows?.group]) discard(part);
     this.bodies = this.bodies.map(({ material }, index) => {
       const group = body(bodies[index], this.size, material);
       return { track: bodies[index], group, material };
     });
     this.supports = new Group().add(...ground.map(({ name, at }) => this.#supportAt(name, at)));
-    this.arrows = new Arrows(times, joints, this.size);
+    this.arrows = new Arrows(times, joints, this.size, this.arrows?.material);
     this.world.add(...this.bodies.map(({ group }) => group), this.arrows.group);
     this.scene.add(this.supports);
   }
@@ -230,7 +230,7 @@ export class MachineView {
 
   /** Draws or takes away the trace of the point of this key. */
   trace(key, isShown) {
-    this.traces.get(key)?.group.removeFromParent();
+    discard(this.traces.get(key)?.group);
     this.traces.delete(key);
     const point = isShown ? this.points().find((other) => other.key === key) : null;
     if (point) {
@@ -355,6 +355,12 @@ export class MachineView {
       this.renderer.render(this.scene, this.camera);
     });
   }
+}
+
+/** Takes an object out of the scene, if there is one, with its geometries; materials are used again. */
+function discard(object) {
+  object?.removeFromParent();
+  object?.traverse(({ geometry }) => geometry?.dispose());
 }
 
 /** Whether an object and all it is part of are visible. */

@@ -10,6 +10,12 @@ const PATIENCE = 2000;
 /** With more parameters than these there is a field to find one. */
 const MANY = 10;
 
+/** A number as a person types it: `1e7`, not `10000000`. */
+function written(value) {
+  const [plain, scientific] = [String(Number(value.toPrecision(12))), value.toExponential().replace("e+", "e")];
+  return plain.length > 6 && scientific.length < plain.length ? scientific : plain;
+}
+
 /** The model in a worker. Of the orders that arrive while one is under way, only the newest waits. */
 class Runner {
   #script;
@@ -57,7 +63,7 @@ class Runner {
 /** A row of the panel: the parameter's slider and field. `changed` is called when its value changes. */
 class Control {
   constructor(parameter, changed) {
-    Object.assign(this, { parameter, changed, value: parameter.value });
+    Object.assign(this, { parameter, changed, value: parameter.value, range: rangeOf(parameter, parameter.value) });
     const { name, unit, meaning } = parameter;
     this.slider = element("input", {
       type: "range",
@@ -99,10 +105,12 @@ class Control {
   }
 
   show() {
-    this.range = rangeOf(this.parameter, this.value);
+    const [low, high] = this.range;
+    // A value beyond the slider's ends, from the field, moves them.
+    if (this.value < low || this.value > high) this.range = rangeOf(this.parameter, this.value);
     [this.slider.min, this.slider.max] = this.range;
     this.slider.value = this.value;
-    this.field.value = Number(this.value.toPrecision(12));
+    this.field.value = written(this.value);
     const isUsual = this.value === this.parameter.default;
     this.row.classList.toggle("changed", !isUsual);
     this.reset.disabled = isUsual;
@@ -186,7 +194,7 @@ export class Tuning {
     const isShown = told.fault === undefined && told.data.times.length > 0;
     this.fault = told.fault ?? (told.failure === null ? "" : `The run failed: ${told.failure}`);
     this.milliseconds = milliseconds;
-    const time = `Run and shown: ${number(milliseconds / 1000, 3)} s of computing.`;
+    const time = `Run again in ${number(milliseconds / 1000, 3)} s.`;
     this.status.textContent = this.fault || time;
     this.status.classList.toggle("failure", this.fault !== "");
     this.status.classList.toggle("busy", this.#runner.isBusy);
