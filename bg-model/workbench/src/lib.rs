@@ -59,6 +59,7 @@
 //! | [`overview`] | all of it on one page |
 //! | [`page`] | the same in motion, in one file that needs nothing else |
 //! | [`live`] | the same with the model inside, so that the page can run it again |
+//! | [`markup`] | texts as HTML |
 //! | [`shown`] | which page shows a run, and with which files |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
@@ -80,6 +81,8 @@ pub mod figures;
 pub mod files;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod golden;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod markup;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod output;
 #[cfg(not(target_arch = "wasm32"))]

@@ -3,11 +3,11 @@
 //! In: the summary and the figures that were drawn. Out: HTML text. It links the figures' files beside it, so every image
 //! follows the reader's light or dark colour scheme, and needs nothing from elsewhere.
 
-use std::fmt::Write;
 use std::path::Path;
 
 use crate::extras::Page;
 use crate::figures::Figure;
+use crate::markup::{escaped, write_into};
 use crate::summary::Summary;
 
 /// The page's colours and layout; light and dark as the reader prefers.
@@ -108,20 +108,11 @@ fn gallery(page: &mut String, texts: &Page, figures: &[Figure]) {
     *page += "</div>\n";
 }
 
-pub(crate) fn write_into(page: &mut String, text: std::fmt::Arguments) {
-    page.write_fmt(text).expect("writing to a string cannot fail");
-}
-
 /// A relative path as the address of a link: every byte that is not plain as `%XX`, whatever the file's name is made of.
 fn address(path: &Path) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte);
     let bytes = path.as_os_str().as_encoded_bytes().iter();
     bytes.map(|&byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
-}
-
-/// `text` as it stands between tags and in attributes.
-pub(crate) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use bg_workbench::figures::compact::compact;
 use clap::Parser;
 
 use example::Example;
+use programs::Programs;
 
 /// Makes docs/gallery.md with its pictures, or a folder of pages in which the examples move
 #[derive(Parser)]
@@ -47,7 +48,8 @@ fn workbench() -> &'static Path {
 
 fn make(arguments: &Arguments) -> Result<String, Fault> {
     let examples = Example::all(&workbench().join("examples"))?;
-    let programs = programs::build(workbench())?;
+    let folder = programs::build(workbench())?;
+    let programs = Programs { package: workbench(), folder: &folder };
     let browser = programs::browser();
     let docs = workbench().join("../../docs");
     let place = arguments.out.clone().unwrap_or_else(|| docs.join("gallery"));
@@ -59,7 +61,7 @@ fn make(arguments: &Arguments) -> Result<String, Fault> {
             Some(_) => Page::Kept(&["--live"]),
             None => Page::ForPictures,
         };
-        pictures(example, &programs, browser, &place, page)?;
+        pictures(example, programs, browser, &place, page)?;
     }
     let has = |file: &str| place.join(file).exists();
     let without = if browser.is_some() { "" } else { "; no Chromium was found, so no machine was drawn" };
@@ -81,12 +83,18 @@ enum Page {
 }
 
 /// Writes an example's pictures, and its page, into `place`.
-fn pictures(example: &Example, programs: &Path, browser: Option<&str>, place: &Path, page: Page) -> Result<(), Fault> {
+fn pictures(
+    example: &Example,
+    programs: Programs<'_>,
+    browser: Option<&str>,
+    place: &Path,
+    page: Page,
+) -> Result<(), Fault> {
     let folder = tempfile::tempdir()?;
     let call = |command: &[&str], more: &[&str]| {
         let arguments: Vec<&str> =
             command.iter().copied().chain(example.arguments.iter().map(String::as_str)).collect();
-        programs::call(programs, &example.name, folder.path(), &[&arguments, more].concat())
+        programs.call(&example.name, folder.path(), &[&arguments, more].concat())
     };
     call(&["run"], &["--out", "run"])?;
     let chart = std::fs::read_to_string(folder.path().join(format!("run/{}.svg", example.output)))?;
@@ -101,7 +109,7 @@ fn pictures(example: &Example, programs: &Path, browser: Option<&str>, place: &P
     let level = if has_machine { "words" } else { "full" };
     let scene = example.arguments.iter().skip_while(|word| *word != "--scene").take(2).map(String::as_str);
     let graph: Vec<&str> = ["graph", "--svg", "graph.svg", "--level", level].into_iter().chain(scene).collect();
-    programs::call(programs, &example.name, folder.path(), &graph)?;
+    programs.call(&example.name, folder.path(), &graph)?;
     std::fs::copy(folder.path().join("graph.svg"), place.join(texts::graph(example)))?;
 
     if let Some(browser) = browser.filter(|_| has_machine) {

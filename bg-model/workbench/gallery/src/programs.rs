@@ -41,10 +41,23 @@ pub fn build(folder: &Path) -> Result<PathBuf, ProgramError> {
     Ok(target.join("release/examples"))
 }
 
-/// Calls an example in the folder `place`.
-pub fn call<A: AsRef<OsStr>>(programs: &Path, name: &str, place: &Path, arguments: &[A]) -> Result<(), ProgramError> {
-    let program = programs.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
-    done(Command::new(program).current_dir(place).args(arguments)).map(drop)
+/// Where the examples are.
+#[derive(Clone, Copy, Debug)]
+pub struct Programs<'a> {
+    /// The package that they belong to.
+    pub package: &'a Path,
+    /// The built programs.
+    pub folder: &'a Path,
+}
+
+impl Programs<'_> {
+    /// Calls an example in the folder `place`.
+    pub fn call<A: AsRef<OsStr>>(&self, name: &str, place: &Path, arguments: &[A]) -> Result<(), ProgramError> {
+        let program = self.folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+        // As `cargo run` would set it: a live page builds the example anew.
+        let mut command = Command::new(program);
+        done(command.current_dir(place).env("CARGO_MANIFEST_DIR", self.package).args(arguments))
+    }
 }
 
 /// The browser's name; `None` where there is none.
@@ -64,7 +77,7 @@ pub fn picture(browser: &str, page: &Path, t: f64, file: &Path) -> Result<(), Pr
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .arg(format!("--screenshot={}", file.display()))
         .arg(format!("file://{}#still={t}", page.display()));
-    done(&mut command).map(drop)
+    done(&mut command)
 }
 
 /// Runs a command to its end.

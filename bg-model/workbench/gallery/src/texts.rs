@@ -2,6 +2,8 @@
 //!
 //! In: examples, and which pictures each has. Out: text. Files of pictures are named after the example.
 
+use bg_workbench::markup::{escaped, with_code};
+
 use crate::example::Example;
 
 /// Files of an example's pictures, without the folder.
@@ -65,9 +67,7 @@ pub fn index(examples: &[Example], has: impl Fn(&str) -> bool) -> String {
     for example in examples {
         let machine = machine(example);
         let picture = if has(&machine) { machine } else { chart(example) };
-        let text: String = (example.text.split('`').map(escaped).enumerate())
-            .map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part })
-            .collect();
+        let text = with_code(&example.text);
         page += &format!(
             "<a href=\"{}.html\"><img src=\"{picture}\" alt=\"\" loading=\"lazy\"><h2>{}</h2><p>{text}</p></a>\n",
             example.name,
@@ -75,8 +75,4 @@ pub fn index(examples: &[Example], has: impl Fn(&str) -> bool) -> String {
         );
     }
     page + "</main>\n</body>\n</html>\n"
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -5,7 +5,8 @@
 use super::charts::Balance;
 use super::report::Report;
 use super::{Linearised, Parameter};
-use crate::overview::{checks, escaped, write_into};
+use crate::markup::{escaped, with_code, write_into};
+use crate::overview::checks;
 use crate::parameters::{number, one_line};
 use crate::summary::Summary;
 
@@ -34,12 +35,6 @@ pub fn head(page: &mut String, report: &Report<'_>, sections: &[(&str, &str)]) {
         write_into(page, format_args!("<a href=\"#{anchor}\">{name}</a>\n"));
     }
     *page += "</nav>\n</header>\n";
-}
-
-/// A text with what stands between backticks as code.
-fn with_code(text: &str) -> String {
-    let parts = text.split('`').map(escaped).enumerate();
-    parts.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part }).collect()
 }
 
 /// The machine, what sets its parameters where the page can run it, and the charts: the script fills them.

@@ -14,7 +14,7 @@ use crate::extras::Page as Texts;
 use crate::figures::Figure;
 use crate::figures::compact::compact;
 use crate::live::Live;
-use crate::overview::{escaped, write_into};
+use crate::markup::{escaped, write_into};
 use crate::summary::Summary;
 
 const LOADER: &str = include_str!("../../page/loader.js");
