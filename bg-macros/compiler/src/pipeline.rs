@@ -103,6 +103,7 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let (mut equations, reduction) = reduced(variant, derived.equations.clone())?;
     second_order::arrange(&mut equations);
     let mut jacobian = jacobian::differentiate(&equations);
+    equations.close();
     let mut second_order = second_order::differentiate(&equations);
     let elimination = elimination::plan(equations.states.len(), &jacobian.places());
     let programs = program::programs(&mut equations, &mut jacobian, &mut second_order);

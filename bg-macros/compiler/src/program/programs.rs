@@ -98,6 +98,7 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
 /// The operations of the rate function as it would be generated from the equations.
 pub fn rate_operations(equations: &mut StateEquations) -> usize {
     let rates = roots(&equations.states, |state| state.rate);
+    let rates = equations.solution.closed(&mut equations.pool, &rates);
     alone(&mut equations.pool, "rate", &rates).routines[0].counts.total()
 }
 

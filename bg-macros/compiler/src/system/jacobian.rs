@@ -5,11 +5,13 @@
 //! identically zero has no place.
 //! Method: forward accumulation, one sweep for each state (Griewank & Walther 2008, Evaluating Derivatives, ch. 3). What
 //! the rates share, such as the force in a joint, is differentiated once for all rows, as equal expressions are one node.
+//! The reactions of rigid joints follow from the factors that solve for them, by the implicit function theorem.
 
 use std::collections::BTreeMap;
 
-use crate::expr::{Id, Pool, Symbol, derivative, partial};
+use crate::expr::{Id, Pool, Symbol, derivative};
 use crate::system::equations::StateEquations;
+use crate::system::solution::Solution;
 
 /// df/dx and df/dt as expressions.
 #[derive(Clone, Debug)]
@@ -50,11 +52,12 @@ impl Jacobian {
 /// Differentiates the rates. Switched laws are differentiated branch by branch: a switch is frozen.
 #[must_use]
 pub fn differentiate(equations: &StateEquations) -> Jacobian {
-    let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let mut pool = equations.pool.clone();
+    let rates = Rates::of(equations);
     let mut entries = Vec::new();
-    for column in 0..rates.len() {
-        let values = partial(&mut pool, &rates, Symbol::state(column));
+    for column in 0..equations.states.len() {
+        let seeds = BTreeMap::from([(Symbol::state(column), pool.one())]);
+        let values = rates.along(&mut pool, seeds);
         let entry = |(row, value)| Entry { row, column, value };
         entries.extend(values.into_iter().enumerate().map(entry).filter(|entry| !pool.is_zero(entry.value)));
     }
@@ -64,6 +67,27 @@ pub fn differentiate(equations: &StateEquations) -> Jacobian {
         let [input, slope] = [Symbol::Input, Symbol::Slope].map(|symbol| Symbol::numbered(symbol, index));
         seeds.insert(input, pool.symbol(slope));
     }
-    let slopes = derivative(&mut pool, &rates, &seeds);
+    let slopes = rates.along(&mut pool, seeds);
     Jacobian { pool, entries, slopes }
+}
+
+/// The rates, in which reactions of rigid joints are symbols.
+struct Rates<'a> {
+    open: Vec<Id>,
+    solution: &'a Solution,
+}
+
+impl<'a> Rates<'a> {
+    fn of(equations: &'a StateEquations) -> Self {
+        Self { open: equations.states.iter().map(|state| state.rate).collect(), solution: &equations.solution }
+    }
+
+    /// The rates' derivatives where symbols change as `seeds` say, and the reactions with them.
+    fn along(&self, pool: &mut Pool, mut seeds: BTreeMap<Symbol, Id>) -> Vec<Id> {
+        let residuals = derivative(pool, &self.solution.residuals, &seeds);
+        let reactions = self.solution.rates(pool, &residuals);
+        seeds.extend(self.solution.multipliers.iter().copied().zip(reactions));
+        let values = derivative(pool, &self.open, &seeds);
+        self.solution.closed(pool, &values)
+    }
 }

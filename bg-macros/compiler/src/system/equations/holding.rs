@@ -6,9 +6,10 @@ use std::collections::BTreeSet;
 
 use super::Kind;
 use super::signals::Signals;
-use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute_switched};
+use crate::expr::{Branch, Id, Pool, Symbol, derivative, substitute_switched};
 use crate::graph::units::Dimension;
 use crate::graph::{Axis, Direction, ElementKind, Held, JointId, NodeId};
+use crate::system::solution::Known;
 
 /// A motion that a joint holds.
 #[derive(Clone, Debug)]
@@ -63,21 +64,18 @@ impl Holding {
 
     /// Forgets what needs a state or switch that goes: where a reaction acts on something that stays, all that it is
     /// solved from stays as well.
-    pub fn prune(&mut self, pool: &Pool, states: &[bool], switches: &[bool]) {
-        let stays = |id: Id| {
-            pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
-                Node::Symbol(Symbol::State(state)) => states[*state as usize],
-                Node::Select { switch, .. } => switches[*switch as usize],
-                _ => true,
-            })
-        };
+    pub fn prune(&mut self, pool: &Pool, known: &Known) {
+        let stays = |id: Id| known.has(pool, id);
         let zero = pool.zero();
         let entry = |i: usize, j: usize| self.matrix[i.max(j)][i.min(j)];
         let kept: Vec<bool> = (0..self.rigid.len())
             .map(|i| {
                 stays(self.rigid[i].flow)
                     && (0..self.rigid.len()).all(|j| stays(entry(i, j)))
-                    && self.moves.iter().all(|(state, moves)| moves[i] == zero || states[*state] && stays(moves[i]))
+                    && self
+                        .moves
+                        .iter()
+                        .all(|(state, moves)| moves[i] == zero || known.has_state(*state) && stays(moves[i]))
             })
             .collect();
         let keep = |items: &mut Vec<Id>| filter(items, &kept);

@@ -26,6 +26,7 @@ use crate::expr::{Id, Pool, Symbol, text as expression_text};
 use crate::fault::Staged;
 use crate::graph::{CausalGraph, Input, Parameter};
 use crate::system::requirements::Requirements;
+use crate::system::solution::Solution;
 
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
@@ -68,6 +69,8 @@ pub struct StateEquations {
     pub fallible: Vec<FallibleLaw>,
     /// Reactions of rigid joints that are not solved for yet.
     pub reactions: Vec<Reaction>,
+    /// Those that are: symbols in the equations until these are closed.
+    pub solution: Solution,
     /// What joints hold.
     pub holding: Holding,
     /// Whether impulses of the rigid joints make the start velocities fit.

@@ -4,8 +4,9 @@
 //! quantity that needs a state which a scene leaves out is not known there.
 
 use super::signals::Signals;
-use crate::expr::{Branch, Id, Node, Pool, Symbol, substitute_switched};
+use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 use crate::graph::Drawing;
+use crate::system::solution::Known;
 
 /// The components of a quantity; none where it is not known.
 pub type Quantity = Option<Vec<Id>>;
@@ -37,14 +38,8 @@ impl Shown {
     }
 
     /// Forgets what needs a state or switch that goes.
-    pub fn prune(&mut self, pool: &Pool, states: &[bool], switches: &[bool]) {
-        let stays = |id: Id| {
-            pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
-                Node::Symbol(symbol) => symbol.as_state().is_none_or(|state| states[state]),
-                Node::Select { switch, .. } => switches[*switch as usize],
-                _ => true,
-            })
-        };
+    pub fn prune(&mut self, pool: &Pool, known: &Known) {
+        let stays = |id: Id| known.has(pool, id);
         self.map(|quantity| quantity.clone().filter(|ids| ids.iter().all(|&id| stays(id))));
     }
 

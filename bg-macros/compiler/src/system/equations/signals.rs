@@ -15,6 +15,7 @@ use crate::graph::{
     BondGraph, BondId, CausalGraph, ElementKind, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
 };
 use crate::system::Value;
+use crate::system::solution::Solution;
 
 /// A memo of bond variables and lets.
 #[derive(Clone, Debug)]
@@ -131,6 +132,7 @@ impl<'a> Signals<'a> {
             projections,
             fallible: self.fallible,
             reactions,
+            solution: Solution::default(),
             holding,
             impulse: self.graph.impulse,
             shown,

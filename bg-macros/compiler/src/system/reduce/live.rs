@@ -6,8 +6,9 @@
 
 use super::keep_switches;
 use super::report::{Fate, Report};
-use crate::expr::{Branch, Id, Node, Pool, Symbol};
+use crate::expr::{Branch, Id, Node, Symbol};
 use crate::system::equations::{Kind, StateEquations};
+use crate::system::solution::Known;
 
 /// Drops states and switches that no output needs.
 pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report) {
@@ -29,12 +30,7 @@ pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report
             if live { Branch::Kept(kept - 1) } else { Branch::Positive }
         })
         .collect();
-    forget_energies(equations, &live, &switches);
-    let mut fallible = std::mem::take(&mut equations.fallible);
-    fallible.retain(|law| is_known(&equations.pool, law.value, &live, &switches));
-    equations.fallible = fallible;
-    equations.holding.prune(&equations.pool, &live, &switches);
-    equations.shown.prune(&equations.pool, &live, &switches);
+    forget(equations, &Known::of(&equations.pool, &live, &switches, &equations.solution.clone()));
     keep_states(equations, report, &live);
     keep_switches(equations, &branches);
 }
@@ -56,6 +52,7 @@ fn live(equations: &StateEquations, roots: &[Id]) -> (Vec<bool>, Vec<bool>) {
                         open.extend(projections.map(|(_, id)| *id));
                     }
                 }
+                Node::Symbol(symbol) => open.extend(equations.solution.value(*symbol)),
                 Node::Select { switch, .. } => {
                     let switch = *switch as usize;
                     if !std::mem::replace(&mut switches[switch], true) {
@@ -80,23 +77,19 @@ fn quadratures(equations: &StateEquations) -> Vec<usize> {
         .collect()
 }
 
-/// Energies and powers that need a state or a switch which goes are not known in the scene: they become not-a-number.
-fn forget_energies(equations: &mut StateEquations, live: &[bool], switches: &[bool]) {
+/// What needs a state or a switch that goes is not known in the scene. Energies and powers become not-a-number.
+fn forget(equations: &mut StateEquations, known: &Known) {
     let unknown = equations.pool.number(f64::NAN);
+    let pool = &equations.pool;
     for quantity in [&mut equations.stored, &mut equations.supplied, &mut equations.dissipated] {
-        if !is_known(&equations.pool, *quantity, live, switches) {
+        if !known.has(pool, *quantity) {
             *quantity = unknown;
         }
     }
-}
-
-/// Whether an expression needs no state and no switch that goes.
-fn is_known(pool: &Pool, id: Id, live: &[bool], switches: &[bool]) -> bool {
-    pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
-        Node::Symbol(symbol) => symbol.as_state().is_none_or(|state| live[state]),
-        Node::Select { switch, .. } => switches[*switch as usize],
-        _ => true,
-    })
+    equations.fallible.retain(|law| known.has(pool, law.value));
+    equations.holding.prune(pool, known);
+    equations.shown.prune(pool, known);
+    equations.solution.prune(pool, known);
 }
 
 /// Takes away the states without `kept`, to which nothing refers any more, and numbers the others anew.

@@ -165,6 +165,15 @@ impl StateEquations {
         roots
     }
 
+    /// Puts the values of the reactions in the places of their symbols, everywhere.
+    pub fn close(&mut self) {
+        let solution = std::mem::take(&mut self.solution);
+        if !solution.values.is_empty() {
+            self.replace(&|symbol| solution.value(symbol));
+        }
+        self.solution = solution;
+    }
+
     /// Replaces symbols everywhere.
     fn replace(&mut self, replace: &dyn Fn(Symbol) -> Option<Id>) {
         self.replace_switched(replace, &Branch::Kept);
@@ -184,6 +193,7 @@ impl StateEquations {
             law.value = value;
         }
         // What is held and shown comes after, so that it has no influence on the order of the rates' nodes.
+        self.solution.replace(&mut pool, replace, branch);
         self.holding.replace(&mut pool, replace, branch);
         self.shown.replace(&mut pool, replace, branch);
         self.pool = pool;

@@ -8,30 +8,32 @@
 
 use std::collections::BTreeMap;
 
-use crate::expr::{Branch, Id, Pool, Symbol, derivative, partial, substitute};
+use crate::expr::{Id, Pool, Symbol, derivative, partial, substitute};
+use crate::system::definite::Factors;
 use crate::system::equations::{Kind, Reaction, State, StateEquations};
+use crate::system::solution::Solution;
 
 /// Rate at which a remaining gap decays, 1/s: slow beside the motion of a step, fast beside its growth by truncation.
 const DECAY: f64 = 50.0;
 
-/// Solves for all multipliers.
+/// Solves for all multipliers. They stay symbols in the equations until these are closed.
 pub fn solve(equations: &mut StateEquations) {
     let reactions = std::mem::take(&mut equations.reactions);
     if reactions.is_empty() {
         return;
     }
-    let accelerations = accelerations(equations, &reactions);
+    let residuals = accelerations(equations, &reactions);
     let pool = &mut equations.pool;
-    let system = Linear::of(pool, &reactions, &accelerations);
-    let matrix = system.matrix.clone();
-    let solution = system.solved(pool);
-    let value: BTreeMap<Symbol, Id> = reactions.iter().map(|reaction| reaction.multiplier).zip(solution).collect();
-    let before = equations.states.clone();
-    equations.replace(&|symbol| value.get(&symbol).copied());
+    let system = Linear::of(pool, &reactions, &residuals);
+    let factors = Factors::of(pool, &system.matrix, |pool, _, pivot, _| pool.powi(pivot, -1));
+    let right: Vec<Id> = system.constant.iter().map(|&constant| pool.neg(constant)).collect();
+    let values = factors.solve(pool, &right);
     let holding = &mut equations.holding;
-    (holding.matrix, holding.moves) = (matrix, moves(&mut equations.pool, &before, &reactions));
+    holding.moves = moves(pool, &equations.states, &reactions);
+    holding.matrix = system.matrix;
+    let multipliers = reactions.iter().map(|reaction| reaction.multiplier).collect();
     holding.rigid = reactions.into_iter().map(|reaction| reaction.slip).collect();
-    holding.replace(&mut equations.pool, &|symbol| value.get(&symbol).copied(), &Branch::Kept);
+    equations.solution = Solution { multipliers, residuals, factors, values };
 }
 
 /// dv/dt + 2 a v + a^2 q of every flow v with its gap q; zero where the reactions are right.
@@ -82,46 +84,6 @@ impl Linear {
         let matrix = (0..reactions.len()).map(|i| (0..=i).map(|j| columns[j][i]).collect()).collect();
         let constant = substitute(pool, expressions, &|symbol| is_multiplier(symbol).then_some(zero));
         Self { matrix, constant }
-    }
-
-    /// l by L D L^T, without pivots (Golub and Van Loan, Matrix Computations, algorithm 4.1.2).
-    fn solved(self, pool: &mut Pool) -> Vec<Id> {
-        let n = self.constant.len();
-        let mut lower: Vec<Vec<Id>> = Vec::with_capacity(n);
-        let mut diagonal: Vec<Id> = Vec::with_capacity(n);
-        for (i, mut row) in self.matrix.into_iter().enumerate() {
-            // The row's entries are L_ij D_j until all of them are known.
-            for (j, above) in lower.iter().enumerate() {
-                let known: Vec<Id> = (0..j).map(|k| pool.mul(row[k], above[k])).collect();
-                let known = pool.sum(&known);
-                row[j] = pool.sub(row[j], known);
-            }
-            let mut squares = Vec::with_capacity(i);
-            for (entry, &divisor) in row.iter_mut().zip(&diagonal) {
-                let scaled = *entry;
-                *entry = pool.div(scaled, divisor);
-                squares.push(pool.mul(scaled, *entry));
-            }
-            let squares = pool.sum(&squares);
-            diagonal.push(pool.sub(row[i], squares));
-            lower.push(row);
-        }
-        let mut solution: Vec<Id> = Vec::with_capacity(n);
-        for (row, &constant) in lower.iter().zip(&self.constant) {
-            let known: Vec<Id> = row.iter().zip(&solution).map(|(&entry, &value)| pool.mul(entry, value)).collect();
-            let known = pool.sum(&known);
-            let right = pool.neg(constant);
-            solution.push(pool.sub(right, known));
-        }
-        for (value, &divisor) in solution.iter_mut().zip(&diagonal) {
-            *value = pool.div(*value, divisor);
-        }
-        for i in (0..n).rev() {
-            let known: Vec<Id> = (i + 1..n).map(|k| pool.mul(lower[k][i], solution[k])).collect();
-            let known = pool.sum(&known);
-            solution[i] = pool.sub(solution[i], known);
-        }
-        solution
     }
 }
 

@@ -43,7 +43,9 @@ pub(super) fn attempt(statements: &str, clauses: &str) -> Result<Scene, Faults> 
     let wanted = wanted(scene, &derived.parameters)?;
     let mut literal = derived.clone();
     solve_reactions(&mut literal);
-    let (reduced, report) = for_scene(derived, &wanted, &mut program::rate_operations);
+    literal.close();
+    let (mut reduced, report) = for_scene(derived, &wanted, &mut program::rate_operations);
+    reduced.close();
     Ok(Scene { literal, tuned: wanted.tuned, reduced, report })
 }
 

@@ -1,0 +1,106 @@
+//! The reactions of rigid joints after they are solved for: symbols in the equations, each with its value.
+//!
+//! In: [`Solution`] from `reduce::reaction`. Out: values in the symbols' places, and how the reactions change with what they
+//! depend on, from the factors that solve for them: (A l + b)' = 0 gives l' = -A^-1 (A' l + b').
+
+use crate::expr::{Branch, Id, Node, Pool, Symbol, substitute, substitute_switched};
+use crate::system::definite::Factors;
+
+/// The reactions with their values.
+#[derive(Clone, Debug, Default)]
+pub struct Solution {
+    /// The reactions, in the order of the rows.
+    pub multipliers: Vec<Symbol>,
+    /// A l + b, with the reactions as symbols.
+    pub residuals: Vec<Id>,
+    /// The factors of A.
+    pub factors: Factors,
+    /// The reactions' values, in which none of the symbols occurs.
+    pub values: Vec<Id>,
+}
+
+impl Solution {
+    /// The value of a reaction.
+    #[must_use]
+    pub fn value(&self, symbol: Symbol) -> Option<Id> {
+        let place = self.multipliers.iter().position(|&multiplier| multiplier == symbol)?;
+        Some(self.values[place])
+    }
+
+    /// Expressions with the reactions' values in the places of the symbols.
+    pub fn closed(&self, pool: &mut Pool, ids: &[Id]) -> Vec<Id> {
+        if self.values.is_empty() {
+            return ids.to_vec();
+        }
+        substitute(pool, ids, &|symbol| self.value(symbol))
+    }
+
+    /// The rates of the reactions, where what they depend on makes the residuals change by `residuals`.
+    pub fn rates(&self, pool: &mut Pool, residuals: &[Id]) -> Vec<Id> {
+        let right: Vec<Id> = residuals.iter().map(|&residual| pool.neg(residual)).collect();
+        self.factors.solve(pool, &right)
+    }
+
+    /// Replaces symbols and decides switches everywhere.
+    pub fn replace(&mut self, pool: &mut Pool, replace: &dyn Fn(Symbol) -> Option<Id>, branch: &dyn Fn(u32) -> Branch) {
+        let roots = self.residuals.iter_mut().chain(self.factors.roots()).chain(&mut self.values);
+        let roots: Vec<&mut Id> = roots.collect();
+        let before: Vec<Id> = roots.iter().map(|id| **id).collect();
+        let after = substitute_switched(pool, &before, replace, branch);
+        roots.into_iter().zip(after).for_each(|(root, id)| *root = id);
+    }
+
+    /// Forgets the reactions whose value is not known.
+    pub fn prune(&mut self, pool: &Pool, known: &Known) {
+        let kept: Vec<bool> = self.values.iter().map(|&value| known.has(pool, value)).collect();
+        let keep = |ids: &mut Vec<Id>| {
+            let mut kept = kept.iter();
+            ids.retain(|_| *kept.next().expect("a mark for each"));
+        };
+        keep(&mut self.residuals);
+        keep(&mut self.values);
+        self.factors.retain(&kept);
+        let mut marks = kept.iter();
+        self.multipliers.retain(|_| *marks.next().expect("a mark for each"));
+    }
+}
+
+/// What a model still has after states and switches have gone.
+#[derive(Clone, Debug)]
+pub struct Known<'a> {
+    /// For each state whether it is there.
+    states: &'a [bool],
+    /// For each switch.
+    switches: &'a [bool],
+    /// The reactions whose values are not known.
+    unknown: Vec<Symbol>,
+}
+
+impl<'a> Known<'a> {
+    /// What the marked states and switches leave.
+    #[must_use]
+    pub fn of(pool: &Pool, states: &'a [bool], switches: &'a [bool], solution: &Solution) -> Self {
+        let mut known = Self { states, switches, unknown: Vec::new() };
+        let reactions = solution.multipliers.iter().zip(&solution.values);
+        let unknown = reactions.filter(|&(_, &value)| !known.has(pool, value)).map(|(&symbol, _)| symbol);
+        known.unknown = unknown.collect();
+        known
+    }
+
+    /// Whether a state is there.
+    #[must_use]
+    pub fn has_state(&self, state: usize) -> bool {
+        self.states[state]
+    }
+
+    /// Whether an expression needs nothing that has gone.
+    #[must_use]
+    pub fn has(&self, pool: &Pool, id: Id) -> bool {
+        pool.reachable(&[id]).into_iter().all(|id| match pool.node(id) {
+            Node::Symbol(Symbol::State(state)) => self.states[*state as usize],
+            Node::Symbol(symbol) => !self.unknown.contains(symbol),
+            Node::Select { switch, .. } => self.switches[*switch as usize],
+            _ => true,
+        })
+    }
+}
