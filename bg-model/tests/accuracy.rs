@@ -135,7 +135,7 @@ impl System<f64, 9, 0> for Turning {
         }
     }
     /// A step of Newton's iteration to the nearest orthogonal matrix: X (3 - X^T X) / 2.
-    fn project(&self, x: &mut SVector<f64, 9>) {
+    fn project(&self, _: f64, _: &[bool; 0], x: &mut SVector<f64, 9>) {
         if self.is_projected {
             let m = bg_model::nalgebra::Matrix3::from_column_slice(x.as_slice());
             let near = m * (bg_model::nalgebra::Matrix3::identity() * 3.0 - m.transpose() * m) * 0.5;

@@ -210,7 +210,7 @@ where
         let found = [powers.supplied, powers.dissipated, model.stored_energy(sample.time, &x, &negative)];
         check("energy", &found, vec![equations.supplied, equations.dissipated, equations.stored]);
         let mut projected = x;
-        model.project(&mut projected);
+        model.project(sample.time, &negative, &mut projected);
         let (indices, roots): (Vec<usize>, Vec<Id>) = equations.projections.iter().copied().unzip();
         let found: Vec<f64> = indices.iter().map(|&index| projected[index]).collect();
         check("projection", &found, roots);

@@ -38,8 +38,8 @@ where
         self.0.rate(t, x, &[false; G], dx);
     }
 
-    fn project(&self, x: &mut SVector<f64, N>) {
-        self.0.project(x);
+    fn project(&self, t: f64, negative: &[bool; G], x: &mut SVector<f64, N>) {
+        self.0.project(t, negative, x);
     }
 }
 

@@ -15,6 +15,7 @@ use crate::source::scene::{self, Variant};
 use crate::source::{mechanism, names};
 use crate::system::equations::{self, StateEquations};
 use crate::system::jacobian::{self, Jacobian};
+use crate::system::projection;
 use crate::system::reduce::{self, Report, expectation};
 use crate::system::second_order::{self, SecondOrder};
 
@@ -101,6 +102,7 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let (source, scenes) = (variant.graph.clone(), variant.scenes.clone());
     let derived = derive(&source)?;
     let (mut equations, reduction) = reduced(variant, derived.equations.clone())?;
+    projection::complete(&mut equations);
     second_order::arrange(&mut equations);
     let mut jacobian = jacobian::differentiate(&equations);
     equations.close();

@@ -26,9 +26,10 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
     fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _guards: &mut SVector<S, G>) {}
 
-    /// Moves `x` back onto the invariants that rounding and truncation leave (orthogonal orientations). Called once
-    /// after each accepted step, before the rate at the new state is evaluated.
-    fn project(&self, _x: &mut SVector<S, N>) {}
+    /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal orientations,
+    /// closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before the rate at the
+    /// new state is evaluated, and for each sample inside a step.
+    fn project(&self, _t: S, _negative: &[bool; G], _x: &mut SVector<S, N>) {}
 
     /// The first instant after `t` (s) at which a step must end, because the rate follows another law from there on: a kink
     /// of an input. The rate is continuous there. Infinity, as by default, where there is none.

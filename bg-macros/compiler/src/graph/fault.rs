@@ -41,6 +41,7 @@ pub enum GraphFault {
     IntegralOutsideObserve,
     VariableRole { name: String, symbol: &'static str },
     EmptyGraph { name: String },
+    Decay,
 }
 
 use GraphFault as F;
@@ -80,6 +81,7 @@ impl Explain for GraphFault {
             F::VariableRole { .. } => "BG0332",
             F::EmptyGraph { .. } => "BG0333",
             F::Reserved { .. } => "BG0334",
+            F::Decay => "BG0338",
         }
     }
 
@@ -133,6 +135,7 @@ impl Explain for GraphFault {
             F::IntegralOutsideObserve => "`integral` has a meaning only in an observed output".to_owned(),
             F::VariableRole { name, symbol } => format!("the law of {symbol} `{name}` cannot be of that variable"),
             F::EmptyGraph { name } => format!("graph `{name}` has no bond"),
+            F::Decay => "the rate of `baumgarte` must be a number above 0, in 1/s".to_owned(),
         }
     }
 
@@ -198,6 +201,7 @@ impl Explain for GraphFault {
             F::VariableRole { .. } => {
                 "leave `effort` or `flow` away: a C's law is of its displacement, an I's of its momentum".to_owned()
             }
+            F::Decay => "write for example `baumgarte 50;`".to_owned(),
             F::EmptyGraph { .. } => "bond its elements in a chain, `a -> b;`".to_owned(),
         }
     }

@@ -51,6 +51,8 @@ pub struct BondGraph {
     pub closes: Vec<Close>,
     /// Whether impulses make start velocities fit rigid joints.
     pub impulse: bool,
+    /// The rate of Baumgarte's terms, 1/s; none where rigid joints are kept by projection.
+    pub baumgarte: Option<f64>,
     /// Observed outputs.
     pub observations: Vec<Observation>,
     /// The guesses in start expressions, each one unknown of the assembly.

@@ -46,8 +46,10 @@ pub struct Running {
     pub guards: Routine,
     /// The scalar outputs.
     pub outputs: Routine,
-    /// The states that a projection moves.
+    /// The states of the pose that a projection moves.
     pub project: Routine,
+    /// The momenta that it moves after that.
+    pub settle: Routine,
     /// The stored energy.
     pub stored_energy: Routine,
     /// The supplied and the dissipated power.
@@ -116,6 +118,7 @@ fn running(equations: &mut StateEquations) -> Running {
     let guards = roots(&equations.switches, |switch| switch.guard);
     let outputs = roots(&equations.outputs, |output| output.value);
     let projections = roots(&equations.projections, |&(_, id)| id);
+    let settled = roots(&equations.settled, |&(_, id)| id);
     let stored = [equations.stored];
     let powers = [equations.supplied, equations.dissipated];
     let requests = [
@@ -123,13 +126,14 @@ fn running(equations: &mut StateEquations) -> Running {
         Request { name: "guards", roots: &guards },
         Request { name: "outputs", roots: &outputs },
         Request { name: "project", roots: &projections },
+        Request { name: "settle", roots: &settled },
         Request { name: "stored_energy", roots: &stored },
         Request { name: "powers", roots: &powers },
     ];
     let Program { constants, routines } = schedule(&mut equations.pool, requests);
-    let [rate, guards, outputs, project, stored_energy, powers] = routines;
+    let [rate, guards, outputs, project, settle, stored_energy, powers] = routines;
     let paired_rate = pair(&rate);
-    Running { constants, rate, paired_rate, guards, outputs, project, stored_energy, powers }
+    Running { constants, rate, paired_rate, guards, outputs, project, settle, stored_energy, powers }
 }
 
 fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondOrderPrograms {
@@ -178,8 +182,10 @@ impl Running {
 
     /// All of them.
     #[must_use]
-    pub fn routines(&self) -> [&Routine; 6] {
-        [&self.rate, &self.guards, &self.outputs, &self.project, &self.stored_energy, &self.powers]
+    pub fn routines(&self) -> Vec<&Routine> {
+        let project = [&self.project].into_iter().chain((!self.settle.results.is_empty()).then_some(&self.settle));
+        let first = [&self.rate, &self.guards, &self.outputs].into_iter().chain(project);
+        first.chain([&self.stored_energy, &self.powers]).collect()
     }
 }
 

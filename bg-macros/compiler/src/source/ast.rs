@@ -68,6 +68,8 @@ pub enum Item {
     Gravity(Gravity),
     /// `start impulse;` with the word's span: impulses of the rigid joints make start velocities fit.
     Impulse(Span),
+    /// `baumgarte RATE;`
+    Baumgarte(Baumgarte),
     /// `body NAME { ... }`
     Body(Body),
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`
@@ -374,6 +376,15 @@ pub struct Gravity {
     pub span: Span,
     /// The acceleration, inertial axes, m/s^2.
     pub acceleration: Expression,
+}
+
+/// How rigid joints are kept: by Baumgarte's terms in place of projection.
+#[derive(Clone, Debug)]
+pub struct Baumgarte {
+    /// The word's span.
+    pub span: Span,
+    /// The rate at which gaps decay, 1/s.
+    pub rate: Expression,
 }
 
 /// A rigid body.

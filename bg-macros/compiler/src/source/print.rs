@@ -6,7 +6,7 @@
 use std::fmt::{Display, Formatter, Result};
 
 use crate::source::ast::{
-    Axis, AxisLaw, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends, Expectation,
+    Axis, AxisLaw, Baumgarte, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends, Expectation,
     Expression, ExpressionKind, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind, Junction, JunctionKind,
     LawVariable, Let, Name, Observation, Operation, Parameter, Part, Point, Rigid, Role, Scene, Shape, Source, Spring,
     Track, Unit,
@@ -135,6 +135,7 @@ impl Display for Item {
             Self::Ground(ground) => ground.fmt(f),
             Self::Gravity(Gravity { acceleration, .. }) => write!(f, "gravity {acceleration};"),
             Self::Impulse(_) => f.write_str("start impulse;"),
+            Self::Baumgarte(Baumgarte { rate, .. }) => write!(f, "baumgarte {rate};"),
             Self::Body(body) => body.fmt(f),
             Self::Joint(joint) => joint.fmt(f),
             Self::Spring(spring) => spring.fmt(f),

@@ -5,6 +5,7 @@
 mod definite;
 pub mod equations;
 pub mod jacobian;
+pub mod projection;
 pub mod reduce;
 pub mod requirements;
 pub mod second_order;

@@ -46,7 +46,7 @@ pub fn arrange(equations: &mut StateEquations) {
         to[index] = place;
     }
     equations.states = order.iter().map(|&index| equations.states[index].clone()).collect();
-    for (state, _) in &mut equations.projections {
+    for (state, _) in equations.projections.iter_mut().chain(&mut equations.settled) {
         *state = to[*state] as usize;
     }
     equations.holding.renumber(&|state| Some(to[state] as usize));

@@ -21,7 +21,7 @@ where
 {
     /// Projects the start and chooses the branches there.
     pub(super) fn begin(&mut self) {
-        self.system.project(&mut self.x);
+        self.system.project(self.t, &self.negative, &mut self.x);
         // Guards may depend on the branches: repeated until they agree, at most once for each switch.
         for _ in 0..=G {
             let value = self.guards();

@@ -245,7 +245,7 @@ where
             }
             let part = (instant - self.stepper.start.t) / self.stepper.h;
             let mut x = self.stepper.dense(part.min(1.0));
-            self.stepper.system.project(&mut x);
+            self.stepper.system.project(instant, &self.stepper.negative, &mut x);
             observer.sample(instant, &x, &self.stepper.negative);
         }
     }

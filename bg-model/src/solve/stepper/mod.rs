@@ -56,7 +56,8 @@ where
 
     /// Moves the end of the step back onto the invariants.
     pub fn project(&mut self) {
-        self.system.project(&mut self.end.x);
+        let Point { t, x, .. } = &mut self.end;
+        self.system.project(*t, &self.negative, x);
     }
 
     /// Evaluates the rate at the end of the step.

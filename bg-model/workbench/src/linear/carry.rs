@@ -104,7 +104,7 @@ where
 
     fn projected(&self, x: &DVector<f64>) -> DVector<f64> {
         let mut projected = dual(x, &(x * 0.0));
-        self.model.project(&mut projected);
+        self.model.project(Dual::new(self.t, 0.0), &self.negative, &mut projected);
         DVector::from_fn(N, |state, _| projected[state].value)
     }
 }

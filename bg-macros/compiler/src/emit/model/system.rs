@@ -7,6 +7,8 @@ use quote::quote;
 
 use super::super::items::identifier;
 use super::{Emission, Shape};
+use crate::expr::Id;
+use crate::program::Routine;
 
 impl Emission<'_> {
     pub(super) fn system(&self) -> TokenStream {
@@ -63,17 +65,32 @@ impl Emission<'_> {
     }
 
     fn project(&self) -> TokenStream {
-        let n = &self.shape.n;
-        let (body, projected) = self.function(&self.model.programs.running.project);
-        let indices = self.model.equations.projections.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        let Shape { n, g, .. } = &self.shape;
+        let (running, equations) = (&self.model.programs.running, &self.model.equations);
+        let pose = self.projection(&running.project, &equations.projections);
+        let momenta = self.projection(&running.settle, &equations.settled);
         quote! {
-            fn project(&self, state: &mut SVector<S, #n>) {
-                let x = &*state;
-                #body
-                let [projected] = &mut state.data.0;
-                #(projected[#indices] = #projected;)*
+            fn project(&self, t: S, negative: &[bool; #g], state: &mut SVector<S, #n>) {
+                #pose
+                #momenta
             }
         }
+    }
+
+    /// Gives the states of `moved` what the routine makes of them.
+    fn projection(&self, routine: &Routine, moved: &[(usize, Id)]) -> Option<TokenStream> {
+        let (body, projected) = self.function(routine);
+        let indices = moved.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        (!moved.is_empty()).then(|| {
+            quote! {
+                {
+                    let x = &*state;
+                    #body
+                    let [projected] = &mut state.data.0;
+                    #(projected[#indices] = #projected;)*
+                }
+            }
+        })
     }
 
     /// Where inputs have a step end; nothing where there are none.

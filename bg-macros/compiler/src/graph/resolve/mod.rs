@@ -98,6 +98,7 @@ impl Resolver {
             joints: Vec::new(),
             closes: Vec::new(),
             impulse: false,
+            baumgarte: None,
             observations: Vec::new(),
             guesses: Vec::new(),
             integrals: Vec::new(),
@@ -203,6 +204,17 @@ impl Resolver {
         0.0
     }
 
+    /// The rate of Baumgarte's terms, 1/s.
+    fn decay(&mut self, rate: &Expression) -> f64 {
+        match rate.number() {
+            Some(value) if value.is_finite() && value > 0.0 => value,
+            _ => {
+                self.fault(rate.span, &GraphFault::Decay);
+                1.0
+            }
+        }
+    }
+
     fn junction(&mut self, junction: &ast::Junction, id: NodeId) {
         self.name(&junction.name, Entity::Node(id));
         self.junctions.insert(id, junction.cardinality);
@@ -249,6 +261,7 @@ impl Resolver {
                     self.graph.closes.push(Close { joint, gap, shape, dimension });
                 }
                 Item::Impulse(_) => self.graph.impulse = true,
+                Item::Baumgarte(baumgarte) => self.graph.baumgarte = Some(self.decay(&baumgarte.rate)),
                 Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
                 _ => {}
             }

@@ -84,7 +84,7 @@ impl<'a> Expansion<'a> {
             faults: Vec::new(),
         };
         let mut names: BTreeSet<&str> = BTreeSet::new();
-        let mut has_impulse = false;
+        let [mut has_impulse, mut has_baumgarte] = [false; 2];
         for item in &source.items {
             if let Some(name) = part_name(item)
                 && !names.insert(&name.text)
@@ -109,6 +109,10 @@ impl<'a> Expansion<'a> {
                 Item::Impulse(span) => {
                     let twice = std::mem::replace(&mut has_impulse, true);
                     expansion.only_once(twice, *span, "start impulse");
+                }
+                Item::Baumgarte(baumgarte) => {
+                    let twice = std::mem::replace(&mut has_baumgarte, true);
+                    expansion.only_once(twice, baumgarte.span, "baumgarte");
                 }
                 _ => {}
             }

@@ -10,7 +10,7 @@ use super::{
     statement::OPERATOR,
 };
 use crate::source::ast::{
-    Axis, AxisLaw, Contact, Drive, DriveKind, ElementKind, Ends, Expression, Gravity, Ground, Item, Joint, JointKind,
+    Axis, AxisLaw, Baumgarte, Contact, Drive, DriveKind, ElementKind, Ends, Expression, Gravity, Ground, Item, Joint, JointKind,
     Point, Spring,
 };
 use crate::source::words::{AXES, DRIVES, value_of, word_of};
@@ -56,6 +56,7 @@ impl Cursor<'_> {
             "ground" => self.ground().map(Item::Ground),
             "gravity" => self.gravity().map(Item::Gravity),
             "start" => self.impulse().map(Item::Impulse),
+            "baumgarte" => self.baumgarte().map(Item::Baumgarte),
             "body" => self.body().map(Item::Body),
             "joint" => self.joint().map(Item::Joint),
             "spring" => self.spring().map(Item::Spring),
@@ -104,6 +105,14 @@ impl Cursor<'_> {
         let span = self.expect_word("impulse")?;
         self.end_statement("");
         Ok(span)
+    }
+
+    /// `baumgarte RATE;`
+    fn baumgarte(&mut self) -> Parsed<Baumgarte> {
+        let span = self.advance();
+        let rate = self.expression()?;
+        self.end_statement(OPERATOR);
+        Ok(Baumgarte { span, rate })
     }
 
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`

@@ -22,6 +22,8 @@ pub struct Slip {
     pub unit: String,
     /// The relative flow: zero in a state that fits.
     pub flow: Id,
+    /// Its integral as the poses have it, where they do.
+    pub gap: Option<Id>,
 }
 
 /// What joints hold at any state. The parts of rigid joints are known once the reactions are solved for.
@@ -48,12 +50,20 @@ impl Holding {
 
     /// Replaces symbols and decides switches everywhere.
     pub fn replace(&mut self, pool: &mut Pool, replace: &dyn Fn(Symbol) -> Option<Id>, branch: &dyn Fn(u32) -> Branch) {
-        let flows = self.rigid.iter_mut().chain(&mut self.compliant).map(|slip| &mut slip.flow);
+        let flows = self.rigid.iter_mut().chain(&mut self.compliant);
+        let flows = flows.flat_map(|slip| [&mut slip.flow].into_iter().chain(&mut slip.gap));
         let moves = self.moves.iter_mut().flat_map(|(_, moves)| moves);
         let roots: Vec<&mut Id> = flows.chain(self.matrix.iter_mut().flatten()).chain(moves).collect();
         let before: Vec<Id> = roots.iter().map(|id| **id).collect();
         let after = substitute_switched(pool, &before, replace, branch);
         roots.into_iter().zip(after).for_each(|(root, id)| *root = id);
+    }
+
+    /// What the rigid motions that act on a momentum are: their flows and gaps.
+    pub fn of_momentum(&self, pool: &Pool, state: usize) -> Vec<Id> {
+        let Some((_, moves)) = self.moves.iter().find(|(moved, _)| *moved == state) else { return Vec::new() };
+        let acting = self.rigid.iter().zip(moves).filter(|&(_, &by)| !pool.is_zero(by));
+        acting.flat_map(|(slip, _)| [slip.flow].into_iter().chain(slip.gap)).collect()
     }
 
     /// Whether there is nothing.
@@ -84,6 +94,7 @@ impl Holding {
         self.moves.iter_mut().for_each(|(_, moves)| keep(moves));
         self.moves.retain(|(_, moves)| moves.iter().any(|&id| id != zero));
         filter(&mut self.rigid, &kept);
+        self.rigid.iter_mut().for_each(|slip| slip.gap = slip.gap.filter(|&gap| stays(gap)));
         self.compliant.retain(|slip| stays(slip.flow));
     }
 
@@ -147,7 +158,7 @@ impl Signals<'_> {
             for (component, &flow) in flows.iter().enumerate() {
                 let direction = in_words((flows.len() > 1).then(|| direction(component, turns)));
                 let (joint, unit) = (graph.joint(close.joint).to_owned(), unit.to_owned());
-                slips.push((close.joint, Slip { joint, direction, unit, flow }));
+                slips.push((close.joint, Slip { joint, direction, unit, flow, gap: None }));
             }
         }
         let flows: Vec<Id> = slips.iter().map(|(_, slip)| slip.flow).collect();

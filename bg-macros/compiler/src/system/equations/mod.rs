@@ -63,8 +63,10 @@ pub struct StateEquations {
     pub supplied: Id,
     /// Power of all resistors, W.
     pub dissipated: Id,
-    /// States with the expression that `project` gives them.
+    /// States of the pose with the expression that `project` gives them.
     pub projections: Vec<(usize, Id)>,
+    /// Momenta with the expression that `project` gives them after that.
+    pub settled: Vec<(usize, Id)>,
     /// What laws give that can make numbers which are not finite, in the order of evaluation.
     pub fallible: Vec<FallibleLaw>,
     /// Reactions of rigid joints that are not solved for yet.
@@ -75,6 +77,8 @@ pub struct StateEquations {
     pub holding: Holding,
     /// Whether impulses of the rigid joints make the start velocities fit.
     pub impulse: bool,
+    /// The rate of Baumgarte's terms, 1/s; none where rigid joints are kept by projection.
+    pub baumgarte: Option<f64>,
     /// What pictures show.
     pub shown: Shown,
     /// What is asked of the values that parameters give.
@@ -105,8 +109,6 @@ pub struct Reaction {
     pub slip: Slip,
     /// The effort.
     pub multiplier: Symbol,
-    /// Its integral as the poses have it, where they do.
-    pub gap: Option<Id>,
 }
 
 /// One residual of the assembly.

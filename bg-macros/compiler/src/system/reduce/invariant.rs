@@ -43,7 +43,7 @@ fn constants(equations: &mut StateEquations) -> (Vec<bool>, BTreeSet<Symbol>) {
     let reactions = equations.reactions.clone();
     let zero = equations.pool.zero();
     let kept: Vec<Id> =
-        reactions.iter().flat_map(|reaction| [reaction.slip.flow, reaction.gap.unwrap_or(zero)]).collect();
+        reactions.iter().flat_map(|reaction| [reaction.slip.flow, reaction.slip.gap.unwrap_or(zero)]).collect();
     let mut idle: BTreeSet<Symbol> = reactions.iter().map(|reaction| reaction.multiplier).collect();
     let pool = &mut equations.pool;
     let mut assumed: Vec<bool> = starts.iter().map(|&start| is_constant(pool, start)).collect();

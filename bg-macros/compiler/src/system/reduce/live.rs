@@ -2,7 +2,7 @@
 //!
 //! In: equations. Out: the same without states and switches that reach no output.
 //! Method: everything that an output depends on is live; so is what the rate, the projection or a switch of something
-//! live depends on.
+//! live depends on, and what the joints hold whose reactions act on it.
 
 use super::keep_switches;
 use super::report::{Fate, Report};
@@ -50,6 +50,7 @@ fn live(equations: &StateEquations, roots: &[Id]) -> (Vec<bool>, Vec<bool>) {
                         open.push(equations.states[state].rate);
                         let projections = equations.projections.iter().filter(|(of, _)| *of == state);
                         open.extend(projections.map(|(_, id)| *id));
+                        open.extend(equations.holding.of_momentum(pool, state));
                     }
                 }
                 Node::Symbol(symbol) => open.extend(equations.solution.value(*symbol)),

@@ -158,10 +158,10 @@ impl StateEquations {
         roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
         for reaction in &mut self.reactions {
             roots.push(&mut reaction.slip.flow);
-            roots.extend(&mut reaction.gap);
+            roots.extend(&mut reaction.slip.gap);
         }
         roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
-        roots.extend(self.projections.iter_mut().map(|(_, id)| id));
+        roots.extend(self.projections.iter_mut().chain(&mut self.settled).map(|(_, id)| id));
         roots
     }
 

@@ -3,8 +3,9 @@
 //! In: equations whose rates depend on multipliers. Out: the same with every multiplier replaced by its value.
 //! Method: the time derivative of every flow to be kept at zero is linear in the multipliers, A l + b = 0, with A
 //! symmetric and positive definite where the constraints are independent; A is factored as L D L^T in symbols, so that
-//! the solution is part of the flat code. What truncation lets grow of a flow v and its gap q decays by Baumgarte's
-//! terms, dv/dt = -2 a v - a^2 q (Computer Methods in Applied Mechanics and Engineering 1, 1972).
+//! the solution is part of the flat code. What truncation lets grow of a flow v and its gap q is taken away by
+//! [`crate::system::projection`]; where the graph asks for them, Baumgarte's terms let it decay, dv/dt = -2 a v - a^2 q
+//! (Computer Methods in Applied Mechanics and Engineering 1, 1972).
 
 use std::collections::BTreeMap;
 
@@ -12,9 +13,6 @@ use crate::expr::{Id, Pool, Symbol, derivative, partial, substitute};
 use crate::system::definite::Factors;
 use crate::system::equations::{Kind, Reaction, State, StateEquations};
 use crate::system::solution::Solution;
-
-/// Rate at which a remaining gap decays, 1/s: slow beside the motion of a step, fast beside its growth by truncation.
-const DECAY: f64 = 50.0;
 
 /// Solves for all multipliers. They stay symbols in the equations until these are closed.
 pub fn solve(equations: &mut StateEquations) {
@@ -36,7 +34,7 @@ pub fn solve(equations: &mut StateEquations) {
     equations.solution = Solution { multipliers, residuals, factors, values };
 }
 
-/// dv/dt + 2 a v + a^2 q of every flow v with its gap q; zero where the reactions are right.
+/// dv/dt of every flow v, with Baumgarte's terms 2 a v + a^2 q where they are asked for; zero where the reactions are right.
 fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<Id> {
     let pool = &mut equations.pool;
     let mut seeds: BTreeMap<Symbol, Id> = BTreeMap::from([(Symbol::Time, pool.one())]);
@@ -45,13 +43,13 @@ fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<
     }
     let flows: Vec<Id> = reactions.iter().map(|reaction| reaction.slip.flow).collect();
     let rates = derivative(pool, &flows, &seeds);
-    let zero = pool.zero();
-    reactions
-        .iter()
+    let (zero, decay) = (pool.zero(), equations.baumgarte.unwrap_or(0.0));
+    let slips = reactions.iter().map(|reaction| &reaction.slip);
+    slips
         .zip(rates)
-        .map(|(reaction, rate)| {
-            let gap = reaction.gap.unwrap_or(zero);
-            pool.linear(0.0, &[(rate, 1.0), (reaction.slip.flow, 2.0 * DECAY), (gap, DECAY * DECAY)])
+        .map(|(slip, rate)| {
+            let gap = slip.gap.unwrap_or(zero);
+            pool.linear(0.0, &[(rate, 1.0), (slip.flow, 2.0 * decay), (gap, decay * decay)])
         })
         .collect()
 }
@@ -152,12 +150,12 @@ mod tests {
     /// q'' + 2 a q' + a^2 q = 0 has the double root -a: from rest, q = q0 (1 + a t) exp(-a t).
     #[test]
     fn a_gap_decays_with_the_double_root_of_baumgarte_s_terms() {
-        let graph = "1 k[3]: translation; position q of k start [0.02, 0, 0]; I m = 2; rSe hold = [0, 0, 0] at q;
+        let graph = "baumgarte 50; 1 k[3]: translation; position q of k start [0.02, 0, 0]; I m = 2; rSe hold = [0, 0, 0] at q;
             k -> m; k -> hold; observe { q: m = q.x; }";
         let (_, gaps) = scene(graph, "").columns();
         // The harness samples every 50 ms.
         for (k, row) in gaps.iter().enumerate() {
-            let at = super::DECAY * 0.05 * k as f64;
+            let at = 50.0 * 0.05 * k as f64;
             let expected = 0.02 * (1.0 + at) * (-at).exp();
             assert!((row[0] - expected).abs() < 1e-6, "{k}: {} {expected}", row[0]);
         }
