@@ -80,8 +80,8 @@ pub enum AssemblyError {
         /// The other joints that are torn apart, each with its fastest motion.
         others: Vec<Slipping>,
     },
-    /// Rigid joints hold the same motion at the start, so their reactions have no unique values.
-    #[error("{0}; make one of them compliant, or of a kind that holds less")]
+    /// Rigid joints hold the same motion at the start but not near it: the start pose is singular.
+    #[error("the start pose is singular: in it {0}; start a little beside it, or make one of them compliant")]
     Redundant(Redundancy),
 }
 

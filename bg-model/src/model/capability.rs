@@ -72,6 +72,11 @@ pub trait Joints<S: Scalar, const N: usize, const G: usize> {
     /// What they hold.
     fn held(&self) -> Held;
 
+    /// For each motion of [`Held::closing`] 1, or 0 where it follows from the others and takes no part.
+    fn kept(&self) -> &[f64] {
+        &[]
+    }
+
     /// Writes the relative flows of these motions, and what the reactions of rigid joints change, into `entries`: in the order
     /// and of the length of [`Held`].
     fn hold(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S]);

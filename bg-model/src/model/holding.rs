@@ -18,8 +18,8 @@ pub struct Slip {
 
 /// What the joints of a system hold.
 ///
-/// [`Joints::hold`](crate::capability::Joints::hold) writes, one behind the other: the flow of each rigid motion, the flow of each compliant one, the
-/// lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it
+/// [`Joints::hold`](crate::capability::Joints::hold) writes, one after the other: the flow of each rigid motion, the flow of
+/// each compliant one, the gap of each rigid motion (its integral as the poses have it, 0 where they do not), the lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it
 /// changes the rate of each moved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Held {
@@ -29,17 +29,24 @@ pub struct Held {
     pub compliant: &'static [Slip],
     /// The indices of the states that reactions change: momenta.
     pub moved: &'static [usize],
+    /// The indices of the states of the pose: positions, orientations, displacements.
+    pub pose: &'static [usize],
+    /// Those of them that are orientations or angles.
+    pub turning: &'static [usize],
+    /// The rigid motions of joints that close loops, which may follow from others: the row, and its place in
+    /// [`Joints::kept`](crate::capability::Joints::kept).
+    pub closing: &'static [(usize, usize)],
 }
 
 impl Held {
     /// No joint holds anything.
-    pub const NOTHING: Self = Self { rigid: &[], compliant: &[], moved: &[] };
+    pub const NOTHING: Self = Self { rigid: &[], compliant: &[], moved: &[], pose: &[], turning: &[], closing: &[] };
 
     /// How many numbers [`Joints::hold`](crate::capability::Joints::hold) writes.
     #[must_use]
     pub const fn entries(&self) -> usize {
         let reactions = self.rigid.len();
-        reactions + self.compliant.len() + reactions * (reactions + 1) / 2 + reactions * self.moved.len()
+        2 * reactions + self.compliant.len() + reactions * (reactions + 1) / 2 + reactions * self.moved.len()
     }
 }
 
@@ -101,8 +108,7 @@ impl std::fmt::Display for Redundancy {
         let others = others.join(", ");
         write!(
             f,
-            "rigid joint `{joint}` holds{directions} what rigid {word} {others} {verb} already, so their reactions have no \
-             unique values"
+            "rigid joint `{joint}` holds{directions} what rigid {word} {others} {verb} already"
         )
     }
 }

@@ -7,6 +7,7 @@ use nalgebra::SVector;
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::{Absent, Joints, Linearised, SecondOrder, Series};
 use crate::model::description::Description;
+use crate::model::holding::Redundancy;
 use crate::model::origin::Origin;
 use crate::model::scalar::Scalar;
 
@@ -100,6 +101,12 @@ pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: Syst
     /// [`AssemblyError`] names the joint that stays open and its gap, that is torn apart and its speed, or that holds
     /// what others hold already.
     fn start(&self) -> Result<SVector<S, N>, AssemblyError>;
+
+    /// The rigid joints that hold what others hold already, in all poses: they share reactions of least norm. None where the
+    /// start pose does not close.
+    fn redundant(&self) -> Vec<Redundancy> {
+        Vec::new()
+    }
 
     /// The kinetic energy that the impulses of the rigid joints take at the start, J, not negative: 0 without
     /// `start impulse;`, and where the start velocities fit. The energies of a run count from after the impulses.

@@ -4,7 +4,7 @@
 
 use thiserror::Error;
 
-use crate::model::holding::Redundancy;
+use crate::model::holding::Slipping;
 pub use crate::model::origin::Origin;
 use crate::solve::finish::Finish;
 
@@ -108,14 +108,15 @@ pub enum Cause {
         /// Time, s.
         t: f64,
     },
-    /// Rigid joints have come to hold the same motion: the mechanism is in a singular pose, or passes through one.
+    /// A rigid joint holds a motion that no other does any more. At the start it followed from the others, so that it took
+    /// no part since.
     #[error(
-        "near t = {t:?} s {redundancy}: the mechanism is in a singular pose there; make one of these joints compliant, or \
-         end the run before"
+        "at t = {t:?} s {slipping}: at the start other rigid joints held this as well, now they do not; make the joint \
+         compliant, or start in another pose"
     )]
-    Redundant {
-        /// Which joints.
-        redundancy: Redundancy,
+    Torn {
+        /// The joint.
+        slipping: Slipping,
         /// When, s.
         t: f64,
     },

@@ -10,6 +10,7 @@ mod names;
 mod outputs;
 mod required;
 mod routines;
+mod shared;
 mod start;
 mod system;
 mod tables;
@@ -77,7 +78,7 @@ impl Emission<'_> {
         let doc = &self.model.derived.causal.graph.docs;
         let picture = picture::text(self.model);
         let tables = documentation::tables(self.model, costs);
-        let table_fields = &constants.fields;
+        let (table_fields, kept) = (&constants.fields, self.shared().field());
         // The empty lines end a paragraph and HTML; rustdoc drops those inside a text at its ends.
         quote! {
             #[doc = #doc]
@@ -88,6 +89,7 @@ impl Emission<'_> {
             #[derive(Clone, Debug)]
             pub struct #name<#scalar: ::bg_model::scalar::Scalar = ::core::primitive::f64> {
                 #fields
+                #kept
                 #table_fields
             }
         }
@@ -130,6 +132,10 @@ impl Emission<'_> {
         let input_value = has_inputs.then(|| quote!(inputs,));
         let input_pass = has_inputs.then(|| quote!(, inputs));
         let (starting, required) = (self.starting(), self.required());
+        let shared = self.shared();
+        let (kept_argument, kept_value) = (shared.owned(), shared.value());
+        let construction = self.construction(has_inputs);
+        let (pose, reactions) = (self.pose(), self.reactions());
         let Tables { values, functions, lets, .. } = tables;
         let Shape { n, g, m } = &self.shape;
         quote! {
@@ -162,8 +168,12 @@ impl Emission<'_> {
                 {
                     ::bg_model::parameters::Parameters::validate(&parameters)?;
                     #required
+                    #construction
+                }
+
+                fn made(parameters: Parameters #input_argument #kept_argument) -> Self {
                     #lets
-                    Ok(Self { parameters, #input_value #values })
+                    Self { parameters, #input_value #kept_value #values }
                 }
 
                 /// The parameters.
@@ -174,6 +184,10 @@ impl Emission<'_> {
                 #functions
 
                 #starting
+
+                #pose
+
+                #reactions
             }
         }
     }

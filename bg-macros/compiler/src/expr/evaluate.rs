@@ -38,6 +38,7 @@ impl Environment<'_> {
             Symbol::Storage(index) => self.storage[index as usize],
             Symbol::Slope(index) => self.slopes[index as usize],
             Symbol::Rate(index) => self.rates[index as usize],
+            Symbol::Kept(_) => 1.0,
             Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Loop => panic!("no value of {symbol:?}"),
         }
     }

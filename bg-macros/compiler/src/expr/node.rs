@@ -27,6 +27,8 @@ pub enum Symbol {
     Flow(u32),
     /// A component of the reaction of a residual sink.
     Multiplier(u32),
+    /// Whether a row of the rigid joints takes part, 1 or 0: one that follows from the others does not. Known before a run.
+    Kept(u32),
     /// A variable of an algebraic loop, which has no value.
     Loop,
     /// The derivative of an input with respect to time.

@@ -44,6 +44,8 @@ pub struct Running {
     pub paired_rate: Option<Paired>,
     /// The guards of all switches.
     pub guards: Routine,
+    /// The reactions, where joints close loops and they may not be unique; outputs then read them.
+    pub reactions: Routine,
     /// The scalar outputs.
     pub outputs: Routine,
     /// The states of the pose that a projection moves.
@@ -93,7 +95,7 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
     let required = [("required", false), ("required_at_start", true)]
         .map(|(name, is_of_start)| required(equations, name, is_of_start));
-    let shown = tape(&equations.pool, &equations.shown.quantities());
+    let shown = tape(&equations.pool, &equations.solution, &equations.shown.quantities());
     Programs { running, jacobian, second_order, holding, starting, required, not_finite, shown }
 }
 
@@ -116,6 +118,7 @@ fn alone(pool: &mut Pool, name: &str, roots: &[Id]) -> Program<1> {
 fn running(equations: &mut StateEquations) -> Running {
     let rates = roots(&equations.states, |state| state.rate);
     let guards = roots(&equations.switches, |switch| switch.guard);
+    let reactions = if equations.holding.is_shared() { equations.solution.values.clone() } else { Vec::new() };
     let outputs = roots(&equations.outputs, |output| output.value);
     let projections = roots(&equations.projections, |&(_, id)| id);
     let settled = roots(&equations.settled, |&(_, id)| id);
@@ -124,6 +127,7 @@ fn running(equations: &mut StateEquations) -> Running {
     let requests = [
         Request { name: "rate", roots: &rates },
         Request { name: "guards", roots: &guards },
+        Request { name: "reactions", roots: &reactions },
         Request { name: "outputs", roots: &outputs },
         Request { name: "project", roots: &projections },
         Request { name: "settle", roots: &settled },
@@ -131,9 +135,9 @@ fn running(equations: &mut StateEquations) -> Running {
         Request { name: "powers", roots: &powers },
     ];
     let Program { constants, routines } = schedule(&mut equations.pool, requests);
-    let [rate, guards, outputs, project, settle, stored_energy, powers] = routines;
+    let [rate, guards, reactions, outputs, project, settle, stored_energy, powers] = routines;
     let paired_rate = pair(&rate);
-    Running { constants, rate, paired_rate, guards, outputs, project, settle, stored_energy, powers }
+    Running { constants, rate, paired_rate, guards, reactions, outputs, project, settle, stored_energy, powers }
 }
 
 fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondOrderPrograms {
@@ -151,7 +155,7 @@ fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondO
 
 /// In a pool of its own, so that it has no influence on the order of the other functions' operations.
 fn holding(equations: &StateEquations) -> Option<Program<1>> {
-    let entries = equations.holding.entries();
+    let entries = equations.holding.entries(&equations.pool);
     (!equations.holding.is_empty()).then(|| alone(&mut equations.pool.clone(), "hold", &entries))
 }
 
@@ -180,12 +184,18 @@ impl Running {
         self.rate.counts.total() <= INLINED
     }
 
-    /// All of them.
+    /// All of them; those of rigid joints where there are any.
     #[must_use]
     pub fn routines(&self) -> Vec<&Routine> {
-        let project = [&self.project].into_iter().chain((!self.settle.results.is_empty()).then_some(&self.settle));
-        let first = [&self.rate, &self.guards, &self.outputs].into_iter().chain(project);
-        first.chain([&self.stored_energy, &self.powers]).collect()
+        let of_rigid_joints = |routine| Some(routine).filter(|routine: &&Routine| !routine.results.is_empty());
+        let Self { rate, guards, reactions, outputs, project, settle, stored_energy, powers, .. } = self;
+        [rate, guards]
+            .into_iter()
+            .chain(of_rigid_joints(reactions))
+            .chain([outputs, project])
+            .chain(of_rigid_joints(settle))
+            .chain([stored_energy, powers])
+            .collect()
     }
 }
 

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::expr::{Function, Id, Node, Number, Pool, Symbol};
 use crate::system::equations::Quantity;
+use crate::system::solution::Solution;
 
 /// The steps and what is wanted of them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,12 +25,12 @@ pub struct Tape {
 
 /// The tape that gives `quantities`, those with a symbol that has no value in a running model left out.
 #[must_use]
-pub fn tape(pool: &Pool, quantities: &[&Quantity]) -> Tape {
-    let has_values = |ids: &Vec<Id>| pool.symbols(ids).into_iter().all(|symbol| leaf(symbol).is_some());
+pub fn tape(pool: &Pool, solution: &Solution, quantities: &[&Quantity]) -> Tape {
+    let has_values = |ids: &Vec<Id>| pool.symbols(ids).into_iter().all(|symbol| leaf(symbol, solution).is_some());
     let known: Vec<Option<&Vec<Id>>> =
         quantities.iter().map(|quantity| quantity.as_ref().filter(|ids| has_values(ids))).collect();
     let roots: Vec<Id> = known.iter().flatten().copied().flatten().copied().collect();
-    let mut writer = Writer::default();
+    let mut writer = Writer { solution, tape: Tape::default(), steps: BTreeMap::new(), numbers: BTreeMap::new() };
     for id in pool.reachable(&roots) {
         writer.step(id, pool.node(id));
     }
@@ -41,20 +42,20 @@ pub fn tape(pool: &Pool, quantities: &[&Quantity]) -> Tape {
     tape
 }
 
-#[derive(Default)]
-struct Writer {
+struct Writer<'a> {
+    solution: &'a Solution,
     tape: Tape,
     /// The step that gives each node.
     steps: BTreeMap<Id, u32>,
     numbers: BTreeMap<Number, u32>,
 }
 
-impl Writer {
+impl Writer<'_> {
     fn step(&mut self, id: Id, node: &Node) {
         let words = match node {
             Node::Number(number) => vec![0, self.number(*number)],
             Node::Symbol(symbol) => {
-                let (operation, index) = leaf(*symbol).expect("a symbol that has a value");
+                let (operation, index) = leaf(*symbol, self.solution).expect("a symbol that has a value");
                 vec![operation, index]
             }
             Node::Sum { constant, terms } => {
@@ -95,18 +96,19 @@ impl Writer {
 }
 
 /// The operation and the operand that read a symbol; none of one without a value in a running model.
-fn leaf(symbol: Symbol) -> Option<(u32, u32)> {
+fn leaf(symbol: Symbol, solution: &Solution) -> Option<(u32, u32)> {
     match symbol {
         Symbol::Time => Some((1, 0)),
         Symbol::State(index) => Some((2, index)),
         Symbol::Parameter(index) => Some((3, index)),
         Symbol::Input(index) => Some((4, index)),
         Symbol::Slope(index) => Some((5, index)),
+        Symbol::Multiplier(_) => solution.row(symbol).map(|row| (10, count(row))),
         Symbol::Unknown(_)
         | Symbol::Law(_)
         | Symbol::Storage(_)
         | Symbol::Flow(_)
-        | Symbol::Multiplier(_)
+        | Symbol::Kept(_)
         | Symbol::Loop
         | Symbol::Rate(_) => None,
     }

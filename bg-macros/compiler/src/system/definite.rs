@@ -5,6 +5,7 @@
 //! identically zero costs nothing, so a band stays a band.
 
 use crate::expr::{Id, Pool};
+use crate::system::solution::filter;
 
 /// A = L D L^T.
 #[derive(Clone, Debug, Default)]
@@ -69,14 +70,9 @@ impl Factors {
 
     /// Forgets the rows that are not kept; none that is kept has a part of them.
     pub fn retain(&mut self, kept: &[bool]) {
-        let keep = |items: &mut Vec<Id>| {
-            let mut kept = kept.iter();
-            items.retain(|_| *kept.next().expect("a mark for each"));
-        };
-        let mut rows = kept.iter();
-        self.lower.retain(|_| *rows.next().expect("a mark for each"));
-        self.lower.iter_mut().for_each(keep);
-        keep(&mut self.inverses);
+        filter(&mut self.lower, kept);
+        self.lower.iter_mut().for_each(|row| filter(row, kept));
+        filter(&mut self.inverses, kept);
     }
 }
 

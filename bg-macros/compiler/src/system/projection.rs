@@ -13,13 +13,20 @@ use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::definite::Factors;
 use crate::system::equations::{Holding, Kind, StateEquations};
 
+/// D over A_ii, the squared sine of the angle between a row and those before it, at which the projection is damped by half.
+const NEAR: f64 = 1e-8;
+
 /// Adds the projection onto what rigid joints hold, unless Baumgarte's terms stand for it.
 pub fn complete(equations: &mut StateEquations) {
     if equations.holding.rigid.is_empty() || equations.baumgarte.is_some() {
         return;
     }
     let StateEquations { pool, holding, .. } = equations;
-    let factors = Factors::of(pool, &holding.matrix, |pool, _, pivot, _| pool.powi(pivot, -1));
+    let rows = &holding.rigid;
+    let factors = Factors::of(pool, &holding.matrix, |pool, row, pivot, entry| match rows[row].kept {
+        Some(kept) => damped(pool, kept, pivot, entry),
+        None => pool.powi(pivot, -1),
+    });
     let zero = pool.zero();
     let flows: Vec<Id> = holding.rigid.iter().map(|slip| slip.flow).collect();
     let gaps: Vec<Id> = holding.rigid.iter().map(|slip| slip.gap.unwrap_or(zero)).collect();
@@ -27,6 +34,16 @@ pub fn complete(equations: &mut StateEquations) {
     equations.settled = velocities.into_iter().map(|(state, by)| (state, moved(pool, state, by))).collect();
     let pseudo = impulses(pool, holding, &factors, &gaps);
     close_gaps(equations, pseudo);
+}
+
+/// 1 / D of a row that may follow from others: 0 where it does, small where it nearly does. Near a singular pose a gap is
+/// closed over several steps.
+fn damped(pool: &mut Pool, kept: u32, pivot: Id, entry: Id) -> Id {
+    let kept = pool.symbol(Symbol::Kept(kept));
+    let (square, least) = (pool.powi(pivot, 2), pool.powi(entry, 2));
+    let divisor = pool.linear(0.0, &[(square, 1.0), (least, NEAR * NEAR)]);
+    let inverse = pool.div(pivot, divisor);
+    pool.mul(kept, inverse)
 }
 
 /// By how much each momentum changes where the rigid motions change by `-motions`.

@@ -20,11 +20,16 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// The row of a reaction.
+    #[must_use]
+    pub fn row(&self, symbol: Symbol) -> Option<usize> {
+        self.multipliers.iter().position(|&multiplier| multiplier == symbol)
+    }
+
     /// The value of a reaction.
     #[must_use]
     pub fn value(&self, symbol: Symbol) -> Option<Id> {
-        let place = self.multipliers.iter().position(|&multiplier| multiplier == symbol)?;
-        Some(self.values[place])
+        Some(self.values[self.row(symbol)?])
     }
 
     /// Expressions with the reactions' values in the places of the symbols.
@@ -50,19 +55,26 @@ impl Solution {
         roots.into_iter().zip(after).for_each(|(root, id)| *root = id);
     }
 
-    /// Forgets the reactions whose value is not known.
-    pub fn prune(&mut self, pool: &Pool, known: &Known) {
-        let kept: Vec<bool> = self.values.iter().map(|&value| known.has(pool, value)).collect();
-        let keep = |ids: &mut Vec<Id>| {
-            let mut kept = kept.iter();
-            ids.retain(|_| *kept.next().expect("a mark for each"));
-        };
+    /// For each reaction whether its value is known.
+    #[must_use]
+    pub fn known(&self, pool: &Pool, known: &Known) -> Vec<bool> {
+        self.values.iter().map(|&value| known.has(pool, value)).collect()
+    }
+
+    /// Forgets the reactions that are not kept.
+    pub fn retain(&mut self, kept: &[bool]) {
+        let keep = |ids: &mut Vec<Id>| filter(ids, kept);
         keep(&mut self.residuals);
         keep(&mut self.values);
-        self.factors.retain(&kept);
-        let mut marks = kept.iter();
-        self.multipliers.retain(|_| *marks.next().expect("a mark for each"));
+        self.factors.retain(kept);
+        filter(&mut self.multipliers, kept);
     }
+}
+
+/// The items whose place is kept; there may be fewer items than places.
+pub fn filter<T>(items: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    items.retain(|_| *kept.next().expect("a mark for each"));
 }
 
 /// What a model still has after states and switches have gone.

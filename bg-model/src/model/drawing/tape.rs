@@ -12,6 +12,7 @@
 //! | 7 | count n, n times (step, exponent) | product of step^exponent |
 //! | 8 | function, its arguments | function of steps |
 //! | 9 | switch k, step a, step b | a where switch k is negative, else b |
+//! | 10 | index k | reaction k of the rigid joints |
 
 use crate::model::scalar::Scalar;
 
@@ -39,6 +40,8 @@ pub struct Moment<'a> {
     pub inputs: &'a [[f64; 2]],
     /// Whether each switch is in the branch of its negative guard.
     pub negative: &'a [bool],
+    /// The reactions of the rigid joints, where joints close loops.
+    pub reactions: &'a [f64],
 }
 
 impl Tape {
@@ -90,6 +93,7 @@ impl Reader<'_> {
                 let (switch, negative, positive) = (self.index(), self.value(), self.value());
                 if moment.negative[switch] { negative } else { positive }
             }
+            10 => moment.reactions[self.index()],
             other => unreachable!("a tape has no operation {other}"),
         })
     }
@@ -197,6 +201,7 @@ mod tests {
             parameters: &[4.0],
             inputs: &[[30.0, 10.0]],
             negative: &[false, true],
+            reactions: &[],
         };
         let mut values = Vec::new();
         tape.evaluate(&moment, &mut values);

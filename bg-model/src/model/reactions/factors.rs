@@ -32,7 +32,7 @@ const fn row(i: usize) -> usize {
 
 impl<S: Scalar> Factors<S> {
     /// Room for `n` rows.
-    pub fn new(n: usize) -> Self {
+    fn new(n: usize) -> Self {
         let zero = S::from_f64(0.0);
         Self { rows: vec![zero; row(n)], follows: vec![false; n], diagonal: vec![zero; n] }
     }
@@ -45,8 +45,19 @@ impl<S: Scalar> Factors<S> {
         factors
     }
 
-    /// Replaces the factors by those of the lower triangle `matrix`. Allocates nothing.
-    pub fn factor(&mut self, matrix: &[S]) {
+    fn factor(&mut self, matrix: &[S]) {
+        self.factor_where(matrix, |_, pivot, entry| pivot <= DISTINCT * entry);
+    }
+
+    /// The factors of the lower triangle `matrix` without the rows that are `dropped`.
+    pub fn without(matrix: &[S], dropped: &[bool]) -> Self {
+        let mut factors = Self::new(dropped.len());
+        factors.factor_where(matrix, |row, _, _| dropped[row]);
+        factors
+    }
+
+    /// `follows` says of a row, its pivot and its entry on the diagonal whether it takes no part.
+    fn factor_where(&mut self, matrix: &[S], follows: impl Fn(usize, f64, f64) -> bool) {
         self.rows.copy_from_slice(matrix);
         for i in 0..self.follows.len() {
             let (above, rest) = self.rows.split_at_mut(row(i));
@@ -68,12 +79,12 @@ impl<S: Scalar> Factors<S> {
             }
             let (pivot, entry) = (own[i].to_f64().abs(), self.diagonal[i].to_f64().abs());
             // What is not a number is for the rate to find.
-            self.follows[i] = pivot <= DISTINCT * entry;
+            self.follows[i] = follows(i, pivot, entry);
         }
     }
 
     /// L_ij, below the diagonal.
-    pub fn lower(&self, i: usize, j: usize) -> S {
+    fn lower(&self, i: usize, j: usize) -> S {
         self.rows[row(i) + j]
     }
 
@@ -116,12 +127,27 @@ impl<S: Scalar> Factors<S> {
         }
     }
 
-    /// The first joint that holds what others hold already.
-    pub fn redundancy(&self, slips: &[Slip]) -> Option<Redundancy> {
-        let first = self.follows.iter().position(|&follows| follows)?;
+    /// The first joint that holds what others hold already, those rows apart that are `known` to.
+    pub fn redundancy(&self, slips: &[Slip], known: &[bool]) -> Option<Redundancy> {
+        let is_new = |i: usize| self.follows[i] && !known[i];
+        let first = (0..slips.len()).find(|&i| is_new(i))?;
         let joint = slips[first].joint;
-        let rows = (first..slips.len()).filter(|&i| self.follows[i] && slips[i].joint == joint);
+        let rows = (first..slips.len()).filter(|&i| is_new(i) && slips[i].joint == joint);
         Some(self.shared(slips, &rows.collect::<Vec<usize>>()))
+    }
+
+    /// Whether row `i` follows from those before it.
+    pub fn follows(&self, i: usize) -> bool {
+        self.follows[i]
+    }
+
+    /// What row `i`, which follows, is made of: A times this is zero.
+    pub fn null_vector(&self, i: usize) -> Vec<S> {
+        let mut vector = vec![S::from_f64(0.0); self.follows.len()];
+        self.combination(i, &mut vector);
+        vector[..i].iter_mut().for_each(|part| *part = -*part);
+        vector[i] = S::from_f64(1.0);
+        vector
     }
 
     /// What these rows of one joint have in common with the joints of the rows before them.
@@ -168,7 +194,7 @@ mod tests {
             let b: Vec<f64> = (0..3).map(|i| (0..3).map(|j| entry(i, j) * x[j]).sum()).collect();
             let factors = Factors::of(&matrix);
             assert!(factors.solved(&b).iter().zip(x).all(|(y, x)| (y - x).abs() < 1e-14));
-            assert_eq!(factors.redundancy(&[slip("a", ""), slip("b", ""), slip("c", "")]), None);
+            assert_eq!(factors.redundancy(&[slip("a", ""), slip("b", ""), slip("c", "")], &[false; 3]), None);
         }
     }
 
@@ -179,12 +205,11 @@ mod tests {
         let twice: [f64; 3] = std::array::from_fn(|k| 0.1 * x[k] + 0.3 * y[k]);
         let factors = Factors::of(&triangle(&[x, y, twice, z, y]));
         let expected = Redundancy { joint: "c", directions: vec!["in x", "in y"], others: vec!["a", "b"] };
-        let found = factors.redundancy(&slips).unwrap();
+        let found = factors.redundancy(&slips, &[false; 5]).unwrap();
         assert_eq!(found, expected);
         assert_eq!(
             found.to_string(),
-            "rigid joint `c` holds in x, in y what rigid joints `a`, `b` hold already, so their reactions have no unique \
-             values"
+            "rigid joint `c` holds in x, in y what rigid joints `a`, `b` hold already"
         );
         // The rest is solved as if these rows were not there.
         let solution = factors.solved(&[1.0, 0.0, 5.0, 8.0, 5.0]);
@@ -196,9 +221,9 @@ mod tests {
     fn an_angle_of_a_hundred_thousandth_is_the_limit() {
         let slips = [slip("a", ""), slip("b", "")];
         let at = |angle: f64| Factors::of(&triangle(&[[1.0, 0.0, 0.0], [angle.cos(), angle.sin(), 0.0]]));
-        assert!(at(2e-5).redundancy(&slips).is_none());
-        assert!(at(0.5e-5).redundancy(&slips).is_some());
-        let nothing = Factors::of(&triangle(&[[0.0; 3]])).redundancy(&slips[..1]).unwrap();
+        assert!(at(2e-5).redundancy(&slips, &[false; 2]).is_none());
+        assert!(at(0.5e-5).redundancy(&slips, &[false; 2]).is_some());
+        let nothing = Factors::of(&triangle(&[[0.0; 3]])).redundancy(&slips[..1], &[false]).unwrap();
         assert_eq!(nothing.to_string(), "rigid joint `a` holds what cannot move anyway");
     }
 }

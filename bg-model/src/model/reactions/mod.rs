@@ -2,14 +2,15 @@
 //! unique values.
 //!
 //! In: a system that says what its joints hold ([`Joints::held`], [`Joints::hold`]). Out: a start state that fits, or the
-//! joint that is torn apart; the joints that hold the same motion, at the start and in a run.
+//! joint that is torn apart; the joints that hold the same motion, and reactions that they share.
 //!
 //! The reactions l of rigid joints are solved from A l + b = 0, where A_ij is how much reaction j changes the rate of the
 //! flow that joint i keeps at zero: J M^-1 J^T up to the sign. An impulse obeys the same equations, with the flow in
 //! place of b: it changes the flows by A l and the momenta by what the reactions move.
 
 mod factors;
-mod independence;
+mod shared;
+mod torn;
 
 use nalgebra::{DVector, SVector};
 
@@ -20,7 +21,8 @@ use crate::model::nearest::nearest;
 use crate::model::scalar::Scalar;
 use crate::model::system::System;
 use factors::Factors;
-pub(crate) use independence::Independence;
+pub use shared::{kept, redundant, share};
+pub(crate) use torn::TornWatch;
 
 /// A start state whose joints fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,14 +58,15 @@ impl<S: Scalar> Hold<S> {
 
     /// The lower triangle of A by rows.
     fn matrix(&self) -> &[S] {
-        let (first, reactions) = (self.flows().len(), self.held.rigid.len());
+        let reactions = self.held.rigid.len();
+        let first = self.flows().len() + reactions;
         &self.entries[first..first + reactions * (reactions + 1) / 2]
     }
 
     /// What one unit of a reaction changes, state by state of [`Held::moved`].
     fn moves(&self, reaction: usize) -> &[S] {
         let width = self.held.moved.len();
-        let first = self.flows().len() + self.matrix().len() + reaction * width;
+        let first = self.flows().len() + self.held.rigid.len() + self.matrix().len() + reaction * width;
         &self.entries[first..first + width]
     }
 }
@@ -113,13 +116,27 @@ where
     let x = state(&values);
     let hold = read(&x);
     let factors = Factors::of(hold.matrix());
-    if let Some(redundancy) = factors.redundancy(held.rigid) {
+    if let Some(redundancy) = factors.redundancy(held.rigid, &dropped(system)) {
         return Err(AssemblyError::Redundant(redundancy));
     }
     check_fit(&hold, |slipping| impulse && slipping.is_rigid)?;
     let started = if impulse { strike(x, &read) } else { Started { x, lost: S::from_f64(0.0) } };
     check_fit(&read(&started.x), |slipping| !slipping.is_rigid)?;
     Ok(started)
+}
+
+/// For each rigid motion whether it follows from others and takes no part.
+fn dropped<J, S, const N: usize, const G: usize>(joints: &J) -> Vec<bool>
+where
+    J: Joints<S, N, G>,
+    S: Scalar,
+{
+    let (held, kept) = (joints.held(), joints.kept());
+    let mut dropped = vec![false; held.rigid.len()];
+    for &(row, number) in held.closing {
+        dropped[row] = kept[number] == 0.0;
+    }
+    dropped
 }
 
 /// The branches of the switches at t = 0 and this state.

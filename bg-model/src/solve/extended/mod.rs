@@ -246,7 +246,7 @@ where
         watch.begin_step(guards(self.t, &self.x), h);
         self.method.attempt(self.t, &self.x, h, rate, |t, x| watch.pass(guards(t, x)));
         let error = self.method.error(&self.x, self.accuracy.tolerance);
-        self.system.project(self.t + h, &self.negative, &mut self.method.end);
+        self.system.project(self.t + h, negative, &mut self.method.end);
         self.watch.end_step(guards(self.t + h, &self.method.end));
         error
     }

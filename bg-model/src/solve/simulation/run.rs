@@ -8,8 +8,7 @@ use super::pace::{self, Pace};
 use super::rounding::RoundingWatch;
 use super::sampling::Sampling;
 use super::settings::{Settings, Span};
-use crate::model::capability::Joints;
-use crate::model::reactions::Independence;
+use crate::model::reactions::TornWatch;
 use crate::model::system::System;
 use crate::solve::event::{Condition, Crossing, Stop, Watch};
 use crate::solve::failure::Cause;
@@ -29,8 +28,8 @@ pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
     span: Span,
     attempts: u64,
     limit: u64,
-    /// Of the rigid joints, where there are any.
-    independence: Option<Independence>,
+    /// Of motions that follow from others, where there are any.
+    torn: Option<TornWatch>,
     /// Of the error estimates, where the tolerances may be below it.
     rounding: Option<RoundingWatch>,
 }
@@ -58,7 +57,7 @@ where
         settings: &'a Settings<N>,
     ) -> Self {
         let has_breaks = stepper.system.next_break(span.t0) < f64::INFINITY;
-        let independence = stepper.system.joints().and_then(|joints| Independence::new(joints.held()));
+        let torn = stepper.system.joints().and_then(TornWatch::new);
         Self {
             stepper,
             pace: Pace::new(control, span, settings, has_breaks),
@@ -69,7 +68,7 @@ where
             span,
             attempts: 0,
             limit: settings.step_limit,
-            independence,
+            torn,
             rounding: RoundingWatch::new(settings.tolerances.relative),
         }
     }
@@ -90,20 +89,15 @@ where
         self.check_start()?;
         let outcome = self.condition.begin(&mut self.stepper, self.pace.reach());
         self.stepper.end = self.stepper.start;
-        outcome.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))?;
-        let Stepper { system, start, negative, .. } = &self.stepper;
-        let (Some(independence), Some(joints)) = (&mut self.independence, system.joints()) else { return Ok(()) };
-        let found = independence.begin(joints, (start.t, &start.x), negative);
-        found.map_or(Ok(()), |redundancy| Err(Cause::Redundant { redundancy, t: start.t }))
+        outcome.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))
     }
 
-    /// Sees to it that the rigid joints hold each a motion of its own over the whole step.
+    /// Sees to it that motions which follow from others still do at the end of the step.
     fn check_joints(&mut self) -> Result<(), Cause> {
-        let Stepper { system, start, h, end, negative, .. } = self.stepper;
-        let (Some(independence), Some(joints)) = (&mut self.independence, system.joints()) else { return Ok(()) };
-        let inside = |part: f64| (start.t + part * h, self.stepper.dense(part));
-        let found = independence.check(joints, (end.t, &end.x), &negative, inside);
-        found.map_or(Ok(()), |(t, redundancy)| Err(Cause::Redundant { redundancy, t }))
+        let Stepper { system, end, negative, .. } = &self.stepper;
+        let (Some(torn), Some(joints)) = (&mut self.torn, system.joints()) else { return Ok(()) };
+        let found = torn.check(joints, (end.t, &end.x), negative);
+        found.map_or(Ok(()), |slipping| Err(Cause::Torn { slipping, t: end.t }))
     }
 
     /// Makes steps until the run ends; gives why it does.

@@ -5,7 +5,7 @@
 //! joints closed.
 //! Method: q' = A(q) p from rest, with the slope A of the rates of the other states by the momenta, by the classical
 //! Runge-Kutta method. Where joints are rigid, p loses what they hold, as by an impulse, and closes the gaps q by p
-//! such that the flows are -q. A gap is read off Baumgarte's terms, dv/dt = -2 a v - a^2 q, which the rates contain.
+//! such that the flows are -q.
 
 use bg_model::nalgebra::{DMatrix, DVector, SVector};
 use bg_model::scalar::Dual;
@@ -13,8 +13,8 @@ use bg_model::system::Model;
 
 use super::plant::{branches, held};
 
-/// The rate a of Baumgarte's terms in generated code, 1/s: see "Rigid joints" in the reference of the language.
-const DECAY: f64 = 50.0;
+/// Singular values below this part of the largest entry are of rows that follow from others.
+const FOLLOWS: f64 = 1e-10;
 
 /// A move.
 pub(super) struct Carry {
@@ -84,13 +84,8 @@ where
 
     /// The gaps of the rigid motions; none without rigid joints.
     fn gaps(&self, place: &DVector<f64>) -> DVector<f64> {
-        let mut rates = SVector::repeat(Dual::new(0.0, 0.0));
-        self.model.rate(Dual::new(self.t, 0.0), &dual(place, &(place * 0.0)), &self.negative, &mut rates);
-        let rates = DVector::from_fn(N, |state, _| rates[state].value);
-        let along = held(self.model, Dual::new(self.t, 1.0), &dual(place, &rates), &self.negative);
-        let flows = along.map_or(Vec::new(), |held| held.flows);
-        let gap = |flow: &Dual| -(flow.slope + 2.0 * DECAY * flow.value) / (DECAY * DECAY);
-        DVector::from_iterator(flows.len(), flows.iter().map(gap))
+        let held = held(self.model, Dual::new(self.t, 0.0), &dual(place, &(place * 0.0)), &self.negative);
+        held.map_or(DVector::zeros(0), |held| held.gaps)
     }
 
     /// The state with momenta that rigid joints allow.
@@ -109,16 +104,9 @@ where
     }
 }
 
-/// The solution, not a number where there is none.
+/// The solution of least norm: rows may follow from others.
 fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
-    matrix.lu().solve(right).unwrap_or_else(|| DVector::repeat(right.len(), f64::NAN))
-}
-
-fn dual<const N: usize>(x: &DVector<f64>, along: &DVector<f64>) -> SVector<Dual, N> {
-    SVector::from_fn(|state, _| Dual::new(x[state], along[state]))
-}
-
-/// 1 where true, 0 where not.
-fn mask(of: &[bool]) -> DVector<f64> {
-    DVector::from_iterator(of.len(), of.iter().map(|&is| if is { 1.0 } else { 0.0 }))
+    let least = FOLLOWS * matrix.amax();
+    let solution = matrix.svd(true, true).solve(right, least);
+    solution.unwrap_or_else(|_| DVector::repeat(right.len(), f64::NAN))
 }

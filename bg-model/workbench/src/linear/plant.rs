@@ -171,6 +171,8 @@ where
 pub(super) struct HeldNow {
     /// The flow of each motion.
     pub flows: Vec<Dual>,
+    /// The gap of each motion.
+    pub gaps: DVector<f64>,
     /// How much each reaction (column) changes the rate of each flow (row).
     pub matrix: DMatrix<f64>,
     /// How much each reaction (column) changes the rate of each state (row).
@@ -196,7 +198,7 @@ where
     }
     let mut entries = vec![Dual::new(0.0, 0.0); held.entries()];
     joints.hold(t, x, negative, &mut entries);
-    let triangle = &entries[reactions + held.compliant.len()..];
+    let (gaps, triangle) = entries[reactions + held.compliant.len()..].split_at(reactions);
     let (triangle, moves) = triangle.split_at(reactions * (reactions + 1) / 2);
     let matrix = DMatrix::from_fn(reactions, reactions, |i, j| {
         let (row, column) = (i.max(j), i.min(j));
@@ -208,7 +210,7 @@ where
             by_state[(state, reaction)] = moves[reaction * held.moved.len() + place].value;
         }
     }
-    Some(HeldNow { flows: entries[..reactions].to_vec(), matrix, moves: by_state })
+    Some(HeldNow { flows: entries[..reactions].to_vec(), gaps: values(gaps), matrix, moves: by_state })
 }
 
 /// Rates, outputs and their derivatives by states, column by column.

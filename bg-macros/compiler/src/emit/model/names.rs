@@ -35,6 +35,10 @@ impl Emission<'_> {
                 let name = self.symbol_name(symbol);
                 Some(quote!(let #name = S::from_f64(parameters.#field);))
             }
+            Symbol::Kept(index) => {
+                let (name, index) = (self.symbol_name(symbol), Literal::u32_unsuffixed(index));
+                Some(quote!(let #name = S::from_f64(kept[#index]);))
+            }
             _ => None,
         })
     }
@@ -74,7 +78,12 @@ impl Emission<'_> {
             Symbol::Parameter(index) => format_ident!("p_{}", equations.parameters[index as usize].name.text),
             Symbol::Input(index) => format_ident!("u_{}", input(index)),
             Symbol::Slope(index) => format_ident!("slope_{}", input(index)),
-            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Loop => {
+            Symbol::Kept(index) => format_ident!("kept_{index}"),
+            Symbol::Multiplier(_) => {
+                let row = equations.solution.row(symbol).expect("a reaction that is solved for");
+                return entry("reactions", u32::try_from(row).expect("fewer than 2^32 reactions"));
+            }
+            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Loop => {
                 unreachable!("a model's equations contain no {symbol:?}")
             }
             Symbol::Unknown(index) => return entry("u", index),
@@ -103,7 +112,7 @@ fn entry(array: &str, index: u32) -> TokenStream {
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
-    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b \
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b reactions kept \
         DESCRIPTION Some None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {

@@ -13,7 +13,7 @@ impl Emission<'_> {
         let Shape { n, g, m } = &self.shape;
         let (start, started) = self.start();
         let (outputs, stored_energy, powers) = (self.outputs(), self.stored_energy(), self.powers());
-        let shown = self.shown();
+        let (shown, redundant) = (self.shown(), self.redundant());
         quote! {
             #started
             impl<S: Scalar> ::bg_model::system::Model<S, #n, #g, #m> for Model<S> {
@@ -21,6 +21,7 @@ impl Emission<'_> {
                     &DESCRIPTION
                 }
                 #start
+                #redundant
                 #outputs
                 #stored_energy
                 #powers
@@ -32,8 +33,10 @@ impl Emission<'_> {
     fn outputs(&self) -> TokenStream {
         let Shape { n, g, m } = &self.shape;
         let (body, outputs) = self.function(&self.model.programs.running.outputs);
+        let reactions = self.with_reactions();
         quote! {
             fn outputs(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], y: &mut SVector<S, #m>) {
+                #reactions
                 #body
                 y.data.0 = [[#(#outputs),*]];
             }
@@ -43,11 +46,13 @@ impl Emission<'_> {
     /// What pictures show, from the tape.
     fn shown(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
+        let (reactions, values) = self.shown_reactions();
         let inputs: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         quote! {
             fn shown(
                 &self, t: f64, x: &SVector<f64, #n>, negative: &[bool; #g], values: &mut ::std::vec::Vec<f64>,
             ) {
+                #reactions
                 let parameters: ::std::vec::Vec<f64> = (0..DESCRIPTION.parameters.len())
                     .map(|index| ::bg_model::parameters::Parameters::value(&self.parameters, index))
                     .collect();
@@ -58,6 +63,7 @@ impl Emission<'_> {
                         parameters: &parameters,
                         inputs: &[#([self.inputs.#inputs.value(t), self.inputs.#inputs.slope(t)]),*],
                         negative,
+                        reactions: #values,
                     },
                     values,
                 );

@@ -9,7 +9,7 @@ use quote::{format_ident, quote};
 use super::super::items::identifier;
 use super::{Emission, Shape};
 use crate::program::{Program, Programs};
-use crate::system::equations::Slip;
+use crate::system::equations::{Kind, Slip};
 
 impl Emission<'_> {
     /// Guesses, gaps, start state and what is asked of values, each with its constants inside.
@@ -76,7 +76,7 @@ impl Emission<'_> {
     }
 
     /// `let unknowns`: the guesses, those of the pose moved until the joints are closed.
-    fn closed_pose(&self) -> TokenStream {
+    pub(super) fn closed_pose(&self) -> TokenStream {
         let gaps = self.model.equations.gaps.iter().map(|gap| {
             let (joint, component, unit) = (&gap.joint, gap.component, &gap.unit);
             quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
@@ -113,6 +113,14 @@ impl Emission<'_> {
         }
     }
 
+    /// The indices of the states of these kinds.
+    fn states_of(&self, kinds: &[Kind]) -> TokenStream {
+        let states = self.model.equations.states.iter().enumerate();
+        let indices = states.filter(|(_, state)| kinds.contains(&state.origin.kind())).map(|(index, _)| index);
+        let indices = indices.map(Literal::usize_unsuffixed);
+        quote!(&[#(#indices),*])
+    }
+
     /// What the joints hold.
     pub(super) fn joints(&self) -> TokenStream {
         let Some(Program { routines: [routine], .. }) = &self.model.programs.holding else { return TokenStream::new() };
@@ -120,12 +128,17 @@ impl Emission<'_> {
         let holding = &self.model.equations.holding;
         let (rigid, compliant) = (slips(&holding.rigid), slips(&holding.compliant));
         let moved = holding.moves.iter().map(|(state, _)| Literal::usize_unsuffixed(*state));
+        let closing = self.closing();
+        let pose = self.states_of(&[Kind::Position, Kind::Orientation, Kind::Angle, Kind::Displacement]);
+        let turning = self.states_of(&[Kind::Orientation, Kind::Angle]);
+        let kept = self.shared().kept();
         let (body, entries) = self.running(routine, &format_ident!("holding_constants"));
         quote! {
             impl<S: Scalar> ::bg_model::capability::Joints<S, #n, #g> for Model<S> {
                 fn held(&self) -> ::bg_model::holding::Held {
-                    ::bg_model::holding::Held { rigid: &[#rigid], compliant: &[#compliant], moved: &[#(#moved),*] }
+                    ::bg_model::holding::Held { rigid: &[#rigid], compliant: &[#compliant], moved: &[#(#moved),*], pose: #pose, turning: #turning, closing: #closing }
                 }
+                #kept
                 #[inline(never)]
                 fn hold(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], entries: &mut [S]) {
                     #body

@@ -64,10 +64,12 @@ impl Emission<'_> {
         let (field, function) = (format_ident!("{prefix}s"), format_ident!("{prefix}_table"));
         let (count, body) = (constants.results.len(), self.constant_table(constants));
         made.fields.extend(quote!(#field: [#scalar; #count],));
-        made.lets.extend(quote!(let #field = Self::#function(&parameters);));
+        let shared = self.shared();
+        let (pass, argument) = (shared.pass(), shared.argument());
+        made.lets.extend(quote!(let #field = Self::#function(&parameters #pass);));
         made.functions.extend(quote! {
             #[doc = #doc]
-            fn #function(parameters: &Parameters) -> [S; #count] {
+            fn #function(parameters: &Parameters #argument) -> [S; #count] {
                 #body
             }
         });

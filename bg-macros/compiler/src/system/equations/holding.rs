@@ -9,7 +9,7 @@ use super::signals::Signals;
 use crate::expr::{Branch, Id, Pool, Symbol, derivative, substitute_switched};
 use crate::graph::units::Dimension;
 use crate::graph::{Axis, Direction, ElementKind, Held, JointId, NodeId};
-use crate::system::solution::Known;
+use crate::system::solution::{Known, filter};
 
 /// A motion that a joint holds.
 #[derive(Clone, Debug)]
@@ -22,6 +22,8 @@ pub struct Slip {
     pub unit: String,
     /// The relative flow: zero in a state that fits.
     pub flow: Id,
+    /// The number of its [`Symbol::Kept`], where its joint closes a loop and may hold what others hold already.
+    pub kept: Option<u32>,
     /// Its integral as the poses have it, where they do.
     pub gap: Option<Id>,
 }
@@ -40,12 +42,14 @@ pub struct Holding {
 }
 
 impl Holding {
-    /// Every expression: the rigid flows, the compliant ones, the matrix, then for each reaction what it moves.
+    /// Every expression: the rigid flows, the compliant ones, the rigid gaps, the matrix, then for each reaction what it
+    /// moves.
     #[must_use]
-    pub fn entries(&self) -> Vec<Id> {
+    pub fn entries(&self, pool: &Pool) -> Vec<Id> {
         let flows = self.rigid.iter().chain(&self.compliant).map(|slip| slip.flow);
+        let gaps = self.rigid.iter().map(|slip| slip.gap.unwrap_or(pool.zero()));
         let moves = (0..self.rigid.len()).flat_map(|k| self.moves.iter().map(move |(_, moves)| moves[k]));
-        flows.chain(self.matrix.iter().flatten().copied()).chain(moves).collect()
+        flows.chain(gaps).chain(self.matrix.iter().flatten().copied()).chain(moves).collect()
     }
 
     /// Replaces symbols and decides switches everywhere.
@@ -66,36 +70,52 @@ impl Holding {
         acting.flat_map(|(slip, _)| [slip.flow].into_iter().chain(slip.gap)).collect()
     }
 
+    /// Whether joints close loops, so that reactions may not be unique.
+    #[must_use]
+    pub fn is_shared(&self) -> bool {
+        self.rigid.iter().any(|slip| slip.kept.is_some())
+    }
+
+    /// What must stay where the reaction of this row is wanted and may have to be shared among joints.
+    pub fn shared(&self, row: usize) -> Vec<Id> {
+        let slip = &self.rigid[row];
+        if self.is_shared() { [slip.flow].into_iter().chain(slip.gap).collect() } else { Vec::new() }
+    }
+
     /// Whether there is nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rigid.is_empty() && self.compliant.is_empty()
     }
 
-    /// Forgets what needs a state or switch that goes: where a reaction acts on something that stays, all that it is
-    /// solved from stays as well.
-    pub fn prune(&mut self, pool: &Pool, known: &Known) {
+    /// For each rigid motion whether it is known: where a reaction acts on something that stays, all that it is solved from
+    /// stays as well.
+    #[must_use]
+    pub fn known(&self, pool: &Pool, known: &Known) -> Vec<bool> {
         let stays = |id: Id| known.has(pool, id);
-        let zero = pool.zero();
         let entry = |i: usize, j: usize| self.matrix[i.max(j)][i.min(j)];
-        let kept: Vec<bool> = (0..self.rigid.len())
-            .map(|i| {
-                stays(self.rigid[i].flow)
-                    && (0..self.rigid.len()).all(|j| stays(entry(i, j)))
-                    && self
-                        .moves
-                        .iter()
-                        .all(|(state, moves)| moves[i] == zero || known.has_state(*state) && stays(moves[i]))
-            })
-            .collect();
-        let keep = |items: &mut Vec<Id>| filter(items, &kept);
-        filter(&mut self.matrix, &kept);
+        let acts = |(state, moves): &(usize, Vec<Id>), i: usize| {
+            pool.is_zero(moves[i]) || known.has_state(*state) && stays(moves[i])
+        };
+        let rows = 0..self.rigid.len();
+        let is_known = |i: usize| {
+            stays(self.rigid[i].flow)
+                && rows.clone().all(|j| stays(entry(i, j)))
+                && self.moves.iter().all(|moved| acts(moved, i))
+        };
+        rows.clone().map(is_known).collect()
+    }
+
+    /// Forgets the rigid motions that are not kept, and the compliant ones that are not known.
+    pub fn retain(&mut self, pool: &Pool, known: &Known, kept: &[bool]) {
+        let keep = |items: &mut Vec<Id>| filter(items, kept);
+        filter(&mut self.matrix, kept);
         self.matrix.iter_mut().for_each(keep);
         self.moves.iter_mut().for_each(|(_, moves)| keep(moves));
-        self.moves.retain(|(_, moves)| moves.iter().any(|&id| id != zero));
-        filter(&mut self.rigid, &kept);
-        self.rigid.iter_mut().for_each(|slip| slip.gap = slip.gap.filter(|&gap| stays(gap)));
-        self.compliant.retain(|slip| stays(slip.flow));
+        self.moves.retain(|(_, moves)| moves.iter().any(|&id| !pool.is_zero(id)));
+        filter(&mut self.rigid, kept);
+        self.rigid.iter_mut().for_each(|slip| slip.gap = slip.gap.filter(|&gap| known.has(pool, gap)));
+        self.compliant.retain(|slip| known.has(pool, slip.flow));
     }
 
     /// Gives the states that reactions change their new numbers; those without one are gone.
@@ -103,12 +123,6 @@ impl Holding {
         let moves = std::mem::take(&mut self.moves);
         self.moves = moves.into_iter().filter_map(|(state, moves)| Some((to(state)?, moves))).collect();
     }
-}
-
-/// The items whose place is kept; a row of a triangle has fewer places.
-fn filter<T>(items: &mut Vec<T>, kept: &[bool]) {
-    let mut kept = kept.iter();
-    items.retain(|_| *kept.next().expect("a mark for each"));
 }
 
 impl Signals<'_> {
@@ -158,7 +172,7 @@ impl Signals<'_> {
             for (component, &flow) in flows.iter().enumerate() {
                 let direction = in_words((flows.len() > 1).then(|| direction(component, turns)));
                 let (joint, unit) = (graph.joint(close.joint).to_owned(), unit.to_owned());
-                slips.push((close.joint, Slip { joint, direction, unit, flow, gap: None }));
+                slips.push((close.joint, Slip { joint, direction, unit, flow, kept: None, gap: None }));
             }
         }
         let flows: Vec<Id> = slips.iter().map(|(_, slip)| slip.flow).collect();

@@ -176,6 +176,7 @@ impl StateEquations {
             Symbol::Storage(index) => format!("storage_{index}"),
             Symbol::Flow(index) => format!("flow_{index}"),
             Symbol::Multiplier(index) => format!("multiplier_{index}"),
+            Symbol::Kept(index) => format!("kept_{index}"),
             Symbol::Loop => "loop".to_owned(),
             Symbol::Slope(index) => format!("{}'", self.inputs[index as usize].name.text),
             Symbol::Rate(index) => format!("{}'", self.states[index as usize].name),

@@ -40,7 +40,7 @@ impl Signals<'_> {
                 let joint = self.holder(node).to_owned();
                 let (direction, unit) = (self.direction_of(node, k), graph.bond(bond).flow_unit());
                 let gap = gap.as_ref().map(|gap| gap[k]);
-                reactions.push(Reaction { slip: Slip { joint, direction, unit, flow, gap }, multiplier });
+                reactions.push(Reaction { slip: Slip { joint, direction, unit, flow, kept: None, gap }, multiplier });
             }
         }
         reactions

@@ -53,7 +53,12 @@ fn live(equations: &StateEquations, roots: &[Id]) -> (Vec<bool>, Vec<bool>) {
                         open.extend(equations.holding.of_momentum(pool, state));
                     }
                 }
-                Node::Symbol(symbol) => open.extend(equations.solution.value(*symbol)),
+                Node::Symbol(symbol) => {
+                    if let Some(row) = equations.solution.row(*symbol) {
+                        open.push(equations.solution.values[row]);
+                        open.extend(equations.holding.shared(row));
+                    }
+                }
                 Node::Select { switch, .. } => {
                     let switch = *switch as usize;
                     if !std::mem::replace(&mut switches[switch], true) {
@@ -88,9 +93,15 @@ fn forget(equations: &mut StateEquations, known: &Known) {
         }
     }
     equations.fallible.retain(|law| known.has(pool, law.value));
-    equations.holding.prune(pool, known);
     equations.shown.prune(pool, known);
-    equations.solution.prune(pool, known);
+    let (holding, solution) = (&mut equations.holding, &mut equations.solution);
+    let (mut held, mut solved) = (holding.known(pool, known), solution.known(pool, known));
+    if holding.is_shared() {
+        let both: Vec<bool> = held.iter().zip(&solved).map(|(&held, &solved)| held && solved).collect();
+        (held, solved) = (both.clone(), both);
+    }
+    holding.retain(pool, known, &held);
+    solution.retain(&solved);
 }
 
 /// Takes away the states without `kept`, to which nothing refers any more, and numbers the others anew.

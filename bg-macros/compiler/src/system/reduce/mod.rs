@@ -10,6 +10,7 @@ mod equal;
 pub mod expectation;
 mod invariant;
 mod live;
+mod loops;
 mod reaction;
 mod report;
 
@@ -166,10 +167,18 @@ impl StateEquations {
     }
 
     /// Puts the values of the reactions in the places of their symbols, everywhere.
+    ///
+    /// Where joints close loops, outputs and what is shown keep the symbols: there a model shares reactions that are not
+    /// unique before it evaluates these.
     pub fn close(&mut self) {
         let solution = std::mem::take(&mut self.solution);
-        if !solution.values.is_empty() {
-            self.replace(&|symbol| solution.value(symbol));
+        if solution.values.is_empty() {
+            return;
+        }
+        let (outputs, shown) = (self.outputs.clone(), self.shown.clone());
+        self.replace(&|symbol| solution.value(symbol));
+        if self.holding.is_shared() {
+            (self.outputs, self.shown) = (outputs, shown);
         }
         self.solution = solution;
     }

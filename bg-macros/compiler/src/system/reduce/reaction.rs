@@ -9,9 +9,10 @@
 
 use std::collections::BTreeMap;
 
+use super::loops;
 use crate::expr::{Id, Pool, Symbol, derivative, partial, substitute};
 use crate::system::definite::Factors;
-use crate::system::equations::{Kind, Reaction, State, StateEquations};
+use crate::system::equations::{Reaction, Slip, StateEquations};
 use crate::system::solution::Solution;
 
 /// Solves for all multipliers. They stay symbols in the equations until these are closed.
@@ -20,18 +21,28 @@ pub fn solve(equations: &mut StateEquations) {
     if reactions.is_empty() {
         return;
     }
+    let reactions = loops::arrange(equations, reactions);
     let residuals = accelerations(equations, &reactions);
     let pool = &mut equations.pool;
     let system = Linear::of(pool, &reactions, &residuals);
-    let factors = Factors::of(pool, &system.matrix, |pool, _, pivot, _| pool.powi(pivot, -1));
+    let factors = Factors::of(pool, &system.matrix, |pool, row, pivot, _| inverse(pool, &reactions[row].slip, pivot));
     let right: Vec<Id> = system.constant.iter().map(|&constant| pool.neg(constant)).collect();
     let values = factors.solve(pool, &right);
     let holding = &mut equations.holding;
-    holding.moves = moves(pool, &equations.states, &reactions);
+    holding.moves = loops::moves(pool, &equations.states, &reactions);
     holding.matrix = system.matrix;
     let multipliers = reactions.iter().map(|reaction| reaction.multiplier).collect();
     holding.rigid = reactions.into_iter().map(|reaction| reaction.slip).collect();
     equations.solution = Solution { multipliers, residuals, factors, values };
+}
+
+/// 1 / D of a row that is kept, 0 of one that is not: its reaction is zero.
+fn inverse(pool: &mut Pool, slip: &Slip, pivot: Id) -> Id {
+    let Some(kept) = slip.kept else { return pool.powi(pivot, -1) };
+    let kept = pool.symbol(Symbol::Kept(kept));
+    let scaled = pool.mul(kept, pivot);
+    let divisor = pool.linear(1.0, &[(scaled, 1.0), (kept, -1.0)]);
+    pool.div(kept, divisor)
 }
 
 /// dv/dt of every flow v, with Baumgarte's terms 2 a v + a^2 q where they are asked for; zero where the reactions are right.
@@ -52,17 +63,6 @@ fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<
             pool.linear(0.0, &[(rate, 1.0), (slip.flow, 2.0 * decay), (gap, decay * decay)])
         })
         .collect()
-}
-
-/// The momenta whose rates depend on multipliers, and how.
-fn moves(pool: &mut Pool, states: &[State], reactions: &[Reaction]) -> Vec<(usize, Vec<Id>)> {
-    let momenta: Vec<usize> =
-        (0..states.len()).filter(|&state| states[state].origin.kind() == Kind::Momentum).collect();
-    let rates: Vec<Id> = momenta.iter().map(|&state| states[state].rate).collect();
-    let columns: Vec<Vec<Id>> = reactions.iter().map(|reaction| partial(pool, &rates, reaction.multiplier)).collect();
-    let row = |k: usize| columns.iter().map(|column| column[k]).collect::<Vec<Id>>();
-    let rows = momenta.into_iter().enumerate().map(|(k, state)| (state, row(k)));
-    rows.filter(|(_, row)| row.iter().any(|&id| !pool.is_zero(id))).collect()
 }
 
 /// A l + b = 0.

@@ -1,0 +1,60 @@
+//! Which rigid joints close loops.
+//!
+//! In: the reactions with the momenta that they move. Out: the same, those of joints that close a loop after all others,
+//! each of them with a number.
+//! Method: the joints are gone through in their order; one that moves a momentum which none before it has moved hangs
+//! something new on the tree of joints, and holds nothing that others hold. The others may: two hinges of a door do. Their
+//! rows come last, so that they are the ones that follow from the others where something follows.
+
+use std::collections::BTreeSet;
+
+use crate::expr::{Id, Pool, partial};
+use crate::system::equations::{Kind, Origin, Reaction, State, StateEquations};
+
+/// The reactions, those of loops last.
+pub(super) fn arrange(equations: &mut StateEquations, reactions: Vec<Reaction>) -> Vec<Reaction> {
+    let moves = moves(&mut equations.pool, &equations.states, &reactions);
+    let pool = &equations.pool;
+    let node = |state: usize| match equations.states[state].origin {
+        Origin::Momentum(node, _) => Some(node),
+        _ => None,
+    };
+    let moved = |row: usize| moves.iter().filter(move |(_, moves)| !pool.is_zero(moves[row])).map(|(state, _)| *state);
+    let mut seen = BTreeSet::new();
+    let (mut tree, mut closing) = (Vec::new(), Vec::new());
+    for rows in of_joints(&reactions) {
+        let states: BTreeSet<usize> = rows.iter().flat_map(|&row| moved(row)).collect();
+        let is_new = |state: &&usize| node(**state).is_none_or(|node| !seen.contains(&node));
+        let hangs = states.iter().filter(is_new).count() >= rows.len();
+        seen.extend(states.iter().filter_map(|&state| node(state)));
+        if hangs { tree.extend(rows) } else { closing.extend(rows) }
+    }
+    let mut numbers = 0..;
+    let mut closing: Vec<Reaction> = closing.into_iter().map(|row: usize| reactions[row].clone()).collect();
+    closing.iter_mut().for_each(|reaction| reaction.slip.kept = numbers.next());
+    tree.into_iter().map(|row: usize| reactions[row].clone()).chain(closing).collect()
+}
+
+/// The rows of each joint, in the order of the joints' first rows.
+fn of_joints(reactions: &[Reaction]) -> Vec<Vec<usize>> {
+    let mut joints: Vec<Vec<usize>> = Vec::new();
+    for (row, reaction) in reactions.iter().enumerate() {
+        match joints.iter_mut().find(|rows| reactions[rows[0]].slip.joint == reaction.slip.joint) {
+            Some(rows) => rows.push(row),
+            None => joints.push(vec![row]),
+        }
+    }
+    joints
+}
+
+/// The momenta whose rates depend on multipliers, and how.
+pub(super) fn moves(pool: &mut Pool, states: &[State], reactions: &[Reaction]) -> Vec<(usize, Vec<Id>)> {
+    let momenta: Vec<usize> =
+        (0..states.len()).filter(|&state| states[state].origin.kind() == Kind::Momentum).collect();
+    let rates: Vec<Id> = momenta.iter().map(|&state| states[state].rate).collect();
+    let columns: Vec<Vec<Id>> = reactions.iter().map(|reaction| partial(pool, &rates, reaction.multiplier)).collect();
+    let row = |k: usize| columns.iter().map(|column| column[k]).collect::<Vec<Id>>();
+    let rows = momenta.into_iter().enumerate().map(|(k, state)| (state, row(k)));
+    rows.filter(|(_, row)| row.iter().any(|&id| !pool.is_zero(id))).collect()
+}
+

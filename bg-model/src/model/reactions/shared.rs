@@ -1,0 +1,202 @@
+//! Rigid joints that hold the same motion: which rows take no part, and how the reactions are shared.
+//!
+//! In: a system whose joints close loops ([`Held::closing`]). Out: for each of these rows whether it follows from the others
+//! in all poses, as one of two hinges of a door does; reactions of least norm; the joints by name.
+//!
+//! Rows follow from others in a singular pose, too, such as that of a parallelogram that lies flat; there they do for an
+//! instant only. So what follows at the start has to follow in poses near it as well: the mechanism is moved a little, with
+//! velocities that its joints allow, and closed again.
+
+use nalgebra::SVector;
+
+use super::factors::Factors;
+use super::{Hold, branches, dropped};
+use crate::model::capability::Joints;
+use crate::model::holding::{Held, Redundancy};
+use crate::model::scalar::Scalar;
+use crate::model::system::System;
+
+/// How far a mechanism is moved, rad; m where nothing turns.
+const FAR: f64 = 1e-3;
+/// Velocities that are smaller beside those without joints are rounding: nothing can move.
+const STILL: f64 = 1e-9;
+/// How often gaps are closed after a move; each time squares what is left.
+const CLOSINGS: usize = 6;
+
+/// For each number of [`Held::closing`] 1 where its row takes part, 0 where it follows from the others; all 1 without a
+/// pose. Allocates.
+pub fn kept<Sys, const N: usize, const G: usize, const K: usize>(system: &Sys, pose: Option<SVector<f64, N>>) -> [f64; K]
+where
+    Sys: System<f64, N, G> + Joints<f64, N, G>,
+{
+    let mut kept = [1.0; K];
+    let Some(pose) = pose else { return kept };
+    let (held, negative) = (system.held(), branches(system, &pose));
+    let place = Place { system, negative };
+    let mut following = place.following(&pose);
+    for seed in [1, 2] {
+        let Some(near) = following.contains(&true).then(|| place.moved(&pose, seed)).flatten() else { break };
+        let there = place.following(&near);
+        following.iter_mut().zip(there).for_each(|(follows, there)| *follows &= there);
+    }
+    for &(row, number) in held.closing {
+        kept[number] = f64::from(u8::from(!following[row]));
+    }
+    kept
+}
+
+/// A system with its switches as they are at the start.
+struct Place<'a, Sys, const G: usize> {
+    system: &'a Sys,
+    negative: [bool; G],
+}
+
+impl<Sys, const G: usize> Place<'_, Sys, G> {
+    fn hold<const N: usize>(&self, x: &SVector<f64, N>) -> Hold<f64>
+    where
+        Sys: System<f64, N, G> + Joints<f64, N, G>,
+    {
+        let mut hold = Hold::new(self.system.held());
+        hold.read(self.system, 0.0, x, &self.negative);
+        hold
+    }
+
+    /// The rows that follow from those before them.
+    fn following<const N: usize>(&self, x: &SVector<f64, N>) -> Vec<bool>
+    where
+        Sys: System<f64, N, G> + Joints<f64, N, G>,
+    {
+        let factors = Factors::of(self.hold(x).matrix());
+        (0..self.system.held().rigid.len()).map(|row| factors.follows(row)).collect()
+    }
+
+    /// The pose a little further along a motion that the joints allow; none where nothing can move.
+    fn moved<const N: usize>(&self, x: &SVector<f64, N>, seed: u64) -> Option<SVector<f64, N>>
+    where
+        Sys: System<f64, N, G> + Joints<f64, N, G>,
+    {
+        let held = self.system.held();
+        let free = self.velocities(x, &self.pushed(x, seed));
+        let allowed = self.velocities(x, &self.fitted(self.pushed(x, seed)));
+        let largest = |velocities: &SVector<f64, N>, of: &[usize]| {
+            of.iter().fold(0.0_f64, |largest, &state| largest.max(velocities[state].abs()))
+        };
+        if largest(&allowed, held.pose) <= STILL * largest(&free, held.pose) {
+            return None;
+        }
+        let turning = largest(&allowed, held.turning);
+        let fastest = if turning > 0.0 { turning } else { largest(&allowed, held.pose) };
+        let mut near = x + allowed * (FAR / fastest);
+        for _ in 0..CLOSINGS {
+            self.system.project(0.0, &self.negative, &mut near);
+        }
+        Some(near)
+    }
+
+    /// The state with momenta that point anywhere.
+    fn pushed<const N: usize>(&self, x: &SVector<f64, N>, seed: u64) -> SVector<f64, N>
+    where
+        Sys: System<f64, N, G> + Joints<f64, N, G>,
+    {
+        let mut pushed = *x;
+        let mut number = seed;
+        for &state in self.system.held().moved {
+            // The generator MMIX of Knuth, The Art of Computer Programming, vol. 2, 3.3.4.
+            number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            pushed[state] = (number >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+        }
+        pushed
+    }
+
+    /// The state after the impulses of the joints.
+    fn fitted<const N: usize>(&self, mut x: SVector<f64, N>) -> SVector<f64, N>
+    where
+        Sys: System<f64, N, G> + Joints<f64, N, G>,
+    {
+        let hold = self.hold(&x);
+        let impulses = Factors::of(hold.matrix()).solved(&hold.flows()[..hold.held.rigid.len()]);
+        for (reaction, impulse) in impulses.into_iter().enumerate() {
+            for (&state, by) in hold.held.moved.iter().zip(hold.moves(reaction)) {
+                x[state] -= by * impulse;
+            }
+        }
+        x
+    }
+
+    /// How the pose changes by the momenta of `pushed`, beyond what changes at rest.
+    fn velocities<const N: usize>(&self, x: &SVector<f64, N>, pushed: &SVector<f64, N>) -> SVector<f64, N>
+    where
+        Sys: System<f64, N, G> + Joints<f64, N, G>,
+    {
+        let Held { moved, pose, .. } = self.system.held();
+        let mut still = *x;
+        moved.iter().for_each(|&state| still[state] = 0.0);
+        let [mut with, mut without] = [SVector::zeros(); 2];
+        self.system.rate(0.0, pushed, &self.negative, &mut with);
+        self.system.rate(0.0, &still, &self.negative, &mut without);
+        let mut velocities = SVector::zeros();
+        pose.iter().for_each(|&state| velocities[state] = with[state] - without[state]);
+        velocities
+    }
+}
+
+/// Makes `reactions`, zero for the rows that take no part, those of least norm: joints that hold the same motion share
+/// what it takes. N and N m count alike. Allocates where rows take no part.
+pub fn share<J, S, const N: usize, const G: usize>(
+    joints: &J,
+    t: S,
+    x: &SVector<S, N>,
+    negative: &[bool; G],
+    reactions: &mut [S],
+) where
+    J: Joints<S, N, G>,
+    S: Scalar,
+{
+    if !joints.kept().contains(&0.0) {
+        return;
+    }
+    let mut hold = Hold::new(joints.held());
+    hold.read(joints, t, x, negative);
+    let factors = Factors::without(hold.matrix(), &dropped(joints));
+    let rows = (0..reactions.len()).filter(|&row| factors.follows(row));
+    let mut basis: Vec<Vec<S>> = Vec::new();
+    for row in rows {
+        let mut vector = factors.null_vector(row);
+        basis.iter().for_each(|other| take(&mut vector, other));
+        let length = dot(&vector, &vector).sqrt();
+        vector.iter_mut().for_each(|part| *part = *part / length);
+        basis.push(vector);
+    }
+    basis.iter().for_each(|vector| take(reactions, vector));
+}
+
+/// Takes away the part along a vector of length 1.
+fn take<S: Scalar>(from: &mut [S], along: &[S]) {
+    let part = dot(from, along);
+    from.iter_mut().zip(along).for_each(|(value, &along)| *value = *value - part * along);
+}
+
+fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
+    a.iter().zip(b).fold(S::from_f64(0.0), |sum, (&a, &b)| sum + a * b)
+}
+
+/// The joints that hold what others hold already, in all poses; `x` is one of them. Allocates.
+pub fn redundant<Sys, S, const N: usize, const G: usize>(system: &Sys, x: &SVector<S, N>) -> Vec<Redundancy>
+where
+    Sys: System<S, N, G> + Joints<S, N, G>,
+    S: Scalar,
+{
+    let (held, dropped) = (system.held(), dropped(system));
+    let mut hold = Hold::new(held);
+    hold.read(system, S::from_f64(0.0), x, &branches(system, x));
+    let factors = Factors::without(hold.matrix(), &dropped);
+    let mut rows: Vec<usize> = (0..dropped.len()).filter(|&row| dropped[row]).collect();
+    let mut found = Vec::new();
+    while let Some(&first) = rows.first() {
+        let joint = held.rigid[first].joint;
+        let (own, others): (Vec<usize>, _) = rows.iter().partition(|&&row| held.rigid[row].joint == joint);
+        rows = others;
+        found.push(factors.shared(held.rigid, &own));
+    }
+    found
+}
