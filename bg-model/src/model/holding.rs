@@ -106,9 +106,6 @@ impl std::fmt::Display for Redundancy {
         let others: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
         let (word, verb) = if others.len() == 1 { ("joint", "holds") } else { ("joints", "hold") };
         let others = others.join(", ");
-        write!(
-            f,
-            "rigid joint `{joint}` holds{directions} what rigid {word} {others} {verb} already"
-        )
+        write!(f, "rigid joint `{joint}` holds{directions} what rigid {word} {others} {verb} already")
     }
 }

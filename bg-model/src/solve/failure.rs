@@ -4,7 +4,7 @@
 
 use thiserror::Error;
 
-use crate::model::holding::Slipping;
+use crate::model::holding::{Redundancy, Slipping};
 pub use crate::model::origin::Origin;
 use crate::solve::finish::Finish;
 
@@ -106,6 +106,16 @@ pub enum Cause {
         /// Its name, such as ``if v < 0` of `valve``; empty where it has none.
         name: &'static str,
         /// Time, s.
+        t: f64,
+    },
+    /// The steps creep into a singular pose, in which the joints do not say which way the mechanism goes on.
+    #[error(
+        "at t = {t:?} s the steps creep into a singular pose, in which {redundancy}; explicit methods and `taylor` pass such a pose"
+    )]
+    Singular {
+        /// Which joints.
+        redundancy: Redundancy,
+        /// When, s.
         t: f64,
     },
     /// A rigid joint holds a motion that no other does any more. At the start it followed from the others, so that it took

@@ -6,10 +6,10 @@
 use std::fmt::{Display, Formatter, Result};
 
 use crate::source::ast::{
-    Axis, AxisLaw, Baumgarte, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends, Expectation,
-    Expression, ExpressionKind, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind, Junction, JunctionKind,
-    LawVariable, Let, Name, Observation, Operation, Parameter, Part, Point, Rigid, Role, Scene, Shape, Source, Spring,
-    Track, Unit,
+    Axis, AxisLaw, Baumgarte, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends,
+    Expectation, Expression, ExpressionKind, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind, Junction,
+    JunctionKind, LawVariable, Let, Name, Observation, Operation, Parameter, Part, Point, Rigid, Role, Scene, Shape,
+    Source, Spring, Track, Unit,
 };
 use crate::source::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
 

@@ -32,7 +32,8 @@ const fn row(i: usize) -> usize {
 
 impl<S: Scalar> Factors<S> {
     /// Room for `n` rows.
-    fn new(n: usize) -> Self {
+    /// Room for `n` rows.
+    pub fn new(n: usize) -> Self {
         let zero = S::from_f64(0.0);
         Self { rows: vec![zero; row(n)], follows: vec![false; n], diagonal: vec![zero; n] }
     }
@@ -56,8 +57,9 @@ impl<S: Scalar> Factors<S> {
         factors
     }
 
-    /// `follows` says of a row, its pivot and its entry on the diagonal whether it takes no part.
-    fn factor_where(&mut self, matrix: &[S], follows: impl Fn(usize, f64, f64) -> bool) {
+    /// Replaces the factors by those of the lower triangle `matrix`; `follows` says of a row, its pivot and its entry on the
+    /// diagonal whether it takes no part. Allocates nothing.
+    pub fn factor_where(&mut self, matrix: &[S], follows: impl Fn(usize, f64, f64) -> bool) {
         self.rows.copy_from_slice(matrix);
         for i in 0..self.follows.len() {
             let (above, rest) = self.rows.split_at_mut(row(i));
@@ -207,10 +209,7 @@ mod tests {
         let expected = Redundancy { joint: "c", directions: vec!["in x", "in y"], others: vec!["a", "b"] };
         let found = factors.redundancy(&slips, &[false; 5]).unwrap();
         assert_eq!(found, expected);
-        assert_eq!(
-            found.to_string(),
-            "rigid joint `c` holds in x, in y what rigid joints `a`, `b` hold already"
-        );
+        assert_eq!(found.to_string(), "rigid joint `c` holds in x, in y what rigid joints `a`, `b` hold already");
         // The rest is solved as if these rows were not there.
         let solution = factors.solved(&[1.0, 0.0, 5.0, 8.0, 5.0]);
         assert_eq!((solution[2], solution[3], solution[4]), (0.0, 2.0, 0.0));

@@ -10,7 +10,7 @@
 
 mod factors;
 mod shared;
-mod torn;
+mod watch;
 
 use nalgebra::{DVector, SVector};
 
@@ -22,7 +22,7 @@ use crate::model::scalar::Scalar;
 use crate::model::system::System;
 use factors::Factors;
 pub use shared::{kept, redundant, share};
-pub(crate) use torn::TornWatch;
+pub(crate) use watch::{Broken, LoopWatch};
 
 /// A start state whose joints fit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -25,7 +25,10 @@ const CLOSINGS: usize = 6;
 
 /// For each number of [`Held::closing`] 1 where its row takes part, 0 where it follows from the others; all 1 without a
 /// pose. Allocates.
-pub fn kept<Sys, const N: usize, const G: usize, const K: usize>(system: &Sys, pose: Option<SVector<f64, N>>) -> [f64; K]
+pub fn kept<Sys, const N: usize, const G: usize, const K: usize>(
+    system: &Sys,
+    pose: Option<SVector<f64, N>>,
+) -> [f64; K]
 where
     Sys: System<f64, N, G> + Joints<f64, N, G>,
 {

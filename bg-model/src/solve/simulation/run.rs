@@ -8,13 +8,16 @@ use super::pace::{self, Pace};
 use super::rounding::RoundingWatch;
 use super::sampling::Sampling;
 use super::settings::{Settings, Span};
-use crate::model::reactions::TornWatch;
+use crate::model::reactions::{Broken, LoopWatch};
 use crate::model::system::System;
 use crate::solve::event::{Condition, Crossing, Stop, Watch};
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Method, StepControl, is_finite};
 use crate::solve::stepper::Stepper;
+
+/// The norm of a projection above which a step is rejected. It is below 2 where a step errs by as much as is allowed.
+const MOVED: f64 = 10.0;
 
 /// A run under way.
 pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
@@ -28,8 +31,8 @@ pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
     span: Span,
     attempts: u64,
     limit: u64,
-    /// Of motions that follow from others, where there are any.
-    torn: Option<TornWatch>,
+    /// Of joints that close loops, where there are any.
+    loops: Option<LoopWatch>,
     /// Of the error estimates, where the tolerances may be below it.
     rounding: Option<RoundingWatch>,
 }
@@ -57,7 +60,7 @@ where
         settings: &'a Settings<N>,
     ) -> Self {
         let has_breaks = stepper.system.next_break(span.t0) < f64::INFINITY;
-        let torn = stepper.system.joints().and_then(TornWatch::new);
+        let loops = stepper.system.joints().and_then(LoopWatch::new);
         Self {
             stepper,
             pace: Pace::new(control, span, settings, has_breaks),
@@ -68,7 +71,7 @@ where
             span,
             attempts: 0,
             limit: settings.step_limit,
-            torn,
+            loops,
             rounding: RoundingWatch::new(settings.tolerances.relative),
         }
     }
@@ -92,12 +95,15 @@ where
         outcome.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))
     }
 
-    /// Sees to it that motions which follow from others still do at the end of the step.
+    /// Sees to it that the joints which close loops say where the mechanism goes.
     fn check_joints(&mut self) -> Result<(), Cause> {
         let Stepper { system, end, negative, .. } = &self.stepper;
-        let (Some(torn), Some(joints)) = (&mut self.torn, system.joints()) else { return Ok(()) };
-        let found = torn.check(joints, (end.t, &end.x), negative);
-        found.map_or(Ok(()), |slipping| Err(Cause::Torn { slipping, t: end.t }))
+        let (Some(loops), Some(joints)) = (&mut self.loops, system.joints()) else { return Ok(()) };
+        match loops.check(joints, (end.t, &end.x), negative) {
+            Some(Broken::Torn(slipping)) => Err(Cause::Torn { slipping, t: end.t }),
+            Some(Broken::Singular(redundancy)) => Err(Cause::Singular { redundancy, t: end.t }),
+            None => Ok(()),
+        }
     }
 
     /// Makes steps until the run ends; gives why it does.
@@ -162,9 +168,10 @@ where
             self.pace.follow(self.stepper.method.control());
             self.stepper.end.t = t_new;
             if error <= 1.0 && is_finite(&self.stepper.end.x) {
-                self.stepper.project();
+                let moved = self.stepper.project();
                 self.stepper.evaluate_end();
-                if is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
+                let is_near = moved <= MOVED || !self.pace.is_adaptive();
+                if is_near && is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
                     self.pace.accept(t_new, h, error);
                     return Ok(());
                 }

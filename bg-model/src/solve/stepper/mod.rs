@@ -54,10 +54,13 @@ where
         method.attempt(&flow, start, h, scale, &mut end.x)
     }
 
-    /// Moves the end of the step back onto the invariants.
-    pub fn project(&mut self) {
+    /// Moves the end of the step back onto the invariants. Gives the norm of what that changes where joints may be rigid:
+    /// it is of the size of the error, unless the step has led to another branch of the motion.
+    pub fn project(&mut self) -> f64 {
         let Point { t, x, .. } = &mut self.end;
+        let before = *x;
         self.system.project(*t, &self.negative, x);
+        if self.system.joints().is_some() { self.scale.norm(&(*x - before), x) } else { 0.0 }
     }
 
     /// Evaluates the rate at the end of the step.

@@ -45,7 +45,13 @@ impl Shared {
 
     /// The function of `Joints` that hands it over.
     pub fn kept(&self) -> Option<TokenStream> {
-        self.where_any(|_| quote!(fn kept(&self) -> &[f64] { &self.kept }))
+        self.where_any(|_| {
+            quote!(
+                fn kept(&self) -> &[f64] {
+                    &self.kept
+                }
+            )
+        })
     }
 
     /// `let kept` in a function of the model.

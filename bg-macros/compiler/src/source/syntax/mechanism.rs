@@ -10,8 +10,8 @@ use super::{
     statement::OPERATOR,
 };
 use crate::source::ast::{
-    Axis, AxisLaw, Baumgarte, Contact, Drive, DriveKind, ElementKind, Ends, Expression, Gravity, Ground, Item, Joint, JointKind,
-    Point, Spring,
+    Axis, AxisLaw, Baumgarte, Contact, Drive, DriveKind, ElementKind, Ends, Expression, Gravity, Ground, Item, Joint,
+    JointKind, Point, Spring,
 };
 use crate::source::words::{AXES, DRIVES, value_of, word_of};
 

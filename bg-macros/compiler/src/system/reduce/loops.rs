@@ -57,4 +57,3 @@ pub(super) fn moves(pool: &mut Pool, states: &[State], reactions: &[Reaction]) -
     let rows = momenta.into_iter().enumerate().map(|(k, state)| (state, row(k)));
     rows.filter(|(_, row)| row.iter().any(|&id| !pool.is_zero(id))).collect()
 }
-

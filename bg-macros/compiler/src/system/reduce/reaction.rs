@@ -150,7 +150,8 @@ mod tests {
     /// q'' + 2 a q' + a^2 q = 0 has the double root -a: from rest, q = q0 (1 + a t) exp(-a t).
     #[test]
     fn a_gap_decays_with_the_double_root_of_baumgarte_s_terms() {
-        let graph = "baumgarte 50; 1 k[3]: translation; position q of k start [0.02, 0, 0]; I m = 2; rSe hold = [0, 0, 0] at q;
+        let graph =
+            "baumgarte 50; 1 k[3]: translation; position q of k start [0.02, 0, 0]; I m = 2; rSe hold = [0, 0, 0] at q;
             k -> m; k -> hold; observe { q: m = q.x; }";
         let (_, gaps) = scene(graph, "").columns();
         // The harness samples every 50 ms.

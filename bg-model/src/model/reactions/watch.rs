@@ -1,0 +1,85 @@
+//! Joints that close loops, looked at after each step.
+//!
+//! In: the ends of accepted steps. Out: an end of the run in place of a wrong result, where a motion that was found to follow
+//! from others follows no more, and where steps creep into a singular pose. Such a pose is passed in an instant: a step
+//! that is made from rates alone goes over it. One whose equations need the rates' derivatives, which grow without bound
+//! there, may come so near that the joints no longer say which way the mechanism goes on.
+
+use nalgebra::SVector;
+
+use super::factors::Factors;
+use super::{Hold, dropped, slipping};
+use crate::model::capability::Joints;
+use crate::model::holding::{Redundancy, Slipping};
+
+/// The fastest flow that follows from flows which are zero to rounding, in its unit.
+const FOLLOWING: f64 = 1e-6;
+/// How much faster than the fastest of the others it may be: Baumgarte's terms leave some flow.
+const FASTER: f64 = 1e3;
+/// A pivot below this part of its entry is of a pose 1e-4 rad from a singular one. Two steps in a row that end there creep.
+const NEAR: f64 = 1e-8;
+
+/// What is wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Broken {
+    /// A motion that follows from others no more.
+    Torn(Slipping),
+    /// Joints that hold the same motion in a singular pose.
+    Singular(Redundancy),
+}
+
+/// What is looked at.
+pub(crate) struct LoopWatch {
+    hold: Hold<f64>,
+    factors: Factors<f64>,
+    dropped: Vec<bool>,
+    was_near: bool,
+}
+
+impl LoopWatch {
+    /// Room for what is held; none where no joint closes a loop.
+    pub fn new<J, const N: usize, const G: usize>(joints: &J) -> Option<Self>
+    where
+        J: Joints<f64, N, G>,
+    {
+        let (held, dropped) = (joints.held(), dropped(joints));
+        let factors = Factors::new(dropped.len());
+        (!held.closing.is_empty()).then(|| Self { hold: Hold::new(held), factors, dropped, was_near: false })
+    }
+
+    /// Looks at time `t` (s) and state `x`. Allocates only where something is wrong.
+    pub fn check<J, const N: usize, const G: usize>(
+        &mut self,
+        joints: &J,
+        (t, x): (f64, &SVector<f64, N>),
+        negative: &[bool; G],
+    ) -> Option<Broken>
+    where
+        J: Joints<f64, N, G>,
+    {
+        self.hold.read(joints, t, x, negative);
+        self.torn().map(Broken::Torn).or_else(|| self.singular().map(Broken::Singular))
+    }
+
+    /// The motion that has come apart most.
+    fn torn(&self) -> Option<Slipping> {
+        let Self { hold, dropped, .. } = self;
+        let flows = &hold.flows()[..dropped.len()];
+        let fastest = |is_dropped: bool| {
+            let rows = (0..flows.len()).filter(|&row| dropped[row] == is_dropped);
+            rows.max_by(|&a, &b| flows[a].abs().total_cmp(&flows[b].abs()))
+        };
+        let others = fastest(false).map_or(0.0, |row| flows[row].abs());
+        let row = fastest(true).filter(|&row| flows[row].abs() > FOLLOWING + FASTER * others)?;
+        Some(slipping(&hold.held, row, flows[row]))
+    }
+
+    /// The joint that holds almost what others hold, for the second time in a row.
+    fn singular(&mut self) -> Option<Redundancy> {
+        let Self { hold, factors, dropped, was_near } = self;
+        factors.factor_where(hold.matrix(), |row, pivot, entry| dropped[row] || pivot <= NEAR * entry);
+        let found = (0..dropped.len()).find(|&row| factors.follows(row) && !dropped[row]);
+        let is_creeping = std::mem::replace(was_near, found.is_some());
+        found.filter(|_| is_creeping).map(|row| factors.shared(hold.held.rigid, &[row]))
+    }
+}
