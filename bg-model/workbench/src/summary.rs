@@ -68,6 +68,12 @@ pub struct Summary {
     pub atol: f64,
     /// Why the run stopped before its end, if it did.
     pub failure: Option<String>,
+    /// Which rigid joints hold what others hold already.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub redundant: Vec<String>,
+    /// The kinetic energy that impulses of rigid joints took at the start, J, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impulse_energy_j: Option<f64>,
     /// States integrated.
     pub states: usize,
     /// Accepted steps.
@@ -138,6 +144,8 @@ impl Summary {
             rtol,
             atol: run.request.atol(),
             failure,
+            redundant: run.redundant.iter().map(ToString::to_string).collect(),
+            impulse_energy_j: (run.impulse_energy != 0.0).then_some(run.impulse_energy),
             states: run.last.states.len(),
             steps: statistics.steps,
             rejected: statistics.rejected,
@@ -192,6 +200,10 @@ impl Summary {
             }
         });
         lines.push(("states", self.states.to_string()));
+        lines.extend(self.redundant.iter().map(|joint| ("shared reactions", format!("{joint}; they have the least norm"))));
+        if let Some(energy) = self.impulse_energy_j {
+            lines.push(("impulses at the start", format!("take {energy:.4e} J of kinetic energy")));
+        }
         lines.push(("steps", format!("{} accepted, {} rejected", self.steps, self.rejected)));
         if self.is_at_rounding {
             let share = 100.0 * self.steps_below_rounding as f64 / self.steps as f64;

@@ -259,6 +259,8 @@ impl<E: Ending> ModelVisitor<f64> for Integration<'_, E> {
             statistics: finish.statistics,
             methods: std::iter::once(first).chain(method.changes().iter().copied()).collect(),
             wall: clock.elapsed(),
+            redundant: model.redundant(),
+            impulse_energy: if t0 == 0.0 { model.impulse_energy().unwrap_or(0.0) } else { 0.0 },
             last: State::new(name, states, finish.t, finish.x.as_slice()),
             request,
         };

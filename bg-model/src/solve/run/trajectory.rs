@@ -7,6 +7,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 use super::{Request, RunError, Simulation, State};
+use crate::model::holding::Redundancy;
 use crate::model::mechanism::Mechanism;
 use crate::solve::failure::Cause;
 use crate::solve::finish::Ended;
@@ -27,6 +28,10 @@ pub struct Trajectory {
     pub methods: Vec<Change>,
     /// Time on the wall clock; zero in WebAssembly, which has none.
     pub wall: Duration,
+    /// The rigid joints that hold what others hold already: they share reactions of least norm.
+    pub redundant: Vec<Redundancy>,
+    /// The kinetic energy that impulses of rigid joints took at the start, J.
+    pub impulse_energy: f64,
     /// Where the run has come to.
     pub last: State,
     /// What was asked for.
