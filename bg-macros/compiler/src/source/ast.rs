@@ -209,13 +209,26 @@ pub struct Element {
     pub energy: Option<Expression>,
     /// `of JOINT along x`: what a residual sink holds.
     pub held: Option<Held>,
+    /// `holds E`: the effort up to which an R keeps its flow at zero; its law is that of dry friction.
+    pub sticking: Option<Expression>,
 }
 
 impl Element {
     /// An element with a linear law and no clause.
     #[must_use]
     pub fn new(kind: ElementKind, name: Name, law: Expression) -> Self {
-        Self { kind, name, variable: None, law, frame: None, displacement: None, start: None, energy: None, held: None }
+        Self {
+            kind,
+            name,
+            variable: None,
+            law,
+            frame: None,
+            displacement: None,
+            start: None,
+            energy: None,
+            held: None,
+            sticking: None,
+        }
     }
 }
 

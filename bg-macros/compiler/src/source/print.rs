@@ -208,6 +208,7 @@ impl Display for Element {
             clause("at", self.displacement.as_ref()),
             clause("start", self.start.as_ref()),
             clause("energy", self.energy.as_ref()),
+            clause("holds", self.sticking.as_ref()),
         ];
         let held = self.held.as_ref().map_or_else(String::new, |held| format!(" of {held}"));
         write!(f, "{}{held};", clauses.concat())

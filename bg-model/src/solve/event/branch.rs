@@ -5,7 +5,7 @@
 
 use super::guarded::Guarded;
 use super::{CERTAIN, Watch, check_finite, clearance};
-use crate::model::system::System;
+use crate::model::system::{System, branches_by_sign};
 use crate::solve::integrator::{Method, is_finite};
 use crate::solve::stepper::Stepper;
 
@@ -14,7 +14,7 @@ use crate::solve::stepper::Stepper;
 const PROBES: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
 impl<const G: usize> Watch<G> {
-    /// Chooses the branches at the start of the run by the signs of the guards; a guard that is zero counts as positive.
+    /// Chooses the branches at the start of the run by the signs of the guards.
     pub fn begin_by_sign<Sys, M, const N: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
     where
         Sys: System<f64, N, G>,
@@ -23,15 +23,12 @@ impl<const G: usize> Watch<G> {
         if G == 0 {
             return;
         }
-        // Guards may depend on the branches: repeated until they agree, at most once for each switch.
-        for _ in 0..=G {
-            let start = stepper.start;
-            self.start.value = stepper.guards(start.t, &start.x);
-            let negative = std::array::from_fn(|k| self.start.value[k] < 0.0);
-            if std::mem::replace(&mut stepper.negative, negative) == negative {
-                break;
-            }
-        }
+        let start = stepper.start;
+        let first = stepper.system.first_branches();
+        (stepper.negative, self.start.value) = branches_by_sign(first, |negative| {
+            stepper.negative = *negative;
+            stepper.guards(start.t, &start.x)
+        });
     }
 
     /// Decides the branches of the guards that are exactly zero at the start of the run, by steps that are small

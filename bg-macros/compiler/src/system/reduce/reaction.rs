@@ -1,4 +1,4 @@
-//! The reactions of rigid joints, solved for.
+//! The reactions of rigid joints and of dry friction, solved for.
 //!
 //! In: equations whose rates depend on multipliers. Out: the same with every multiplier replaced by its value.
 //! Method: the time derivative of every flow to be kept at zero is linear in the multipliers, A l + b = 0, with A
@@ -8,7 +8,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::expr::{Branch, Id, Pool, Symbol, derivative, partial, substitute};
+use super::friction;
+use crate::expr::{Branch, Id, Pool, Symbol, derivative, partial};
 use crate::system::equations::{Kind, Reaction, State, StateEquations};
 
 /// Rate at which a remaining gap decays, 1/s: slow beside the motion of a step, fast beside its growth by truncation.
@@ -22,15 +23,19 @@ pub fn solve(equations: &mut StateEquations) {
     }
     let accelerations = accelerations(equations, &reactions);
     let pool = &mut equations.pool;
-    let system = Linear::of(pool, &reactions, &accelerations);
-    let matrix = system.matrix.clone();
-    let solution = system.solved(pool);
-    let value: BTreeMap<Symbol, Id> = reactions.iter().map(|reaction| reaction.multiplier).zip(solution).collect();
+    let mut system = Linear::of(pool, &reactions, &accelerations);
+    let rigid = friction::rigid(&reactions);
+    let matrix = system.matrix[..rigid].to_vec();
+    system.matrix = friction::decoupled(pool, &reactions, &system.matrix);
+    let solution = system.solved(pool, rigid);
+    let efforts = reactions.iter().zip(solution).map(|(reaction, value)| friction::effort(pool, reaction, value));
+    let efforts: Vec<Id> = efforts.collect();
+    let value: BTreeMap<Symbol, Id> = reactions.iter().map(|reaction| reaction.multiplier).zip(efforts).collect();
     let before = equations.states.clone();
     equations.replace(&|symbol| value.get(&symbol).copied());
     let holding = &mut equations.holding;
-    (holding.matrix, holding.moves) = (matrix, moves(&mut equations.pool, &before, &reactions));
-    holding.rigid = reactions.into_iter().map(|reaction| reaction.slip).collect();
+    (holding.matrix, holding.moves) = (matrix, moves(&mut equations.pool, &before, &reactions[..rigid]));
+    holding.rigid = reactions.into_iter().take(rigid).map(|reaction| reaction.slip).collect();
     holding.replace(&mut equations.pool, &|symbol| value.get(&symbol).copied(), &Branch::Kept);
 }
 
@@ -75,20 +80,19 @@ struct Linear {
 impl Linear {
     /// The coefficients of expressions that are linear in the multipliers.
     fn of(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Self {
-        let zero = pool.zero();
-        let is_multiplier = |symbol: Symbol| reactions.iter().any(|reaction| reaction.multiplier == symbol);
         let columns: Vec<Vec<Id>> =
             reactions.iter().map(|reaction| partial(pool, expressions, reaction.multiplier)).collect();
         let matrix = (0..reactions.len()).map(|i| (0..=i).map(|j| columns[j][i]).collect()).collect();
-        let constant = substitute(pool, expressions, &|symbol| is_multiplier(symbol).then_some(zero));
+        let constant = friction::constants(pool, reactions, expressions);
         Self { matrix, constant }
     }
 
-    /// l by L D L^T, without pivots (Golub and Van Loan, Matrix Computations, algorithm 4.1.2).
-    fn solved(self, pool: &mut Pool) -> Vec<Id> {
+    /// l by L D L^T, without a search for pivots (Golub and Van Loan, Matrix Computations, algorithm 4.1.2). From row `rigid` on it
+    /// is dry friction, which shares no load with what holds the motion already.
+    fn solved(self, pool: &mut Pool, rigid: usize) -> Vec<Id> {
         let n = self.constant.len();
         let mut lower: Vec<Vec<Id>> = Vec::with_capacity(n);
-        let mut diagonal: Vec<Id> = Vec::with_capacity(n);
+        let mut diagonal: Vec<Pivot> = Vec::with_capacity(n);
         for (i, mut row) in self.matrix.into_iter().enumerate() {
             // The row's entries are L_ij D_j until all of them are known.
             for (j, above) in lower.iter().enumerate() {
@@ -99,11 +103,16 @@ impl Linear {
             let mut squares = Vec::with_capacity(i);
             for (entry, &divisor) in row.iter_mut().zip(&diagonal) {
                 let scaled = *entry;
-                *entry = pool.div(scaled, divisor);
+                *entry = divisor.divide(pool, scaled);
                 squares.push(pool.mul(scaled, *entry));
             }
             let squares = pool.sum(&squares);
-            diagonal.push(pool.sub(row[i], squares));
+            let pivot = pool.sub(row[i], squares);
+            diagonal.push(if i < rigid {
+                Pivot::Of(pivot)
+            } else {
+                Pivot::Inverse(friction::reciprocal(pool, pivot, row[i]))
+            });
             lower.push(row);
         }
         let mut solution: Vec<Id> = Vec::with_capacity(n);
@@ -114,7 +123,7 @@ impl Linear {
             solution.push(pool.sub(right, known));
         }
         for (value, &divisor) in solution.iter_mut().zip(&diagonal) {
-            *value = pool.div(*value, divisor);
+            *value = divisor.divide(pool, *value);
         }
         for i in (0..n).rev() {
             let known: Vec<Id> = (i + 1..n).map(|k| pool.mul(lower[k][i], solution[k])).collect();
@@ -122,6 +131,22 @@ impl Linear {
             solution[i] = pool.sub(solution[i], known);
         }
         solution
+    }
+}
+
+/// A pivot, or the reciprocal of one.
+#[derive(Clone, Copy)]
+enum Pivot {
+    Of(Id),
+    Inverse(Id),
+}
+
+impl Pivot {
+    fn divide(self, pool: &mut Pool, value: Id) -> Id {
+        match self {
+            Self::Of(pivot) => pool.div(value, pivot),
+            Self::Inverse(inverse) => pool.mul(value, inverse),
+        }
     }
 }
 
