@@ -4,14 +4,17 @@
 //! that say how it moves.
 //! Method: stuck, the effort is the one that keeps the flow at zero, as that of a residual sink; sliding, it is the law's, against
 //! the flow. One switch is negative while it slides forwards, the other while it slides backwards. Their guards depend on
-//! their own branches: while it slides, the flow, which has to come to zero; while it sticks, what the limit leaves of the effort.
+//! their own branches: while it slides, the flow, which has to come to zero; while it sticks, what the effort leaves of the limit.
 
 use super::signals::Signals;
-use super::{EquationFault, Friction, Kind, Reaction, Slip, Switch};
-use crate::expr::{Id, Symbol};
+use super::{EquationFault, Friction, Reaction, Slip, Switch};
+use crate::expr::{Id, Symbol, derivative, partial};
 use crate::fault::Fault;
 use crate::graph::{Element, ElementKind, NodeId};
 use crate::system::Value;
+
+/// Time, s, in which the friction brakes a flow that counts as rest: what rounding leaves of it where others hold it as well.
+const REST: f64 = 1e-13;
 
 impl Signals<'_> {
     /// The elements whose efforts are multipliers: residual sinks, then dry friction.
@@ -38,11 +41,12 @@ impl Signals<'_> {
         self.owner.clone_from(name);
         let bond = self.graph.node(node).bonds[0];
         let flow = self.flow(bond).scale(&mut self.pool, self.graph.sign(bond, node));
-        self.check_flow(node, &flow);
         let multiplier = Symbol::Multiplier(self.reactions[&node]);
+        let braking = self.braking(&flow, multiplier);
+        self.check_flow(node, &flow, braking);
         let (forwards, backwards) = (self.remember("forwards"), self.remember("backwards"));
         let effort = self.pool.symbol(multiplier);
-        self.guard(element, (flow.0[0], effort), [forwards, backwards]);
+        self.guard(element, (flow.0[0], effort), braking, [forwards, backwards]);
         let against = self.sliding(node, element, &flow);
         let unit = self.graph.bond(bond).flow_unit();
         let slip = Slip { joint: name.clone(), direction: String::new(), unit, flow: flow.0[0] };
@@ -65,16 +69,27 @@ impl Signals<'_> {
         u32::try_from(self.switches.len() - 1).expect("fewer than 2^32 switches")
     }
 
-    /// Writes the guards of both switches: below zero it slides that way.
-    fn guard(&mut self, element: &Element, (flow, effort): (Id, Id), ways: [u32; 2]) {
+    /// The change of the flow with time by one unit of the effort.
+    fn braking(&mut self, flow: &Value, effort: Symbol) -> Id {
+        let seeds = self.rate_seeds(&[]);
+        let rates = derivative(&mut self.pool, &flow.0, &seeds);
+        partial(&mut self.pool, &rates, effort)[0]
+    }
+
+    /// Writes the guards of both switches: below zero it slides that way. Both are negative only where the search for the
+    /// branches at the start begins; the sign of the flow decides there.
+    fn guard(&mut self, element: &Element, (flow, effort): (Id, Id), braking: Id, ways: [u32; 2]) {
         let limit = element.sticking.as_ref().map(|limit| self.evaluate(limit, None));
         let limit = limit.map_or(self.pool.zero(), |limit| limit.0[0]);
+        let rest = self.pool.mul(braking, limit);
         for (k, sign) in [(0, 1.0), (1, -1.0)] {
             let (own, other) = (ways[k], ways[1 - k]);
             let pool = &mut self.pool;
             let left = pool.linear(0.0, &[(limit, 1.0), (effort, -sign)]);
             let still = pool.select(other, pool.one(), left);
-            let sliding = pool.scale(-sign, flow);
+            let first = pool.scale(-sign, flow);
+            let sliding = pool.linear(0.0, &[(first, 1.0), (rest, REST)]);
+            let sliding = pool.select(other, first, sliding);
             self.switches[own as usize].guard = pool.select(own, sliding, still);
         }
     }
@@ -102,14 +117,12 @@ impl Signals<'_> {
     }
 
     /// What sticks needs a flow that the friction's effort changes in time: one that momenta determine, and no input.
-    fn check_flow(&mut self, node: NodeId, flow: &Value) {
+    fn check_flow(&mut self, node: NodeId, flow: &Value, braking: Id) {
         let symbols = self.pool.symbols(&flow.0);
-        let is_momentum =
-            |symbol: &Symbol| symbol.as_state().is_some_and(|state| self.states[state].origin.kind() == Kind::Momentum);
         let input =
             symbols.iter().find_map(|symbol| if let Symbol::Input(k) = symbol { Some(*k as usize) } else { None });
         let has_multiplier = symbols.iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_)));
-        let sticks = symbols.iter().any(is_momentum) && input.is_none() && !has_multiplier;
+        let sticks = !self.pool.is_zero(braking) && input.is_none() && !has_multiplier;
         if !sticks && !self.is_in_a_loop(flow) {
             let definition = &self.graph.node(node).name;
             let input = input.map(|input| self.graph.inputs[input].name.text.clone());

@@ -7,6 +7,8 @@
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::system::equations::{Friction, Reaction};
 
+/// Rate at which a flow that truncation leaves decays while it sticks, 1/s: slow, so that no explicit step is the shorter for it.
+pub(super) const DECAY: f64 = 1.0;
 /// The part of its diagonal entry below which a pivot of dry friction counts as zero: others hold that motion already.
 const PART: f64 = 1e-10;
 

@@ -39,7 +39,7 @@ pub fn solve(equations: &mut StateEquations) {
     holding.replace(&mut equations.pool, &|symbol| value.get(&symbol).copied(), &Branch::Kept);
 }
 
-/// dv/dt + 2 a v + a^2 q of every flow v with its gap q; zero where the reactions are right.
+/// dv/dt + 2 a v + a^2 q of every flow v with its gap q; zero where the reactions are right. Dry friction keeps no place.
 fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<Id> {
     let pool = &mut equations.pool;
     let mut seeds: BTreeMap<Symbol, Id> = BTreeMap::from([(Symbol::Time, pool.one())]);
@@ -54,7 +54,8 @@ fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<
         .zip(rates)
         .map(|(reaction, rate)| {
             let gap = reaction.gap.unwrap_or(zero);
-            pool.linear(0.0, &[(rate, 1.0), (reaction.slip.flow, 2.0 * DECAY), (gap, DECAY * DECAY)])
+            let decay = if reaction.friction.is_some() { friction::DECAY } else { 2.0 * DECAY };
+            pool.linear(0.0, &[(rate, 1.0), (reaction.slip.flow, decay), (gap, DECAY * DECAY)])
         })
         .collect()
 }
