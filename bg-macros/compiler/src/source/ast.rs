@@ -40,7 +40,6 @@ pub struct Name {
 
 /// A statement of a graph.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "a graph has few statements, and they are matched everywhere")]
 pub enum Item {
     /// `param NAME: UNIT = DEFAULT, at least 0;`
     Parameter(Parameter),
@@ -78,6 +77,10 @@ pub enum Item {
     Drive(Drive),
     /// `contact NAME (a.P -> b.Q along x) { ... }`
     Contact(Contact),
+    /// `friction NAME on TARGET { ... }`
+    Friction(Friction),
+    /// `stop NAME on TARGET { ... }`
+    Stop(Stop),
 }
 
 /// A parameter: a number that stays the same during a run.
@@ -576,6 +579,66 @@ pub struct Contact {
     pub along: Axis,
     /// The laws per axis of the second body.
     pub laws: Vec<AxisLaw>,
+}
+
+/// Dry friction on a free axis, along a contact's line or at a junction.
+#[derive(Clone, Debug)]
+pub struct Friction {
+    /// Its name (no dots).
+    pub name: Name,
+    /// A joint, a contact, or a junction.
+    pub target: Name,
+    /// `coulomb E;` while it slides: an effort, or a coefficient where the normal force is known.
+    pub coulomb: Option<Expression>,
+    /// `static E;` up to which it sticks, alike; that of sliding when left out.
+    pub at_rest: Option<Expression>,
+    /// `stribeck E;` the speed over which the one falls to the other.
+    pub stribeck: Option<Expression>,
+    /// `viscous E;` effort per flow.
+    pub viscous: Option<Expression>,
+    /// `normal E;` the normal force, N.
+    pub normal: Option<Expression>,
+    /// `radius E;` at which it acts on a turning axis, m.
+    pub radius: Option<Expression>,
+    /// `creep E;` the speed that regularises the law: it does not stick.
+    pub creep: Option<Expression>,
+}
+
+impl Friction {
+    /// A friction without clauses.
+    #[must_use]
+    pub fn new(name: Name, target: Name) -> Self {
+        Self {
+            name,
+            target,
+            coulomb: None,
+            at_rest: None,
+            stribeck: None,
+            viscous: None,
+            normal: None,
+            radius: None,
+            creep: None,
+        }
+    }
+}
+
+/// The ends of a free axis or of a junction's displacement: one-sided springs with dampers.
+#[derive(Clone, Debug)]
+pub struct Stop {
+    /// Its name (no dots).
+    pub name: Name,
+    /// A joint or a junction.
+    pub target: Name,
+    /// `at least E;` the lower end.
+    pub least: Option<Expression>,
+    /// `at most E;` the upper end.
+    pub most: Option<Expression>,
+    /// `stiffness E;`
+    pub stiffness: Option<Expression>,
+    /// `damping E;`
+    pub damping: Option<Expression>,
+    /// `start E;` the displacement at t = 0; 0 when left out.
+    pub start: Option<Expression>,
 }
 
 /// One law of a contact's axis.

@@ -61,6 +61,8 @@ impl Cursor<'_> {
             "spring" => self.spring().map(Item::Spring),
             "drive" => self.drive().map(Item::Drive),
             "contact" => self.contact().map(Item::Contact),
+            "friction" => self.friction().map(Item::Friction),
+            "stop" => self.stop().map(Item::Stop),
             _ => Err(self.unknown_statement()),
         }
     }
@@ -204,7 +206,7 @@ impl Cursor<'_> {
     }
 
     /// `{ ... }`, or `;` when there is nothing to say.
-    fn block_or_semicolon(&mut self, place: &'static Place, statement: impl FnMut(&mut Self) -> Parsed<()>) {
+    pub fn block_or_semicolon(&mut self, place: &'static Place, statement: impl FnMut(&mut Self) -> Parsed<()>) {
         match self.enter(Delimiter::Brace, place) {
             Some(mut block) => block.statements(statement),
             None => self.end_statement("`{ ... }`"),

@@ -51,6 +51,8 @@ pub(super) const GRAPH: Place = Place {
         "spring",
         "drive",
         "contact",
+        "friction",
+        "stop",
     ],
     list: false,
 };
