@@ -62,6 +62,9 @@ impl Explain for EquationFault {
             F::DisplacementOfOtherFlow { name } => {
                 format!("the displacement given for C `{name}` does not change with the flow of its bond")
             }
+            F::FrictionOfReaction { name, by } if name == by => {
+                format!("the friction of R `{name}` depends on its own effort")
+            }
             F::FrictionOfReaction { name, by } => {
                 format!("the friction of R `{name}` depends on the reaction of `{by}`, which depends on the friction")
             }
@@ -91,6 +94,9 @@ impl Explain for EquationFault {
             }
             F::DisplacementOfOtherFlow { .. } => {
                 "leave `at` out, then the displacement is a state of its own".to_owned()
+            }
+            F::FrictionOfReaction { name, by } if name == by => {
+                "take the component of the force that presses, without that along the motion".to_owned()
             }
             F::FrictionOfReaction { by, .. } => {
                 format!(
