@@ -59,7 +59,7 @@ impl Explain for MechanismFault {
             F::SameAxes { name } => format!("the two axes of joint `{name}` are the same"),
             F::NoLaw { name } => format!("contact `{name}` has no law"),
             F::NoFreeAxis { word, name, target } => {
-                format!("{word} `{name}` has no axis to act on: `{target}` turns about and slides along none")
+                format!("{word} `{name}` has no axis to act on: `{target}` leaves none free")
             }
         }
     }
