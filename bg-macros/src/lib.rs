@@ -145,7 +145,7 @@ use proc_macro::TokenStream;
 ///   its effort is the law's, against the flow, `R rub(v) = 5 + 2 * v holds 6`; the law is asked for v above 0 and negated for
 ///   the other way. At rest it sticks: the effort is the one that keeps the flow at 0, up to E in either direction ([dry
 ///   friction](#dry-friction)). E and the law may depend on everything but reactions that the friction itself changes
-///   (BG0515, of the law only); E is not less than the law at 0. A momentum has to determine the flow, and no input (BG0516).
+///   (BG0515, of the law only). Where the law at 0 is more than E, it holds that. A momentum has to determine the flow, and no input (BG0516).
 /// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
 /// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
 ///   may be left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the
@@ -409,7 +409,7 @@ use proc_macro::TokenStream;
 /// | clause | |
 /// |---|---|
 /// | `coulomb` | s, in N or N\*m. With `normal` or `radius` it is a coefficient, a pure number, and so is `static` |
-/// | `static` | h; s when left out. Not less than s |
+/// | `static` | h; s when left out, and where h is less |
 /// | `stribeck` | w, the speed over which h falls to s; without it the friction falls at once when it slides |
 /// | `viscous` | r |
 /// | `normal` | the force that presses, N. What lifts off, a negative one, does not rub |

@@ -64,6 +64,28 @@ bond_graph! {
         motor -> left -> one; left -> tie -> right -> two; rigid -> tie; left -> first; right -> second;
         observe { w: rad/s = left.flow; u: rad/s = right.flow; first.effort; second.effort }
     }
+    /// A friction that is to hold less at rest than it gives while it slides.
+    graph Weak {
+        param load: N = 1.5;
+        1 slide: translation; I body = 2; Se pull = load; R rub(v) = 2 holds 1; pull -> slide -> body; slide -> rub;
+        observe { v: m/s = slide.flow }
+    }
+    /// Three masses on a floor, springs and friction between them, drawn to and fro.
+    graph Train {
+        param m1: kg = 1, above 0; param m2: kg = 1, above 0; param m3: kg = 1, above 0;
+        param k1: N/m = 10, at least 0; param k2: N/m = 10, at least 0;
+        param f1: N = 1, at least 0; param f2: N = 1, at least 0; param f3: N = 1, at least 0;
+        param g1: N = 1, at least 0; param g2: N = 1, at least 0; param more: 1 = 1.2;
+        param push: N = 4; param frequency: rad/s = 2; param v1: m/s = 0; param v3: m/s = 0;
+        1 a, b, c: translation; I ma = m1 start m1 * v1; I mb = m2; I mc = m3 start m3 * v3;
+        MSe pull = push * sin(frequency * t);
+        R ra(v) = f1 holds more * f1; R rb(v) = f2 holds f2; R rc(v) = f3 + 0.1 * v holds f3;
+        0 ab, bc: translation; 1 sab, sbc: translation;
+        C kab = k1; C kbc = k2; R gab(v) = g1 holds more * g1; R gbc(v) = g2 holds g2;
+        pull -> a -> ma; a -> ra; b -> mb; b -> rb; c -> mc; c -> rc;
+        a -> ab -> b -> bc -> c; ab -> sab -> kab; sab -> gab; bc -> sbc -> kbc; sbc -> gbc;
+        observe { stored: J = stored_energy; supplied: J = integral(supplied_power); lost: J = integral(dissipated_power) }
+    }
 }
 
 /// The changes of branches.
@@ -233,5 +255,65 @@ fn shafts_that_are_one_slide_when_both_brakes_give_way() {
         assert!((outputs[2] + outputs[3] - 4.75).abs() < 1e-9, "{name}: {outputs:?}");
         let (outputs, _) = run(&model, integrator, 2.0);
         assert!((outputs[0] - 0.5).abs() < 1e-8 && (outputs[1] - 0.5).abs() < 1e-8, "{name}: {outputs:?}");
+    }
+}
+
+/// Marsaglia's xorshift generator (Journal of Statistical Software 8, 2003), in 0..1.
+fn random_numbers(mut seed: u64) -> impl FnMut() -> f64 {
+    move || {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Some of the springs, frictions and pushes of a train are missing.
+fn random_train(next: &mut impl FnMut() -> f64) -> TrainParameters {
+    let mut some = |size: f64| if next() < 0.25 { 0.0 } else { size * next() };
+    let frictions: [f64; 5] = std::array::from_fn(|_| some(2.0));
+    let [f1, f2, f3, g1, g2] = frictions;
+    let (k1, k2, push, v1, v3) = (some(50.0), some(50.0), some(8.0), some(2.0), -some(2.0));
+    let [m1, m2, m3] = std::array::from_fn(|_| 0.2 + some(2.0));
+    let (more, frequency) = (1.0 + some(0.5), 0.5 + some(5.0));
+    TrainParameters { m1, m2, m3, k1, k2, f1, f2, f3, g1, g2, more, push, frequency, v1, v3 }
+}
+
+#[test]
+fn trains_of_all_kinds_stick_and_slide_without_end_and_keep_their_energy() {
+    let mut next = random_numbers(2024);
+    let mut changes = 0;
+    for case in 0..300 {
+        let parameters = random_train(&mut next);
+        let model = Train::new(parameters.clone()).expect("in range");
+        let integrator = [Integrator::Dop853, Integrator::Auto, Integrator::Bs5][case % 3];
+        let (outputs, events) = run(&model, integrator, 20.0);
+        let start =
+            0.5 * (parameters.m1 * parameters.v1 * parameters.v1 + parameters.m3 * parameters.v3 * parameters.v3);
+        let balance = outputs[0] - start - outputs[1] + outputs[2];
+        assert!(balance.abs() < 1e-7 * (1.0 + outputs[2]), "{case}: {balance:e} {outputs:?} {parameters:?}");
+        changes += events.len();
+    }
+    assert!(changes > 10_000, "there was something to do: {changes}");
+}
+
+/// With less at rest than while it slides, neither would be right at rest.
+#[test]
+fn friction_holds_what_it_gives_while_it_slides() {
+    for (load, speed) in [(1.5, 0.0), (-1.9, 0.0), (2.5, 0.25)] {
+        let model = Weak::new(WeakParameters { load }).expect("in range");
+        let (outputs, events) = run(&model, Integrator::Dop853, 1.0);
+        assert!((outputs[0] - speed).abs() < 1e-9 && events.is_empty(), "{load}: {outputs:?} {events:?}");
+    }
+}
+"""  
+
+/// With less at rest than while it slides, neither would be right at rest.
+#[test]
+fn friction_holds_what_it_gives_while_it_slides() {
+    for (load, speed) in [(1.5, 0.0), (-1.9, 0.0), (2.5, 0.25)] {
+        let model = Weak::new(WeakParameters { load }).expect("in range");
+        let (outputs, events) = run(&model, Integrator::Dop853, 1.0);
+        assert!((outputs[0] - speed).abs() < 1e-9 && events.is_empty(), "{load}: {outputs:?} {events:?}");
     }
 }

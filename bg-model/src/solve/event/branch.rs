@@ -52,9 +52,31 @@ impl<const G: usize> Watch<G> {
     pub fn settle<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
-        mut switches: [bool; G],
+        switches: [bool; G],
         step: f64,
     ) where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let settled = self.follow(stepper, switches, step);
+        let remembers = stepper.system.first_branches();
+        // Friction at its limit on a motion that others hold: what rounding leaves of the flow may have the wrong sign.
+        for k in (0..G).filter(|&k| settled[k] && remembers[k]) {
+            let value = self.start.value[k];
+            if clearance(value, stepper.negative[k]) < 0.0 {
+                self.leave(k, value);
+            }
+        }
+    }
+
+    /// Decides the branches of `switches` and of those that follow; gives all of them, with the guards at the start read.
+    fn follow<Sys, M, const N: usize>(
+        &mut self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        mut switches: [bool; G],
+        step: f64,
+    ) -> [bool; G]
+    where
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
@@ -66,12 +88,13 @@ impl<const G: usize> Watch<G> {
             let start = stepper.start;
             let noise = self.noise(stepper, start.t, &start.x, &value);
             let is_pushed = |k: &usize| !switches[*k] && clearance(value[*k], stepper.negative[*k]) < -noise[*k];
-            let Some(pushed) = (0..G).find(is_pushed).filter(|_| check_finite(&value).is_ok()) else { return };
+            let Some(pushed) = (0..G).find(is_pushed).filter(|_| check_finite(&value).is_ok()) else { return switches };
             switches[pushed] = true;
             stepper.negative[pushed] = value[pushed] < 0.0;
             stepper.evaluate_start();
         }
         self.read_start(stepper, step);
+        switches
     }
 
     /// Gives each of `switches` its branch in `candidate`, or the other one if only that agrees with its guard; the
