@@ -44,7 +44,7 @@ use proc_macro::TokenStream;
 /// call      = { graph }
 /// graph     = [visibility] "graph" NAME "{" { statement } "}"
 /// statement = param | input | let | junction | element | chain | position | orientation | close | observe
-///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | start | scene
+///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | orifice | start | scene
 /// ```
 ///
 /// Order is free: a name may be used before it is declared. Outputs keep the order of declaration; so do states of one
@@ -55,7 +55,7 @@ use proc_macro::TokenStream;
 /// Names are Rust identifiers, Rust's keywords excluded; `gen`, a keyword of the edition 2024 only, makes a field `r#gen`.
 /// A graph, a scene or a parameter may be called `Option`, `f64` or whatever else: generated code means something else by
 /// none of them. Names of `let`s, junctions, elements, tracks and outputs may have dots (`pin.slip`); those of graphs,
-/// scenes, parameters, inputs, bodies, points, joints, springs, drives, contacts, frictions and stops have none. All of a graph's names are
+/// scenes, parameters, inputs, bodies, points, joints, springs, drives, contacts, frictions, stops and orifices have none. All of a graph's names are
 /// different, its outputs' among themselves; `t` is the time.
 ///
 /// ## `param`, `input`, `let`
@@ -452,6 +452,32 @@ use proc_macro::TokenStream;
 /// # fn main() { assert_eq!(Rough::OUTPUTS, 4); }
 /// ```
 ///
+/// ## `orifice`
+///
+/// ```text
+/// orifice = "orifice" NAME "on" JUNCTION "{" { ("area" | "coefficient" | "density" | "laminar") E ";" } "}"
+/// ```
+///
+/// An R of that name at a hydraulic 1-junction, through which c a sqrt(2 / rho) `root(p, l)` flows: area a (m^2) and discharge
+/// coefficient c, which may depend on everything, such as an input; density rho (kg/m^3); pressure l (Pa) below which the flow is
+/// laminar ([above](#the-square-root-at-zero)).
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A valve that an input opens, in front of a tank.
+///     graph Valve {
+///         param capacity: m^3/Pa = 1e-11, above 0;
+///         input opening: m^2;
+///         Se pump = 2e5; 1 pipe: hydraulic; 0 tank: hydraulic; C oil = capacity;
+///         pump -> pipe -> tank -> oil;
+///         orifice valve on pipe { area opening; coefficient 0.62; density 870; laminar 100; }
+///         observe { pressure: Pa = tank.effort; through: m^3/s = valve.flow }
+///     }
+/// }
+/// # fn main() { assert_eq!(Valve::STATES, 1); }
+/// ```
+///
 /// ## `drive`
 ///
 /// ```text
@@ -522,7 +548,7 @@ use proc_macro::TokenStream;
 /// |---|---|
 /// | `observe { ... }` | the outputs, in place of the graph's; without it those of the graph |
 /// | `tune { a, b }` | the parameters that stay adjustable, and the only fields of the scene's parameter struct; the others are their defaults, as numbers. Without it all stay; `tune {}` keeps none |
-/// | `without { a, b }` | joints, contacts, springs, drives, frictions, stops or elements that are not there, with their bonds |
+/// | `without { a, b }` | joints, contacts, springs, drives, frictions, stops, orifices or elements that are not there, with their bonds |
 /// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
 /// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |

@@ -306,14 +306,3 @@ fn friction_holds_what_it_gives_while_it_slides() {
         assert!((outputs[0] - speed).abs() < 1e-9 && events.is_empty(), "{load}: {outputs:?} {events:?}");
     }
 }
-"""  
-
-/// With less at rest than while it slides, neither would be right at rest.
-#[test]
-fn friction_holds_what_it_gives_while_it_slides() {
-    for (load, speed) in [(1.5, 0.0), (-1.9, 0.0), (2.5, 0.25)] {
-        let model = Weak::new(WeakParameters { load }).expect("in range");
-        let (outputs, events) = run(&model, Integrator::Dop853, 1.0);
-        assert!((outputs[0] - speed).abs() < 1e-9 && events.is_empty(), "{load}: {outputs:?} {events:?}");
-    }
-}

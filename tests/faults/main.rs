@@ -166,11 +166,12 @@ const VALUES: [(&str, &str); 3] = [
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 25] = [
+const MORE: [(&str, &str); 26] = [
     ("BG0202", "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> ▸rod.end) { stiffness 1; }"),
     ("BG0202", "body rod { sphere radius 1; density 1; point end = [1, 0, 0]; start ▸top at [0, 0, 0]; }"),
     ("BG0203", "1 j: translation; I m = 2; j -> m; friction ▸rub on j { viscous 2; }"),
     ("BG0203", "1 j: translation; I m = 2; j -> m; stop ▸end on j { at most 2; }"),
+    ("BG0203", "Se p = 1; 1 j: hydraulic; p -> j; orifice ▸o on j { area 1; coefficient 1; density 1; }"),
     ("BG0204", "1 j: translation; I m = 2; j -> m; friction rub on j { coulomb 2; stribeck ▸3; }"),
     ("BG0303", "1 j: translation; I m = 2; j -> m; friction rub on ▸jj { coulomb 2; }"),
     ("BG0320", "param f: m = 2; 1 j: translation; I m = 2; j -> m; friction ▸rub on j { coulomb 2; static f; }"),

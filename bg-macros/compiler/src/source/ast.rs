@@ -81,6 +81,8 @@ pub enum Item {
     Friction(Friction),
     /// `stop NAME on TARGET { ... }`
     Stop(Stop),
+    /// `orifice NAME on JUNCTION { ... }`
+    Orifice(Orifice),
 }
 
 /// A parameter: a number that stays the same during a run.
@@ -639,6 +641,23 @@ pub struct Stop {
     pub damping: Option<Expression>,
     /// `start E;` the displacement at t = 0; 0 when left out.
     pub start: Option<Expression>,
+}
+
+/// A sharp edge that a fluid flows through: the flow goes with the square root of the pressure.
+#[derive(Clone, Debug)]
+pub struct Orifice {
+    /// Its name (no dots).
+    pub name: Name,
+    /// A hydraulic 1-junction.
+    pub target: Name,
+    /// `area E;`, m^2.
+    pub area: Option<Expression>,
+    /// `coefficient E;` of discharge.
+    pub coefficient: Option<Expression>,
+    /// `density E;` of the fluid, kg/m^3.
+    pub density: Option<Expression>,
+    /// `laminar E;` the pressure below which the flow is laminar, Pa.
+    pub laminar: Option<Expression>,
 }
 
 /// One law of a contact's axis.

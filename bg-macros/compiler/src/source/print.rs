@@ -8,8 +8,8 @@ use std::fmt::{Display, Formatter, Result};
 use crate::source::ast::{
     Axis, AxisLaw, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends, Expectation,
     Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind, Junction,
-    JunctionKind, LawVariable, Let, Name, Observation, Operation, Parameter, Part, Point, Rigid, Role, Scene, Shape,
-    Source, Spring, Stop, Track, Unit,
+    JunctionKind, LawVariable, Let, Name, Observation, Operation, Orifice, Parameter, Part, Point, Rigid, Role, Scene,
+    Shape, Source, Spring, Stop, Track, Unit,
 };
 use crate::source::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
 
@@ -142,6 +142,7 @@ impl Display for Item {
             Self::Contact(contact) => contact.fmt(f),
             Self::Friction(friction) => friction.fmt(f),
             Self::Stop(stop) => stop.fmt(f),
+            Self::Orifice(orifice) => orifice.fmt(f),
         }
     }
 }
@@ -479,6 +480,18 @@ impl Display for Stop {
         setting(&mut entries, "damping", self.damping.as_ref());
         setting(&mut entries, "start", self.start.as_ref());
         write!(f, "stop {} on {}", self.name, self.target)?;
+        settings(f, &entries)
+    }
+}
+
+impl Display for Orifice {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let mut entries = Vec::new();
+        setting(&mut entries, "area", self.area.as_ref());
+        setting(&mut entries, "coefficient", self.coefficient.as_ref());
+        setting(&mut entries, "density", self.density.as_ref());
+        setting(&mut entries, "laminar", self.laminar.as_ref());
+        write!(f, "orifice {} on {}", self.name, self.target)?;
         settings(f, &entries)
     }
 }

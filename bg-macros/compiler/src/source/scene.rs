@@ -157,6 +157,7 @@ fn part_name(item: &Item) -> Option<&Name> {
         Item::Drive(drive) => Some(&drive.name),
         Item::Friction(friction) => Some(&friction.name),
         Item::Stop(stop) => Some(&stop.name),
+        Item::Orifice(orifice) => Some(&orifice.name),
         Item::Element(element) => Some(&element.name),
         _ => None,
     }

@@ -11,6 +11,7 @@ mod drawing;
 mod fault;
 mod friction;
 mod joint;
+mod orifice;
 mod part;
 mod stop;
 
@@ -141,6 +142,7 @@ impl<'a> Expansion<'a> {
                 Item::Contact(contact) => self.contact(contact),
                 Item::Friction(friction) => self.friction(friction),
                 Item::Stop(stop) => self.stop(stop),
+                Item::Orifice(orifice) => self.orifice(orifice),
                 other => self.items.push(other.clone()),
             }
         }
@@ -301,6 +303,7 @@ fn part_name(item: &Item) -> Option<&Name> {
         Item::Contact(contact) => Some(&contact.name),
         Item::Friction(friction) => Some(&friction.name),
         Item::Stop(stop) => Some(&stop.name),
+        Item::Orifice(orifice) => Some(&orifice.name),
         _ => None,
     }
 }

@@ -10,7 +10,7 @@ use crate::source::ast::{Graph, Item};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     /// What it is: `ground`, `body`, a joint's kind with its axes, `spring`, `contact`, `drive`,
-    /// `friction`, `stop`.
+    /// `friction`, `stop`, `orifice`.
     pub word: String,
     /// Its name, the first component of its nodes' names.
     pub name: String,
@@ -40,6 +40,7 @@ fn part(item: &Item) -> Option<Part> {
         Item::Contact(contact) => ("contact".to_owned(), &contact.name),
         Item::Friction(friction) => ("friction".to_owned(), &friction.name),
         Item::Stop(stop) => ("stop".to_owned(), &stop.name),
+        Item::Orifice(orifice) => ("orifice".to_owned(), &orifice.name),
         _ => return None,
     };
     Some(Part { word, name: name.text.clone() })

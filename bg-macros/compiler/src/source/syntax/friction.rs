@@ -1,9 +1,9 @@
-//! The words of what acts on a free axis: friction, stop.
+//! The words of what acts on one junction: friction, stop, orifice.
 //!
 //! In: statements of a graph. Out: their [`Item`](crate::source::ast::Item)s.
 
 use super::cursor::{Cursor, Parsed, Place};
-use crate::source::ast::{Friction, Name, Stop};
+use crate::source::ast::{Friction, Name, Orifice, Stop};
 
 /// The block of a friction.
 const FRICTION: Place = Place {
@@ -15,6 +15,9 @@ const FRICTION: Place = Place {
 /// The block of a stop.
 const STOP: Place =
     Place { name: "a stop", words: &["at least", "at most", "stiffness", "damping", "start"], list: false };
+
+/// The block of an orifice.
+const ORIFICE: Place = Place { name: "an orifice", words: &["area", "coefficient", "density", "laminar"], list: false };
 
 impl Cursor<'_> {
     /// `friction NAME on TARGET { ... }`
@@ -49,6 +52,21 @@ impl Cursor<'_> {
             ])
         });
         Ok(stop)
+    }
+
+    /// `orifice NAME on JUNCTION { ... }`
+    pub fn orifice(&mut self) -> Parsed<Orifice> {
+        let (name, target) = self.named_on("the orifice")?;
+        let mut orifice = Orifice { name, target, area: None, coefficient: None, density: None, laminar: None };
+        self.block_or_semicolon(&ORIFICE, |entry| {
+            entry.setting(&mut [
+                ("area", &mut orifice.area),
+                ("coefficient", &mut orifice.coefficient),
+                ("density", &mut orifice.density),
+                ("laminar", &mut orifice.laminar),
+            ])
+        });
+        Ok(orifice)
     }
 
     /// `WORD NAME on TARGET`

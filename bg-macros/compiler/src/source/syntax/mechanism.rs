@@ -1,4 +1,4 @@
-//! The mechanism words: ground, gravity, body, joint, spring, drive, contact.
+//! The mechanism words: ground, gravity, body, joint, spring, drive, contact. Those of one junction are read in `friction`.
 //!
 //! In: statements of a graph. Out: their [`Item`]s, which `mechanism::expand` turns into bond-graph words.
 
@@ -63,6 +63,7 @@ impl Cursor<'_> {
             "contact" => self.contact().map(Item::Contact),
             "friction" => self.friction().map(Item::Friction),
             "stop" => self.stop().map(Item::Stop),
+            "orifice" => self.orifice().map(Item::Orifice),
             _ => Err(self.unknown_statement()),
         }
     }

@@ -53,6 +53,7 @@ pub(super) const GRAPH: Place = Place {
         "contact",
         "friction",
         "stop",
+        "orifice",
     ],
     list: false,
 };
