@@ -44,7 +44,7 @@ use proc_macro::TokenStream;
 /// call      = { graph }
 /// graph     = [visibility] "graph" NAME "{" { statement } "}"
 /// statement = param | input | let | junction | element | chain | position | orientation | close | observe
-///           | ground | gravity | body | joint | spring | drive | contact | start | scene
+///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | orifice | start | scene
 /// ```
 ///
 /// Order is free: a name may be used before it is declared. Outputs keep the order of declaration; so do states of one
@@ -55,7 +55,7 @@ use proc_macro::TokenStream;
 /// Names are Rust identifiers, Rust's keywords excluded; `gen`, a keyword of the edition 2024 only, makes a field `r#gen`.
 /// A graph, a scene or a parameter may be called `Option`, `f64` or whatever else: generated code means something else by
 /// none of them. Names of `let`s, junctions, elements, tracks and outputs may have dots (`pin.slip`); those of graphs,
-/// scenes, parameters, inputs, bodies, points, joints, springs, drives and contacts have none. All of a graph's names are
+/// scenes, parameters, inputs, bodies, points, joints, springs, drives, contacts, frictions, stops and orifices have none. All of a graph's names are
 /// different, its outputs' among themselves; `t` is the time.
 ///
 /// ## `param`, `input`, `let`
@@ -106,7 +106,7 @@ use proc_macro::TokenStream;
 /// ```text
 /// element = KIND NAME ["(" ["effort" | "flow"] NAME ")"] "=" EXPRESSION { clause } ";"
 /// clause  = "in" EXPRESSION | "at" EXPRESSION | "start" EXPRESSION | "energy" EXPRESSION
-///         | "of" JOINT [("along" | "about") AXIS]
+///         | "of" JOINT [("along" | "about") AXIS] | "holds" EXPRESSION
 /// ```
 ///
 /// Without a variable the law is linear in the expression. With one, `R bearing(w) = ...`, the expression is the law
@@ -141,6 +141,11 @@ use proc_macro::TokenStream;
 /// - `of JOINT` (only rSe): the sink is part of this joint, whose gaps `close` states; messages name the joint, and
 ///   `along x` or `about x` the direction of a scalar sink. A sink of no joint is named by itself, and its GAP is closed
 ///   at the start.
+/// - `holds E` (only an R or MR whose law is of its flow, on a scalar bond) makes it **dry friction**: while the flow is not 0
+///   its effort is the law's, against the flow, `R rub(v) = 5 + 2 * v holds 6`; the law is asked for v above 0 and negated for
+///   the other way. At rest it sticks: the effort is the one that keeps the flow at 0, up to E in either direction ([dry
+///   friction](#dry-friction)). E and the law may depend on everything but reactions that the friction itself changes
+///   (BG0515, of the law only). Where the law at 0 is more than E, it holds that. A momentum has to determine the flow, and no input (BG0516).
 /// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
 /// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
 ///   may be left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the
@@ -392,6 +397,91 @@ use proc_macro::TokenStream;
 /// the place of the first end. Names: `NAME.force` on the second body, `NAME.gap`, `NAME.speed` along the line, and for
 /// each axis with laws the elements `NAME.x_damper`, `NAME.y_spring` and so on.
 ///
+/// ## `friction`, `stop`
+///
+/// ```text
+/// friction = "friction" NAME "on" TARGET "{" { ("coulomb" | "static" | "stribeck" | "viscous" | "normal" | "radius" | "creep") E ";" } "}"
+/// stop     = "stop" NAME "on" TARGET "{" { ("at" "most" | "at" "least" | "stiffness" | "damping" | "start") E ";" } "}"
+/// ```
+///
+/// The TARGET is a joint, for its free axis (of a cylindrical one the rotation; `pin.slide` is the other), a contact, for its line,
+/// or a scalar 1-junction.
+///
+/// A **friction** is an R of that name, of [dry friction](#dry-friction). Against the speed v it gives
+/// s + (h - s) exp(-(v / w)^2) + r v, and at rest it holds h:
+///
+/// | clause | |
+/// |---|---|
+/// | `coulomb` | s, in N or N\*m. With `normal` or `radius` it is a coefficient, a pure number, and so is `static` |
+/// | `static` | h; s when left out, and where h is less |
+/// | `stribeck` | w, the speed over which h falls to s; without it the friction falls at once when it slides |
+/// | `viscous` | r |
+/// | `normal` | the force that presses, N. What lifts off, a negative one, does not rub |
+/// | `radius` | of a journal, m: the friction is a torque. Without `normal` the length of the joint's force presses |
+/// | `creep` | c: the law is smooth and does not stick, (s + (h - s) exp(..)) v / sqrt(v^2 + c^2) + r v. Under a load F below s it creeps with c F / sqrt(s^2 - F^2) |
+///
+/// The force of a compliant joint follows from its stretch, so it can press. The reaction of a rigid one cannot (BG0515): it
+/// depends on the friction.
+///
+/// A **stop** acts where the displacement goes beyond `at most` or `at least`, with a spring and, where `damping` is given, a
+/// damper; the two together never pull. The displacement is the travel of a sliding joint; else it is a state, the angle or way
+/// from `start` (0 when left out) on. With sin p = d / (2 sqrt(k m)) a mass m that hits stiffness k and damping d leaves with
+/// exp(-(pi - 2 p) tan p) of its speed, whatever that is: for 0.8 take sin p = 0.0744, for 0.5 sin p = 0.2553.
+///
+/// | name | |
+/// |---|---|
+/// | `NAME.effort`, `.power` | of the friction, against the motion; of the stop only `.effort` |
+/// | `NAME.pressed` | the force that presses, where there is one |
+/// | `NAME.spring`, `NAME.damper` | the stop's elements; `NAME.spring.q` is the displacement |
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A pendulum that comes to rest in its journal, and a carriage between two ends.
+///     graph Rough {
+///         gravity [0, -9.81, 0];
+///         ground { point pivot = [0, 1, 0]; }
+///         body rod { mass 2; inertia [0.1, 0.1, 0.1]; point end = [-0.5, 0, 0]; start end at [0, 1, 0]; }
+///         joint pin: revolute z (ground.pivot -> rod.end) { stiffness 1e5; damping 100; tilt stiffness 1e3; tilt damping 1; }
+///         friction journal on pin { coulomb 0.1; static 0.15; stribeck 0.05; radius 0.02; }
+///
+///         body carriage { mass 3; inertia [0.1, 0.1, 0.1]; start velocity [2, 0, 0]; }
+///         joint guide: prismatic x (ground -> carriage) { rigid; }
+///         friction rub on guide { coulomb 5; }
+///         stop ends on guide { at most 0.2; at least -0.1; stiffness 1e4; damping 20; }
+///
+///         observe { pin.angle; journal.effort; x: m = guide.travel; ends.effort }
+///     }
+/// }
+/// # fn main() { assert_eq!(Rough::OUTPUTS, 4); }
+/// ```
+///
+/// ## `orifice`
+///
+/// ```text
+/// orifice = "orifice" NAME "on" JUNCTION "{" { ("area" | "coefficient" | "density" | "laminar") E ";" } "}"
+/// ```
+///
+/// An R of that name at a hydraulic 1-junction, through which c a sqrt(2 / rho) `root(p, l)` flows: area a (m^2) and discharge
+/// coefficient c, which may depend on everything, such as an input; density rho (kg/m^3); pressure l (Pa) below which the flow is
+/// laminar ([above](#the-square-root-at-zero)).
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A valve that an input opens, in front of a tank.
+///     graph Valve {
+///         param capacity: m^3/Pa = 1e-11, above 0;
+///         input opening: m^2;
+///         Se pump = 2e5; 1 pipe: hydraulic; 0 tank: hydraulic; C oil = capacity;
+///         pump -> pipe -> tank -> oil;
+///         orifice valve on pipe { area opening; coefficient 0.62; density 870; laminar 100; }
+///         observe { pressure: Pa = tank.effort; through: m^3/s = valve.flow }
+///     }
+/// }
+/// # fn main() { assert_eq!(Valve::STATES, 1); }
+/// ```
+///
 /// ## `drive`
 ///
 /// ```text
@@ -462,7 +552,7 @@ use proc_macro::TokenStream;
 /// |---|---|
 /// | `observe { ... }` | the outputs, in place of the graph's; without it those of the graph |
 /// | `tune { a, b }` | the parameters that stay adjustable, and the only fields of the scene's parameter struct; the others are their defaults, as numbers. Without it all stay; `tune {}` keeps none |
-/// | `without { a, b }` | joints, contacts, springs, drives or elements that are not there, with their bonds |
+/// | `without { a, b }` | joints, contacts, springs, drives, frictions, stops, orifices or elements that are not there, with their bonds |
 /// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
 /// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |
@@ -654,6 +744,20 @@ use proc_macro::TokenStream;
 /// guard's sign just after the event. A comparison that depends on parameters only has a switch, too, which never
 /// changes.
 ///
+/// ## Dry friction
+///
+/// An R that `holds` has two switches, *sliding forwards* and *sliding backwards*; where neither is in its first branch, it
+/// sticks. Their guards depend on their own branches: while it slides, the flow, which has to come to zero; while it sticks,
+/// what the effort leaves of the limit. So it goes from sliding to sticking, or through it to sliding back, at one instant, and
+/// from sticking to sliding where the load is too much. At the start the sign of the flow decides; where that is 0 it sticks if
+/// it can hold the load.
+///
+/// The effort of sticking is solved for together with the reactions of [rigid joints](#rigid-joints), by d/dt(flow) = 0. The flow
+/// stays what the event has left of it, which is rounding, and decays with 1 1/s; no place is kept, so there is no creep
+/// beyond that. A flow counts as zero where the friction would brake it within 1e-13 s. Of several frictions that hold one
+/// motion, such as the four bearings of a crank mechanism, the first ones in the order of declaration bear the load, up to
+/// their limits: how they share it is not determined, the motion is.
+///
 /// # Energy
 ///
 /// `stored_energy` is the energy in all I and C, `supplied_power` that of all sources into the model (weights and
@@ -760,6 +864,7 @@ use proc_macro::TokenStream;
 /// | BG0210 | both ends on one body |
 /// | BG0211 | a universal joint with twice the same axis |
 /// | BG0212 | a contact without a law |
+/// | BG0213 | a friction or stop on a joint without a free axis |
 /// | **names, ports, shapes, units** | |
 /// | BG0301 | not a coherent SI unit |
 /// | BG0302 | a name declared twice, or two outputs of one name |
@@ -808,6 +913,8 @@ use proc_macro::TokenStream;
 /// | BG0505 | a given displacement that does not change with the flow |
 /// | BG0506 | a given energy that jumps where the law switches |
 /// | BG0507 | a given energy that could not be compared with the law |
+/// | BG0515 | friction that depends on a reaction which depends on the friction |
+/// | BG0516 | friction that cannot stick, since no momentum determines its flow |
 /// | **scenes** | |
 /// | BG0601 | two models of one name, or a model with the name of another one's parameter or input struct |
 /// | BG0602 | no such part to leave out |

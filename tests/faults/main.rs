@@ -41,7 +41,7 @@ const SYNTAX: [(&str, &str); 22] = [
 /// More parentheses than the parser follows.
 const DEEP: &str = "deep";
 
-const MECHANISM: [(&str, &str); 12] = [
+const MECHANISM: [(&str, &str); 13] = [
     (
         "BG0201",
         "body rod { sphere radius 1; density 1; }\njoint pin: fixed (ground -> ▸rodd) { stiffness 1; tilt stiffness 1; }",
@@ -73,6 +73,11 @@ const MECHANISM: [(&str, &str); 12] = [
          joint ▸pin: universal x x (ground -> rod) { stiffness 1; tilt stiffness 1; }",
     ),
     ("BG0212", "body rod { sphere radius 1; density 1; }\ncontact ▸cut (ground -> rod along x) {}"),
+    (
+        "BG0213",
+        "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> rod) { stiffness 1; }\n\
+         friction seat on ▸pin { coulomb 1; }",
+    ),
 ];
 
 const GRAPH: [(&str, &str); 34] = [
@@ -119,7 +124,7 @@ const CAUSALITY: [(&str, &str); 4] = [
     ("BG0404", "Sf a = 1; 1 j: translation; R ▸r(effort e) = 2 * e; a -> j -> r;"),
 ];
 
-const EQUATIONS: [(&str, &str); 7] = [
+const EQUATIONS: [(&str, &str); 9] = [
     ("BG0501", "Se e = 1; 1 j: translation; R a = 1; 0 k; R b = 2; e -> j -> a; j -> ▸k -> b;"),
     (
         "BG0502",
@@ -145,6 +150,12 @@ const EQUATIONS: [(&str, &str); 7] = [
         "param k: N/m = 50;\n\
          1 j: translation; I m = 2; C s(q) = k * q * sqrt(-1) energy k * q ▸* q; j -> m; j -> s;",
     ),
+    (
+        "BG0515",
+        "body b { mass 1; inertia [1, 1, 1]; }\njoint guide: prismatic x (ground -> b) { rigid; }\n\
+         friction ▸rub on guide { coulomb 0.3; normal guide.force.y; }",
+    ),
+    ("BG0516", "Sf drum = 1; 1 j: translation; R ▸rub(v) = 2 holds 3; drum -> j -> rub;"),
 ];
 
 /// Values that no physics allows.
@@ -155,9 +166,23 @@ const VALUES: [(&str, &str); 3] = [
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 16] = [
+const MORE: [(&str, &str); 26] = [
     ("BG0202", "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> ▸rod.end) { stiffness 1; }"),
     ("BG0202", "body rod { sphere radius 1; density 1; point end = [1, 0, 0]; start ▸top at [0, 0, 0]; }"),
+    ("BG0203", "1 j: translation; I m = 2; j -> m; friction ▸rub on j { viscous 2; }"),
+    ("BG0203", "1 j: translation; I m = 2; j -> m; stop ▸end on j { at most 2; }"),
+    ("BG0203", "Se p = 1; 1 j: hydraulic; p -> j; orifice ▸o on j { area 1; coefficient 1; density 1; }"),
+    ("BG0204", "1 j: translation; I m = 2; j -> m; friction rub on j { coulomb 2; stribeck ▸3; }"),
+    ("BG0303", "1 j: translation; I m = 2; j -> m; friction rub on ▸jj { coulomb 2; }"),
+    ("BG0320", "param f: m = 2; 1 j: translation; I m = 2; j -> m; friction ▸rub on j { coulomb 2; static f; }"),
+    ("BG0320", "1 j: translation; I m = 2; param f: m = 2; R r(v) = 3 holds ▸f; j -> m; j -> r;"),
+    ("BG0326", "1 j[3]: translation; I m = 2; R ▸r(v) = 2 * v holds 2; j -> m; j -> r;"),
+    ("BG0515", "1 j: translation; I m = 2; j -> m; R rub(v) = 0.1 ▸* rub.effort holds 2; j -> rub;"),
+    (
+        "BG0516",
+        "input speed: m/s; Sf drum = speed; 0 b: translation; 1 j, s: translation; I m = 2; R ▸rub(v) = 2 holds 3;\n\
+         drum -> b -> j -> m; b -> s -> rub;",
+    ),
     ("BG0314", "gravity -▸9.81;\nbody rod { sphere radius 1; density 1; }"),
     ("BG0314", "Se f = 1; 1 j: translation; I m = 2; R r = norm(▸[0, 1]); f -> j -> m; j -> r;"),
     ("BG0314", "body rod { sphere radius 1; density 1; point end = ▸[0, 1]; }"),

@@ -1,6 +1,7 @@
 //! Models in the macro language, one file each. The suite `physics` tests every one against an independent truth; the
 //! suite `laws` tests what holds for all of them.
 
+pub mod brakes;
 pub mod drives;
 pub mod hacksaw_with_motor;
 pub mod joints;
@@ -43,6 +44,9 @@ pub mod slider_crank;
 #[path = "../../bg-model/workbench/examples/spinning_top.rs"]
 #[allow(dead_code)]
 pub mod spinning_top;
+#[path = "../../bg-model/workbench/examples/stick_slip.rs"]
+#[allow(dead_code)]
+pub mod stick_slip;
 
 /// Hands the list of the hacksaw's models to the macro `$then`: name of a test, type and parameters.
 #[macro_export]
@@ -85,6 +89,9 @@ macro_rules! each_example {
             relativistic_mass: nonlinear RelativisticMass (RelativisticMassParameters);
             unequal_damper: nonlinear UnequalDamper (UnequalDamperParameters);
             rectifier: nonlinear Rectifier (RectifierParameters);
+            stick_slip: stick_slip StickSlip (StickSlipParameters);
+            journal: brakes Journal (JournalParameters);
+            carriage: brakes Carriage (CarriageParameters);
             free_body: free_body FreeBody (FreeBodyParameters);
             orbit: orbit Orbit (OrbitParameters);
             drives: drives Drives (DrivesParameters);

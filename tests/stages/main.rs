@@ -12,7 +12,7 @@ use bg_compiler::stages::{Stage, stages};
 use proc_macro2::TokenStream;
 
 /// Every stage.
-const WHOLE: [&str; 9] = [
+const WHOLE: [&str; 10] = [
     "se_1_i",
     "mass_spring_damper",
     "rlc",
@@ -22,6 +22,7 @@ const WHOLE: [&str; 9] = [
     "modulated",
     "switching",
     "nonlinear_storage",
+    "friction",
 ];
 
 /// The names of the stages after the source.
@@ -31,7 +32,7 @@ const ALL: [&str; 7] = ["expanded", "resolved", "causal", "equations", "program"
 const SPATIAL: [&str; 1] = ["free_body"];
 
 /// The expanded graph and its causality.
-const MECHANISMS: [&str; 6] = ["body", "pendulum", "prismatic", "spring", "drive", "contact"];
+const MECHANISMS: [&str; 7] = ["body", "pendulum", "prismatic", "spring", "drive", "contact", "bearing"];
 
 /// The causality alone: the expanded graph is longer than a reader follows.
 const LARGE: [&str; 1] = ["slider_crank"];

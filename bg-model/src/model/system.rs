@@ -27,6 +27,13 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
     fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _guards: &mut SVector<S, G>) {}
 
+    /// The branches from which the search for those at the start of a run begins: each guard's sign under them decides, again
+    /// until nothing changes. All positive by default; a switch whose guard depends on its own branch, as that of dry friction
+    /// which slides or sticks, may have to begin on the other side.
+    fn first_branches(&self) -> [bool; G] {
+        [false; G]
+    }
+
     /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal orientations,
     /// closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before the rate at the
     /// new state is evaluated, and for each sample inside a step.
@@ -77,6 +84,28 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     fn joints(&self) -> Option<&impl Joints<S, N, G>> {
         None::<&Absent>
     }
+}
+
+/// The branches that the signs of the guards call for, and the guards under them; `guards` gives their values under some
+/// branches.
+///
+/// Guards may depend on the branches: repeated from `first` on until they agree, at most once for each switch and once more. A
+/// guard that is zero counts as positive in the first round; later it leaves its switch the branch that it has.
+pub fn branches_by_sign<S: Scalar, const G: usize>(
+    first: [bool; G],
+    mut guards: impl FnMut(&[bool; G]) -> SVector<S, G>,
+) -> ([bool; G], SVector<S, G>) {
+    let mut negative = first;
+    let mut value = SVector::repeat(S::from_f64(0.0));
+    for round in 0..=G {
+        value = guards(&negative);
+        let stays = |k: usize| round > 0 && negative[k] && value[k].to_f64() == 0.0;
+        let next = std::array::from_fn(|k| value[k].to_f64() < 0.0 || stays(k));
+        if std::mem::replace(&mut negative, next) == next {
+            break;
+        }
+    }
+    (negative, value)
 }
 
 /// Power that crosses the boundary of a model, W.

@@ -200,7 +200,9 @@ impl Summary {
             }
         });
         lines.push(("states", self.states.to_string()));
-        lines.extend(self.redundant.iter().map(|joint| ("shared reactions", format!("{joint}; they have the least norm"))));
+        lines.extend(
+            self.redundant.iter().map(|joint| ("shared reactions", format!("{joint}; they have the least norm"))),
+        );
         if let Some(energy) = self.impulse_energy_j {
             lines.push(("impulses at the start", format!("take {energy:.4e} J of kinetic energy")));
         }

@@ -63,9 +63,8 @@ fn outputs(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
 
 fn switches(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
     equations.switches.iter().map(|switch| {
-        let (element, condition) = (&switch.element, &switch.condition);
-        let (name, guard) =
-            (format!("`if {condition}` of `{element}`"), equations.shown(&equations.pool, switch.guard));
+        let element = &switch.element;
+        let (name, guard) = (switch.name(), equations.shown(&equations.pool, switch.guard));
         quote!(::bg_model::description::SwitchInfo { name: #name, element: #element, guard: #guard })
     })
 }

@@ -315,6 +315,14 @@ impl LawCheck<'_, '_> {
             let state = if element.kind == ElementKind::C { displacement } else { times(effort, second) };
             self.expect("the start value", term, typed, shape, &[state]);
         }
+        if let Some(term) = &element.sticking {
+            let typed = self.types.of(term, None, self.faults);
+            self.expect("the effort held by", term, typed, Shape::Scalar, &[effort]);
+            if shape != Shape::Scalar {
+                let (name, clause) = (self.node.name.text.clone(), "holds");
+                self.faults.push(Fault::new(self.node.name.span, &GraphFault::NotStorage { name, clause }));
+            }
+        }
         if let Some(term) = &element.energy {
             let variable = self.variable_and_result(Role::Flow, effort, flow).0;
             let typed = self.types.of(term, Some((shape, variable)), self.faults);

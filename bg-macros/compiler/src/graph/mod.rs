@@ -173,6 +173,8 @@ pub struct Element {
     pub energy: Option<Term>,
     /// What a residual sink of a joint holds.
     pub held: Option<Held>,
+    /// The effort up to which an R of dry friction sticks.
+    pub sticking: Option<Term>,
 }
 
 /// The joint that a residual sink is part of, and the direction in which a scalar one holds it.
@@ -363,7 +365,7 @@ impl BondGraph {
         self.lets.iter().for_each(|definition| definition.value.visit(each));
         for node in &self.nodes {
             let NodeKind::Element(element) = &node.kind else { continue };
-            let clauses = [&element.frame, &element.displacement, &element.start, &element.energy];
+            let clauses = [&element.frame, &element.displacement, &element.start, &element.energy, &element.sticking];
             element.law.term().visit(each);
             clauses.into_iter().flatten().for_each(|term| term.visit(each));
         }

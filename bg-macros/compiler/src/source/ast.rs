@@ -40,7 +40,6 @@ pub struct Name {
 
 /// A statement of a graph.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "a graph has few statements, and they are matched everywhere")]
 pub enum Item {
     /// `param NAME: UNIT = DEFAULT, at least 0;`
     Parameter(Parameter),
@@ -80,6 +79,12 @@ pub enum Item {
     Drive(Drive),
     /// `contact NAME (a.P -> b.Q along x) { ... }`
     Contact(Contact),
+    /// `friction NAME on TARGET { ... }`
+    Friction(Friction),
+    /// `stop NAME on TARGET { ... }`
+    Stop(Stop),
+    /// `orifice NAME on JUNCTION { ... }`
+    Orifice(Orifice),
 }
 
 /// A parameter: a number that stays the same during a run.
@@ -211,13 +216,26 @@ pub struct Element {
     pub energy: Option<Expression>,
     /// `of JOINT along x`: what a residual sink holds.
     pub held: Option<Held>,
+    /// `holds E`: the effort up to which an R keeps its flow at zero; its law is that of dry friction.
+    pub sticking: Option<Expression>,
 }
 
 impl Element {
     /// An element with a linear law and no clause.
     #[must_use]
     pub fn new(kind: ElementKind, name: Name, law: Expression) -> Self {
-        Self { kind, name, variable: None, law, frame: None, displacement: None, start: None, energy: None, held: None }
+        Self {
+            kind,
+            name,
+            variable: None,
+            law,
+            frame: None,
+            displacement: None,
+            start: None,
+            energy: None,
+            held: None,
+            sticking: None,
+        }
     }
 }
 
@@ -574,6 +592,83 @@ pub struct Contact {
     pub along: Axis,
     /// The laws per axis of the second body.
     pub laws: Vec<AxisLaw>,
+}
+
+/// Dry friction on a free axis, along a contact's line or at a junction.
+#[derive(Clone, Debug)]
+pub struct Friction {
+    /// Its name (no dots).
+    pub name: Name,
+    /// A joint, a contact, or a junction.
+    pub target: Name,
+    /// `coulomb E;` while it slides: an effort, or a coefficient where the normal force is known.
+    pub coulomb: Option<Expression>,
+    /// `static E;` up to which it sticks, alike; that of sliding when left out.
+    pub at_rest: Option<Expression>,
+    /// `stribeck E;` the speed over which the one falls to the other.
+    pub stribeck: Option<Expression>,
+    /// `viscous E;` effort per flow.
+    pub viscous: Option<Expression>,
+    /// `normal E;` the normal force, N.
+    pub normal: Option<Expression>,
+    /// `radius E;` at which it acts on a turning axis, m.
+    pub radius: Option<Expression>,
+    /// `creep E;` the speed that regularises the law: it does not stick.
+    pub creep: Option<Expression>,
+}
+
+impl Friction {
+    /// A friction without clauses.
+    #[must_use]
+    pub fn new(name: Name, target: Name) -> Self {
+        Self {
+            name,
+            target,
+            coulomb: None,
+            at_rest: None,
+            stribeck: None,
+            viscous: None,
+            normal: None,
+            radius: None,
+            creep: None,
+        }
+    }
+}
+
+/// The ends of a free axis or of a junction's displacement: one-sided springs with dampers.
+#[derive(Clone, Debug)]
+pub struct Stop {
+    /// Its name (no dots).
+    pub name: Name,
+    /// A joint or a junction.
+    pub target: Name,
+    /// `at least E;` the lower end.
+    pub least: Option<Expression>,
+    /// `at most E;` the upper end.
+    pub most: Option<Expression>,
+    /// `stiffness E;`
+    pub stiffness: Option<Expression>,
+    /// `damping E;`
+    pub damping: Option<Expression>,
+    /// `start E;` the displacement at t = 0; 0 when left out.
+    pub start: Option<Expression>,
+}
+
+/// A sharp edge that a fluid flows through: the flow goes with the square root of the pressure.
+#[derive(Clone, Debug)]
+pub struct Orifice {
+    /// Its name (no dots).
+    pub name: Name,
+    /// A hydraulic 1-junction.
+    pub target: Name,
+    /// `area E;`, m^2.
+    pub area: Option<Expression>,
+    /// `coefficient E;` of discharge.
+    pub coefficient: Option<Expression>,
+    /// `density E;` of the fluid, kg/m^3.
+    pub density: Option<Expression>,
+    /// `laminar E;` the pressure below which the flow is laminar, Pa.
+    pub laminar: Option<Expression>,
 }
 
 /// One law of a contact's axis.

@@ -7,9 +7,9 @@ use std::fmt::{Display, Formatter, Result};
 
 use crate::source::ast::{
     Axis, AxisLaw, Baumgarte, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends,
-    Expectation, Expression, ExpressionKind, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind, Junction,
-    JunctionKind, LawVariable, Let, Name, Observation, Operation, Parameter, Part, Point, Rigid, Role, Scene, Shape,
-    Source, Spring, Track, Unit,
+    Expectation, Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind,
+    Junction, JunctionKind, LawVariable, Let, Name, Observation, Operation, Orifice, Parameter, Part, Point, Rigid,
+    Role, Scene, Shape, Source, Spring, Stop, Track, Unit,
 };
 use crate::source::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
 
@@ -141,6 +141,9 @@ impl Display for Item {
             Self::Spring(spring) => spring.fmt(f),
             Self::Drive(drive) => drive.fmt(f),
             Self::Contact(contact) => contact.fmt(f),
+            Self::Friction(friction) => friction.fmt(f),
+            Self::Stop(stop) => stop.fmt(f),
+            Self::Orifice(orifice) => orifice.fmt(f),
         }
     }
 }
@@ -209,6 +212,7 @@ impl Display for Element {
             clause("at", self.displacement.as_ref()),
             clause("start", self.start.as_ref()),
             clause("energy", self.energy.as_ref()),
+            clause("holds", self.sticking.as_ref()),
         ];
         let held = self.held.as_ref().map_or_else(String::new, |held| format!(" of {held}"));
         write!(f, "{}{held};", clauses.concat())
@@ -450,6 +454,46 @@ impl Display for Contact {
         });
         write!(f, "contact {} ({} along {}) ", self.name, self.ends, word_of(&AXES, &self.along))?;
         block(f, &laws.collect::<Vec<_>>())
+    }
+}
+
+impl Display for Friction {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let mut entries = Vec::new();
+        setting(&mut entries, "coulomb", self.coulomb.as_ref());
+        setting(&mut entries, "static", self.at_rest.as_ref());
+        setting(&mut entries, "stribeck", self.stribeck.as_ref());
+        setting(&mut entries, "viscous", self.viscous.as_ref());
+        setting(&mut entries, "normal", self.normal.as_ref());
+        setting(&mut entries, "radius", self.radius.as_ref());
+        setting(&mut entries, "creep", self.creep.as_ref());
+        write!(f, "friction {} on {}", self.name, self.target)?;
+        settings(f, &entries)
+    }
+}
+
+impl Display for Stop {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let mut entries = Vec::new();
+        setting(&mut entries, "at least", self.least.as_ref());
+        setting(&mut entries, "at most", self.most.as_ref());
+        setting(&mut entries, "stiffness", self.stiffness.as_ref());
+        setting(&mut entries, "damping", self.damping.as_ref());
+        setting(&mut entries, "start", self.start.as_ref());
+        write!(f, "stop {} on {}", self.name, self.target)?;
+        settings(f, &entries)
+    }
+}
+
+impl Display for Orifice {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let mut entries = Vec::new();
+        setting(&mut entries, "area", self.area.as_ref());
+        setting(&mut entries, "coefficient", self.coefficient.as_ref());
+        setting(&mut entries, "density", self.density.as_ref());
+        setting(&mut entries, "laminar", self.laminar.as_ref());
+        write!(f, "orifice {} on {}", self.name, self.target)?;
+        settings(f, &entries)
     }
 }
 

@@ -40,7 +40,7 @@ impl Explain for SceneFault {
             F::UnknownPart { near: Some(near), .. } | F::UnknownJoint { near: Some(near), .. } => {
                 format!("did you mean `{near}`?")
             }
-            F::UnknownPart { .. } => "name a joint, contact, spring, drive or element".to_owned(),
+            F::UnknownPart { .. } => "name a joint, contact, spring, drive, friction, stop or element".to_owned(),
             F::UnknownJoint { .. } => "name a joint of the graph, or write `rigid joints;`".to_owned(),
             F::NothingRigid => "remove it, or make a joint rigid".to_owned(),
         }
@@ -155,6 +155,9 @@ fn part_name(item: &Item) -> Option<&Name> {
         Item::Contact(contact) => Some(&contact.name),
         Item::Spring(spring) => Some(&spring.name),
         Item::Drive(drive) => Some(&drive.name),
+        Item::Friction(friction) => Some(&friction.name),
+        Item::Stop(stop) => Some(&stop.name),
+        Item::Orifice(orifice) => Some(&orifice.name),
         Item::Element(element) => Some(&element.name),
         _ => None,
     }

@@ -57,7 +57,7 @@ pub fn differentiate(equations: &StateEquations) -> Jacobian {
     let mut entries = Vec::new();
     for column in 0..equations.states.len() {
         let seeds = BTreeMap::from([(Symbol::state(column), pool.one())]);
-        let values = rates.along(&mut pool, seeds);
+        let values = rates.along(&mut pool, &seeds);
         let entry = |(row, value)| Entry { row, column, value };
         entries.extend(values.into_iter().enumerate().map(entry).filter(|entry| !pool.is_zero(entry.value)));
     }
@@ -67,7 +67,7 @@ pub fn differentiate(equations: &StateEquations) -> Jacobian {
         let [input, slope] = [Symbol::Input, Symbol::Slope].map(|symbol| Symbol::numbered(symbol, index));
         seeds.insert(input, pool.symbol(slope));
     }
-    let slopes = rates.along(&mut pool, seeds);
+    let slopes = rates.along(&mut pool, &seeds);
     Jacobian { pool, entries, slopes }
 }
 
@@ -83,10 +83,8 @@ impl<'a> Rates<'a> {
     }
 
     /// The rates' derivatives where symbols change as `seeds` say, and the reactions with them.
-    fn along(&self, pool: &mut Pool, mut seeds: BTreeMap<Symbol, Id>) -> Vec<Id> {
-        let residuals = derivative(pool, &self.solution.residuals, &seeds);
-        let reactions = self.solution.rates(pool, &residuals);
-        seeds.extend(self.solution.multipliers.iter().copied().zip(reactions));
+    fn along(&self, pool: &mut Pool, seeds: &BTreeMap<Symbol, Id>) -> Vec<Id> {
+        let seeds = self.solution.with_rates(pool, seeds);
         let values = derivative(pool, &self.open, &seeds);
         self.solution.closed(pool, &values)
     }

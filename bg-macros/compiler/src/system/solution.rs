@@ -3,7 +3,9 @@
 //! In: [`Solution`] from `reduce::reaction`. Out: values in the symbols' places, and how the reactions change with what they
 //! depend on, from the factors that solve for them: (A l + b)' = 0 gives l' = -A^-1 (A' l + b').
 
-use crate::expr::{Branch, Id, Node, Pool, Symbol, substitute, substitute_switched};
+use std::collections::BTreeMap;
+
+use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute, substitute_switched};
 use crate::system::definite::Factors;
 
 /// The reactions with their values.
@@ -13,6 +15,8 @@ pub struct Solution {
     pub multipliers: Vec<Symbol>,
     /// A l + b, with the reactions as symbols.
     pub residuals: Vec<Id>,
+    /// What each reaction applies: itself; of dry friction the effort of its law where it slides.
+    pub efforts: Vec<Id>,
     /// The factors of A.
     pub factors: Factors,
     /// The reactions' values, in which none of the symbols occurs.
@@ -40,15 +44,23 @@ impl Solution {
         substitute(pool, ids, &|symbol| self.value(symbol))
     }
 
-    /// The rates of the reactions, where what they depend on makes the residuals change by `residuals`.
-    pub fn rates(&self, pool: &mut Pool, residuals: &[Id]) -> Vec<Id> {
+    /// `seeds`, the rates of what the reactions depend on, with those of the reactions.
+    #[must_use]
+    pub fn with_rates(&self, pool: &mut Pool, seeds: &BTreeMap<Symbol, Id>) -> BTreeMap<Symbol, Id> {
+        let residuals = derivative(pool, &self.residuals, seeds);
         let right: Vec<Id> = residuals.iter().map(|&residual| pool.neg(residual)).collect();
-        self.factors.solve(pool, &right)
+        let solved = self.factors.solve(pool, &right);
+        let mut all = seeds.clone();
+        all.extend(self.multipliers.iter().copied().zip(solved));
+        let applied = derivative(pool, &self.efforts, &all);
+        all.extend(self.multipliers.iter().copied().zip(applied));
+        all
     }
 
     /// Replaces symbols and decides switches everywhere.
     pub fn replace(&mut self, pool: &mut Pool, replace: &dyn Fn(Symbol) -> Option<Id>, branch: &dyn Fn(u32) -> Branch) {
-        let roots = self.residuals.iter_mut().chain(self.factors.roots()).chain(&mut self.values);
+        let roots =
+            self.residuals.iter_mut().chain(&mut self.efforts).chain(self.factors.roots()).chain(&mut self.values);
         let roots: Vec<&mut Id> = roots.collect();
         let before: Vec<Id> = roots.iter().map(|id| **id).collect();
         let after = substitute_switched(pool, &before, replace, branch);
@@ -65,6 +77,7 @@ impl Solution {
     pub fn retain(&mut self, kept: &[bool]) {
         let keep = |ids: &mut Vec<Id>| filter(ids, kept);
         keep(&mut self.residuals);
+        keep(&mut self.efforts);
         keep(&mut self.values);
         self.factors.retain(kept);
         filter(&mut self.multipliers, kept);

@@ -144,7 +144,7 @@ impl<Sys, const G: usize> Place<'_, Sys, G> {
 }
 
 /// Makes `reactions`, zero for the rows that take no part, those of least norm: joints that hold the same motion share
-/// what it takes. N and N m count alike. Allocates where rows take no part.
+/// what it takes. Those of dry friction, after them, stay. N and N m count alike. Allocates where rows take no part.
 pub fn share<J, S, const N: usize, const G: usize>(
     joints: &J,
     t: S,
@@ -161,6 +161,7 @@ pub fn share<J, S, const N: usize, const G: usize>(
     let mut hold = Hold::new(joints.held());
     hold.read(joints, t, x, negative);
     let factors = Factors::without(hold.matrix(), &dropped(joints));
+    let reactions = &mut reactions[..hold.held.rigid.len()];
     let rows = (0..reactions.len()).filter(|&row| factors.follows(row));
     let mut basis: Vec<Vec<S>> = Vec::new();
     for row in rows {

@@ -5,7 +5,7 @@
 
 use super::guarded::Guarded;
 use super::{CERTAIN, Watch, check_finite, clearance};
-use crate::model::system::System;
+use crate::model::system::{System, branches_by_sign};
 use crate::solve::integrator::{Method, is_finite};
 use crate::solve::stepper::Stepper;
 
@@ -14,7 +14,7 @@ use crate::solve::stepper::Stepper;
 const PROBES: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
 impl<const G: usize> Watch<G> {
-    /// Chooses the branches at the start of the run by the signs of the guards; a guard that is zero counts as positive.
+    /// Chooses the branches at the start of the run by the signs of the guards.
     pub fn begin_by_sign<Sys, M, const N: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
     where
         Sys: System<f64, N, G>,
@@ -23,15 +23,12 @@ impl<const G: usize> Watch<G> {
         if G == 0 {
             return;
         }
-        // Guards may depend on the branches: repeated until they agree, at most once for each switch.
-        for _ in 0..=G {
-            let start = stepper.start;
-            self.start.value = stepper.guards(start.t, &start.x);
-            let negative = std::array::from_fn(|k| self.start.value[k] < 0.0);
-            if std::mem::replace(&mut stepper.negative, negative) == negative {
-                break;
-            }
-        }
+        let start = stepper.start;
+        let first = stepper.system.first_branches();
+        (stepper.negative, self.start.value) = branches_by_sign(first, |negative| {
+            stepper.negative = *negative;
+            stepper.guards(start.t, &start.x)
+        });
     }
 
     /// Decides the branches of the guards that are exactly zero at the start of the run, by steps that are small
@@ -55,9 +52,31 @@ impl<const G: usize> Watch<G> {
     pub fn settle<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
-        mut switches: [bool; G],
+        switches: [bool; G],
         step: f64,
     ) where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let settled = self.follow(stepper, switches, step);
+        let remembers = stepper.system.first_branches();
+        // Friction at its limit on a motion that others hold: what rounding leaves of the flow may have the wrong sign.
+        for k in (0..G).filter(|&k| settled[k] && remembers[k]) {
+            let value = self.start.value[k];
+            if clearance(value, stepper.negative[k]) < 0.0 {
+                self.leave(k, value);
+            }
+        }
+    }
+
+    /// Decides the branches of `switches` and of those that follow; gives all of them, with the guards at the start read.
+    fn follow<Sys, M, const N: usize>(
+        &mut self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        mut switches: [bool; G],
+        step: f64,
+    ) -> [bool; G]
+    where
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
@@ -69,12 +88,13 @@ impl<const G: usize> Watch<G> {
             let start = stepper.start;
             let noise = self.noise(stepper, start.t, &start.x, &value);
             let is_pushed = |k: &usize| !switches[*k] && clearance(value[*k], stepper.negative[*k]) < -noise[*k];
-            let Some(pushed) = (0..G).find(is_pushed).filter(|_| check_finite(&value).is_ok()) else { return };
+            let Some(pushed) = (0..G).find(is_pushed).filter(|_| check_finite(&value).is_ok()) else { return switches };
             switches[pushed] = true;
             stepper.negative[pushed] = value[pushed] < 0.0;
             stepper.evaluate_start();
         }
         self.read_start(stepper, step);
+        switches
     }
 
     /// Gives each of `switches` its branch in `candidate`, or the other one if only that agrees with its guard; the

@@ -6,7 +6,7 @@ use nalgebra::SVector;
 use super::guard::clearance;
 use super::{CLOSEST, CROWD, Event, Fault, Run};
 use crate::model::scalar::Scalar;
-use crate::model::system::System;
+use crate::model::system::{System, branches_by_sign};
 
 /// Small steps, as parts of the next step: the first shows the guard's derivative, the others a guard whose derivative
 /// vanishes.
@@ -22,14 +22,8 @@ where
     /// Projects the start and chooses the branches there.
     pub(super) fn begin(&mut self) {
         self.system.project(self.t, &self.negative, &mut self.x);
-        // Guards may depend on the branches: repeated until they agree, at most once for each switch.
-        for _ in 0..=G {
-            let value = self.guards();
-            let negative = std::array::from_fn(|k| value[k].to_f64() < 0.0);
-            if std::mem::replace(&mut self.negative, negative) == negative {
-                break;
-            }
-        }
+        let guards = |negative: &[bool; G]| self.guards_in(negative);
+        (self.negative, _) = branches_by_sign(self.system.first_branches(), guards);
         let value = self.guards();
         let undecided: [bool; G] = std::array::from_fn(|k| value[k].to_f64() == 0.0);
         if undecided.contains(&true) {
@@ -91,8 +85,13 @@ where
 
     /// The guards where the run has come to.
     fn guards(&self) -> SVector<S, G> {
+        self.guards_in(&self.negative)
+    }
+
+    /// The same in these branches.
+    fn guards_in(&self, negative: &[bool; G]) -> SVector<S, G> {
         let mut value = SVector::from_element(S::from_f64(0.0));
-        self.system.guards(self.t, &self.x, &self.negative, &mut value);
+        self.system.guards(self.t, &self.x, negative, &mut value);
         value
     }
 

@@ -10,7 +10,7 @@ use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::nalgebra::{DMatrix, DVector, SVector};
 use bg_model::parameters::ParameterError;
 use bg_model::scalar::{Dual, Scalar};
-use bg_model::system::Model;
+use bg_model::system::{Model, branches_by_sign};
 
 use super::carry::{Carry, carried};
 
@@ -245,13 +245,12 @@ pub(crate) fn branches<S: Scalar, Mo, const N: usize, const G: usize, const M: u
 where
     Mo: Model<S, N, G, M>,
 {
-    let (mut negative, mut guards) = ([false; G], SVector::repeat(S::from_f64(0.0)));
-    // A guard may depend on another switch's branch.
-    for _ in 0..G {
-        model.guards(S::from_f64(t), x, &negative, &mut guards);
-        negative = guards.data.0[0].map(|guard| guard.to_f64() < 0.0);
-    }
-    negative
+    let guards = |negative: &[bool; G]| {
+        let mut guards = SVector::repeat(S::from_f64(0.0));
+        model.guards(S::from_f64(t), x, negative, &mut guards);
+        guards
+    };
+    branches_by_sign(model.first_branches(), guards).0
 }
 
 /// The states as dual numbers that change along state `along`, or along none.

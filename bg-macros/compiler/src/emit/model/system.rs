@@ -15,13 +15,14 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let (rate, guards, project) = (self.rate(), self.guards(), self.project());
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
-        let next_break = self.next_break();
+        let (next_break, first_branches) = (self.next_break(), self.first_branches());
         quote! {
             impl<S: Scalar> ::bg_model::system::System<S, #n, #g> for Model<S> {
                 #rate
                 #guards
                 #project
                 #next_break
+                #first_branches
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
@@ -101,6 +102,19 @@ impl Emission<'_> {
             quote! {
                 fn next_break(&self, t: f64) -> f64 {
                     ::bg_model::input::next_break([#(&self.inputs.#inputs),*], t)
+                }
+            }
+        })
+    }
+
+    /// The branches from which the search for those at the start begins; nothing where no switch remembers.
+    fn first_branches(&self) -> Option<TokenStream> {
+        let g = &self.shape.g;
+        let branches: Vec<bool> = self.model.equations.switches.iter().map(|switch| switch.remembers).collect();
+        branches.contains(&true).then(|| {
+            quote! {
+                fn first_branches(&self) -> [bool; #g] {
+                    [#(#branches),*]
                 }
             }
         })

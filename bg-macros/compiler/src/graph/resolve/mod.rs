@@ -301,13 +301,14 @@ impl Resolver {
         let displacement = element.displacement.as_ref().map(|term| self.term(term, Place::Plain));
         let start = element.start.as_ref().map(|term| self.term(term, Place::Start));
         let energy = element.energy.as_ref().map(|term| self.term(term, Place::Law(variable)));
+        let sticking = element.sticking.as_ref().map(|term| self.term(term, Place::Plain));
         let stores = matches!(kind, ElementKind::I) || (kind == ElementKind::C && displacement.is_none());
         if stores {
             self.graph.storages.push(Storage::Element(id));
         }
         let text = law_text(element);
         let held = element.held.as_ref().map(|held| Held { joint: self.joint(&held.joint), direction: held.direction });
-        let element_node = Element { kind, law, text, frame, displacement, start, energy, held };
+        let element_node = Element { kind, law, text, frame, displacement, start, energy, held, sticking };
         let node = Node { name: element.name.clone(), kind: NodeKind::Element(element_node), bonds: Vec::new() };
         self.graph.nodes.push(node);
     }
@@ -332,6 +333,7 @@ impl Resolver {
             ("at", element.displacement.is_some(), matches!(kind, K::C | K::RSe)),
             ("in", element.frame.is_some(), kind == K::I),
             ("of", element.held.is_some(), kind == K::RSe),
+            ("holds", element.sticking.is_some(), is_of_flow(element)),
         ];
         for (clause, given, fits) in clauses {
             if given && !fits {
@@ -502,10 +504,17 @@ impl Resolver {
     }
 }
 
+/// Whether an element is an R whose effort follows from its flow.
+fn is_of_flow(element: &ast::Element) -> bool {
+    let is_flow = |variable: &ast::LawVariable| variable.role != Some(Role::Effort);
+    matches!(element.kind, ElementKind::R | ElementKind::Mr) && element.variable.as_ref().is_some_and(is_flow)
+}
+
 /// The law as the user wrote it.
 fn law_text(element: &ast::Element) -> String {
+    let holds = element.sticking.as_ref().map_or_else(String::new, |limit| format!(" holds {limit}"));
     match &element.variable {
-        Some(variable) => format!("({}) = {}", variable.name.text, element.law),
+        Some(variable) => format!("({}) = {}{holds}", variable.name.text, element.law),
         None => element.law.to_string(),
     }
 }

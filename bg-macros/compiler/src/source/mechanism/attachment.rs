@@ -5,7 +5,7 @@
 use super::{End, Expansion, MechanismFault, expression};
 use crate::fault::near_miss;
 use crate::source::ast::{
-    Contact, Drive, DriveKind, Element, ElementKind, Expression, ExpressionKind, Item, Name, Spring,
+    Axis, Contact, Drive, DriveKind, Element, ElementKind, Expression, ExpressionKind, Item, Name, Spring,
 };
 use crate::source::clause::{Allowed, Clause, Given};
 
@@ -67,13 +67,7 @@ impl Expansion<'_> {
             let direction = format!("{}.{letter}_axis", b.body);
             if !axes.contains(&law.axis) {
                 axes.push(law.axis);
-                self.text(
-                    span,
-                    &format!(
-                        "1 {label}: translation; MTF {label}_axis(v) = dot({direction}, v);
-                         {name}.slip -> {label}_axis -> {label};"
-                    ),
-                );
+                self.contact_axis(contact, law.axis, &b);
             }
             let (element, displacement) = match law.kind {
                 ElementKind::C => {
@@ -89,6 +83,23 @@ impl Expansion<'_> {
             }));
             self.text(law.span, &format!("{label} -> {element};"));
         }
+        if !axes.contains(&contact.along) && self.is_braked(&format!("{name}.{}", contact.along.letter())) {
+            self.contact_axis(contact, contact.along, &b);
+        }
+    }
+
+    /// The junction of the motion along an axis of a contact's second body.
+    fn contact_axis(&mut self, contact: &Contact, axis: Axis, b: &End) {
+        let (name, letter) = (&contact.name.text, axis.letter());
+        let label = format!("{name}.{letter}");
+        self.text(
+            contact.name.span,
+            &format!(
+                "1 {label}: translation; MTF {label}_axis(v) = dot({}.{letter}_axis, v);
+                 {name}.slip -> {label}_axis -> {label};",
+                b.body
+            ),
+        );
     }
 
     /// A source on a joint's free axis, on a body or on a body's point.

@@ -18,6 +18,7 @@ pub enum MechanismFault {
     SameBody { name: String, body: String },
     SameAxes { name: String },
     NoLaw { name: String },
+    NoFreeAxis { word: &'static str, name: String, target: String },
 }
 
 use MechanismFault as F;
@@ -37,6 +38,7 @@ impl Explain for MechanismFault {
             F::SameBody { .. } => "BG0210",
             F::SameAxes { .. } => "BG0211",
             F::NoLaw { .. } => "BG0212",
+            F::NoFreeAxis { .. } => "BG0213",
         }
     }
 
@@ -56,6 +58,9 @@ impl Explain for MechanismFault {
             F::SameBody { name, body } => format!("both ends of `{name}` are on `{body}`"),
             F::SameAxes { name } => format!("the two axes of joint `{name}` are the same"),
             F::NoLaw { name } => format!("contact `{name}` has no law"),
+            F::NoFreeAxis { word, name, target } => {
+                format!("{word} `{name}` has no axis to act on: `{target}` leaves none free")
+            }
         }
     }
 
@@ -81,6 +86,9 @@ impl Explain for MechanismFault {
             F::SameBody { .. } => "join two bodies".to_owned(),
             F::SameAxes { .. } => "give two different axes, such as `universal x y`".to_owned(),
             F::NoLaw { .. } => "add one, such as `y: C = k, R = r;`".to_owned(),
+            F::NoFreeAxis { .. } => {
+                "name a revolute, prismatic or cylindrical joint, a contact, or a 1-junction".to_owned()
+            }
         }
     }
 }

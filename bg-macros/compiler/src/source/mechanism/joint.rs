@@ -305,14 +305,15 @@ impl Expansion<'_> {
         }
     }
 
-    /// Whether a bond or a drive uses the joint's free axis.
+    /// Whether a bond, a drive, a friction or a stop uses the joint's free axis.
     fn is_used(&self, joint: &Joint, axis: &str) -> bool {
         let name = format!("{}.{axis}", joint.name.text);
-        self.source.items.iter().any(|item| match item {
+        let is_named = self.source.items.iter().any(|item| match item {
             Item::Chain(chain) => chain.iter().any(|link| link.text == name),
             Item::Drive(drive) => drive.target.text == joint.name.text,
             _ => false,
-        })
+        });
+        is_named || self.is_braked(&name)
     }
 }
 

@@ -1,15 +1,19 @@
 //! Mechanism words to bond-graph words.
 //!
-//! In: one `ast::Graph`. Out: one `ast::Graph` in which bodies, joints, springs, drives, contacts, ground and gravity no
-//! longer occur. Every word stands for a fragment of the language itself, written below as its template; the user's
+//! In: one `ast::Graph`. Out: one `ast::Graph` in which bodies, joints, springs, drives, contacts, frictions, stops, ground
+//! and gravity no longer occur. Every word stands for a fragment of the language itself, written below as its template; the user's
 //! expressions enter it as named `let`s, so that a fault in one of them is reported where the user wrote it.
 
 mod attachment;
+mod axis;
 mod body;
 mod drawing;
 mod fault;
+mod friction;
 mod joint;
+mod orifice;
 mod part;
+mod stop;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -140,6 +144,9 @@ impl<'a> Expansion<'a> {
                 Item::Spring(spring) => self.spring(spring),
                 Item::Drive(drive) => self.drive(drive),
                 Item::Contact(contact) => self.contact(contact),
+                Item::Friction(friction) => self.friction(friction),
+                Item::Stop(stop) => self.stop(stop),
+                Item::Orifice(orifice) => self.orifice(orifice),
                 other => self.items.push(other.clone()),
             }
         }
@@ -179,9 +186,10 @@ impl<'a> Expansion<'a> {
         self.items.extend(fragment(span, template));
     }
 
-    /// `let NAME: UNIT = VALUE;` with the user's expression as the value, and what it must be.
+    /// `let NAME: UNIT = VALUE;` with the user's expression as the value, and what it must be; an empty unit is left out.
     fn bind(&mut self, name: &str, unit: &str, value: &Expression, clause: Clause) {
-        for item in fragment(value.span, &format!("let {name}: {unit} = 0;")) {
+        let colon = if unit.is_empty() { "" } else { ": " };
+        for item in fragment(value.span, &format!("let {name}{colon}{unit} = 0;")) {
             if let Item::Let(definition) = item {
                 let (value, clause) = (value.clone(), Some(clause.clone()));
                 self.items.push(Item::Let(Let { value, clause, ..definition }));
@@ -297,6 +305,9 @@ fn part_name(item: &Item) -> Option<&Name> {
         Item::Spring(spring) => Some(&spring.name),
         Item::Drive(drive) => Some(&drive.name),
         Item::Contact(contact) => Some(&contact.name),
+        Item::Friction(friction) => Some(&friction.name),
+        Item::Stop(stop) => Some(&stop.name),
+        Item::Orifice(orifice) => Some(&orifice.name),
         _ => None,
     }
 }

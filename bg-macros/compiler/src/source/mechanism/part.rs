@@ -9,7 +9,8 @@ use crate::source::ast::{Graph, Item};
 /// A mechanism word that expands to nodes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// What it is: `ground`, `body`, a joint's kind with its axes, `spring`, `contact`, `drive`.
+    /// What it is: `ground`, `body`, a joint's kind with its axes, `spring`, `contact`, `drive`,
+    /// `friction`, `stop`, `orifice`.
     pub word: String,
     /// Its name, the first component of its nodes' names.
     pub name: String,
@@ -37,6 +38,9 @@ fn part(item: &Item) -> Option<Part> {
         Item::Spring(spring) => ("spring".to_owned(), &spring.name),
         Item::Drive(drive) => ("drive".to_owned(), &drive.name),
         Item::Contact(contact) => ("contact".to_owned(), &contact.name),
+        Item::Friction(friction) => ("friction".to_owned(), &friction.name),
+        Item::Stop(stop) => ("stop".to_owned(), &stop.name),
+        Item::Orifice(orifice) => ("orifice".to_owned(), &orifice.name),
         _ => return None,
     };
     Some(Part { word, name: name.text.clone() })

@@ -34,8 +34,10 @@ pub(super) struct Place {
 }
 
 /// The words of statements that end with their block.
-const BLOCKS: [&str; 12] =
-    ["graph", "observe", "scene", "ground", "body", "joint", "spring", "drive", "contact", "tune", "without", "rigid"];
+const BLOCKS: [&str; 15] = [
+    "graph", "observe", "scene", "ground", "body", "joint", "spring", "drive", "contact", "friction", "stop",
+    "orifice", "tune", "without", "rigid",
+];
 
 /// A walk over one level of tokens.
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! The mechanism words: ground, gravity, body, joint, spring, drive, contact.
+//! The mechanism words: ground, gravity, body, joint, spring, drive, contact. Those of one junction are read in `friction`.
 //!
 //! In: statements of a graph. Out: their [`Item`]s, which `mechanism::expand` turns into bond-graph words.
 
@@ -62,6 +62,9 @@ impl Cursor<'_> {
             "spring" => self.spring().map(Item::Spring),
             "drive" => self.drive().map(Item::Drive),
             "contact" => self.contact().map(Item::Contact),
+            "friction" => self.friction().map(Item::Friction),
+            "stop" => self.stop().map(Item::Stop),
+            "orifice" => self.orifice().map(Item::Orifice),
             _ => Err(self.unknown_statement()),
         }
     }
@@ -213,7 +216,7 @@ impl Cursor<'_> {
     }
 
     /// `{ ... }`, or `;` when there is nothing to say.
-    fn block_or_semicolon(&mut self, place: &'static Place, statement: impl FnMut(&mut Self) -> Parsed<()>) {
+    pub fn block_or_semicolon(&mut self, place: &'static Place, statement: impl FnMut(&mut Self) -> Parsed<()>) {
         match self.enter(Delimiter::Brace, place) {
             Some(mut block) => block.statements(statement),
             None => self.end_statement("`{ ... }`"),

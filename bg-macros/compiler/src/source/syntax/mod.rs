@@ -18,6 +18,7 @@ mod cursor;
 mod documentation;
 mod expression;
 mod fault;
+mod friction;
 mod mechanism;
 mod scene;
 mod statement;

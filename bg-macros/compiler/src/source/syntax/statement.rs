@@ -52,6 +52,9 @@ pub(super) const GRAPH: Place = Place {
         "spring",
         "drive",
         "contact",
+        "friction",
+        "stop",
+        "orifice",
     ],
     list: false,
 };
@@ -261,7 +264,7 @@ fn cardinality(cursor: &mut Cursor) -> Parsed<usize> {
     Ok(cardinality)
 }
 
-/// `R NAME(w) = LAW in R start E;`, `rSe NAME = 0 at GAP of JOINT along x;`
+/// `R NAME(w) = LAW in R start E;`, `R NAME(w) = LAW holds E;`, `rSe NAME = 0 at GAP of JOINT along x;`
 fn element(cursor: &mut Cursor, kind: ElementKind) -> Parsed<Element> {
     if cursor.word_ahead(1).is_none() {
         cursor.advance();
@@ -274,7 +277,7 @@ fn element(cursor: &mut Cursor, kind: ElementKind) -> Parsed<Element> {
     let law = cursor.expression()?;
     let mut element = Element { variable, ..Element::new(kind, name, law) };
     while clause(cursor, &mut element)? {}
-    cursor.end_statement("an operator, `in`, `at`, `start`, `energy`");
+    cursor.end_statement("an operator, `in`, `at`, `start`, `energy`, `holds`");
     Ok(element)
 }
 
@@ -290,6 +293,7 @@ fn clause(cursor: &mut Cursor, element: &mut Element) -> Parsed<bool> {
         Some("at") => ("at", &mut element.displacement),
         Some("start") => ("start", &mut element.start),
         Some("energy") => ("energy", &mut element.energy),
+        Some("holds") => ("holds", &mut element.sticking),
         _ => return Ok(false),
     };
     let span = cursor.advance();

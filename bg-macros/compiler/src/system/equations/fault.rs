@@ -13,6 +13,8 @@ pub enum EquationFault {
     EnergyJumps { symbol: &'static str, name: String, by: f64, at: Vec<f64> },
     EnergyNotCompared { symbol: &'static str, name: String, points: usize },
     DisplacementOfOtherFlow { name: String },
+    FrictionOfReaction { name: String, by: String },
+    CannotStick { name: String, input: Option<String> },
 }
 
 use EquationFault as F;
@@ -27,6 +29,8 @@ impl Explain for EquationFault {
             F::DisplacementOfOtherFlow { .. } => "BG0505",
             F::EnergyJumps { .. } => "BG0506",
             F::EnergyNotCompared { .. } => "BG0507",
+            F::FrictionOfReaction { .. } => "BG0515",
+            F::CannotStick { .. } => "BG0516",
         }
     }
 
@@ -58,6 +62,18 @@ impl Explain for EquationFault {
             F::DisplacementOfOtherFlow { name } => {
                 format!("the displacement given for C `{name}` does not change with the flow of its bond")
             }
+            F::FrictionOfReaction { name, by } if name == by => {
+                format!("the friction of R `{name}` depends on its own effort")
+            }
+            F::FrictionOfReaction { name, by } => {
+                format!("the friction of R `{name}` depends on the reaction of `{by}`, which depends on the friction")
+            }
+            F::CannotStick { name, input: Some(input) } => {
+                format!("R `{name}` cannot stick: its flow depends on input `{input}`, whose rate is not known")
+            }
+            F::CannotStick { name, input: None } => {
+                format!("R `{name}` cannot stick: no momentum determines its flow")
+            }
         }
     }
 
@@ -79,6 +95,16 @@ impl Explain for EquationFault {
             F::DisplacementOfOtherFlow { .. } => {
                 "leave `at` out, then the displacement is a state of its own".to_owned()
             }
+            F::FrictionOfReaction { name, by } if name == by => {
+                "take the component of the force that presses, without that along the motion".to_owned()
+            }
+            F::FrictionOfReaction { by, .. } => {
+                format!(
+                    "make `{by}` compliant, so that its force follows from the motion, or give the force as a number"
+                )
+            }
+            F::CannotStick { input: Some(_), .. } => "use a parameter or a function of `t` for the input".to_owned(),
+            F::CannotStick { input: None, .. } => "bond an I to its junction, or leave `holds` out".to_owned(),
         }
     }
 }

@@ -17,6 +17,7 @@ impl Signals<'_> {
         match element.kind {
             K::Se | K::MSe => self.evaluate(element.law.term(), None),
             K::RSe => self.reaction(node),
+            K::R | K::Mr if element.sticking.is_some() => self.reaction(node),
             K::C => {
                 let displacement = self.element_state(node);
                 self.storage_law(node, element, &displacement)

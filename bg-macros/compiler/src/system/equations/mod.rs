@@ -7,6 +7,7 @@
 mod energy;
 mod fallible;
 mod fault;
+mod friction;
 mod holding;
 mod kinematics;
 mod laws;
@@ -109,6 +110,17 @@ pub struct Reaction {
     pub slip: Slip,
     /// The effort.
     pub multiplier: Symbol,
+    /// Of dry friction, which is no reaction while it slides.
+    pub friction: Option<Friction>,
+}
+
+/// What dry friction gives in place of its multiplier.
+#[derive(Clone, Debug)]
+pub struct Friction {
+    /// The effort: that of the law where it slides, the multiplier where it sticks.
+    pub effort: Id,
+    /// 1 where it sticks, 0 where it slides.
+    pub sticks: Id,
 }
 
 /// One residual of the assembly.
@@ -129,10 +141,26 @@ pub struct Gap {
 pub struct Switch {
     /// What switches: an element, a `let` or an output.
     pub element: String,
-    /// The comparison as written.
+    /// The comparison as written; of dry friction the way in which it slides.
     pub condition: String,
     /// The guard: below zero the first branch holds.
     pub guard: Id,
+    /// Whether the guard depends on the switch's own branch, so that the past decides: sliding ends where the flow is zero,
+    /// sticking where the effort is at its limit.
+    pub remembers: bool,
+}
+
+impl Switch {
+    /// What holds in the first branch, and of whom.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let Self { element, condition, .. } = self;
+        if self.remembers {
+            format!("sliding {condition} of `{element}`")
+        } else {
+            format!("`if {condition}` of `{element}`")
+        }
+    }
 }
 
 /// A scalar output.

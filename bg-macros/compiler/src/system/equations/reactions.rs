@@ -6,11 +6,11 @@
 use super::signals::Signals;
 use super::{Reaction, Slip};
 use crate::expr::{Id, Symbol};
-use crate::graph::NodeId;
+use crate::graph::{ElementKind, NodeId};
 use crate::system::Value;
 
 impl Signals<'_> {
-    /// The unknown effort of a residual sink.
+    /// The unknown effort of a residual sink or of dry friction.
     pub(super) fn reaction(&mut self, node: NodeId) -> Value {
         let components = self.graph.bond(self.graph.node(node).bonds[0]).cardinality;
         let symbols: Vec<Symbol> = self.multipliers(node, components).collect();
@@ -21,10 +21,10 @@ impl Signals<'_> {
         (self.reactions[&node]..).take(components).map(Symbol::Multiplier)
     }
 
-    /// Every residual sink's multipliers with the flows they keep at zero.
+    /// Every residual sink's multipliers with the flows they keep at zero, then those of dry friction.
     pub(super) fn reactions(&mut self) -> Vec<Reaction> {
         let graph = self.graph;
-        let nodes: Vec<NodeId> = self.reactions.keys().copied().collect();
+        let nodes = self.elements(|kind| kind == ElementKind::RSe);
         let mut reactions = Vec::new();
         for node in nodes {
             let Some(element) = graph.element(node) else { continue };
@@ -40,9 +40,11 @@ impl Signals<'_> {
                 let joint = self.holder(node).to_owned();
                 let (direction, unit) = (self.direction_of(node, k), graph.bond(bond).flow_unit());
                 let gap = gap.as_ref().map(|gap| gap[k]);
-                reactions.push(Reaction { slip: Slip { joint, direction, unit, flow, kept: None, gap }, multiplier });
+                let slip = Slip { joint, direction, unit, flow, kept: None, gap };
+                reactions.push(Reaction { slip, multiplier, friction: None });
             }
         }
+        reactions.extend(self.sticking_reactions());
         reactions
     }
 }

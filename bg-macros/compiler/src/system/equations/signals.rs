@@ -11,9 +11,7 @@ use super::{EquationFault, FallibleLaw, Gap, Holding, Origin, Output, State, Sta
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::units::Dimension;
-use crate::graph::{
-    BondGraph, BondId, CausalGraph, ElementKind, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
-};
+use crate::graph::{BondGraph, BondId, CausalGraph, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind};
 use crate::system::Value;
 use crate::system::solution::Solution;
 
@@ -52,7 +50,7 @@ pub(super) struct Signals<'a> {
     /// First state and shape of every storage, in their order.
     pub(super) layout: Vec<(Storage, usize, Shape)>,
     pub(super) first_integral: usize,
-    /// First multiplier of every residual sink.
+    /// First multiplier of every residual sink and of dry friction.
     pub(super) reactions: BTreeMap<NodeId, u32>,
     pub(super) switches: Vec<Switch>,
     /// What is being evaluated, for the switches' names.
@@ -166,7 +164,7 @@ impl<'a> Signals<'a> {
             }
         }
         let mut multipliers = 0;
-        for node in self.elements(|kind| kind == ElementKind::RSe) {
+        for node in self.unknown_efforts() {
             self.reactions.insert(node, multipliers);
             let bond = self.graph.node(node).bonds[0];
             multipliers += u32::try_from(self.graph.bond(bond).cardinality).expect("1 or 3");

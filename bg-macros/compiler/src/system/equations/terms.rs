@@ -189,7 +189,8 @@ impl Signals<'_> {
         } else if let Some(known) = self.switches.iter().position(|switch| switch.guard == opposite) {
             (known, true)
         } else {
-            self.switches.push(Switch { element: self.owner.clone(), condition: condition.to_owned(), guard });
+            let (element, condition) = (self.owner.clone(), condition.to_owned());
+            self.switches.push(Switch { element, condition, guard, remembers: false });
             (self.switches.len() - 1, false)
         };
         let (negative, positive) = if swapped { (otherwise, then) } else { (then, otherwise) };

@@ -67,6 +67,9 @@ fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, role: Role) -> Strin
             let of = match element.kind {
                 ElementKind::Se | ElementKind::MSe | ElementKind::Sf | ElementKind::MSf => String::new(),
                 ElementKind::RSe => " kept by its reaction".to_owned(),
+                ElementKind::R | ElementKind::Mr if element.sticking.is_some() => {
+                    format!(" of {}, or what keeps it at zero", variable(signals, role.other(), bond))
+                }
                 ElementKind::C if element.displacement.is_some() => " of its displacement in the poses".to_owned(),
                 ElementKind::C => format!(" of {}.q", definition.name.text),
                 ElementKind::I => format!(" of {}.p", definition.name.text),

@@ -97,8 +97,11 @@ fn forget(equations: &mut StateEquations, known: &Known) {
     let (holding, solution) = (&mut equations.holding, &mut equations.solution);
     let (mut held, mut solved) = (holding.known(pool, known), solution.known(pool, known));
     if holding.is_shared() {
-        let both: Vec<bool> = held.iter().zip(&solved).map(|(&held, &solved)| held && solved).collect();
-        (held, solved) = (both.clone(), both);
+        // One number for both; dry friction, which comes last, is none that is held.
+        held.iter_mut().zip(&mut solved).for_each(|(held, solved)| {
+            *held &= *solved;
+            *solved = *held;
+        });
     }
     holding.retain(pool, known, &held);
     solution.retain(&solved);

@@ -8,11 +8,13 @@
 
 use std::collections::BTreeSet;
 
+use super::friction;
 use crate::expr::{Id, Pool, partial};
 use crate::system::equations::{Kind, Origin, Reaction, State, StateEquations};
 
-/// The reactions, those of loops last.
-pub(super) fn arrange(equations: &mut StateEquations, reactions: Vec<Reaction>) -> Vec<Reaction> {
+/// The reactions, those of loops after those of the tree; dry friction comes last.
+pub(super) fn arrange(equations: &mut StateEquations, mut reactions: Vec<Reaction>) -> Vec<Reaction> {
+    let frictions = reactions.split_off(friction::rigid(&reactions));
     let moves = moves(&mut equations.pool, &equations.states, &reactions);
     let pool = &equations.pool;
     let node = |state: usize| match equations.states[state].origin {
@@ -32,7 +34,7 @@ pub(super) fn arrange(equations: &mut StateEquations, reactions: Vec<Reaction>) 
     let mut numbers = 0..;
     let mut closing: Vec<Reaction> = closing.into_iter().map(|row: usize| reactions[row].clone()).collect();
     closing.iter_mut().for_each(|reaction| reaction.slip.kept = numbers.next());
-    tree.into_iter().map(|row: usize| reactions[row].clone()).chain(closing).collect()
+    tree.into_iter().map(|row: usize| reactions[row].clone()).chain(closing).chain(frictions).collect()
 }
 
 /// The rows of each joint, in the order of the joints' first rows.

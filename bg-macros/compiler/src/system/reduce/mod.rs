@@ -8,6 +8,7 @@ mod affine;
 mod angle;
 mod equal;
 pub mod expectation;
+mod friction;
 mod invariant;
 mod live;
 mod loops;
@@ -160,6 +161,8 @@ impl StateEquations {
         for reaction in &mut self.reactions {
             roots.push(&mut reaction.slip.flow);
             roots.extend(&mut reaction.slip.gap);
+            roots
+                .extend(reaction.friction.iter_mut().flat_map(|friction| [&mut friction.effort, &mut friction.sticks]));
         }
         roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
         roots.extend(self.projections.iter_mut().chain(&mut self.settled).map(|(_, id)| id));

@@ -1,6 +1,6 @@
-//! The reactions of rigid joints, solved for.
+//! The reactions of rigid joints and of dry friction, solved for.
 //!
-//! In: equations whose rates depend on multipliers. Out: the same with every multiplier replaced by its value.
+//! In: equations whose rates depend on multipliers. Out: the same with every multiplier's value in their solution.
 //! Method: the time derivative of every flow to be kept at zero is linear in the multipliers, A l + b = 0, with A
 //! symmetric and positive definite where the constraints are independent; A is factored as L D L^T in symbols, so that
 //! the solution is part of the flat code. What truncation lets grow of a flow v and its gap q is taken away by
@@ -9,8 +9,8 @@
 
 use std::collections::BTreeMap;
 
-use super::loops;
-use crate::expr::{Id, Pool, Symbol, derivative, partial, substitute};
+use super::{friction, loops};
+use crate::expr::{Id, Pool, Symbol, derivative, partial};
 use crate::system::definite::Factors;
 use crate::system::equations::{Reaction, Slip, StateEquations};
 use crate::system::solution::Solution;
@@ -22,22 +22,43 @@ pub fn solve(equations: &mut StateEquations) {
         return;
     }
     let reactions = loops::arrange(equations, reactions);
-    let residuals = accelerations(equations, &reactions);
+    let accelerations = accelerations(equations, &reactions);
     let pool = &mut equations.pool;
-    let system = Linear::of(pool, &reactions, &residuals);
-    let factors = Factors::of(pool, &system.matrix, |pool, row, pivot, _| inverse(pool, &reactions[row].slip, pivot));
-    let right: Vec<Id> = system.constant.iter().map(|&constant| pool.neg(constant)).collect();
-    let values = factors.solve(pool, &right);
-    let holding = &mut equations.holding;
-    holding.moves = loops::moves(pool, &equations.states, &reactions);
-    holding.matrix = system.matrix;
+    let matrix = matrix(pool, &reactions, &accelerations);
+    let decoupled = friction::decoupled(pool, &reactions, &matrix);
+    let factors = Factors::of(pool, &decoupled, |pool, row, pivot, entry| inverse(pool, &reactions[row], pivot, entry));
+    let constants = friction::constants(pool, &reactions, &accelerations);
+    let right: Vec<Id> = constants.iter().map(|&constant| pool.neg(constant)).collect();
+    let solution = factors.solve(pool, &right);
+    let solved = reactions.iter().zip(solution);
+    let values = solved.map(|(reaction, value)| friction::effort(pool, reaction, value)).collect();
+    let residuals = friction::residuals(pool, &reactions, &accelerations);
+    let efforts = friction::efforts(pool, &reactions);
     let multipliers = reactions.iter().map(|reaction| reaction.multiplier).collect();
-    holding.rigid = reactions.into_iter().map(|reaction| reaction.slip).collect();
-    equations.solution = Solution { multipliers, residuals, factors, values };
+    equations.solution = Solution { multipliers, residuals, efforts, factors, values };
+    hold(equations, reactions, matrix);
+}
+
+/// Notes what the rigid joints hold, and what their reactions move.
+fn hold(equations: &mut StateEquations, reactions: Vec<Reaction>, matrix: Vec<Vec<Id>>) {
+    let rigid = friction::rigid(&reactions);
+    let holding = &mut equations.holding;
+    holding.moves = loops::moves(&mut equations.pool, &equations.states, &reactions[..rigid]);
+    holding.matrix = matrix.into_iter().take(rigid).collect();
+    holding.rigid = reactions.into_iter().take(rigid).map(|reaction| reaction.slip).collect();
+}
+
+/// 1 / D of a row.
+fn inverse(pool: &mut Pool, reaction: &Reaction, pivot: Id, entry: Id) -> Id {
+    if reaction.friction.is_some() {
+        friction::reciprocal(pool, pivot, entry)
+    } else {
+        kept(pool, &reaction.slip, pivot)
+    }
 }
 
 /// 1 / D of a row that is kept, 0 of one that is not: its reaction is zero.
-fn inverse(pool: &mut Pool, slip: &Slip, pivot: Id) -> Id {
+fn kept(pool: &mut Pool, slip: &Slip, pivot: Id) -> Id {
     let Some(kept) = slip.kept else { return pool.powi(pivot, -1) };
     let kept = pool.symbol(Symbol::Kept(kept));
     let scaled = pool.mul(kept, pivot);
@@ -46,6 +67,7 @@ fn inverse(pool: &mut Pool, slip: &Slip, pivot: Id) -> Id {
 }
 
 /// dv/dt of every flow v, with Baumgarte's terms 2 a v + a^2 q where they are asked for; zero where the reactions are right.
+/// Dry friction keeps no place.
 fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<Id> {
     let pool = &mut equations.pool;
     let mut seeds: BTreeMap<Symbol, Id> = BTreeMap::from([(Symbol::Time, pool.one())]);
@@ -54,35 +76,23 @@ fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<
     }
     let flows: Vec<Id> = reactions.iter().map(|reaction| reaction.slip.flow).collect();
     let rates = derivative(pool, &flows, &seeds);
-    let (zero, decay) = (pool.zero(), equations.baumgarte.unwrap_or(0.0));
-    let slips = reactions.iter().map(|reaction| &reaction.slip);
-    slips
+    let (zero, rate_of_decay) = (pool.zero(), equations.baumgarte.unwrap_or(0.0));
+    reactions
+        .iter()
         .zip(rates)
-        .map(|(slip, rate)| {
+        .map(|(Reaction { slip, friction, .. }, rate)| {
             let gap = slip.gap.unwrap_or(zero);
-            pool.linear(0.0, &[(rate, 1.0), (slip.flow, 2.0 * decay), (gap, decay * decay)])
+            let decay = if friction.is_some() { friction::DECAY } else { 2.0 * rate_of_decay };
+            pool.linear(0.0, &[(rate, 1.0), (slip.flow, decay), (gap, rate_of_decay * rate_of_decay)])
         })
         .collect()
 }
 
-/// A l + b = 0.
-struct Linear {
-    /// Lower triangle by rows.
-    matrix: Vec<Vec<Id>>,
-    constant: Vec<Id>,
-}
-
-impl Linear {
-    /// The coefficients of expressions that are linear in the multipliers.
-    fn of(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Self {
-        let zero = pool.zero();
-        let is_multiplier = |symbol: Symbol| reactions.iter().any(|reaction| reaction.multiplier == symbol);
-        let columns: Vec<Vec<Id>> =
-            reactions.iter().map(|reaction| partial(pool, expressions, reaction.multiplier)).collect();
-        let matrix = (0..reactions.len()).map(|i| (0..=i).map(|j| columns[j][i]).collect()).collect();
-        let constant = substitute(pool, expressions, &|symbol| is_multiplier(symbol).then_some(zero));
-        Self { matrix, constant }
-    }
+/// A of expressions that are linear in the multipliers: its lower triangle by rows.
+fn matrix(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Vec<Vec<Id>> {
+    let columns: Vec<Vec<Id>> =
+        reactions.iter().map(|reaction| partial(pool, expressions, reaction.multiplier)).collect();
+    (0..reactions.len()).map(|i| (0..=i).map(|j| columns[j][i]).collect()).collect()
 }
 
 #[cfg(test)]

@@ -72,7 +72,7 @@ fn unexpected_tokens_name_what_could_stand_there() {
         ("let a = 1.0.x;", "2:12 BG0102 found `.`, expected an operator | write an operator here"),
         (
             "R r = 2 strat 1;",
-            "2:9 BG0102 found `strat`, expected an operator, `in`, `at`, `start`, `energy` or `;` | write `start`",
+            "2:9 BG0102 found `strat`, expected an operator, `in`, `at`, `start`, `energy`, `holds` or `;` | write `start`",
         ),
         (
             "drive m on pin torque = 1 { damping 1; }",

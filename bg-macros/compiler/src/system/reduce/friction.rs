@@ -1,0 +1,88 @@
+//! Dry friction among the reactions: what sticks is a constraint, what slides is a known effort.
+//!
+//! In: reactions with dry friction, the equations A l + b = 0 of all of them. Out: equations that hold in every branch.
+//! Method: the row and the column of what slides are multiplied by 0 but for the diagonal, so that it takes no part; what it
+//! gives is in b. Its own l is not used then.
+
+use crate::expr::{Id, Pool, Symbol, substitute};
+use crate::system::equations::{Friction, Reaction};
+
+/// Rate at which a flow that truncation leaves decays while it sticks, 1/s: slow, so that no explicit step is the shorter for it.
+pub(super) const DECAY: f64 = 1.0;
+/// The part of its diagonal entry below which a pivot of dry friction counts as zero: others hold that motion already.
+const PART: f64 = 1e-10;
+
+/// The efforts as they enter b: those of what slides; zero of what sticks and of residual sinks.
+pub(super) fn known(pool: &mut Pool, reactions: &[Reaction]) -> Vec<Id> {
+    let zero = pool.zero();
+    reactions.iter().map(|reaction| effort(pool, reaction, zero)).collect()
+}
+
+/// The effort of a reaction whose multiplier has this value.
+pub(super) fn effort(pool: &mut Pool, reaction: &Reaction, value: Id) -> Id {
+    let Some(Friction { effort, .. }) = reaction.friction else { return value };
+    substitute(pool, &[effort], &|symbol| (symbol == reaction.multiplier).then_some(value))[0]
+}
+
+/// The equations' constants: of a residual sink where every effort is the known one, of dry friction where it sticks.
+pub(super) fn constants(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Vec<Id> {
+    let known = known(pool, reactions);
+    let of = |symbol: Symbol| reactions.iter().position(|reaction| reaction.multiplier == symbol).map(|k| known[k]);
+    let rigid = rigid(reactions);
+    let mut constants = substitute(pool, &expressions[..rigid], &of);
+    let zero = pool.zero();
+    for (reaction, &expression) in reactions.iter().zip(expressions).skip(rigid) {
+        let of = |symbol: Symbol| if symbol == reaction.multiplier { Some(zero) } else { of(symbol) };
+        constants.extend(substitute(pool, &[expression], &of));
+    }
+    constants
+}
+
+/// The left sides of the equations: of a residual sink with every effort as it is applied, of dry friction with its own as if
+/// it stuck.
+pub(super) fn residuals(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Vec<Id> {
+    let efforts = efforts(pool, reactions);
+    let place = |symbol: Symbol| reactions.iter().position(|reaction| reaction.multiplier == symbol);
+    let residual = |(row, &expression): (usize, &Id)| {
+        let effort = |symbol: Symbol| place(symbol).filter(|&other| other != row).map(|other| efforts[other]);
+        substitute(pool, &[expression], &effort)[0]
+    };
+    expressions.iter().enumerate().map(residual).collect()
+}
+
+/// What each reaction applies, by its multiplier.
+pub(super) fn efforts(pool: &mut Pool, reactions: &[Reaction]) -> Vec<Id> {
+    let effort = |reaction: &Reaction| {
+        let own = pool.symbol(reaction.multiplier);
+        reaction.friction.as_ref().map_or(own, |friction| friction.effort)
+    };
+    reactions.iter().map(effort).collect()
+}
+
+/// How many of the reactions are those of residual sinks, which come first.
+pub(super) fn rigid(reactions: &[Reaction]) -> usize {
+    reactions.iter().take_while(|reaction| reaction.friction.is_none()).count()
+}
+
+/// The lower triangle of A without the couplings of what slides.
+pub(super) fn decoupled(pool: &mut Pool, reactions: &[Reaction], matrix: &[Vec<Id>]) -> Vec<Vec<Id>> {
+    let sticks = |k: usize| reactions[k].friction.as_ref().map(|friction| friction.sticks);
+    let mut entry = |i: usize, j: usize| {
+        let couplings = [sticks(i), sticks(j)].into_iter().flatten().filter(|_| i != j);
+        let factors: Vec<Id> = couplings.chain([matrix[i][j]]).collect();
+        pool.product(&factors)
+    };
+    (0..matrix.len()).map(|i| (0..=i).map(|j| entry(i, j)).collect()).collect()
+}
+
+/// The reciprocal of a pivot of dry friction, 0 where it vanishes beside the entry that it came from: p / (p^2 + d^2).
+pub(super) fn reciprocal(pool: &mut Pool, pivot: Id, entry: Id) -> Id {
+    if pivot == entry {
+        let one = pool.one();
+        return pool.div(one, pivot);
+    }
+    let least = pool.scale(PART, entry);
+    let squares = [pool.powi(pivot, 2), pool.powi(least, 2)];
+    let squares = pool.sum(&squares);
+    pool.div(pivot, squares)
+}
