@@ -38,7 +38,9 @@ impl Environment<'_> {
             Symbol::Storage(index) => self.storage[index as usize],
             Symbol::Slope(index) => self.slopes[index as usize],
             Symbol::Rate(index) => self.rates[index as usize],
-            Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Loop => panic!("no value of {symbol:?}"),
+            Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Unsolved(_) => {
+                panic!("no value of {symbol:?}")
+            }
         }
     }
 }

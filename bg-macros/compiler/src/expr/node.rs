@@ -27,8 +27,8 @@ pub enum Symbol {
     Flow(u32),
     /// A component of the reaction of a residual sink.
     Multiplier(u32),
-    /// A variable of an algebraic loop, which has no value.
-    Loop,
+    /// A bond variable or state whose equation is not solved yet.
+    Unsolved(u32),
     /// The derivative of an input with respect to time.
     Slope(u32),
     /// The rate of a state.

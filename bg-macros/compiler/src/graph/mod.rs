@@ -51,6 +51,8 @@ pub struct BondGraph {
     pub closes: Vec<Close>,
     /// Whether impulses make start velocities fit rigid joints.
     pub impulse: bool,
+    /// Whether a storage in derivative causality is a fault.
+    pub expects_integral: bool,
     /// Observed outputs.
     pub observations: Vec<Observation>,
     /// The guesses in start expressions, each one unknown of the assembly.

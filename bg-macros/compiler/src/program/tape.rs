@@ -107,7 +107,7 @@ fn leaf(symbol: Symbol) -> Option<(u32, u32)> {
         | Symbol::Storage(_)
         | Symbol::Flow(_)
         | Symbol::Multiplier(_)
-        | Symbol::Loop
+        | Symbol::Unsolved(_)
         | Symbol::Rate(_) => None,
     }
 }

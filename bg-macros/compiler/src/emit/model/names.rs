@@ -74,7 +74,7 @@ impl Emission<'_> {
             Symbol::Parameter(index) => format_ident!("p_{}", equations.parameters[index as usize].name.text),
             Symbol::Input(index) => format_ident!("u_{}", input(index)),
             Symbol::Slope(index) => format_ident!("slope_{}", input(index)),
-            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Loop => {
+            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Unsolved(_) => {
                 unreachable!("a model's equations contain no {symbol:?}")
             }
             Symbol::Unknown(index) => return entry("u", index),

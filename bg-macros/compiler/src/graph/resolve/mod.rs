@@ -98,6 +98,7 @@ impl Resolver {
             joints: Vec::new(),
             closes: Vec::new(),
             impulse: false,
+            expects_integral: false,
             observations: Vec::new(),
             guesses: Vec::new(),
             integrals: Vec::new(),
@@ -249,6 +250,7 @@ impl Resolver {
                     self.graph.closes.push(Close { joint, gap, shape, dimension });
                 }
                 Item::Impulse(_) => self.graph.impulse = true,
+                Item::IntegralCausality => self.graph.expects_integral = true,
                 Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
                 _ => {}
             }

@@ -56,6 +56,7 @@ impl Cursor<'_> {
             "ground" => self.ground().map(Item::Ground),
             "gravity" => self.gravity().map(Item::Gravity),
             "start" => self.impulse().map(Item::Impulse),
+            "expect" => self.expected_causality().map(|()| Item::IntegralCausality),
             "body" => self.body().map(Item::Body),
             "joint" => self.joint().map(Item::Joint),
             "spring" => self.spring().map(Item::Spring),
@@ -104,6 +105,20 @@ impl Cursor<'_> {
         let span = self.expect_word("impulse")?;
         self.end_statement("");
         Ok(span)
+    }
+
+    /// `expect integral causality;`
+    fn expected_causality(&mut self) -> Parsed<()> {
+        self.advance();
+        self.expect_word("integral")?;
+        self.integral_causality()
+    }
+
+    /// What comes after `expect integral`.
+    pub fn integral_causality(&mut self) -> Parsed<()> {
+        self.expect_word("causality")?;
+        self.end_statement("");
+        Ok(())
     }
 
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`

@@ -47,6 +47,7 @@ pub(super) const GRAPH: Place = Place {
         "ground",
         "gravity",
         "start",
+        "expect",
         "joint",
         "spring",
         "drive",

@@ -1,0 +1,221 @@
+//! Storages in derivative causality: others determine their states.
+//!
+//! In: strokes, laws. Out: their states as expressions of other states, and what they give on their bonds.
+//! Method: an I receives its flow, so its momentum is that of this flow, p(f), and it gives the effort dp/dt; a C receives its
+//! effort and gives the flow dq/dt. The derivative is that along the rates of the states that are integrated, which depend on what
+//! is given: a linear system, in which the storage adds to those that determine it (Karnopp, Margolis and Rosenberg, System
+//! Dynamics (2012), section 5.6). Where a law has no inverse in symbols the state stays, and what is given keeps it in step, as the
+//! residual sink of a rigid joint does. Where what is received depends on what is given without any derivative, the state stays as
+//! well: it is independent, and the two follow from each other at once.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::signals::Signals;
+use super::unknowns::{Unknown, Unknowns};
+use super::{EquationFault, Slip};
+use crate::expr::{Id, Node, Pool, Symbol, derivative};
+use crate::fault::Fault;
+use crate::graph::{CausalGraph, Element, ElementKind, Law, NodeId};
+use crate::system::Value;
+
+/// How a storage in derivative causality is calculated.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Way {
+    /// Its state is an expression of what it receives.
+    Replaced,
+    /// Its state stays; what it gives keeps it in step.
+    Held,
+    /// Its state stays; what it gives follows from it and what it receives.
+    Kept,
+}
+
+/// A storage in derivative causality.
+#[derive(Clone, Debug)]
+pub(super) struct Dependent {
+    pub way: Way,
+    /// Its state, where that is replaced.
+    pub state: Option<Value>,
+    /// What it gives: the rate of its state.
+    pub given: Value,
+}
+
+/// The storages in derivative causality with symbols for what is not known of them; of those in `kept` the states stay.
+pub(super) fn dependents(
+    causal: &CausalGraph,
+    kept: &BTreeSet<NodeId>,
+    (pool, unknowns, reactions): (&mut Pool, &mut Unknowns, &BTreeMap<NodeId, u32>),
+) -> BTreeMap<NodeId, Dependent> {
+    let graph = &causal.graph;
+    let mut dependents = BTreeMap::new();
+    for &node in &causal.derivative {
+        let Some(element) = graph.element(node) else { continue };
+        let components = graph.bond(graph.node(node).bonds[0]).cardinality;
+        let way = way(element, kept.contains(&node));
+        let state = (way == Way::Replaced).then(|| unknowns.symbols(pool, Unknown::State(node), components));
+        let given = match reactions.get(&node) {
+            Some(&first) => Value((first..).take(components).map(|k| pool.symbol(Symbol::Multiplier(k))).collect()),
+            None => unknowns.symbols(pool, Unknown::Given(node), components),
+        };
+        dependents.insert(node, Dependent { way, state, given });
+    }
+    dependents
+}
+
+/// How a storage in derivative causality is calculated; `is_kept` says that what it receives depends on what it gives.
+pub(super) fn way(element: &Element, is_kept: bool) -> Way {
+    let has_inverse = match &element.law {
+        Law::Of { value, .. } => value.is_linear(),
+        _ => true,
+    };
+    match (is_kept, has_inverse) {
+        (true, _) => Way::Kept,
+        (false, true) => Way::Replaced,
+        (false, false) => Way::Held,
+    }
+}
+
+impl Signals<'_> {
+    /// What a storage in derivative causality gives on its bond, along the half arrow.
+    pub(super) fn dependent_given(&mut self, node: NodeId) -> Option<Value> {
+        let given = self.dependent.get(&node)?.given.clone();
+        let graph = self.graph;
+        let is_flow = graph.element(node)?.kind == ElementKind::C;
+        let sign = if is_flow { graph.sign(graph.node(node).bonds[0], node) } else { 1.0 };
+        Some(given.scale(&mut self.pool, sign))
+    }
+
+    /// What such a storage receives: a flow into an I, the effort of a C.
+    fn received(&mut self, node: NodeId, element: &Element) -> Value {
+        let bond = self.graph.node(node).bonds[0];
+        if element.kind == ElementKind::C {
+            return self.effort(bond);
+        }
+        let sign = self.graph.sign(bond, node);
+        self.flow(bond).scale(&mut self.pool, sign)
+    }
+
+    /// The equations of the states of storages in derivative causality.
+    pub(super) fn equate_dependents(&mut self) {
+        let graph = self.graph;
+        for (node, Dependent { way, state, given }) in self.dependent.clone() {
+            let Some(element) = graph.element(node) else { continue };
+            let received = self.received(node, element);
+            match (way, state) {
+                (Way::Replaced, Some(state)) => {
+                    let value = self.storage_inverse(node, element, &received);
+                    self.unknowns.equate(&mut self.pool, &state, (&state, &value));
+                }
+                (Way::Kept, _) => {
+                    let state = self.element_state(node);
+                    let value = self.storage_law(node, element, &state);
+                    self.unknowns.equate(&mut self.pool, &given, (&value, &received));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// The storages whose states must stay after all: what they receive depends on what they or others like them give.
+    pub(super) fn independent_after_all(&mut self) -> BTreeSet<NodeId> {
+        let graph = self.graph;
+        let mut found = BTreeSet::new();
+        for (node, Dependent { way, state, .. }) in self.dependent.clone() {
+            let Some(element) = graph.element(node) else { continue };
+            let values = state.unwrap_or_else(|| self.received(node, element));
+            let is_given = |symbol: &Symbol| self.is_given(*symbol);
+            if way != Way::Kept && self.pool.symbols(&values.0).iter().any(is_given) {
+                found.insert(node);
+            }
+        }
+        found
+    }
+
+    /// Whether a symbol stands for what a storage in derivative causality gives.
+    fn is_given(&self, symbol: Symbol) -> bool {
+        self.dependent.values().any(|dependent| {
+            dependent.given.0.iter().any(|&id| matches!(self.pool.node(id), Node::Symbol(known) if *known == symbol))
+        })
+    }
+
+    /// Calculates what storages give whose states are replaced: the derivatives of these states, and puts it in its place.
+    pub(super) fn solve_dependents(&mut self) {
+        let graph = self.graph;
+        let mut residuals = BTreeMap::new();
+        let seeds = self.rate_seeds(&[]);
+        for (node, Dependent { state, given, .. }) in self.dependent.clone() {
+            let (Some(state), Some(element)) = (state, graph.element(node)) else { continue };
+            if let Some(fault) = self.wrong(node, element, &state) {
+                self.fault_once(fault);
+                continue;
+            }
+            let rates = Value(derivative(&mut self.pool, &state.0, &seeds));
+            self.unknowns.equate(&mut self.pool, &given, (&given, &rates));
+            residuals.append(&mut self.unknowns.residuals);
+        }
+        let values = self.solved(&residuals);
+        self.put(&values);
+    }
+
+    /// Why a state that others determine has no derivative.
+    fn wrong(&self, node: NodeId, element: &Element, state: &Value) -> Option<Fault> {
+        let (kind, name) = (element.kind, self.graph.node(node).name.text.clone());
+        let symbols = self.pool.symbols(&state.0);
+        let select = self.pool.reachable(&state.0).into_iter().find_map(|id| match self.pool.node(id) {
+            Node::Select { switch, .. } => Some(*switch as usize),
+            _ => None,
+        });
+        if let Some(input) =
+            symbols.iter().find_map(|s| if let Symbol::Input(k) = s { Some(*k as usize) } else { None })
+        {
+            let input = self.graph.inputs[input].name.text.clone();
+            return Some(self.fault_of(node, &EquationFault::DependentOnInput { kind, name, input }));
+        }
+        if let Some(switch) = select {
+            let Switched { element, condition } = self.switched(switch);
+            return Some(self.fault_of(node, &EquationFault::DependentJumps { kind, name, element, condition }));
+        }
+        if symbols.iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_))) {
+            let members = self.names(&[node]);
+            return Some(self.fault_of(node, &EquationFault::DependentOpen { members }));
+        }
+        let start = element.start.as_ref()?;
+        let by = self.determining(state);
+        Some(Fault::new(start.span, &EquationFault::DependentStart { kind, name, by }))
+    }
+
+    fn switched(&self, switch: usize) -> Switched {
+        let switch = &self.switches[switch];
+        Switched { element: switch.element.clone(), condition: switch.condition.clone() }
+    }
+
+    /// The states that a state depends on, for messages.
+    fn determining(&self, state: &Value) -> Vec<String> {
+        let states = self.pool.symbols(&state.0).into_iter().filter_map(Symbol::as_state);
+        states.map(|state| format!("`{}`", self.states[state].name)).collect()
+    }
+
+    /// The motions that storages hold whose laws have no inverse: what they receive less what their states say.
+    pub(super) fn dependent_slips(&mut self, node: NodeId) -> Vec<Slip> {
+        let graph = self.graph;
+        let Some(element) = graph.element(node) else { return Vec::new() };
+        let bond = graph.bond(graph.node(node).bonds[0]);
+        let unit = if element.kind == ElementKind::C { bond.effort_unit() } else { bond.flow_unit() };
+        let received = self.received(node, element);
+        let state = self.element_state(node);
+        let own = self.storage_law(node, element, &state).negate(&mut self.pool);
+        let excess: Vec<Id> = received.add(&mut self.pool, &own).0;
+        let slip = |(k, flow)| Slip {
+            joint: graph.node(node).name.text.clone(),
+            direction: self.direction_of(node, k),
+            unit: unit.clone(),
+            flow,
+        };
+        excess.into_iter().enumerate().map(slip).collect()
+    }
+}
+
+/// A comparison in messages.
+struct Switched {
+    element: String,
+    condition: String,
+}
