@@ -54,7 +54,7 @@ impl Explain for EquationFault {
                 let symbol = kind.symbol();
                 let by = if by.is_empty() { "sources".to_owned() } else { by.join(", ") };
                 format!(
-                    "{symbol} `{name}` has no start of its own: it is in derivative causality, and {by} determine its state"
+                    "{symbol} `{name}` has no start of its own: it is in derivative causality, its state follows from {by}"
                 )
             }
             F::DependentOnInput { kind, name, input } => {
