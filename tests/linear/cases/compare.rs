@@ -107,6 +107,15 @@ pub fn signals(network: &Network, seed: u64) -> Verdict {
             };
         }
     };
+    if let Some(what) = impossible(&equations) {
+        let has_none =
+            solution::solve(network, &given(&|node| causal.derivative.iter().all(|known| known.0 != node))).is_none();
+        return if has_none {
+            Verdict::Refused("by new".to_owned())
+        } else {
+            Verdict::Wrong(format!("{what}, but it has"))
+        };
+    }
     let has_state = |node: usize| {
         let name = &network.nodes[node].name;
         equations.states.iter().any(|state| state.name.strip_prefix(name).is_some_and(|rest| rest.starts_with('.')))
@@ -116,6 +125,19 @@ pub fn signals(network: &Network, seed: u64) -> Verdict {
         return Verdict::Wrong("the system has no unique solution".to_owned());
     };
     compare(&expected(network, &states, &solution), &found(network, equations, &states))
+}
+
+/// What the model's `new` would refuse.
+fn impossible(equations: &StateEquations) -> Option<String> {
+    let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
+    let environment = Environment { parameters: &parameters, ..Environment::default() };
+    let requirements = &equations.requirements;
+    let holds = |value: Id, is_strict: bool| {
+        let value = evaluate(&requirements.pool, &[value], &environment)[0];
+        value > 0.0 || value == 0.0 && !is_strict
+    };
+    let failed = requirements.list.iter().find(|requirement| !holds(requirement.value, requirement.is_strict))?;
+    Some(format!("{} {}", failed.subject, failed.wanted))
 }
 
 fn compare(expected: &[(String, f64)], found: &[f64]) -> Verdict {

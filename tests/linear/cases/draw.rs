@@ -136,7 +136,12 @@ impl Sketch {
     /// A transformer with a matrix: it works one way.
     fn transformer(&mut self, size: usize, last: usize) -> usize {
         let name = self.name("t");
-        let matrix = DMatrix::from_fn(last, size, |_, _| f64::from(self.rng.i32(-20..20)) / 10.0);
+        // A square one is inverted where it stands between storages that determine each other.
+        let matrix = if size == last && size > 1 {
+            self.dominant(size, false)
+        } else {
+            DMatrix::from_fn(last, size, |_, _| f64::from(self.rng.i32(-20..20)) / 10.0)
+        };
         let of = if self.rng.bool() { Role::Flow } else { Role::Effort };
         let value = match (size, last) {
             (3, 1) => format!("dot({}, v)", row(&matrix.row(0).transpose())),

@@ -4,14 +4,17 @@
 //! has none.
 //! Method: Gaussian elimination on sparse rows. Of the entries that cannot vanish, numbers before others, the pivot is the one with
 //! the least product of other entries in its row and column (Markowitz 1957, The Elimination Form of the Inverse, Management Science
-//! 3); of numbers in one column none is taken that is much smaller than another. The first in order decides what is left open.
+//! 3); of numbers in one column none is taken that is much smaller than another. The first in order decides what is left open. An
+//! entry is zero where it is within rounding at arbitrary values of its symbols, by running error analysis: so a system that
+//! has no solution whatever its parameters is known as such, although its coefficients are rounded.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Id, Pool, same_polynomial};
+use super::{Id, Pool, Sized, Symbol, same_polynomial, sized};
+use crate::random::Random;
 
-/// What remains of numbers that cancel, relative to their sizes.
-const ROUNDING: f64 = 1e-12;
+/// What rounding leaves of parts that cancel, relative to the sum of their sizes.
+const RESIDUE: f64 = 64.0 * f64::EPSILON;
 
 /// A number is no pivot beside one in its column that is larger by more than this factor.
 const GROWTH: f64 = 10.0;
@@ -42,17 +45,26 @@ enum Surety {
     Open,
 }
 
+/// An entry with its value at arbitrary values of the symbols, and the size of all that it was added up from.
+#[derive(Clone, Copy)]
+struct Entry {
+    id: Id,
+    at: Sized,
+}
+
 /// A step of the elimination.
+#[derive(Clone, Copy)]
 struct Step {
     row: usize,
     column: usize,
-    pivot: Id,
+    pivot: Entry,
 }
 
 /// An elimination under way.
 struct Elimination<'a> {
     pool: &'a mut Pool,
-    system: Linear,
+    matrix: Vec<BTreeMap<usize, Entry>>,
+    right: Vec<Id>,
     is_proved: &'a dyn Fn(&Pool, Id) -> bool,
     rows: BTreeSet<usize>,
     steps: Vec<Step>,
@@ -68,51 +80,73 @@ pub fn solve_linear(
     system: Linear,
     is_proved: &dyn Fn(&Pool, Id) -> bool,
 ) -> Result<Solution, Vec<usize>> {
-    let rows = (0..system.rows.len()).collect();
-    let mut elimination = Elimination { pool, system, is_proved, rows, steps: Vec::new(), doubtful: Vec::new() };
+    let Linear { rows, right } = system;
+    let matrix = sampled(pool, &rows);
+    let rows = (0..rows.len()).collect();
+    let mut elimination = Elimination { pool, matrix, right, is_proved, rows, steps: Vec::new(), doubtful: Vec::new() };
     while !elimination.rows.is_empty() {
         elimination.step()?;
     }
     Ok(elimination.solution())
 }
 
+/// The entries with their values at arbitrary values of the symbols.
+fn sampled(pool: &mut Pool, rows: &[BTreeMap<usize, Id>]) -> Vec<BTreeMap<usize, Entry>> {
+    let all: Vec<Id> = rows.iter().flat_map(BTreeMap::values).copied().collect();
+    let mut random = Random::new(1);
+    let values: BTreeMap<Symbol, f64> =
+        pool.symbols(&all).into_iter().map(|symbol| (symbol, 0.5 + random.unit())).collect();
+    let entry = |id: Id| Entry { id, at: sized(pool, id, &|symbol| values[&symbol]) };
+    let mut matrix: Vec<BTreeMap<usize, Entry>> =
+        rows.iter().map(|row| row.iter().map(|(&column, &id)| (column, entry(id))).collect()).collect();
+    matrix.iter_mut().for_each(|row| row.retain(|_, entry| !vanishes(pool, *entry)));
+    matrix
+}
+
+/// Whether an entry is zero, or what rounding leaves of parts that cancel.
+fn vanishes(pool: &mut Pool, entry: Entry) -> bool {
+    if pool.is_zero(entry.id) || entry.at.value.abs() <= RESIDUE * entry.at.size {
+        return true;
+    }
+    let zero = pool.zero();
+    !entry.at.value.is_finite() && same_polynomial(pool, entry.id, zero)
+}
+
 impl Elimination<'_> {
     fn step(&mut self) -> Result<(), Vec<usize>> {
         let Some((surety, step)) = self.pivot() else { return Err(self.rows.iter().copied().collect()) };
         if surety == Surety::Open {
-            self.doubtful.push(step.pivot);
+            self.doubtful.push(step.pivot.id);
         }
         self.rows.remove(&step.row);
         let below: Vec<usize> = self.rows.iter().copied().collect();
         for row in below {
-            self.eliminate(row, &step);
+            self.eliminate(row, step);
         }
         self.steps.push(step);
         Ok(())
     }
 
     /// The best pivot of the rows that are left.
-    fn pivot(&mut self) -> Option<(Surety, Step)> {
+    fn pivot(&self) -> Option<(Surety, Step)> {
         let mut in_column: BTreeMap<usize, usize> = BTreeMap::new();
         let mut largest: BTreeMap<usize, f64> = BTreeMap::new();
-        for (&column, &entry) in self.rows.iter().flat_map(|&row| &self.system.rows[row]) {
+        for (&column, entry) in self.rows.iter().flat_map(|&row| &self.matrix[row]) {
             *in_column.entry(column).or_default() += 1;
-            let size = self.pool.as_number(entry).map_or(0.0, f64::abs);
+            let size = self.pool.as_number(entry.id).map_or(0.0, f64::abs);
             largest.entry(column).and_modify(|known| *known = known.max(size)).or_insert(size);
         }
         let mut candidates = Vec::new();
         for &row in &self.rows {
-            let others = self.system.rows[row].len().saturating_sub(1);
-            for (&column, &pivot) in &self.system.rows[row] {
-                if let Some(surety) = self.surety(pivot, largest[&column]) {
-                    let is_open = surety == Surety::Open;
-                    candidates.push((is_open, others * (in_column[&column] - 1), surety, row, column, pivot));
+            for (&column, &pivot) in &self.matrix[row] {
+                if let Some(surety) = self.surety(pivot.id, largest[&column]) {
+                    let others = (self.matrix[row].len() - 1) * (in_column[&column] - 1);
+                    candidates.push(((surety == Surety::Open, others, surety, row, column), pivot));
                 }
             }
         }
-        candidates.sort_unstable();
-        let found = candidates.into_iter().find(|candidate| candidate.2 != Surety::Open || !self.vanishes(candidate.5));
-        found.map(|(_, _, surety, row, column, pivot)| (surety, Step { row, column, pivot }))
+        let ((_, _, surety, row, column), pivot) = candidates.into_iter().min_by_key(|(order, _)| *order)?;
+        Some((surety, Step { row, column, pivot }))
     }
 
     /// What is known of an entry as a pivot; none where it is a number that is too small beside the column's largest.
@@ -124,49 +158,42 @@ impl Elimination<'_> {
         }
     }
 
-    fn vanishes(&mut self, entry: Id) -> bool {
-        let zero = self.pool.zero();
-        same_polynomial(self.pool, entry, zero)
-    }
-
     /// Takes the multiple of the pivot's row from another one that removes its entry in the pivot's column.
-    fn eliminate(&mut self, row: usize, step: &Step) {
-        let Some(entry) = self.system.rows[row].remove(&step.column) else { return };
-        let factor = self.pool.div(entry, step.pivot);
-        let others: Vec<(usize, Id)> = self.system.rows[step.row]
-            .iter()
-            .filter(|(column, _)| **column != step.column)
-            .map(|(&c, &v)| (c, v))
-            .collect();
+    fn eliminate(&mut self, row: usize, step: Step) {
+        let Some(entry) = self.matrix[row].remove(&step.column) else { return };
+        let id = self.pool.div(entry.id, step.pivot.id);
+        let factor = Entry { id, at: entry.at.over(step.pivot.at) };
+        let others: Vec<(usize, Entry)> =
+            self.matrix[step.row].iter().filter(|(column, _)| **column != step.column).map(|(&c, &v)| (c, v)).collect();
         for (column, above) in others {
-            let before = self.system.rows[row].remove(&column).unwrap_or(self.pool.zero());
+            let before = self.matrix[row].remove(&column);
             let after = self.less(before, factor, above);
-            if !self.pool.is_zero(after) {
-                self.system.rows[row].insert(column, after);
+            if !vanishes(self.pool, after) {
+                self.matrix[row].insert(column, after);
             }
         }
-        self.system.right[row] = self.less(self.system.right[row], factor, self.system.right[step.row]);
+        let product = self.pool.mul(factor.id, self.right[step.row]);
+        self.right[row] = self.pool.sub(self.right[row], product);
     }
 
-    /// `a - b c`; numbers that cancel give zero.
-    fn less(&mut self, a: Id, b: Id, c: Id) -> Id {
-        let product = self.pool.mul(b, c);
-        if let (Some(a), Some(product)) = (self.pool.as_number(a), self.pool.as_number(product))
-            && (a - product).abs() <= ROUNDING * a.abs()
-        {
-            return self.pool.zero();
-        }
-        self.pool.sub(a, product)
+    /// `a - b c`
+    fn less(&mut self, a: Option<Entry>, b: Entry, c: Entry) -> Entry {
+        let product = self.pool.mul(b.id, c.id);
+        let part = b.at.times(c.at);
+        let none = Entry { id: self.pool.zero(), at: Sized::exact(0.0) };
+        let a = a.unwrap_or(none);
+        let at = Sized { value: a.at.value - part.value, size: a.at.size + part.size };
+        Entry { id: self.pool.sub(a.id, product), at }
     }
 
     fn solution(self) -> Solution {
         let mut values = vec![self.pool.zero(); self.steps.len()];
         for step in self.steps.iter().rev() {
-            let others = self.system.rows[step.row].iter().filter(|(column, _)| **column != step.column);
-            let known: Vec<Id> = others.map(|(&column, &entry)| self.pool.mul(entry, values[column])).collect();
+            let others = self.matrix[step.row].iter().filter(|(column, _)| **column != step.column);
+            let known: Vec<Id> = others.map(|(&column, entry)| self.pool.mul(entry.id, values[column])).collect();
             let known = self.pool.sum(&known);
-            let rest = self.pool.sub(self.system.right[step.row], known);
-            values[step.column] = self.pool.div(rest, step.pivot);
+            let rest = self.pool.sub(self.right[step.row], known);
+            values[step.column] = self.pool.div(rest, step.pivot.id);
         }
         Solution { values, doubtful: self.doubtful }
     }

@@ -15,6 +15,7 @@ mod product;
 #[cfg(test)]
 pub(crate) mod random;
 mod sign;
+mod size;
 mod substitute;
 mod sum;
 mod text;
@@ -28,5 +29,6 @@ pub use polynomial::{Monomials, monomials, same_polynomial};
 pub use pool::{Pool, children};
 pub(crate) use product::MOST_EXPONENT;
 pub use sign::{Signs, signs};
+pub use size::{Sized, sized};
 pub use substitute::{Branch, substitute, substitute_switched};
 pub use text::text;

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::signals::Signals;
 use super::unknowns::{Unknown, Unknowns};
 use super::{EquationFault, Slip};
-use crate::expr::{Id, Node, Pool, Symbol, derivative};
+use crate::expr::{Id, Node, Pool, Symbol, derivative, partial, same_polynomial, substitute};
 use crate::fault::Fault;
 use crate::graph::{CausalGraph, Element, ElementKind, Law, NodeId};
 use crate::system::Value;
@@ -115,26 +115,43 @@ impl Signals<'_> {
         }
     }
 
-    /// The storages whose states must stay after all: what they receive depends on what they or others like them give.
-    pub(super) fn independent_after_all(&mut self) -> BTreeSet<NodeId> {
+    /// A storage whose state must stay after all: what it receives depends on what it or others like it give. Of several the first
+    /// is taken, as it may determine the others: a law without an inverse before others, then one with a start.
+    pub(super) fn independent_after_all(&mut self) -> Option<NodeId> {
         let graph = self.graph;
-        let mut found = BTreeSet::new();
+        let mut found = Vec::new();
         for (node, Dependent { way, state, .. }) in self.dependent.clone() {
             let Some(element) = graph.element(node) else { continue };
+            let is_replaced = state.is_some();
             let values = state.unwrap_or_else(|| self.received(node, element));
-            let is_given = |symbol: &Symbol| self.is_given(*symbol);
-            if way != Way::Kept && self.pool.symbols(&values.0).iter().any(is_given) {
-                found.insert(node);
+            let values = self.without_idle(values);
+            if way != Way::Kept && self.given_in(&values).next().is_some() {
+                found.push((way != Way::Held, element.start.is_none(), node));
+            } else if let Some(dependent) = self.dependent.get_mut(&node).filter(|_| is_replaced) {
+                dependent.state = Some(values);
             }
         }
-        found
+        found.into_iter().min().map(|(_, _, node)| node)
     }
 
-    /// Whether a symbol stands for what a storage in derivative causality gives.
-    fn is_given(&self, symbol: Symbol) -> bool {
-        self.dependent.values().any(|dependent| {
-            dependent.given.0.iter().any(|&id| matches!(self.pool.node(id), Node::Symbol(known) if *known == symbol))
+    /// The value without what storages give where that cancels.
+    fn without_idle(&mut self, value: Value) -> Value {
+        let zero = self.pool.zero();
+        let given: Vec<Symbol> = self.given_in(&value).collect();
+        given.into_iter().fold(value, |value, symbol| {
+            let slopes = partial(&mut self.pool, &value.0, symbol);
+            if !slopes.iter().all(|&slope| same_polynomial(&mut self.pool, slope, zero)) {
+                return value;
+            }
+            Value(substitute(&mut self.pool, &value.0, &|other| (other == symbol).then_some(zero)))
         })
+    }
+
+    /// What storages in derivative causality give and a value contains.
+    fn given_in(&self, value: &Value) -> impl Iterator<Item = Symbol> + use<> {
+        let all = self.dependent.values().flat_map(|dependent| &dependent.given.0);
+        let given = self.pool.symbols(&all.copied().collect::<Vec<_>>());
+        self.pool.symbols(&value.0).into_iter().filter(move |symbol| given.contains(symbol))
     }
 
     /// Calculates what storages give whose states are replaced: the derivatives of these states, and puts it in its place.

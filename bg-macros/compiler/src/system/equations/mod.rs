@@ -159,11 +159,10 @@ pub fn derive(causal: &CausalGraph) -> Staged<StateEquations> {
     let mut kept = BTreeSet::new();
     loop {
         let mut signals = signals::Signals::new(causal, &kept);
-        let more = signals.solve_bonds();
-        if more.is_empty() {
-            return signals.derive();
+        match signals.solve_bonds() {
+            Some(node) => kept.extend([node]),
+            None => return signals.derive(),
         }
-        kept.extend(more);
     }
 }
 

@@ -78,8 +78,8 @@ impl<'a> Signals<'a> {
         signals
     }
 
-    /// Effort and flow of every bond, the states' rates. Storages in derivative causality whose states must stay after all.
-    pub(super) fn solve_bonds(&mut self) -> BTreeSet<NodeId> {
+    /// Effort and flow of every bond, the states' rates. A storage in derivative causality whose state must stay after all.
+    pub(super) fn solve_bonds(&mut self) -> Option<NodeId> {
         self.prove_displacements();
         self.fallible.clear();
         for bond in (0..self.graph.bonds.len()).map(BondId) {
