@@ -12,7 +12,7 @@ use bg_compiler::stages::{Stage, stages};
 use proc_macro2::TokenStream;
 
 /// Every stage.
-const WHOLE: [&str; 9] = [
+const WHOLE: [&str; 11] = [
     "se_1_i",
     "mass_spring_damper",
     "rlc",
@@ -22,6 +22,8 @@ const WHOLE: [&str; 9] = [
     "modulated",
     "switching",
     "nonlinear_storage",
+    "rigid_gear",
+    "divider",
 ];
 
 /// The names of the stages after the source.

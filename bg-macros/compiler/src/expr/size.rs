@@ -85,7 +85,7 @@ mod tests {
         let (sum, difference) = (pool.add(a, b), pool.sub(a, b));
         let product = pool.mul(sum, difference);
         let squares = [pool.powi(a, 2), pool.powi(b, 2)];
-        let of = |factor| [(product, 1.0), (squares[0], -factor), (squares[1], 1.0)];
+        let of = |factor: f64| [(product, 1.0), (squares[0], -factor), (squares[1], 1.0)];
         let [zero, rest] = [1.0, 1.0 + 1e-6].map(|factor| pool.linear(0.0, &of(factor)));
         let value = |symbol| if symbol == Symbol::Parameter(0) { 0.37 } else { 1.13 };
         let [zero, rest] = [zero, rest].map(|id| sized(&pool, id, &value));
