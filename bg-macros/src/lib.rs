@@ -44,7 +44,8 @@ use proc_macro::TokenStream;
 /// call      = { graph }
 /// graph     = [visibility] "graph" NAME "{" { statement } "}"
 /// statement = param | input | let | junction | element | chain | position | orientation | close | observe
-///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | orifice | start | scene
+///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | orifice | start | expect | scene
+/// expect    = "expect" "integral" "causality" ";"
 /// ```
 ///
 /// Order is free: a name may be used before it is declared. Outputs keep the order of declaration; so do states of one
@@ -555,6 +556,7 @@ use proc_macro::TokenStream;
 /// | `without { a, b }` | joints, contacts, springs, drives, frictions, stops, orifices or elements that are not there, with their bonds |
 /// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
+/// | `expect integral causality;` | an error (BG0403) where a storage is in [derivative causality](#derivative-causality) |
 /// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |
 /// | `expect states = 29;` | an error (BG0605) unless so many states are integrated, integrals for outputs not counted |
 ///
@@ -723,17 +725,67 @@ use proc_macro::TokenStream;
 /// # Causality
 ///
 /// Strokes are assigned by the sequential procedure (SCAP): sources, residual sinks among them, then laws that work one
-/// way only (laws of a variable), then I and C in integral causality, in the order of declaration, then what is left;
-/// each assignment is propagated before the next. What is left is a choice, bond by bond in their order: the stroke is
-/// where the half arrow starts, unless the rest could then not be completed. So a graph that has a valid assignment
-/// gets one. Only integral causality is accepted:
+/// way only (laws of a variable), then I and C in integral causality, then what is left; each assignment is propagated
+/// before the next. What is left is a choice, bond by bond in their order: the stroke is where the half arrow starts,
+/// unless the rest could then not be completed. So a graph that has a valid assignment gets one. What no assignment
+/// satisfies is a fault: two causes for one effort or flow (BG0401), none (BG0402), a law of a variable that would have to
+/// run backwards (BG0404).
 ///
-/// - two causes for one effort or flow: BG0401, none: BG0402;
-/// - an I or C whose state others already determine: BG0403. Put a C with an R in between, or merge the two. A residual
-///   sink holds two inertias together exactly, a rigid shaft or gear: `0 tie; 1 hub; rSe rigid = 0;`
-///   `shaft -> gear -> tie -> hub -> wheel; rigid -> tie;` keeps the difference of the two flows at the 0-junction at zero;
-/// - a law of a variable that would have to run backwards: BG0404;
-/// - a variable that needs itself, through resistors or modulation: BG0501, with the members of the loop.
+/// ## Derivative causality
+///
+/// Two inertias on one shaft, a rigid gear between flywheels, a mass on a rigid lever, a capacitor across a voltage source: others
+/// determine the state of one of them, so it has no state to integrate. It is in **derivative causality**. Where integral causality
+/// is possible for some storages only, those have it whose law may have no inverse (laws of a variable), then those with a `start`,
+/// then the first declared.
+///
+/// - The momentum of an I in derivative causality is that of the flow that it receives, the displacement of a C that of its
+///   effort. It gives the change of that, dp/dt or dq/dt. The compiler differentiates, and solves the linear system in which the storages
+///   add up to equivalent ones. Laws may depend on poses and on all else, as the ratio of an `MTF`: the terms of its change are there.
+/// - `wheel.p`, `wheel.effort`, `wheel.flow`, `wheel.power`, `wheel.energy` can be observed as ever; `wheel.effort` is the torque that the
+///   shaft hands on to it. The printed equations say `wheel.p = 1.5*J.p, derivative causality`; in pictures it is red.
+/// - A `start` is given for the storages that are integrated: elsewhere it is BG0509, which names those.
+/// - A law that is not linear in its state keeps its state; what it gives is a multiplier that keeps the state in step, as the
+///   residual sink of a rigid joint does. Its `start` must fit the others', or be a `guess`.
+/// - Where what a storage receives depends on what it gives, as beside an R with a law of the effort, its state is free all
+///   the same and stays.
+/// - What has no derivative is a fault: a state that an input gives, whose slope may jump (BG0510), or that a comparison may make jump
+///   (BG0511); what cannot be solved for is BG0512.
+///
+/// `expect integral causality;` in a graph or in a scene makes each such storage a fault, BG0403, with what determines it. A residual
+/// sink is the other way to hold two inertias together, with a multiplier and two states: `rSe rigid = 0;`
+/// `shaft -> gear -> tie -> hub -> wheel; rigid -> tie;` keeps the difference of the two flows at the 0-junction at zero.
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// Two flywheels and a rigid gear.
+///     graph Geared {
+///         param ratio: 1 = 4, above 0;
+///         Se torque = 0.5; 1 shaft: rotation; I rotor = 1e-3; TF gear = 1 / ratio; 1 hub: rotation; I wheel = 0.02;
+///         torque -> shaft -> rotor; shaft -> gear -> hub -> wheel;
+///         observe { tooth: N*m = wheel.effort }
+///     }
+/// }
+/// use bg_model::system::{Model, System};
+///
+/// let model = Geared::new(GearedParameters::default())?;
+/// assert_eq!(Geared::STATES, 1);
+/// let start = model.start()?;
+/// let [tooth] = model.outputs(0.0, &start.x, &[]);
+/// // 4 * 0.5 N*m turn 0.02 kg*m^2 and 16 times the rotor.
+/// assert!((tooth - 2.0 * 0.02 / (0.02 + 16.0 * 1e-3)).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// ## Algebraic loops
+///
+/// A bond variable that needs itself, through resistors, two-ports or modulation, is solved for where the equations of the loop are
+/// linear in it: a divider, a bridge, resistors on both sides of a transformer. Parameters stay symbols. What the solution divides
+/// by is checked by `new` where parameters can make it zero. A law with an `if` is linear branch by branch: the branch is that in which
+/// the solution lies, and an event leads from one to the other.
+///
+/// - A loop that is not linear is BG0501, with its members.
+/// - A loop that leaves its variables open, such as a closed ring of junctions, is BG0508.
 ///
 /// # Events
 ///
@@ -903,16 +955,21 @@ use proc_macro::TokenStream;
 /// | **causality** | |
 /// | BG0401 | causal conflict: two bonds determine one effort or flow |
 /// | BG0402 | causal conflict: none determines it |
-/// | BG0403 | derivative causality |
+/// | BG0403 | derivative causality where integral causality is expected, or of a displacement from the poses |
 /// | BG0404 | a law that would have to work the other way round |
 /// | **equations** | |
-/// | BG0501 | algebraic loop |
+/// | BG0501 | an algebraic loop that is not linear |
 /// | BG0502 | a transformer's law that is not linear |
 /// | BG0503 | a stored energy that the compiler cannot find |
 /// | BG0504 | a given energy whose derivative is not the law |
 /// | BG0505 | a given displacement that does not change with the flow |
 /// | BG0506 | a given energy that jumps where the law switches |
 /// | BG0507 | a given energy that could not be compared with the law |
+/// | BG0508 | an algebraic loop that leaves its variables open |
+/// | BG0509 | a start of a storage whose state others determine |
+/// | BG0510 | a state that an input determines, whose rate of change is not known |
+/// | BG0511 | a state that a comparison of others may make jump |
+/// | BG0512 | a storage in derivative causality whose effort or flow cannot be solved for |
 /// | BG0515 | friction that depends on a reaction which depends on the friction |
 /// | BG0516 | friction that cannot stick, since no momentum determines its flow |
 /// | **scenes** | |

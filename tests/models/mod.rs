@@ -5,6 +5,7 @@ pub mod brakes;
 pub mod drives;
 pub mod hacksaw_with_motor;
 pub mod joints;
+pub mod loops;
 pub mod modulated;
 pub mod nonlinear;
 pub mod permuted;
@@ -23,6 +24,9 @@ pub mod double_pendulum;
 #[path = "../../bg-model/workbench/examples/free_body.rs"]
 #[allow(dead_code)]
 pub mod free_body;
+#[path = "../../bg-model/workbench/examples/gearbox.rs"]
+#[allow(dead_code)]
+pub mod gearbox;
 #[path = "../../bg-model/workbench/examples/hydraulic_cylinder.rs"]
 #[allow(dead_code)]
 pub mod hydraulic_cylinder;
@@ -72,6 +76,10 @@ macro_rules! each_example {
             mass_spring_damper: mass_spring_damper MassSpringDamper (MassSpringDamperParameters, MassSpringDamperInputs { force });
             rlc_circuit: rlc_circuit RlcCircuit (RlcCircuitParameters, RlcCircuitInputs { voltage });
             dc_motor: dc_motor DcMotor (DcMotorParameters, DcMotorInputs { voltage });
+            gearbox: gearbox Gearbox (GearboxParameters, GearboxInputs { voltage });
+            bridge: loops Bridge (BridgeParameters);
+            lever: loops Lever (LeverParameters);
+            clipped: loops Clipped (ClippedParameters);
             hydraulic_cylinder: hydraulic_cylinder HydraulicCylinder (HydraulicCylinderParameters, HydraulicCylinderInputs { pump_flow });
             orifice: orifice Orifice (OrificeParameters);
             slider_crank: slider_crank SliderCrank (SliderCrankParameters);

@@ -12,7 +12,7 @@ use bg_compiler::stages::{Stage, stages};
 use proc_macro2::TokenStream;
 
 /// Every stage.
-const WHOLE: [&str; 10] = [
+const WHOLE: [&str; 12] = [
     "se_1_i",
     "mass_spring_damper",
     "rlc",
@@ -22,6 +22,8 @@ const WHOLE: [&str; 10] = [
     "modulated",
     "switching",
     "nonlinear_storage",
+    "rigid_gear",
+    "divider",
     "friction",
 ];
 

@@ -1,4 +1,4 @@
-//! Two inertias at one junction.
+//! Two inertias at one junction, where none may be determined by the other.
 
 use bg_model::bond_graph;
 use bg_model::input::Input;
@@ -24,6 +24,7 @@ bond_graph! {
         armature -> motor -> shaft -> J;
         shaft -> bearing;
         shaft -> flywheel;
+        expect integral causality;
     }
 }
 

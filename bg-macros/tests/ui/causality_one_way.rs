@@ -22,6 +22,7 @@ bond_graph! {
         armature -> Ra;
         armature -> motor -> shaft -> J;
         shaft -> bearing;
+        expect integral causality;
     }
 }
 

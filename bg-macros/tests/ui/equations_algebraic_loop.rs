@@ -1,4 +1,4 @@
-//! Two resistors that need each other.
+//! Two resistors that need each other, one of them not linear.
 
 use bg_model::bond_graph;
 use bg_model::integrator::Dop853;
@@ -12,7 +12,8 @@ bond_graph! {
         1 armature: electrical;
         R Ra = winding;
         0 node;
-        R Rb = 2 * winding;
+        param conductance: A/V^3 = 0.1;
+        R Rb(effort u) = conductance * u * u * u;
         supply -> armature -> Ra;
         armature -> node -> Rb;
     }

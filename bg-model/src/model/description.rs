@@ -85,7 +85,7 @@ pub struct StateInfo {
     pub unit: &'static str,
     /// What it is.
     pub kind: StateKind,
-    /// Its causality: `integral`; a graph with a storage in derivative causality does not compile.
+    /// Its causality: `integral`. A storage in derivative causality has no state; its stroke is in the bonds.
     pub causality: &'static str,
     /// The element that stores it, or the junction that it follows; empty for an integral.
     pub element: &'static str,

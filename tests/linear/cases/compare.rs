@@ -11,7 +11,7 @@ use bg_compiler::system::equations::{self, StateEquations};
 use bg_model::nalgebra::DVector;
 use fastrand::Rng;
 
-use super::network::{Law, Network};
+use super::network::{Law, Network, TIME};
 use super::solution::{self, Solution};
 use super::strokes;
 
@@ -38,7 +38,7 @@ fn stages(text: &str) -> Result<causality::CausalGraph, Vec<Fault>> {
 
 fn refused(faults: &[Fault]) -> Verdict {
     match faults.first() {
-        Some(fault) if fault.code.starts_with("BG04") || fault.code == "BG0501" => {
+        Some(fault) if fault.code.starts_with("BG04") || ["BG0508", "BG0512"].contains(&fault.code) => {
             Verdict::Refused(fault.code.to_owned())
         }
         Some(fault) => Verdict::Wrong(fault.to_string()),
@@ -49,8 +49,17 @@ fn refused(faults: &[Fault]) -> Verdict {
 /// The strokes against all assignments: accepted where one is valid, and then with the first.
 #[must_use]
 pub fn strokes(network: &Network) -> Verdict {
-    let expected = strokes::first(network);
-    match (stages(&network.text()), expected) {
+    agree(network, &network.text_with("expect integral causality;"), strokes::first(network))
+}
+
+/// The same where storages may be in derivative causality.
+#[must_use]
+pub fn preferred_strokes(network: &Network) -> Verdict {
+    agree(network, &network.text(), strokes::preferred(network))
+}
+
+fn agree(network: &Network, text: &str, expected: Option<strokes::Strokes>) -> Verdict {
+    match (stages(text), expected) {
         (Ok(causal), Some(expected)) => {
             let found: Vec<bool> = causal.strokes.iter().map(|&end| end == End::To).collect();
             if found == expected {
@@ -70,14 +79,10 @@ pub fn strokes(network: &Network) -> Verdict {
     }
 }
 
-/// All efforts, flows, rates, energies and powers against the dense solution, at states drawn from `seed`.
+/// All efforts, flows, rates, energies and powers against the dense solution, at states drawn from `seed`. What is refused because its
+/// equations have no solution must have none.
 #[must_use]
 pub fn signals(network: &Network, seed: u64) -> Verdict {
-    let result = stages(&network.text()).and_then(|causal| equations::derive(&causal));
-    let equations = match result {
-        Ok(equations) => equations,
-        Err(faults) => return refused(&faults),
-    };
     let mut rng = Rng::with_seed(seed);
     let states: Vec<DVector<f64>> = (0..network.nodes.len())
         .map(|node| {
@@ -85,17 +90,63 @@ pub fn signals(network: &Network, seed: u64) -> Verdict {
             DVector::from_fn(components, |_, _| 2.0 * rng.f64() - 1.0)
         })
         .collect();
+    let causal = match stages(&network.text()) {
+        Ok(causal) => causal,
+        Err(faults) => return refused(&faults),
+    };
+    let given = |is_given: &dyn Fn(usize) -> bool| -> Vec<Option<DVector<f64>>> {
+        states.iter().enumerate().map(|(node, state)| is_given(node).then(|| state.clone())).collect()
+    };
+    let equations = match equations::derive(&causal) {
+        Ok(equations) => equations,
+        Err(faults) => {
+            let states = given(&|node| causal.derivative.iter().all(|dependent| dependent.0 != node));
+            return match solution::solve(network, &states) {
+                Some(_) => Verdict::Wrong(format!("refused, but there is a solution: {}", faults[0])),
+                None => refused(&faults),
+            };
+        }
+    };
+    if let Some(what) = impossible(&equations) {
+        let has_none =
+            solution::solve(network, &given(&|node| causal.derivative.iter().all(|known| known.0 != node))).is_none();
+        return if has_none {
+            Verdict::Refused("by new".to_owned())
+        } else {
+            Verdict::Wrong(format!("{what}, but it has"))
+        };
+    }
+    let has_state = |node: usize| {
+        let name = &network.nodes[node].name;
+        equations.states.iter().any(|state| state.name.strip_prefix(name).is_some_and(|rest| rest.starts_with('.')))
+    };
+    let states = given(&has_state);
     let Some(solution) = solution::solve(network, &states) else {
         return Verdict::Wrong("the system has no unique solution".to_owned());
     };
-    let expected = expected(network, &states, &solution);
-    let found = found(network, equations, &states);
+    compare(&expected(network, &states, &solution), &found(network, equations, &states))
+}
+
+/// What the model's `new` would refuse.
+fn impossible(equations: &StateEquations) -> Option<String> {
+    let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
+    let environment = Environment { parameters: &parameters, ..Environment::default() };
+    let requirements = &equations.requirements;
+    let holds = |value: Id, is_strict: bool| {
+        let value = evaluate(&requirements.pool, &[value], &environment)[0];
+        value > 0.0 || value == 0.0 && !is_strict
+    };
+    let failed = requirements.list.iter().find(|requirement| !holds(requirement.value, requirement.is_strict))?;
+    Some(format!("{} {}", failed.subject, failed.wanted))
+}
+
+fn compare(expected: &[(String, f64)], found: &[f64]) -> Verdict {
     if found.len() != expected.len() {
         return Verdict::Wrong(format!("{} values for {}", found.len(), expected.len()));
     }
     let scale = expected.iter().map(|(_, value)| value.abs()).fold(1.0, f64::max);
     let mut worst = 0.0_f64;
-    for ((what, expected), found) in expected.iter().zip(&found) {
+    for ((what, expected), found) in expected.iter().zip(found) {
         let apart = (found - expected).abs() / scale;
         if apart.is_nan() || apart > ROUNDING {
             return Verdict::Wrong(format!("{what}: {found:e}, by the dense system {expected:e}"));
@@ -108,7 +159,7 @@ pub fn signals(network: &Network, seed: u64) -> Verdict {
 const ROLES: [&str; 2] = ["effort", "flow"];
 
 /// Every value by its name, from the dense solution.
-fn expected(network: &Network, states: &[DVector<f64>], solution: &Solution) -> Vec<(String, f64)> {
+fn expected(network: &Network, states: &[Option<DVector<f64>>], solution: &Solution) -> Vec<(String, f64)> {
     let mut values = Vec::new();
     for (bond, &(from, to, _)) in network.bonds.iter().enumerate() {
         for (role, variable) in ROLES.iter().zip([&solution.efforts[bond], &solution.flows[bond]]) {
@@ -123,10 +174,16 @@ fn expected(network: &Network, states: &[DVector<f64>], solution: &Solution) -> 
         let power = sign * solution.power(bond);
         let rate = match &definition.law {
             Law::Inertia(matrix) | Law::Stiffness(matrix) => {
-                stored += 0.5 * state.dot(&(matrix * state));
-                change += power;
                 let is_inertia = matches!(definition.law, Law::Inertia(_));
-                if is_inertia { solution.efforts[bond].clone() } else { sign * &solution.flows[bond] }
+                let (effort, flow) = (&solution.efforts[bond], sign * &solution.flows[bond]);
+                let (of, rate) = if is_inertia { (&flow, effort) } else { (effort, &flow) };
+                let inverse = matrix.clone().try_inverse().expect("a law with an inverse");
+                stored += 0.5 * of.dot(&(inverse * of));
+                change += power;
+                if state.is_none() {
+                    continue;
+                }
+                rate.clone()
             }
             Law::Effort(_) | Law::Flow(_) => {
                 supplied -= power;
@@ -147,9 +204,10 @@ fn expected(network: &Network, states: &[DVector<f64>], solution: &Solution) -> 
 }
 
 /// The same values from the compiler's equations, by its interpreter. It has bonds and storages in the order of the text.
-fn found(network: &Network, mut equations: StateEquations, states: &[DVector<f64>]) -> Vec<f64> {
+fn found(network: &Network, mut equations: StateEquations, states: &[Option<DVector<f64>>]) -> Vec<f64> {
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
-    let seeds = (0..).map(Symbol::State).zip(rates.iter().copied()).collect();
+    let rates_of_states = (0..).map(Symbol::State).zip(rates.iter().copied());
+    let seeds = rates_of_states.chain([(Symbol::Time, equations.pool.one())]).collect();
     let (stored, supplied, dissipated) = (equations.stored, equations.supplied, equations.dissipated);
     let change = derivative(&mut equations.pool, &[stored], &seeds)[0];
     let balance = equations.pool.linear(0.0, &[(supplied, 1.0), (dissipated, -1.0), (change, -1.0)]);
@@ -158,12 +216,12 @@ fn found(network: &Network, mut equations: StateEquations, states: &[DVector<f64
     let storages = network.nodes.iter().zip(states);
     let values: Vec<f64> = storages
         .filter(|(node, _)| matches!(node.law, Law::Inertia(_) | Law::Stiffness(_)))
-        .flat_map(|(_, state)| state.iter().copied())
+        .flat_map(|(_, state)| state.iter().flatten().copied())
         .collect();
     let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
     evaluate(
         &equations.pool,
         &roots,
-        &Environment { states: &values, parameters: &parameters, ..Environment::default() },
+        &Environment { time: TIME, states: &values, parameters: &parameters, ..Environment::default() },
     )
 }

@@ -6,7 +6,7 @@
 use bg_model::nalgebra::{DMatrix, DVector};
 use fastrand::Rng;
 
-use super::network::{Law, Network, Role};
+use super::network::{Law, Network, Role, TIME};
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +24,9 @@ pub const LOOSE: Style = Style { junctions: 5, extra: 4, elements: 20 };
 
 /// Graphs of which many have equations.
 pub const FULL: Style = Style { junctions: 6, extra: 1, elements: 50 };
+
+/// Graphs with many resistors and storages: circles of resistors, storages that determine each other.
+pub const CROWDED: Style = Style { junctions: 5, extra: 2, elements: 85 };
 
 /// A graph.
 #[must_use]
@@ -133,7 +136,12 @@ impl Sketch {
     /// A transformer with a matrix: it works one way.
     fn transformer(&mut self, size: usize, last: usize) -> usize {
         let name = self.name("t");
-        let matrix = DMatrix::from_fn(last, size, |_, _| f64::from(self.rng.i32(-20..20)) / 10.0);
+        // A square one is inverted where it stands between storages that determine each other.
+        let matrix = if size == last && size > 1 {
+            self.dominant(size, false)
+        } else {
+            DMatrix::from_fn(last, size, |_, _| f64::from(self.rng.i32(-20..20)) / 10.0)
+        };
         let of = if self.rng.bool() { Role::Flow } else { Role::Effort };
         let value = match (size, last) {
             (3, 1) => format!("dot({}, v)", row(&matrix.row(0).transpose())),
@@ -180,10 +188,23 @@ impl Sketch {
         self.bond(at, node, size);
     }
 
+    /// A number, or one that grows with time.
     fn source(&mut self, name: &str, size: usize, is_effort: bool) -> (String, Law) {
         let value = DVector::from_fn(size, |_, _| self.signed());
-        let text = format!("{} {name} = {};", if is_effort { "Se" } else { "Sf" }, row(&value));
-        (text, if is_effort { Law::Effort(value) } else { Law::Flow(value) })
+        let word = if is_effort { "Se" } else { "Sf" };
+        let of = |value: [DVector<f64>; 2]| if is_effort { Law::Effort(value) } else { Law::Flow(value) };
+        if self.rng.u32(..3) > 0 {
+            let rest = DVector::zeros(size);
+            return (format!("{word} {name} = {};", row(&value)), of([value, rest]));
+        }
+        let rate = DVector::from_fn(size, |_, _| self.signed());
+        let unit = if is_effort { "N" } else { "m/s" };
+        let text = format!(
+            "param u{name}: {unit} = 1; param s{name}: 1/s = 1; {word} {name} = u{name} * ({} + {} * (s{name} * t));",
+            row(&value),
+            row(&rate)
+        );
+        (text, of([value + TIME * &rate, rate]))
     }
 
     /// A number, one number an axis or a symmetric matrix, all positive; as text with `unit` behind each number.

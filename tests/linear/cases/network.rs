@@ -16,6 +16,9 @@ pub enum Role {
     Flow,
 }
 
+/// The time at which everything is compared, s.
+pub const TIME: f64 = 0.25;
+
 /// What a node does to the effort `e` and the flow `f` of its bonds, flows counted into the node.
 #[derive(Clone, Debug)]
 pub enum Law {
@@ -23,10 +26,10 @@ pub enum Law {
     Zero,
     /// Common flow, efforts balance.
     One,
-    /// e, along the half arrow.
-    Effort(DVector<f64>),
-    /// f, along the half arrow.
-    Flow(DVector<f64>),
+    /// e at [`TIME`] along the half arrow, and its rate.
+    Effort([DVector<f64>; 2]),
+    /// f at [`TIME`] along the half arrow, and its rate.
+    Flow([DVector<f64>; 2]),
     /// f = A p.
     Inertia(DMatrix<f64>),
     /// e = A q.
@@ -114,7 +117,13 @@ impl Network {
     /// The graph in the language.
     #[must_use]
     pub fn text(&self) -> String {
-        let mut text = "graph G {\n    param k: N/m = 1; param n: m/N = 1;\n".to_owned();
+        self.text_with("")
+    }
+
+    /// The graph in the language with another statement.
+    #[must_use]
+    pub fn text_with(&self, statement: &str) -> String {
+        let mut text = format!("graph G {{\n    param k: N/m = 1; param n: m/N = 1; {statement}\n");
         for node in &self.nodes {
             let _ = writeln!(text, "    {}", node.text);
         }

@@ -1,7 +1,10 @@
-//! The efforts and flows of all bonds as the solution of one dense system: the equations of all nodes, as they are written.
+//! The efforts and flows of all bonds as the solution of one dense system: the equations of all nodes, as they are written, and
+//! their derivatives with respect to time.
 //!
-//! In: a [`Network`] and the states of its storages. Out: efforts and flows. No strokes, no order, no substitution.
-//! Method: a row for every component of every port, elimination with the largest entry of a column as pivot.
+//! In: a [`Network`], the states of its storages, those whose states are not given. Out: efforts and flows. No strokes, no order,
+//! no substitution.
+//! Method: a row for every component of every port, and one for its rate; a storage links the rate of one variable to the other one.
+//! The rates are eliminated first, with the largest entry of a column as pivot; then efforts and flows must each have a pivot.
 
 use bg_model::nalgebra::{DMatrix, DVector};
 
@@ -24,32 +27,36 @@ impl Solution {
     }
 }
 
-/// The system: coefficients and right side of the rows so far.
+/// The system so far: rows of coefficients, the right side last.
 struct System<'a> {
     network: &'a Network,
     /// Where the unknowns of each bond start: efforts, then flows.
     starts: &'a [usize],
-    coefficients: Vec<Vec<f64>>,
-    right: Vec<f64>,
-    row: usize,
+    /// How many efforts and flows there are; their rates come before them.
+    size: usize,
+    /// 0 for the equations themselves, 1 for their rates.
+    order: usize,
+    rows: Vec<Vec<f64>>,
 }
 
-/// Solves a graph; `states` are the momentum or displacement of every node that stores. None where there is no unique solution.
+/// Solves a graph; `states` are the momentum or displacement of every node that stores, or nothing where others determine them.
+/// None where there is no unique solution.
 #[must_use]
-pub fn solve(network: &Network, states: &[DVector<f64>]) -> Option<Solution> {
+pub fn solve(network: &Network, states: &[Option<DVector<f64>>]) -> Option<Solution> {
     let mut starts = Vec::new();
     let mut size = 0;
     for &(_, _, components) in &network.bonds {
         starts.push(size);
         size += 2 * components;
     }
-    let mut system =
-        System { network, starts: &starts, coefficients: vec![vec![0.0; size]; size], right: vec![0.0; size], row: 0 };
-    for (node, state) in states.iter().enumerate() {
-        system.node(node, state);
+    let mut system = System { network, starts: &starts, size, order: 0, rows: Vec::new() };
+    for order in 0..2 {
+        system.order = order;
+        for (node, state) in states.iter().enumerate() {
+            system.node(node, state.as_ref());
+        }
     }
-    assert_eq!(system.row, size, "as many equations as unknowns");
-    let unknowns = eliminate(system.coefficients, system.right)?;
+    let unknowns = eliminate(system.rows, size)?;
     let part = |bond: usize, offset: usize| {
         let components = network.bonds[bond].2;
         DVector::from_column_slice(&unknowns[starts[bond] + offset * components..][..components])
@@ -59,48 +66,65 @@ pub fn solve(network: &Network, states: &[DVector<f64>]) -> Option<Solution> {
     Some(Solution { efforts, flows })
 }
 
-/// Gaussian elimination with row exchanges; rows without an entry in the pivot's column, which are most, stay as they are.
-fn eliminate(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
-    let size = right.len();
-    for k in 0..size {
-        let pivot = (k..size).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs()))?;
-        // The coefficients are of order one; what cancels leaves some roundings.
-        if rows[pivot][k].abs() < 1e-11 {
-            return None;
-        }
-        rows.swap(k, pivot);
-        right.swap(k, pivot);
-        let (above, below) = rows.split_at_mut(k + 1);
-        let (top, value) = (&above[k], right[k]);
-        for (row, right) in below.iter_mut().zip(&mut right[k + 1..]) {
-            let factor = row[k] / top[k];
+/// The coefficients are of order one; what cancels leaves some roundings.
+const NOTHING: f64 = 1e-10;
+
+/// The last `size` unknowns, by Gaussian elimination with row exchanges; none where they are not unique or the rows disagree. Of the
+/// unknowns before them some may be open. Rows without an entry in the pivot's column, which are most, stay as they are.
+fn eliminate(mut rows: Vec<Vec<f64>>, size: usize) -> Option<Vec<f64>> {
+    let columns = rows[0].len() - 1;
+    let mut used = 0;
+    let mut pivots = Vec::new();
+    for column in 0..columns {
+        let best = (used..rows.len()).max_by(|&a, &b| rows[a][column].abs().total_cmp(&rows[b][column].abs()));
+        let Some(best) = best.filter(|&row| rows[row][column].abs() > NOTHING) else {
+            if column >= columns - size {
+                return None;
+            }
+            continue;
+        };
+        rows.swap(used, best);
+        let (above, below) = rows.split_at_mut(used + 1);
+        let top = &above[used];
+        for row in below {
+            let factor = row[column] / top[column];
             if factor != 0.0 {
-                row[k..].iter_mut().zip(&top[k..]).for_each(|(entry, top)| *entry -= factor * top);
-                *right -= factor * value;
+                row[column..].iter_mut().zip(&top[column..]).for_each(|(entry, top)| *entry -= factor * top);
             }
         }
+        pivots.push((used, column));
+        used += 1;
     }
-    for k in (0..size).rev() {
-        let known: f64 = (k + 1..size).map(|j| rows[k][j] * right[j]).sum();
-        right[k] = (right[k] - known) / rows[k][k];
+    let scale = rows.iter().flatten().fold(1.0, |most: f64, entry| most.max(entry.abs()));
+    if rows[used..].iter().any(|row| row[columns].abs() > 1e-7 * scale) {
+        return None;
     }
-    Some(right)
+    let mut values = vec![0.0; columns];
+    for &(row, column) in pivots.iter().rev().take(size) {
+        let known: f64 = (column + 1..columns).map(|j| rows[row][j] * values[j]).sum();
+        values[column] = (rows[row][columns] - known) / rows[row][column];
+    }
+    Some(values.split_off(columns - size))
 }
 
 impl System<'_> {
-    /// The column of a component of a bond's effort or flow.
-    fn column(&self, bond: usize, role: Role, component: usize) -> usize {
+    /// The column of a component of a bond's effort or flow, or of the rate of one.
+    fn column_of(&self, order: usize, bond: usize, role: Role, component: usize) -> usize {
         let components = self.network.bonds[bond].2;
-        self.starts[bond] + component + if role == Role::Effort { 0 } else { components }
+        let place = self.starts[bond] + component + if role == Role::Effort { 0 } else { components };
+        if order == 0 { self.size + place } else { place }
+    }
+
+    fn column(&self, bond: usize, role: Role, component: usize) -> usize {
+        self.column_of(self.order, bond, role, component)
     }
 
     /// One equation: the sum of factors times unknowns is `right`.
     fn equation(&mut self, terms: &[(usize, f64)], right: f64) {
-        for &(column, factor) in terms {
-            self.coefficients[self.row][column] += factor;
-        }
-        self.right[self.row] = right;
-        self.row += 1;
+        let mut row = vec![0.0; 2 * self.size + 1];
+        terms.iter().for_each(|&(column, factor)| row[column] += factor);
+        row[2 * self.size] = right;
+        self.rows.push(row);
     }
 
     /// `left` of one bond = matrix times `right` of another + constant, where flows are multiplied by these signs.
@@ -125,7 +149,31 @@ impl System<'_> {
         }
     }
 
-    fn node(&mut self, node: usize, state: &DVector<f64>) {
+    /// A storage: one variable is A times the state, whose rate is the other variable.
+    fn storage(
+        &mut self,
+        (bond, sign): (usize, f64),
+        (of, by): (Role, Role),
+        matrix: &DMatrix<f64>,
+        state: Option<&DVector<f64>>,
+    ) {
+        let [of_sign, by_sign] = [of, by].map(|role| if role == Role::Flow { sign } else { 1.0 });
+        match (self.order, state) {
+            (0, Some(state)) => self.is(bond, of, of_sign, &(matrix * state)),
+            (0, None) => {}
+            _ => {
+                for i in 0..matrix.nrows() {
+                    let mut terms = vec![(self.column(bond, of, i), of_sign)];
+                    let entries =
+                        (0..matrix.ncols()).map(|j| (self.column_of(0, bond, by, j), -by_sign * matrix[(i, j)]));
+                    terms.extend(entries);
+                    self.equation(&terms, 0.0);
+                }
+            }
+        }
+    }
+
+    fn node(&mut self, node: usize, state: Option<&DVector<f64>>) {
         let network = self.network;
         let bonds: Vec<(usize, f64)> =
             network.bonds_of(node).map(|(bond, into)| (bond, if into { 1.0 } else { -1.0 })).collect();
@@ -133,10 +181,10 @@ impl System<'_> {
         match &network.nodes[node].law {
             Law::Zero => self.junction(&bonds, Role::Effort, Role::Flow),
             Law::One => self.junction(&bonds, Role::Flow, Role::Effort),
-            Law::Effort(value) => self.is(bond, Role::Effort, 1.0, value),
-            Law::Flow(value) => self.is(bond, Role::Flow, 1.0, value),
-            Law::Inertia(matrix) => self.is(bond, Role::Flow, sign, &(matrix * state)),
-            Law::Stiffness(matrix) => self.is(bond, Role::Effort, 1.0, &(matrix * state)),
+            Law::Effort(value) => self.is(bond, Role::Effort, 1.0, &value[self.order]),
+            Law::Flow(value) => self.is(bond, Role::Flow, 1.0, &value[self.order]),
+            Law::Inertia(matrix) => self.storage((bond, sign), (Role::Flow, Role::Effort), matrix, state),
+            Law::Stiffness(matrix) => self.storage((bond, sign), (Role::Effort, Role::Flow), matrix, state),
             Law::Resistance { matrix, of: Some(Role::Effort) } => {
                 self.map((bond, Role::Flow, sign), matrix, (bond, Role::Effort, 1.0));
             }

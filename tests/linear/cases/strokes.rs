@@ -18,11 +18,33 @@ pub const MOST: usize = 13;
 /// Where the graph has more bonds than [`MOST`].
 #[must_use]
 pub fn first(network: &Network) -> Option<Strokes> {
+    first_where(network, &|_| true)
+}
+
+/// The first valid assignment where only the storages that `is_integral` names need integral causality.
+fn first_where(network: &Network, is_integral: &dyn Fn(usize) -> bool) -> Option<Strokes> {
     let count = network.bonds.len();
     assert!(count <= MOST, "{count} bonds");
-    let rules = rules(network);
+    let rules = rules(network, is_integral);
     let found = (0..1 << count).find(|&strokes| rules.iter().all(|rule| rule.holds(strokes)))?;
     Some((0..count).map(|bond| found & bit(count, bond) != 0).collect())
+}
+
+/// The first valid assignment in which each storage in turn has integral causality where those before it leave that open: first
+/// those with laws of a variable, then the others, in their order.
+#[must_use]
+pub fn preferred(network: &Network) -> Option<Strokes> {
+    let mut storages: Vec<usize> = (0..network.nodes.len())
+        .filter(|&node| matches!(network.nodes[node].law, Law::Inertia(_) | Law::Stiffness(_)))
+        .collect();
+    storages.sort_by_key(|&node| !["(p)", "(q)"].iter().any(|law| network.nodes[node].text.contains(law)));
+    let mut integral = Vec::new();
+    for storage in storages {
+        if first_where(network, &|node| node == storage || integral.contains(&node)).is_some() {
+            integral.push(storage);
+        }
+    }
+    first_where(network, &|node| integral.contains(&node))
 }
 
 /// Whether every node has the causality that it needs.
@@ -30,7 +52,7 @@ pub fn first(network: &Network) -> Option<Strokes> {
 pub fn is_valid(network: &Network, strokes: &[bool]) -> bool {
     let count = strokes.len();
     let set = (0..count).filter(|&bond| strokes[bond]).map(|bond| bit(count, bond)).sum();
-    rules(network).iter().all(|rule| rule.holds(set))
+    rules(network, &|_| true).iter().all(|rule| rule.holds(set))
 }
 
 /// A bond's place in an assignment as a number; the first bond's counts most.
@@ -68,8 +90,8 @@ impl Rule {
     }
 }
 
-/// The rules of all nodes but those that take either causality.
-fn rules(network: &Network) -> Vec<Rule> {
+/// The rules of all nodes but those that take either causality; of storages only those that `is_integral` names have one.
+fn rules(network: &Network, is_integral: &dyn Fn(usize) -> bool) -> Vec<Rule> {
     let count = network.bonds.len();
     let of = |node: usize| -> Option<Rule> {
         let place = |pointing: Option<bool>| -> u32 {
@@ -78,6 +100,7 @@ fn rules(network: &Network) -> Vec<Rule> {
         };
         let (bonds, inward, outward) = (place(None), place(Some(true)), place(Some(false)));
         let allowed = match &network.nodes[node].law {
+            Law::Inertia(_) | Law::Stiffness(_) if !is_integral(node) => return None,
             Law::Zero => Allowed::Count(1),
             Law::One => Allowed::Count(bonds.count_ones() - 1),
             Law::Effort(_) | Law::Stiffness(_) | Law::Resistance { of: Some(Role::Flow), .. } => Allowed::Only(0),

@@ -39,7 +39,9 @@ impl Environment<'_> {
             Symbol::Slope(index) => self.slopes[index as usize],
             Symbol::Rate(index) => self.rates[index as usize],
             Symbol::Kept(_) => 1.0,
-            Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Loop => panic!("no value of {symbol:?}"),
+            Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Unsolved(_) => {
+                panic!("no value of {symbol:?}")
+            }
         }
     }
 }

@@ -29,8 +29,8 @@ pub enum Symbol {
     Multiplier(u32),
     /// Whether a row of the rigid joints takes part, 1 or 0: one that follows from the others does not. Known before a run.
     Kept(u32),
-    /// A variable of an algebraic loop, which has no value.
-    Loop,
+    /// A bond variable or state whose equation is not solved yet.
+    Unsolved(u32),
     /// The derivative of an input with respect to time.
     Slope(u32),
     /// The rate of a state.

@@ -53,6 +53,8 @@ pub struct BondGraph {
     pub impulse: bool,
     /// The rate of Baumgarte's terms, 1/s; none where rigid joints are kept by projection.
     pub baumgarte: Option<f64>,
+    /// Whether a storage in derivative causality is a fault.
+    pub expects_integral: bool,
     /// Observed outputs.
     pub observations: Vec<Observation>,
     /// The guesses in start expressions, each one unknown of the assembly.

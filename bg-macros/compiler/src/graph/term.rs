@@ -190,4 +190,42 @@ impl Term {
             }
         });
     }
+
+    /// Whether it is a linear function of the variable of its law, without a constant, as far as its form shows.
+    #[must_use]
+    pub fn is_linear(&self) -> bool {
+        self.degree() == Some(1)
+    }
+
+    /// Its degree in the variable of its law, 0 or 1; none where it is neither.
+    fn degree(&self) -> Option<u8> {
+        match &self.kind {
+            TermKind::Reference(Reference::Variable) => Some(1),
+            TermKind::Number(_) | TermKind::Reference(_) | TermKind::Guess(_) | TermKind::Integral(_) => Some(0),
+            TermKind::Component(inner, _) | TermKind::Negate(inner) => inner.degree(),
+            TermKind::Chain(first, rest) => rest.iter().try_fold(first.degree()?, |degree, operation| {
+                let right = operation.operand.degree()?;
+                match operation.operator {
+                    BinaryOperator::Add | BinaryOperator::Subtract => (degree == right).then_some(degree),
+                    BinaryOperator::Multiply => Some(degree + right).filter(|&sum| sum < 2),
+                    BinaryOperator::Divide => (right == 0).then_some(degree),
+                }
+            }),
+            TermKind::Call(builtin, arguments) => degree_of_call(*builtin, arguments),
+            TermKind::Vector(parts) => {
+                let is_zero = |part: &&Term| matches!(part.kind, TermKind::Number(0.0));
+                let mut degrees = parts.iter().filter(|part| !is_zero(part)).map(Self::degree);
+                let first = degrees.next().unwrap_or(Some(0))?;
+                degrees.all(|degree| degree == Some(first)).then_some(first)
+            }
+            TermKind::If(_, _, parts) => parts.iter().all(|part| part.degree() == Some(0)).then_some(0),
+        }
+    }
+}
+
+fn degree_of_call(builtin: Builtin, arguments: &[Term]) -> Option<u8> {
+    use Builtin as B;
+    let sum = arguments.iter().map(Term::degree).sum::<Option<u8>>()?;
+    let is_linear = matches!(builtin, B::Dot | B::Cross | B::Outer | B::Skew | B::Transpose | B::Diagonal);
+    (sum == 0 || sum == 1 && is_linear).then_some(sum)
 }

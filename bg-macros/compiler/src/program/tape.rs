@@ -109,7 +109,7 @@ fn leaf(symbol: Symbol, solution: &Solution) -> Option<(u32, u32)> {
         | Symbol::Storage(_)
         | Symbol::Flow(_)
         | Symbol::Kept(_)
-        | Symbol::Loop
+        | Symbol::Unsolved(_)
         | Symbol::Rate(_) => None,
     }
 }

@@ -69,6 +69,8 @@ pub enum Item {
     Impulse(Span),
     /// `baumgarte RATE;`
     Baumgarte(Baumgarte),
+    /// `expect integral causality;`: a storage in derivative causality is a fault.
+    IntegralCausality,
     /// `body NAME { ... }`
     Body(Body),
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`
@@ -345,7 +347,7 @@ pub struct Scene {
     pub rigid: Rigid,
     /// `angles;`: orientations that turn about one axis only are integrated as angles.
     pub angles: bool,
-    /// `expect planar;`, `expect states = 29;`
+    /// `expect planar;`, `expect states = 29;`, `expect integral causality;`
     pub expect: Vec<Expectation>,
 }
 
@@ -360,9 +362,11 @@ pub enum Rigid {
     Some(Vec<Name>),
 }
 
-/// What a scene asserts of its reduction.
+/// What a scene asserts of its reduction or of its graph.
 #[derive(Clone, Debug)]
 pub enum Expectation {
+    /// `expect integral causality;`
+    IntegralCausality,
     /// `expect planar;` with the word's span.
     Planar(Span),
     /// `expect states = N;` with the number's span.

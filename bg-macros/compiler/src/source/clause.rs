@@ -52,6 +52,8 @@ pub enum Allowed {
     Inertia,
     /// A rotation matrix.
     Rotation,
+    /// A divisor of a system of equations, which must not vanish.
+    Determined,
 }
 
 impl Clause {

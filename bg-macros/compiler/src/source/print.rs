@@ -136,6 +136,7 @@ impl Display for Item {
             Self::Gravity(Gravity { acceleration, .. }) => write!(f, "gravity {acceleration};"),
             Self::Impulse(_) => f.write_str("start impulse;"),
             Self::Baumgarte(Baumgarte { rate, .. }) => write!(f, "baumgarte {rate};"),
+            Self::IntegralCausality => Expectation::IntegralCausality.fmt(f),
             Self::Body(body) => body.fmt(f),
             Self::Joint(joint) => joint.fmt(f),
             Self::Spring(spring) => spring.fmt(f),
@@ -321,6 +322,7 @@ impl Display for Scene {
 impl Display for Expectation {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
+            Self::IntegralCausality => f.write_str("expect integral causality;"),
             Self::Planar(_) => f.write_str("expect planar;"),
             Self::States(states, _) => write!(f, "expect states = {states};"),
         }

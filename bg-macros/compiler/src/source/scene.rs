@@ -4,7 +4,7 @@
 //! with what it watches. No longer occurs: `Item::Scene`.
 
 use crate::fault::{Explain, Fault, Staged, near_miss};
-use crate::source::ast::{ElementKind, Graph, Item, Name, Rigid, Scene};
+use crate::source::ast::{ElementKind, Expectation, Graph, Item, Name, Rigid, Scene};
 use crate::source::drawing::Drawing;
 
 /// A fault of a scene.
@@ -93,11 +93,14 @@ fn idle_impulse(source: &Graph) -> Option<Fault> {
     (!source.items.iter().any(is_rigid)).then(|| Fault::new(span, &F::NothingRigid))
 }
 
-/// The scene's graph: its observations in place of the graph's, if it has any.
+/// The scene's graph: its observations in place of the graph's, if it has any, and what it expects of the strokes.
 fn watched(literal: &Graph, mut items: Vec<Item>, scene: &Scene) -> Graph {
     if !scene.observe.is_empty() {
         items.retain(|item| !matches!(item, Item::Observe(_)));
         items.push(Item::Observe(scene.observe.clone()));
+    }
+    if scene.expect.iter().any(|expected| matches!(expected, Expectation::IntegralCausality)) {
+        items.push(Item::IntegralCausality);
     }
     let docs = if scene.docs.is_empty() { literal.docs.clone() } else { scene.docs.clone() };
     Graph { docs, visibility: literal.visibility.clone(), name: scene.name.clone(), items, drawing: Drawing::default() }

@@ -66,7 +66,9 @@ fn moved(pool: &mut Pool, state: usize, by: Id) -> Id {
 /// Moves the pose with the velocities that changes of the momenta give it; orientations are made orthogonal after that.
 fn close_gaps(equations: &mut StateEquations, momenta: Vec<(usize, Id)>) {
     let pool = &mut equations.pool;
-    let seeds: BTreeMap<Symbol, Id> = momenta.into_iter().map(|(state, by)| (Symbol::state(state), by)).collect();
+    let is_momentum = |&(state, _): &(usize, Id)| equations.states[state].origin.kind() == Kind::Momentum;
+    let seeds = momenta.into_iter().filter(is_momentum).map(|(state, by)| (Symbol::state(state), by));
+    let seeds: BTreeMap<Symbol, Id> = seeds.collect();
     let is_of_pose = |kind| matches!(kind, Kind::Position | Kind::Orientation | Kind::Angle | Kind::Displacement);
     let states = &equations.states;
     let pose: Vec<usize> = (0..states.len()).filter(|&state| is_of_pose(states[state].origin.kind())).collect();

@@ -83,7 +83,7 @@ impl Emission<'_> {
                 let row = equations.solution.row(symbol).expect("a reaction that is solved for");
                 return entry("reactions", u32::try_from(row).expect("fewer than 2^32 reactions"));
             }
-            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Loop => {
+            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Unsolved(_) => {
                 unreachable!("a model's equations contain no {symbol:?}")
             }
             Symbol::Unknown(index) => return entry("u", index),

@@ -4,7 +4,8 @@
 //! Method: the sequential causality assignment procedure (SCAP) of Karnopp and Rosenberg: sources first, then laws that
 //! work one way only, then storages in integral causality in the order of declaration, then whatever is left; each
 //! assignment is propagated as far as it implies others (`procedure`). What is left is a choice; it is the first one, in
-//! the order of the bonds, that leaves a valid assignment of the rest (`completion`).
+//! the order of the bonds, that leaves a valid assignment of the rest (`completion`). A storage that cannot have integral
+//! causality has derivative causality: others determine its state.
 
 mod completion;
 mod fault;
@@ -12,6 +13,9 @@ mod matching;
 mod procedure;
 #[cfg(test)]
 mod tests;
+mod wish;
+
+use std::collections::BTreeSet;
 
 use crate::fault::Staged;
 use crate::graph::{BondGraph, BondId, ElementKind, NodeId, NodeKind};
@@ -44,6 +48,8 @@ pub struct CausalGraph {
     pub graph: BondGraph,
     /// For every bond the end with the stroke: it receives the effort and determines the flow.
     pub strokes: Vec<End>,
+    /// The storages in derivative causality.
+    pub derivative: BTreeSet<NodeId>,
     /// For every junction its strong bond.
     strong: Vec<Option<BondId>>,
 }
@@ -59,11 +65,17 @@ impl CausalGraph {
 /// Assigns every stroke.
 ///
 /// # Errors
-/// Causal conflicts, storages in derivative causality, laws that would have to work the wrong way: each that is left when
-/// those before it have given way.
+/// Causal conflicts, laws that would have to work the wrong way, storages in derivative causality where the graph expects
+/// none: each that is left when those before it have given way.
 pub fn assign(graph: BondGraph) -> Staged<CausalGraph> {
     let (strokes, strong) = procedure::run(&graph)?;
-    Ok(CausalGraph { graph, strokes, strong })
+    let nodes = (0..graph.nodes.len()).map(NodeId);
+    let is_storage = |node: NodeId| {
+        graph.element(node).is_some_and(|element| matches!(element.kind, ElementKind::I | ElementKind::C))
+    };
+    let dependent = nodes.filter(|&node| is_storage(node) && !wish::has_its_wish(&graph, &strokes, node));
+    let derivative = dependent.collect();
+    Ok(CausalGraph { graph, strokes, derivative, strong })
 }
 
 fn end_at(graph: &BondGraph, bond: BondId, node: NodeId) -> End {

@@ -1,12 +1,15 @@
 //! The sequential procedure: requests in their order, each propagated as far as it implies other strokes.
 //!
 //! In: [`BondGraph`]. Out: a stroke for every bond, or the faults. A request that cannot be met is a fault and is taken
-//! back, so that what comes after it is judged as if it had not been made.
+//! back, so that what comes after it is judged as if it had not been made. First all storages ask for integral causality.
+//! Where that leaves no valid assignment, and the graph does not insist on it, a second run gives each in turn integral
+//! causality where the rest can still be completed, and derivative causality elsewhere.
 
 use std::collections::VecDeque;
 
 use super::completion::{Lack, complete};
-use super::{CausalFault as F, End, across, end_at, is_junction, strong_end};
+use super::wish::{Wish, wish, wished};
+use super::{CausalFault as F, End, across, is_junction, strong_end};
 use crate::fault::{Fault, Staged};
 use crate::graph::{BondGraph, BondId, Element, ElementKind, Law, NodeId, NodeKind, Role};
 
@@ -19,30 +22,16 @@ enum Reason {
     Bond(BondId),
 }
 
-/// What a one-port wants of its bond.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Wish {
-    /// To give the effort.
-    GiveEffort,
-    /// To receive the effort.
-    ReceiveEffort,
-    /// Either will do.
-    Either,
-}
-
 /// The strokes, and for every junction its strong bond.
 type Strokes = (Vec<End>, Vec<Option<BondId>>);
 
 /// Runs the procedure.
 pub(super) fn run(graph: &BondGraph) -> Staged<Strokes> {
-    let mut procedure = Procedure::new(graph);
-    procedure.ask_all();
-    procedure.choose();
-    if !procedure.faults.is_empty() {
-        return Err(procedure.faults);
+    let integral = Procedure::new(graph).finished(Procedure::ask_storages);
+    if integral.is_ok() || graph.expects_integral {
+        return integral;
     }
-    let strokes = procedure.strokes.into_iter().map(|stroke| stroke.unwrap_or(End::To)).collect();
-    Ok((strokes, procedure.strong))
+    Procedure::new(graph).finished(Procedure::prefer_integral)
 }
 
 struct Procedure<'a> {
@@ -72,19 +61,76 @@ impl<'a> Procedure<'a> {
         }
     }
 
-    /// Sources, then laws that work one way, then storages.
-    fn ask_all(&mut self) {
-        let nodes = || (0..self.graph.nodes.len()).map(NodeId);
-        let fixed: Vec<NodeId> = nodes().filter(|&node| self.is_source(node)).collect();
-        let one_way: Vec<NodeId> = nodes().filter(|&node| self.is_one_way(node)).collect();
-        let storages: Vec<NodeId> = nodes().filter(|&node| self.storage(node).is_some()).collect();
-        for node in fixed.into_iter().chain(one_way).chain(storages) {
+    /// Sources, then laws that work one way, then storages as `storages` has it, then the rest.
+    fn finished(mut self, storages: fn(&mut Self)) -> Staged<Strokes> {
+        self.demand(&self.nodes(|procedure, node| procedure.is_source(node)));
+        self.demand(&self.nodes(|procedure, node| procedure.is_one_way(node)));
+        storages(&mut self);
+        self.choose();
+        if !self.faults.is_empty() {
+            return Err(self.faults);
+        }
+        let strokes = self.strokes.into_iter().map(|stroke| stroke.unwrap_or(End::To)).collect();
+        Ok((strokes, self.strong))
+    }
+
+    fn nodes(&self, wanted: impl Fn(&Self, NodeId) -> bool) -> Vec<NodeId> {
+        (0..self.graph.nodes.len()).map(NodeId).filter(|&node| wanted(self, node)).collect()
+    }
+
+    /// Gives nodes what they ask for; what cannot be is a fault.
+    fn demand(&mut self, nodes: &[NodeId]) {
+        for &node in nodes {
             let before = self.trail.len();
             if let Err(fault) = self.ask(node) {
                 self.undo(before);
                 self.faults.push(fault);
             }
         }
+    }
+
+    /// Every storage insists on integral causality.
+    fn ask_storages(&mut self) {
+        self.demand(&self.nodes(|procedure, node| procedure.storage(node).is_some()));
+    }
+
+    /// A displacement that the poses give stays one. Of the others come first those whose state is hard to replace: laws
+    /// that need not have an inverse, then those with a start of their own; then the order of declaration decides.
+    fn prefer_integral(&mut self) {
+        let posed = |procedure: &Self, node| {
+            procedure.storage(node).is_some() && procedure.graph.element(node).is_some_and(|e| e.displacement.is_some())
+        };
+        self.demand(&self.nodes(posed));
+        let mut others = self.nodes(|procedure, node| procedure.storage(node).is_some() && !posed(procedure, node));
+        others.sort_by_key(|&node| {
+            let element = self.graph.element(node);
+            let (is_of, has_start) = element
+                .map_or((false, false), |element| (matches!(element.law, Law::Of { .. }), element.start.is_some()));
+            (!is_of, !has_start)
+        });
+        let completes = self.can_be_completed();
+        for node in others {
+            self.prefer(node, completes);
+        }
+    }
+
+    /// Integral causality where it has a place and, if `completes`, the rest can then be completed; else the other stroke.
+    fn prefer(&mut self, node: NodeId, completes: bool) {
+        let before = self.trail.len();
+        if self.ask(node).is_ok() && (!completes || self.can_be_completed()) {
+            return;
+        }
+        self.undo(before);
+        if let Some((bond, stroke)) = wished(self.graph, node)
+            && self.strokes[bond.0].is_none()
+            && self.set(bond, stroke.opposite(), Reason::Node(node)).is_err()
+        {
+            self.undo(before);
+        }
+    }
+
+    fn can_be_completed(&self) -> bool {
+        complete(self.graph, &self.strokes, &vec![End::From; self.strokes.len()]).is_ok()
     }
 
     /// What no one asked for: the stroke where the half arrow starts, unless that leaves no assignment of the rest.
@@ -155,24 +201,9 @@ impl<'a> Procedure<'a> {
         self.graph.element(node).is_some_and(has_variable) && self.storage(node).is_none()
     }
 
-    fn wish(&self, node: NodeId) -> Wish {
-        use ElementKind as K;
-        let Some(element) = self.graph.element(node) else { return Wish::Either };
-        match (element.kind, &element.law) {
-            (K::Se | K::MSe | K::RSe | K::C, _) => Wish::GiveEffort,
-            (K::Sf | K::MSf | K::I, _) => Wish::ReceiveEffort,
-            (_, Law::Of { role: Role::Flow, .. }) => Wish::GiveEffort,
-            (_, Law::Of { role: Role::Effort, .. }) => Wish::ReceiveEffort,
-            _ => Wish::Either,
-        }
-    }
-
     /// Gives a node's bonds the strokes it asks for, or says why they cannot have them.
     fn ask(&mut self, node: NodeId) -> Result<(), Fault> {
-        let Some(&first) = self.graph.node(node).bonds.first() else { return Ok(()) };
-        // A two-port with a flow law receives the flow of its bond in, so it gives that bond's effort.
-        let here = end_at(self.graph, first, node);
-        let stroke = if self.wish(node) == Wish::GiveEffort { here.opposite() } else { here };
+        let Some((first, stroke)) = wished(self.graph, node) else { return Ok(()) };
         match self.strokes[first.0] {
             None => self.set(first, stroke, Reason::Node(node)),
             Some(present) if present == stroke => Ok(()),
@@ -193,12 +224,12 @@ impl<'a> Procedure<'a> {
             let forcing = if let Some(Reason::Bond(other)) = self.reasons[bond.0] { other } else { bond };
             F::Conflict {
                 junction: self.graph.node(other).name.text.clone(),
-                variable: if self.wish(node) == Wish::GiveEffort { Role::Effort } else { Role::Flow },
+                variable: if wish(self.graph, node) == Wish::GiveEffort { Role::Effort } else { Role::Flow },
                 first: (self.bond_text(forcing), by),
                 second: (self.bond_text(bond), self.label(node)),
             }
         } else {
-            let needs = if self.wish(node) == Wish::GiveEffort { "flow" } else { "effort" };
+            let needs = if wish(self.graph, node) == Wish::GiveEffort { "flow" } else { "effort" };
             F::OneWay { symbol, name, needs, by }
         };
         Fault::new(definition.name.span, &fault)

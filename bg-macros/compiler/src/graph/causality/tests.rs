@@ -83,7 +83,7 @@ fn each_fault_comes_once_and_none_hides_another() {
     let text = "1 a: translation; I i = 1; I k = 2; I l = 3; a -> i; a -> k; a -> l;
         0 b: translation; Se s = 1; Se u = 2; s -> b; u -> b;
         1 c: translation; Sf f = 1; R r(effort e) = e / 2; f -> c -> r;
-        1 d: translation; 0 z: translation; Se e = 1; e -> d; Sf w = 1; w -> z;";
+        1 d: translation; 0 z: translation; Se e = 1; e -> d; Sf w = 1; w -> z; expect integral causality;";
     assert_eq!(
         faults(text),
         [
@@ -115,10 +115,67 @@ fn choices_that_fail_in_two_places_are_two_faults() {
 #[test]
 fn residual_sinks_come_before_storages() {
     // The sink's effort is there first, so the C is what is one too many.
-    let text = "1 j: translation; I m = 1; 0 z; C c(q) = 2 * q; rSe tie = 0; j -> z -> c; j -> m; tie -> z;";
+    let text = "1 j: translation; I m = 1; 0 z; C c(q) = 2 * q; rSe tie = 0; j -> z -> c; j -> m; tie -> z;
+        expect integral causality;";
     assert_eq!(
         faults(text),
         ["BG0403 C `c` would be in derivative causality: its state is already determined by rSe `tie`"]
+    );
+}
+
+/// The storages in derivative causality.
+fn derivative(statements: &str) -> Vec<String> {
+    let causal = assigned(statements).unwrap_or_else(|faults| panic!("{}\n{statements}", faults[0]));
+    causal.derivative.iter().map(|&node| causal.graph.node(node).name.text.clone()).collect()
+}
+
+#[test]
+fn of_storages_that_determine_each_other_the_first_integrates() {
+    assert_eq!(derivative("1 a: translation; I i = 1; I k = 2; I l = 3; a -> i; a -> k; a -> l;"), ["k", "l"]);
+    assert_eq!(derivative("1 a: translation; I i = 1; I k = 2; a -> k; a -> i;"), ["k"]);
+    assert_eq!(
+        derivative("0 a: translation; C i(q) = 2 * q; C k(q) = 3 * q; Se s = 1; s -> a; a -> k; a -> i;"),
+        ["i", "k"]
+    );
+    // Through a gear and a gyrator; the C sees a flow then.
+    assert_eq!(
+        derivative("1 a: rotation; TF n = 2; 1 b: rotation; I i = 1; I k = 2; a -> i; a -> n -> b -> k;"),
+        ["k"]
+    );
+    let motor = "1 a: electrical; param r: N*m/A = 2; GY n = r; 1 b: rotation; 0 c: rotation; I l = 1; param s: N*m/rad = 2; C k = s;";
+    assert_eq!(derivative(&format!("{motor} a -> l; a -> n -> c -> k; c -> b; I j = 3; b -> j;")), ["k"]);
+}
+
+#[test]
+fn a_law_without_an_inverse_and_a_start_keep_their_states() {
+    assert_eq!(
+        derivative(
+            "1 a: translation; I i = 1; param v: m/s = 1; param h: kg*m/s = 1; I k(p) = v * tanh(p / h); a -> i; a -> k;"
+        ),
+        ["i"]
+    );
+    assert_eq!(derivative("1 a: translation; I i = 1; I k = 2 start 3; a -> i; a -> k;"), ["i"]);
+    assert_eq!(
+        derivative("1 a: translation; I i = 1; I k = 2 start 3; I l(p) = p / 2; a -> i; a -> k; a -> l;"),
+        ["i", "k"]
+    );
+}
+
+#[test]
+fn a_storage_yields_where_the_rest_could_have_no_strokes() {
+    // With its integral stroke the I would leave `b` without a flow.
+    let text = "1 a: translation; GY g = 2; 1 b: translation; I i = 1; Se s = 1; a -> g -> b; a -> i; s -> b;";
+    assert_eq!(derivative(text), ["i"]);
+}
+
+#[test]
+fn a_displacement_of_the_poses_stays_one() {
+    let text =
+        "1 j[3]: translation; position x of j; I m = 1; j -> m; MTF along(v) = dot([1, 0, 0], v); 0 s: translation;
+        C c(q) = 3 * q at x.x; j -> along -> s -> c; Se f = 1; f -> s;";
+    assert_eq!(
+        faults(text),
+        ["BG0403 C `c` would be in derivative causality: its state is already determined by Se `f`"]
     );
 }
 

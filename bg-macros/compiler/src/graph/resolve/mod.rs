@@ -99,6 +99,7 @@ impl Resolver {
             closes: Vec::new(),
             impulse: false,
             baumgarte: None,
+            expects_integral: false,
             observations: Vec::new(),
             guesses: Vec::new(),
             integrals: Vec::new(),
@@ -262,6 +263,7 @@ impl Resolver {
                 }
                 Item::Impulse(_) => self.graph.impulse = true,
                 Item::Baumgarte(baumgarte) => self.graph.baumgarte = Some(self.decay(&baumgarte.rate)),
+                Item::IntegralCausality => self.graph.expects_integral = true,
                 Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
                 _ => {}
             }

@@ -57,6 +57,7 @@ impl Cursor<'_> {
             "gravity" => self.gravity().map(Item::Gravity),
             "start" => self.impulse().map(Item::Impulse),
             "baumgarte" => self.baumgarte().map(Item::Baumgarte),
+            "expect" => self.expected_causality().map(|()| Item::IntegralCausality),
             "body" => self.body().map(Item::Body),
             "joint" => self.joint().map(Item::Joint),
             "spring" => self.spring().map(Item::Spring),
@@ -116,6 +117,20 @@ impl Cursor<'_> {
         let rate = self.expression()?;
         self.end_statement(OPERATOR);
         Ok(Baumgarte { span, rate })
+    }
+
+    /// `expect integral causality;`
+    fn expected_causality(&mut self) -> Parsed<()> {
+        self.advance();
+        self.expect_word("integral")?;
+        self.integral_causality()
+    }
+
+    /// What comes after `expect integral`.
+    pub fn integral_causality(&mut self) -> Parsed<()> {
+        self.expect_word("causality")?;
+        self.end_statement("");
+        Ok(())
     }
 
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`

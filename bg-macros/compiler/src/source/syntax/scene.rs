@@ -22,7 +22,7 @@ const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
 const NAMES: Place = Place { name: "the list", words: &[], list: true };
 
 /// What a scene can expect.
-const EXPECTATIONS: &[&str] = &["planar", "states"];
+const EXPECTATIONS: &[&str] = &["planar", "states", "integral"];
 
 /// A block of names, for messages.
 const LIST: &str = "`{ NAME, NAME }`";
@@ -128,14 +128,19 @@ impl Cursor<'_> {
         Ok(Rigid::Some(block.names("a joint")))
     }
 
-    /// `expect planar;` or `expect states = 29;`
+    /// `expect planar;`, `expect states = 29;` or `expect integral causality;`
     fn expectation(&mut self) -> Parsed<Expectation> {
         self.advance();
-        let Some(word) = self.word().map(str::to_owned) else { return Err(self.unexpected("`planar` or `states`")) };
+        let Some(word) = self.word().map(str::to_owned) else {
+            return Err(self.unexpected("`planar`, `states` or `integral`"));
+        };
         let span = self.span();
         if self.eat_word("planar").is_some() {
             self.end_statement("");
             return Ok(Expectation::Planar(span));
+        }
+        if self.eat_word("integral").is_some() {
+            return self.integral_causality().map(|()| Expectation::IntegralCausality);
         }
         if self.eat_word("states").is_none() {
             let fault = SyntaxFault::UnknownKind { what: "an expectation", word, known: EXPECTATIONS };

@@ -48,6 +48,7 @@ pub(super) const GRAPH: Place = Place {
         "gravity",
         "start",
         "baumgarte",
+        "expect",
         "joint",
         "spring",
         "drive",

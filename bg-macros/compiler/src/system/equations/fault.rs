@@ -7,6 +7,11 @@ use crate::fault::Explain;
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum EquationFault {
     AlgebraicLoop { members: Vec<String> },
+    UndeterminedLoop { members: Vec<String> },
+    DependentStart { kind: ElementKind, name: String, by: Vec<String> },
+    DependentOnInput { kind: ElementKind, name: String, input: String },
+    DependentJumps { kind: ElementKind, name: String, element: String, condition: String },
+    DependentOpen { members: Vec<String> },
     NotLinear { symbol: &'static str, name: String },
     NoEnergy { symbol: &'static str, name: String },
     EnergyOfOtherLaw { symbol: &'static str, name: String },
@@ -17,6 +22,7 @@ pub enum EquationFault {
     CannotStick { name: String, input: Option<String> },
 }
 
+use crate::graph::ElementKind;
 use EquationFault as F;
 
 impl Explain for EquationFault {
@@ -29,6 +35,11 @@ impl Explain for EquationFault {
             F::DisplacementOfOtherFlow { .. } => "BG0505",
             F::EnergyJumps { .. } => "BG0506",
             F::EnergyNotCompared { .. } => "BG0507",
+            F::UndeterminedLoop { .. } => "BG0508",
+            F::DependentStart { .. } => "BG0509",
+            F::DependentOnInput { .. } => "BG0510",
+            F::DependentJumps { .. } => "BG0511",
+            F::DependentOpen { .. } => "BG0512",
             F::FrictionOfReaction { .. } => "BG0515",
             F::CannotStick { .. } => "BG0516",
         }
@@ -38,6 +49,33 @@ impl Explain for EquationFault {
         match self {
             F::AlgebraicLoop { members } => {
                 format!("algebraic loop: each of these needs the next: {}", members.join(" -> "))
+            }
+            F::UndeterminedLoop { members } => format!(
+                "algebraic loop: {} need each other in a way that leaves their efforts and flows open, or has no solution",
+                members.join(", ")
+            ),
+            F::DependentStart { kind, name, by } => {
+                let symbol = kind.symbol();
+                let by = if by.is_empty() { "sources".to_owned() } else { by.join(", ") };
+                format!(
+                    "{symbol} `{name}` has no start of its own: it is in derivative causality, its state follows from {by}"
+                )
+            }
+            F::DependentOnInput { kind, name, input } => {
+                let symbol = kind.symbol();
+                format!(
+                    "the state of {symbol} `{name}` is given by the input `{input}`, whose rate of change is not known"
+                )
+            }
+            F::DependentJumps { kind, name, element, condition } => {
+                let symbol = kind.symbol();
+                format!(
+                    "the state of {symbol} `{name}` is given by others and may jump where `{condition}` of `{element}` changes: that \
+                     would take an impulse"
+                )
+            }
+            F::DependentOpen { members } => {
+                format!("in derivative causality, and what it gives cannot be solved for: {}", members.join(", "))
             }
             F::NotLinear { symbol, name } => {
                 format!("the law of {symbol} `{name}` is not linear in its variable, so it would not conserve power")
@@ -83,6 +121,23 @@ impl Explain for EquationFault {
                 "break the loop with a storage: bond a C or an I to one of its junctions, for example at {}",
                 members.first().map_or("one of them", String::as_str)
             ),
+            F::UndeterminedLoop { .. } => {
+                "leave out what says the same twice, such as a second transformer beside a first".to_owned()
+            }
+            F::DependentStart { by, .. } if by.is_empty() => "leave `start` out".to_owned(),
+            F::DependentStart { by, .. } => format!("leave `start` out here, and give the start of {}", by.join(", ")),
+            F::DependentOnInput { kind, name, input } => format!(
+                "write the source as a function of time, or let {} sit between `{input}` and `{name}`",
+                between(*kind)
+            ),
+            F::DependentJumps { kind, name, .. } => {
+                format!("let {} sit in front of `{name}`, or write the law without the comparison", between(*kind))
+            }
+            F::DependentOpen { members } => format!(
+                "let a C and an R (a compliant coupling) sit in front of {}, or write the laws beside it as functions of the other \
+                 variable",
+                members.first().map_or("it", String::as_str)
+            ),
             F::NotLinear { .. } => "write it as a factor times the variable, or as `dot`, `cross` of it".to_owned(),
             F::NoEnergy { .. } => "give it after the law, `energy E`".to_owned(),
             F::EnergyOfOtherLaw { .. } => "correct the energy, or leave it out".to_owned(),
@@ -107,6 +162,11 @@ impl Explain for EquationFault {
             F::CannotStick { input: None, .. } => "bond an I to its junction, or leave `holds` out".to_owned(),
         }
     }
+}
+
+/// What gives a storage integral causality.
+fn between(kind: ElementKind) -> &'static str {
+    if kind == ElementKind::I { "a C and an R (a compliant coupling)" } else { "an R" }
 }
 
 /// A number with four digits, as short as it can be.

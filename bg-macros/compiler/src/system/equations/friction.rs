@@ -28,14 +28,8 @@ struct Sticking {
 }
 
 impl Signals<'_> {
-    /// The elements whose efforts are multipliers: residual sinks, then dry friction.
-    pub(super) fn unknown_efforts(&self) -> Vec<NodeId> {
-        let sinks = self.elements(|kind| kind == ElementKind::RSe);
-        sinks.into_iter().chain(self.frictions()).collect()
-    }
-
     /// The elements of dry friction.
-    fn frictions(&self) -> impl Iterator<Item = NodeId> + use<'_> {
+    pub(super) fn frictions(&self) -> impl Iterator<Item = NodeId> + use<'_> {
         let resistors = self.elements(|kind| matches!(kind, ElementKind::R | ElementKind::Mr));
         resistors.into_iter().filter(|&node| self.graph.element(node).is_some_and(|element| element.sticking.is_some()))
     }
@@ -175,7 +169,7 @@ impl Signals<'_> {
             symbols.iter().find_map(|symbol| if let Symbol::Input(k) = symbol { Some(*k as usize) } else { None });
         let has_multiplier = symbols.iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_)));
         let sticks = !self.pool.is_zero(braking) && input.is_none() && !has_multiplier;
-        if !sticks && !self.is_in_a_loop(&friction.flow) {
+        if !sticks {
             let definition = &self.graph.node(friction.node).name;
             let input = input.map(|input| self.graph.inputs[input].name.text.clone());
             let fault = EquationFault::CannotStick { name: definition.text.clone(), input };

@@ -78,8 +78,8 @@ impl Holding {
 
     /// What must stay where the reaction of this row is wanted and may have to be shared among joints.
     pub fn shared(&self, row: usize) -> Vec<Id> {
-        let slip = &self.rigid[row];
-        if self.is_shared() { [slip.flow].into_iter().chain(slip.gap).collect() } else { Vec::new() }
+        let slip = self.rigid.get(row).filter(|_| self.is_shared());
+        slip.into_iter().flat_map(|slip| [slip.flow].into_iter().chain(slip.gap)).collect()
     }
 
     /// Whether there is nothing.

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 
 use super::EquationFault;
 use super::signals::Signals;
-use crate::expr::{Id, Symbol, derivative, same_polynomial};
+use super::unknowns::number;
+use crate::expr::{Id, Symbol, derivative, same_polynomial, substitute};
 use crate::fault::Fault;
 use crate::graph::{NodeId, Storage};
 use crate::system::Value;
@@ -59,10 +60,21 @@ impl Signals<'_> {
         let bond = graph.node(node).bonds[0];
         let flow = self.flow(bond);
         let flow = flow.scale(&mut self.pool, graph.sign(bond, node));
+        let flow = self.without_loops(&flow);
         let rates = derivative(&mut self.pool, &displacement.0, seeds);
         let proved = rates.iter().zip(&flow.0).all(|(&rate, &flow)| same_polynomial(&mut self.pool, rate, flow));
         let name = graph.node(node).name.text.clone();
-        let is_wrong = !proved && !self.is_in_a_loop(&flow);
-        is_wrong.then(|| Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name }))
+        let is_known = self.pool.symbols(&flow.0).into_iter().all(|symbol| number(symbol).is_none());
+        (!proved && is_known).then(|| Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name }))
+    }
+
+    /// The value with the algebraic loops solved that it needs.
+    fn without_loops(&mut self, value: &Value) -> Value {
+        let residuals = self.unknowns.residuals.clone();
+        if self.pool.symbols(&value.0).into_iter().all(|symbol| number(symbol).is_none()) {
+            return value.clone();
+        }
+        let values = self.solved(&residuals);
+        Value(substitute(&mut self.pool, &value.0, &|symbol| values.get(&symbol).copied()))
     }
 }

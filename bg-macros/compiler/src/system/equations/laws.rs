@@ -16,6 +16,7 @@ impl Signals<'_> {
         self.own(node);
         match element.kind {
             K::Se | K::MSe => self.evaluate(element.law.term(), None),
+            K::I if self.dependent.contains_key(&node) => self.dependent_given(node).expect("a storage"),
             K::RSe => self.reaction(node),
             K::R | K::Mr if element.sticking.is_some() => self.reaction(node),
             K::C => {
@@ -46,6 +47,7 @@ impl Signals<'_> {
         self.own(node);
         match element.kind {
             K::Sf | K::MSf => self.evaluate(element.law.term(), None),
+            K::C if self.dependent.contains_key(&node) => self.dependent_given(node).expect("a storage"),
             K::I => {
                 let momentum = self.element_state(node);
                 let flow = self.storage_law(node, element, &momentum);
@@ -80,7 +82,8 @@ impl Signals<'_> {
         if let Some(displacement) = graph.element(node).and_then(|element| element.displacement.as_ref()) {
             return self.evaluate(displacement, None);
         }
-        match self.state(Storage::Element(node)) {
+        let replaced = self.dependent.get(&node).and_then(|dependent| dependent.state.clone());
+        match replaced.or_else(|| self.state(Storage::Element(node))) {
             Some(state) => state,
             None => Value::zero(&mut self.pool, graph.bond(graph.node(node).bonds[0]).cardinality),
         }
@@ -107,6 +110,30 @@ impl Signals<'_> {
         let turned = frame.transpose().multiply(pool, state);
         let inside = inverse.act(pool, &turned);
         frame.multiply(pool, &inside)
+    }
+
+    /// The state at which a linear law of a C gives this effort, of an I this flow.
+    pub(super) fn storage_inverse(&mut self, node: NodeId, element: &Element, given: &Value) -> Value {
+        self.own(node);
+        let law = match &element.law {
+            Law::Of { value, .. } => {
+                let components = given.0.len();
+                let columns = self.matrix_of(node, element, value, components);
+                let entries = (0..components * components).map(|k| columns[k % components].0[k / components]);
+                let inverse = Value(entries.collect()).reciprocal(&mut self.pool);
+                return inverse.act(&mut self.pool, given);
+            }
+            law => self.evaluate(law.term(), None),
+        };
+        if matches!(element.law, Law::Stiffness(_)) {
+            let inverse = law.reciprocal(&mut self.pool);
+            return inverse.act(&mut self.pool, given);
+        }
+        let Some(frame) = &element.frame else { return law.act(&mut self.pool, given) };
+        let frame = self.evaluate(frame, None);
+        let turned = frame.transpose().multiply(&mut self.pool, given);
+        let inside = law.act(&mut self.pool, &turned);
+        frame.multiply(&mut self.pool, &inside)
     }
 
     /// The other bond of a two-port.

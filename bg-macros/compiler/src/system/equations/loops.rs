@@ -1,77 +1,81 @@
-//! Algebraic loops: bond variables that need each other.
+//! Groups of things that need each other.
 //!
-//! In: which variable needs which, as the derivation asks for them. Out: one fault for each set of variables that all need
-//! each other, however many circles there are in it.
+//! In: for each thing the others that it needs. Out: the groups in which all need each other, those that are needed first.
 //! Method: strongly connected components (Tarjan 1972, Depth-first search and linear graph algorithms).
 
-use crate::fault::Fault;
-
-/// What a depth-first search knows of one variable.
+/// What a depth-first search knows of one thing.
 #[derive(Clone, Copy, Debug, Default)]
 struct Visit {
     /// When it was entered, counted from 1; 0 before.
     entered: usize,
-    /// The earliest variable of its component that is known to need it and to be needed by it.
+    /// The earliest thing of its group that it is known to need.
     earliest: usize,
-    /// Whether its component is not complete.
+    /// Whether its group is not complete.
     open: bool,
 }
 
-/// The search so far. Variables are counted by the caller.
-#[derive(Debug)]
-pub(super) struct Loops {
+struct Search<'a> {
+    needs: &'a [Vec<usize>],
     visits: Vec<Visit>,
     open: Vec<usize>,
     entered: usize,
-    /// Circles that were closed, each with the variable at which it was.
-    circles: Vec<(usize, Fault)>,
+    groups: Vec<Vec<usize>>,
 }
 
-impl Loops {
-    /// Nothing visited.
-    pub fn new(variables: usize) -> Self {
-        Self { visits: vec![Visit::default(); variables], open: Vec::new(), entered: 0, circles: Vec::new() }
+/// The groups, each in the order of counting.
+pub(super) fn groups(needs: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let visits = vec![Visit::default(); needs.len()];
+    let mut search = Search { needs, visits, open: Vec::new(), entered: 0, groups: Vec::new() };
+    for thing in 0..needs.len() {
+        if search.visits[thing].entered == 0 {
+            search.visit(thing);
+        }
     }
+    search.groups
+}
 
-    /// The value of a variable begins to be calculated.
-    pub fn enter(&mut self, variable: usize) {
+impl Search<'_> {
+    fn visit(&mut self, thing: usize) {
         self.entered += 1;
-        self.visits[variable] = Visit { entered: self.entered, earliest: self.entered, open: true };
-        self.open.push(variable);
-    }
-
-    /// `by` needs a variable that has been entered before.
-    pub fn need(&mut self, variable: usize, by: Option<usize>) {
-        if let Some(by) = by
-            && self.visits[variable].open
-        {
-            self.visits[by].earliest = self.visits[by].earliest.min(self.visits[variable].entered);
-        }
-    }
-
-    /// A variable needs itself.
-    pub fn circle(&mut self, variable: usize, fault: Fault) {
-        self.circles.push((variable, fault));
-    }
-
-    /// The value is calculated, for `by`. Where that completes a component with circles, the first of them.
-    pub fn leave(&mut self, variable: usize, by: Option<usize>) -> Option<Fault> {
-        let visit = self.visits[variable];
-        if visit.earliest < visit.entered {
-            if let Some(by) = by {
-                self.visits[by].earliest = self.visits[by].earliest.min(visit.earliest);
+        self.visits[thing] = Visit { entered: self.entered, earliest: self.entered, open: true };
+        self.open.push(thing);
+        for &needed in &self.needs[thing] {
+            if self.visits[needed].entered == 0 {
+                self.visit(needed);
             }
-            return None;
+            if self.visits[needed].open {
+                self.visits[thing].earliest = self.visits[thing].earliest.min(self.visits[needed].earliest);
+            }
         }
-        let first = self.open.iter().rposition(|&open| open == variable)?;
-        for member in self.open.split_off(first) {
-            self.visits[member].open = false;
+        if self.visits[thing].earliest == self.visits[thing].entered {
+            self.close(thing);
         }
-        // Components complete from the inside: all circles that are left and closed at what is complete are of this one.
-        let (of_this, others) =
-            std::mem::take(&mut self.circles).into_iter().partition(|(at, _)| !self.visits[*at].open);
-        self.circles = others;
-        let circles: Vec<(usize, Fault)> = of_this;
-        circles.into_iter().next().map(|(_, fault)| fault)
+    }
+
+    /// The first thing of a group has been left: all that is open since belongs to it.
+    fn close(&mut self, first: usize) {
+        let from = self.open.iter().rposition(|&open| open == first).unwrap_or(0);
+        let mut group = self.open.split_off(from);
+        group.iter().for_each(|&member| self.visits[member].open = false);
+        group.sort_unstable();
+        self.groups.push(group);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::groups;
+
+    #[test]
+    fn what_needs_each_other_is_a_group_and_what_is_needed_comes_first() {
+        let needs = [vec![1], vec![2, 4], vec![0], vec![3], vec![5], vec![], vec![0, 7], vec![6]];
+        assert_eq!(groups(&needs), [vec![5], vec![4], vec![0, 1, 2], vec![3], vec![6, 7]]);
+        assert!(groups(&[]).is_empty());
+    }
+
+    #[test]
+    fn circles_that_share_a_member_are_one_group() {
+        assert_eq!(groups(&[vec![1], vec![0, 2], vec![1]]), [vec![0, 1, 2]]);
+        assert_eq!(groups(&[vec![2], vec![0], vec![1, 3], vec![2]]), [vec![0, 1, 2, 3]]);
     }
 }

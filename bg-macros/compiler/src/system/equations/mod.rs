@@ -2,8 +2,10 @@
 //!
 //! In: [`CausalGraph`]. Out: [`StateEquations`]. No longer occurs: bonds, ports and junctions; scalars only from here.
 //! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one expression;
-//! storages in integral causality turn theirs into rates.
+//! storages in integral causality turn theirs into rates, those in derivative causality differentiate theirs. What needs itself is an
+//! unknown at first, with an equation that is solved in symbols where it is linear.
 
+mod dependent;
 mod energy;
 mod fallible;
 mod fault;
@@ -12,16 +14,21 @@ mod holding;
 mod kinematics;
 mod laws;
 mod loops;
+mod memo;
 mod origin;
 mod reactions;
 mod requirements;
 mod shown;
 mod signals;
+mod solving;
 mod storage;
 mod terms;
 #[cfg(test)]
 mod tests;
 mod text;
+mod unknowns;
+
+use std::collections::BTreeSet;
 
 use crate::expr::{Id, Pool, Symbol, text as expression_text};
 use crate::fault::Staged;
@@ -179,9 +186,17 @@ pub struct Output {
 /// Derives the state equations.
 ///
 /// # Errors
-/// Algebraic loops, transformers that are not linear, energies that cannot be found, numbers that no physics allows.
+/// Algebraic loops that are not linear or leave something open, storages in derivative causality whose states have no derivative,
+/// transformers that are not linear, energies that cannot be found, numbers that no physics allows.
 pub fn derive(causal: &CausalGraph) -> Staged<StateEquations> {
-    signals::Signals::new(causal).derive()
+    let mut kept = BTreeSet::new();
+    loop {
+        let mut signals = signals::Signals::new(causal, &kept);
+        match signals.solve_bonds() {
+            Some(node) => kept.extend([node]),
+            None => return signals.derive(),
+        }
+    }
 }
 
 impl StateEquations {
@@ -194,20 +209,24 @@ impl StateEquations {
     /// A symbol's name in texts.
     #[must_use]
     pub fn symbol_name(&self, symbol: Symbol) -> String {
-        match symbol {
-            Symbol::Time => "t".to_owned(),
-            Symbol::State(index) => self.states[index as usize].name.clone(),
-            Symbol::Parameter(index) => self.parameters[index as usize].name.text.clone(),
-            Symbol::Input(index) => self.inputs[index as usize].name.text.clone(),
-            Symbol::Unknown(index) => format!("unknown_{}", index + 1),
-            Symbol::Law(index) => format!("law_{index}"),
-            Symbol::Storage(index) => format!("storage_{index}"),
-            Symbol::Flow(index) => format!("flow_{index}"),
-            Symbol::Multiplier(index) => format!("multiplier_{index}"),
-            Symbol::Kept(index) => format!("kept_{index}"),
-            Symbol::Loop => "loop".to_owned(),
-            Symbol::Slope(index) => format!("{}'", self.inputs[index as usize].name.text),
-            Symbol::Rate(index) => format!("{}'", self.states[index as usize].name),
-        }
+        symbol_name(symbol, &self.states, &self.parameters, &self.inputs)
+    }
+}
+
+fn symbol_name(symbol: Symbol, states: &[State], parameters: &[Parameter], inputs: &[Input]) -> String {
+    match symbol {
+        Symbol::Time => "t".to_owned(),
+        Symbol::State(index) => states[index as usize].name.clone(),
+        Symbol::Parameter(index) => parameters[index as usize].name.text.clone(),
+        Symbol::Input(index) => inputs[index as usize].name.text.clone(),
+        Symbol::Unknown(index) => format!("unknown_{}", index + 1),
+        Symbol::Law(index) => format!("law_{index}"),
+        Symbol::Storage(index) => format!("storage_{index}"),
+        Symbol::Flow(index) => format!("flow_{index}"),
+        Symbol::Multiplier(index) => format!("multiplier_{index}"),
+        Symbol::Kept(index) => format!("kept_{index}"),
+        Symbol::Unsolved(index) => format!("unsolved_{index}"),
+        Symbol::Slope(index) => format!("{}'", inputs[index as usize].name.text),
+        Symbol::Rate(index) => format!("{}'", states[index as usize].name),
     }
 }

@@ -1,6 +1,6 @@
 //! Reactions of rigid joints: efforts that are not given but keep a flow at zero.
 //!
-//! In: residual sinks. Out: [`Reaction`]s over multipliers, to be solved for where the rates are known.
+//! In: residual sinks, storages whose states are kept in step. Out: [`Reaction`]s over multipliers, to be solved for where the rates are known.
 //! Source: the residual sink of Borutzky, Bond Graph Methodology (2010), section 4.
 
 use super::signals::Signals;
@@ -24,10 +24,19 @@ impl Signals<'_> {
     /// Every residual sink's multipliers with the flows they keep at zero, then those of dry friction.
     pub(super) fn reactions(&mut self) -> Vec<Reaction> {
         let graph = self.graph;
-        let nodes = self.elements(|kind| kind == ElementKind::RSe);
+        let is_held = |node: &NodeId| self.reactions.contains_key(node);
+        let held: Vec<NodeId> = self.dependent.keys().copied().filter(is_held).collect();
+        let nodes = self.elements(|kind| kind == ElementKind::RSe).into_iter().chain(held);
         let mut reactions = Vec::new();
         for node in nodes {
             let Some(element) = graph.element(node) else { continue };
+            if self.dependent.contains_key(&node) {
+                let slips = self.dependent_slips(node);
+                let multipliers = self.multipliers(node, slips.len());
+                let pairs = multipliers.zip(slips);
+                reactions.extend(pairs.map(|(multiplier, slip)| Reaction { slip, multiplier, friction: None }));
+                continue;
+            }
             let bond = graph.node(node).bonds[0];
             // The law is the flow along the half arrow; the reaction acts against the flow into the sink.
             let sign = graph.sign(bond, node);

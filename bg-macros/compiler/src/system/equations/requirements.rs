@@ -3,6 +3,7 @@
 //! In: the resolved graph. Out: [`Requirements`] over a pool of their own.
 
 use super::signals::Signals;
+use super::solving::Pivot;
 use crate::graph::units::Dimension;
 use crate::graph::{
     Allowed, BinaryOperator, BondGraph, Builtin, CausalGraph, ElementKind, End, Law, NodeId, Reference, Term, TermKind,
@@ -29,6 +30,11 @@ impl Signals<'_> {
         let mut requirements = Requirements::over(std::mem::replace(&mut self.pool, pool));
         for ((subject, _), value) in asked.iter().zip(&values) {
             requirements.ask(subject, value);
+        }
+        for Pivot { what, node, value } in &self.pivots {
+            let (span, what, unit) = (graph.node(*node).name.span, what.clone(), String::new());
+            let subject = Subject { what, unit, span, allowed: Allowed::Determined };
+            requirements.ask(&subject, &Value::scalar(*value));
         }
         requirements
     }
@@ -59,6 +65,9 @@ fn law(causal: &CausalGraph, node: NodeId) -> Option<Asked<'_>> {
             ("resistance", allowed, resistance)
         }
         (K::I, Law::Parameter(_)) => ("inertia", Allowed::Positive, resistance.times(Dimension::SECOND)),
+        (K::C, Law::Stiffness(_)) if causal.derivative.contains(&node) => {
+            ("stiffness", Allowed::Positive, resistance.per(Dimension::SECOND))
+        }
         (K::C, Law::Stiffness(_)) => ("stiffness", Allowed::NotNegative, resistance.per(Dimension::SECOND)),
         (K::C, Law::Compliance(_)) => ("compliance", Allowed::Positive, Dimension::SECOND.per(resistance)),
         _ => return None,

@@ -1,42 +1,24 @@
 //! Effort and flow of every bond, each from the end that gives it.
 //!
-//! In: strokes. Out: component expressions, calculated when first asked for; a variable that needs itself is an
-//! algebraic loop.
+//! In: strokes. Out: component expressions, calculated when first asked for; a variable that needs itself is an unknown
+//! until all are known.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use super::dependent::{Dependent, Way, dependents, way};
 use super::fallible::Nature;
-use super::loops::Loops;
-use super::{EquationFault, FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
+use super::memo::{Entry, Memo};
+use super::solving::Pivot;
+use super::unknowns::Unknowns;
+use super::{FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::units::Dimension;
-use crate::graph::{BondGraph, BondId, CausalGraph, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind};
+use crate::graph::{
+    BondGraph, BondId, CausalGraph, ElementKind, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
+};
 use crate::system::Value;
 use crate::system::solution::Solution;
-
-/// A memo of bond variables and lets.
-#[derive(Clone, Debug)]
-pub(super) struct Memo {
-    efforts: Vec<Entry>,
-    flows: Vec<Entry>,
-    pub(super) lets: Vec<Option<Value>>,
-}
-
-/// A bond variable's state in the memo.
-#[derive(Clone, Debug)]
-enum Entry {
-    Open,
-    Entered,
-    Done(Value),
-}
-
-impl Memo {
-    fn new(graph: &BondGraph) -> Self {
-        let open = vec![Entry::Open; graph.bonds.len()];
-        Self { efforts: open.clone(), flows: open, lets: vec![None; graph.lets.len()] }
-    }
-}
 
 /// The derivation in progress.
 pub(super) struct Signals<'a> {
@@ -50,21 +32,27 @@ pub(super) struct Signals<'a> {
     /// First state and shape of every storage, in their order.
     pub(super) layout: Vec<(Storage, usize, Shape)>,
     pub(super) first_integral: usize,
-    /// First multiplier of every residual sink and of dry friction.
+    /// First multiplier of every residual sink, of every storage that what it gives keeps in step, and of dry friction.
     pub(super) reactions: BTreeMap<NodeId, u32>,
+    /// The storages in derivative causality.
+    pub(super) dependent: BTreeMap<NodeId, Dependent>,
+    /// What has no value yet.
+    pub(super) unknowns: Unknowns,
+    /// What solutions divide by and parameters may make zero.
+    pub(super) pivots: Vec<Pivot>,
     pub(super) switches: Vec<Switch>,
     /// What is being evaluated, for the switches' names.
     pub(super) owner: String,
     pub(super) fallible: Vec<FallibleLaw>,
     /// What is known of the lets.
     pub(super) natures: Vec<Option<Nature>>,
-    path: Vec<(Role, BondId)>,
-    loops: Loops,
+    pub(super) path: Vec<(Role, BondId)>,
     pub(super) faults: Vec<Fault>,
 }
 
 impl<'a> Signals<'a> {
-    pub(super) fn new(causal: &'a CausalGraph) -> Self {
+    /// The derivation's beginning; the storages `kept` keep their states although they are in derivative causality.
+    pub(super) fn new(causal: &'a CausalGraph, kept: &BTreeSet<NodeId>) -> Self {
         let mut signals = Self {
             causal,
             graph: &causal.graph,
@@ -75,25 +63,43 @@ impl<'a> Signals<'a> {
             layout: Vec::new(),
             first_integral: 0,
             reactions: BTreeMap::new(),
+            dependent: BTreeMap::new(),
+            unknowns: Unknowns::default(),
+            pivots: Vec::new(),
             switches: Vec::new(),
             owner: String::new(),
             fallible: Vec::new(),
             natures: vec![None; causal.graph.lets.len()],
             path: Vec::new(),
-            loops: Loops::new(2 * causal.graph.bonds.len()),
             faults: Vec::new(),
         };
-        signals.lay_out();
+        signals.lay_out(kept);
+        let tables = (&mut signals.pool, &mut signals.unknowns, &signals.reactions);
+        signals.dependent = dependents(causal, kept, tables);
         signals
     }
 
-    /// Runs the derivation.
-    pub(super) fn derive(mut self) -> Staged<StateEquations> {
+    /// Effort and flow of every bond, the states' rates. A storage in derivative causality whose state must stay after all.
+    pub(super) fn solve_bonds(&mut self) -> Option<NodeId> {
         self.prove_displacements();
         self.fallible.clear();
+        for bond in (0..self.graph.bonds.len()).map(BondId) {
+            self.effort(bond);
+            self.flow(bond);
+        }
+        self.rates();
+        self.equate_dependents();
+        let residuals = std::mem::take(&mut self.unknowns.residuals);
+        let values = self.solved(&residuals);
+        self.put(&values);
+        self.independent_after_all()
+    }
+
+    /// Runs the derivation, where the bonds are solved.
+    pub(super) fn derive(mut self) -> Staged<StateEquations> {
+        self.solve_dependents();
         let bonds = (0..self.graph.bonds.len()).map(BondId);
         let bonds = bonds.map(|bond| [self.effort(bond), self.flow(bond)].map(|value| Some(value.0))).collect();
-        self.rates();
         let stored = self.stored_energy();
         let (supplied, dissipated) = (self.supplied_power(), self.dissipated_power());
         if !self.faults.is_empty() {
@@ -141,9 +147,20 @@ impl<'a> Signals<'a> {
         })
     }
 
+    /// Whether a storage has no state of its own.
+    fn is_replaced(&self, storage: Storage, kept: &BTreeSet<NodeId>) -> bool {
+        let Storage::Element(node) = storage else { return false };
+        let is_dependent = self.causal.derivative.contains(&node);
+        let element = self.graph.element(node).filter(|_| is_dependent);
+        element.is_some_and(|element| way(element, kept.contains(&node)) == Way::Replaced)
+    }
+
     /// Gives every storage its states' indices.
-    fn lay_out(&mut self) {
+    fn lay_out(&mut self, kept: &BTreeSet<NodeId>) {
         for &storage in &self.graph.storages {
+            if self.is_replaced(storage, kept) {
+                continue;
+            }
             let shape = match storage {
                 Storage::Element(node) => {
                     let bond = self.graph.node(node).bonds[0];
@@ -164,7 +181,14 @@ impl<'a> Signals<'a> {
             }
         }
         let mut multipliers = 0;
-        for node in self.unknown_efforts() {
+        let is_held = |node: &NodeId| {
+            let element = self.graph.element(*node);
+            element.is_some_and(|element| way(element, kept.contains(node)) == Way::Held)
+        };
+        let held: Vec<NodeId> = self.causal.derivative.iter().copied().filter(is_held).collect();
+        let sinks = self.elements(|kind| kind == ElementKind::RSe);
+        let unknown: Vec<NodeId> = sinks.into_iter().chain(held).chain(self.frictions()).collect();
+        for node in unknown {
             self.reactions.insert(node, multipliers);
             let bond = self.graph.node(node).bonds[0];
             multipliers += u32::try_from(self.graph.bond(bond).cardinality).expect("1 or 3");
@@ -207,26 +231,17 @@ impl<'a> Signals<'a> {
     }
 
     fn variable(&mut self, variable: Role, bond: BondId) -> Value {
-        let number = |(variable, bond): (Role, BondId)| 2 * bond.0 + usize::from(variable == Role::Flow);
-        let own = number((variable, bond));
-        let by = self.path.last().copied().map(number);
         match self.entry(variable, bond).clone() {
-            Entry::Done(value) => {
-                self.loops.need(own, by);
-                return value;
-            }
-            Entry::Entered => {
-                self.loops.need(own, by);
-                self.loops.circle(own, self.circle(variable, bond));
-                // So that what else is wrong can be found.
-                let unknown = self.pool.symbol(Symbol::Loop);
-                return Value(vec![unknown; self.graph.bond(bond).cardinality]);
+            Entry::Done(value) | Entry::Entered(Some(value)) => return value,
+            Entry::Entered(None) => {
+                let symbols = self.torn(variable, bond);
+                *self.entry(variable, bond) = Entry::Entered(Some(symbols.clone()));
+                return symbols;
             }
             Entry::Open => {}
         }
-        *self.entry(variable, bond) = Entry::Entered;
+        *self.entry(variable, bond) = Entry::Entered(None);
         self.path.push((variable, bond));
-        self.loops.enter(own);
         let ends = self.graph.bond(bond);
         let (stroke_node, other) = match self.causal.strokes[bond.0] {
             End::From => (ends.from, ends.to),
@@ -239,36 +254,33 @@ impl<'a> Signals<'a> {
         };
         self.owner = owner;
         self.path.pop();
-        self.faults.extend(self.loops.leave(own, by));
+        let value = match self.entry(variable, bond).clone() {
+            Entry::Entered(Some(symbols)) => {
+                self.unknowns.equate(&mut self.pool, &symbols, (&symbols, &value));
+                symbols
+            }
+            _ => value,
+        };
         *self.entry(variable, bond) = Entry::Done(value.clone());
         value
     }
 
-    /// The loop that ends where it began: at this variable.
-    fn circle(&self, variable: Role, bond: BondId) -> Fault {
-        let start = self.path.iter().position(|&step| step == (variable, bond)).unwrap_or(0);
-        let mut nodes: Vec<NodeId> = Vec::new();
-        for &(_, bond) in &self.path[start..] {
-            let ends = self.graph.bond(bond);
-            nodes.extend([ends.from, ends.to].into_iter().filter(|node| !nodes.contains(node)).collect::<Vec<_>>());
-        }
-        // Elements say more; a loop may have none.
-        if nodes.iter().any(|&node| self.graph.element(node).is_some()) {
-            nodes.retain(|&node| self.graph.element(node).is_some());
-        }
-        let members = nodes.into_iter().map(|node| format!("`{}`", self.graph.node(node).name.text)).collect();
-        Fault::new(self.graph.bond(bond).span, &EquationFault::AlgebraicLoop { members })
+    /// A bond variable that has been calculated.
+    pub(super) fn known(&self, variable: Role, bond: BondId) -> Option<&Value> {
+        let entries = if variable == Role::Effort { &self.memo.efforts } else { &self.memo.flows };
+        if let Entry::Done(value) = &entries[bond.0] { Some(value) } else { None }
     }
 
-    /// Whether a value needs one of an algebraic loop, which is not known.
-    pub(super) fn is_in_a_loop(&self, value: &Value) -> bool {
-        self.pool.symbols(&value.0).contains(&Symbol::Loop)
+    /// A symbol's name in texts.
+    pub(super) fn symbol_name(&self, symbol: Symbol) -> String {
+        super::symbol_name(symbol, &self.states, &self.graph.parameters, &self.graph.inputs)
     }
 
     /// Forgets what bonds carry and the faults found in that: they are found again.
     pub(super) fn forget(&mut self) {
         self.memo = Memo::new(self.graph);
-        self.loops = Loops::new(2 * self.graph.bonds.len());
+        self.unknowns.residuals.clear();
+        self.pivots.clear();
         self.faults.clear();
     }
 

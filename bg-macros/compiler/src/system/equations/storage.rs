@@ -123,15 +123,20 @@ impl Signals<'_> {
         let graph = self.graph;
         let Some(element) = graph.element(node) else { return self.pool.zero() };
         let state = self.element_state(node);
+        self.energy_at(node, element, &state)
+    }
+
+    /// The energy stored in a C or I at a state.
+    fn energy_at(&mut self, node: NodeId, element: &Element, state: &Value) -> Id {
         match (&element.law, &element.energy) {
             (Law::Of { .. }, Some(term)) => {
                 self.check_energy(node, element, term);
-                self.evaluate(term, Some(&state)).0[0]
+                self.evaluate(term, Some(state)).0[0]
             }
-            (Law::Of { .. }, None) => self.found_energy(node, element, &state),
+            (Law::Of { .. }, None) => self.found_energy(node, element, state),
             _ => {
-                let effort = self.storage_law(node, element, &state);
-                let product = effort.dot(&mut self.pool, &state);
+                let effort = self.storage_law(node, element, state);
+                let product = effort.dot(&mut self.pool, state);
                 self.pool.scale(0.5, product)
             }
         }
@@ -191,11 +196,25 @@ impl Signals<'_> {
         if element.displacement.is_some() {
             return self.modulation_of_displaced(node, element);
         }
+        if self.dependent.get(&node).is_some_and(|dependent| dependent.state.is_some()) {
+            return self.modulation_of_dependent(node, element);
+        }
         // At rest of its own states: their seeds are missing.
         let own = self.element_state(node).0;
         let seeds = self.rate_seeds(&own);
         let energy = self.energy_of(node);
         derivative(&mut self.pool, &[energy], &seeds)[0]
+    }
+
+    /// Of a storage whose state others determine: that is held constant while the rest changes.
+    fn modulation_of_dependent(&mut self, node: NodeId, element: &Element) -> Id {
+        let state = self.element_state(node);
+        let (own, variable) = self.own_symbols(state.0.len());
+        let energy = self.energy_at(node, element, &variable);
+        let seeds = self.rate_seeds(&[]);
+        let change = derivative(&mut self.pool, &[energy], &seeds);
+        let find = |symbol| own.iter().position(|&known| known == symbol).map(|k| state.0[k]);
+        substitute(&mut self.pool, &change, &find)[0]
     }
 
     /// Of a C whose displacement the poses determine: the displacement is held constant while the rest changes.

@@ -61,3 +61,5 @@ fn a_storage_takes_up_power_whichever_way_its_half_arrow_points() {
         assert_eq!(found, [3.0 * sign, 5.0 * sign, 15.0 * sign], "{arrow}");
     }
 }
+
+mod loops;

@@ -1,11 +1,17 @@
 //! The equations of the causal graph as text: who gives what to whom.
 //!
-//! In: the derivation's graph. Out: one line for every bond variable, one for every state.
+//! In: the derivation's graph. Out: one line for every bond variable, one for every state, one for what was solved.
 
+use super::dependent::Way;
 use super::signals::Signals;
+use super::unknowns::Unknown;
+use crate::expr::{Id, Symbol, text as expression_text};
 use crate::graph::{BondId, ElementKind, End, Law, NodeId, NodeKind, Role, Storage, TrackKind};
 
-/// All lines: for every bond its effort and its flow, then the rates.
+/// An expression longer than this is told by what it depends on.
+const LONGEST: usize = 300;
+
+/// All lines: for every bond its effort and its flow, then the rates, then what has been solved for.
 pub(super) fn equations(signals: &Signals<'_>) -> Vec<String> {
     let bonds = signals.graph.bonds.len();
     let mut lines = Vec::new();
@@ -23,7 +29,50 @@ pub(super) fn equations(signals: &Signals<'_>) -> Vec<String> {
         lines.push(format!("{} = {}", variable(signals, Role::Flow, bond), given(signals, receives, bond, Role::Flow)));
     }
     lines.extend(signals.layout.iter().map(|&(storage, ..)| rate(signals, storage)));
+    lines.extend(loops(signals));
+    lines.extend(states(signals));
     lines
+}
+
+/// The variables at which algebraic loops were opened.
+fn loops(signals: &Signals<'_>) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (k, unknown) in signals.unknowns.all.iter().enumerate() {
+        let Unknown::Variable(role, bond, _) = *unknown else { continue };
+        let first = k == 0 || signals.unknowns.all[k - 1] != *unknown;
+        if let Some(value) = signals.known(role, bond).filter(|_| first) {
+            lines.push(format!(
+                "{} = {}, from an algebraic loop",
+                variable(signals, role, bond),
+                shown(signals, &value.0)
+            ));
+        }
+    }
+    lines
+}
+
+/// The states that others determine.
+fn states(signals: &Signals<'_>) -> Vec<String> {
+    let line = |(&node, dependent): (&NodeId, &super::dependent::Dependent)| {
+        let letter = if signals.graph.element(node)?.kind == ElementKind::C { "q" } else { "p" };
+        let state = dependent.state.as_ref()?;
+        Some(format!("{}.{letter} = {}, derivative causality", name(signals, node), shown(signals, &state.0)))
+    };
+    signals.dependent.iter().filter_map(line).collect()
+}
+
+/// Components as text.
+fn shown(signals: &Signals<'_>, ids: &[Id]) -> String {
+    let guard = |switch: u32| format!("guard_{switch}");
+    let show = |&id: &Id| expression_text(&signals.pool, id, &|symbol| signals.symbol_name(symbol), &guard);
+    let parts: Vec<String> = ids.iter().map(show).collect();
+    let text = if parts.len() == 1 { parts.concat() } else { format!("[{}]", parts.join(", ")) };
+    if text.len() <= LONGEST {
+        return text;
+    }
+    let symbols = signals.pool.symbols(ids).into_iter().filter(|symbol| !matches!(symbol, Symbol::Parameter(_)));
+    let names: Vec<String> = symbols.map(|symbol| signals.symbol_name(symbol)).collect();
+    format!("a function of {}", names.join(", "))
 }
 
 fn name(signals: &Signals<'_>, node: NodeId) -> String {
@@ -69,6 +118,13 @@ fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, role: Role) -> Strin
                 ElementKind::RSe => " kept by its reaction".to_owned(),
                 ElementKind::R | ElementKind::Mr if element.sticking.is_some() => {
                     format!(" of {}, or what keeps it at zero", variable(signals, role.other(), bond))
+                }
+                ElementKind::C | ElementKind::I if signals.dependent.contains_key(&node) => {
+                    let letter = if element.kind == ElementKind::C { "q" } else { "p" };
+                    match signals.dependent[&node].way {
+                        Way::Replaced => format!(" by the change of {}.{letter}", definition.name.text),
+                        Way::Held | Way::Kept => format!(" that keeps {}.{letter} in step", definition.name.text),
+                    }
                 }
                 ElementKind::C if element.displacement.is_some() => " of its displacement in the poses".to_owned(),
                 ElementKind::C => format!(" of {}.q", definition.name.text),

@@ -51,8 +51,8 @@ fn of_joints(reactions: &[Reaction]) -> Vec<Vec<usize>> {
 
 /// The momenta whose rates depend on multipliers, and how.
 pub(super) fn moves(pool: &mut Pool, states: &[State], reactions: &[Reaction]) -> Vec<(usize, Vec<Id>)> {
-    let momenta: Vec<usize> =
-        (0..states.len()).filter(|&state| states[state].origin.kind() == Kind::Momentum).collect();
+    let is_moved = |kind| matches!(kind, Kind::Momentum | Kind::Displacement);
+    let momenta: Vec<usize> = (0..states.len()).filter(|&state| is_moved(states[state].origin.kind())).collect();
     let rates: Vec<Id> = momenta.iter().map(|&state| states[state].rate).collect();
     let columns: Vec<Vec<Id>> = reactions.iter().map(|reaction| partial(pool, &rates, reaction.multiplier)).collect();
     let row = |k: usize| columns.iter().map(|column| column[k]).collect::<Vec<Id>>();

@@ -13,6 +13,7 @@ use crate::system::equations::StateEquations;
 use crate::system::reduce::expectation::wanted;
 use crate::{pipeline, program};
 
+mod dependent;
 mod networks;
 
 /// A scene's equations after the reductions beside those of its own literal graph.

@@ -7,7 +7,7 @@
 //! Automation Letters 3).
 
 use super::fault::Kind;
-use crate::expr::{Function, Id, Pool};
+use crate::expr::{Function, Id, Node, Pool};
 use crate::graph::Allowed;
 use crate::system::Value;
 
@@ -50,6 +50,7 @@ pub(super) fn of(pool: &mut Pool, value: &Value, allowed: Allowed) -> Vec<Condit
     let is_matrix = value.0.len() == 9;
     match allowed {
         Allowed::Any => Vec::new(),
+        Allowed::Determined => vec![determined(pool, value.0[0])],
         Allowed::Rotation => rotation(pool, value),
         Allowed::Inertia if is_matrix => [symmetric_positive(pool, value), triangle(pool, value)].concat(),
         Allowed::Inertia => {
@@ -168,6 +169,19 @@ fn triangle(pool: &mut Pool, tensor: &Value) -> Vec<Condition> {
     let wanted = "must have no principal moment larger than the other two together";
     let help = "no body has such moments: correct them, or build the body of solids";
     pivots(pool, &masses).into_iter().map(|pivot| of_matrix(pivot, wanted, help)).collect()
+}
+
+/// A pivot that is more than what is left of its terms where they cancel.
+fn determined(pool: &mut Pool, pivot: Id) -> Condition {
+    let terms: Vec<Id> = match pool.node(pivot) {
+        Node::Sum { terms, .. } => terms.iter().map(|(term, _)| *term).collect(),
+        _ => Vec::new(),
+    };
+    let mut parts = vec![(pool.call(Function::Abs, &[pivot]), 1.0)];
+    parts.extend(terms.into_iter().map(|term| (pool.call(Function::Abs, &[term]), -PIVOT)));
+    let value = pool.linear(0.0, &parts);
+    let help = "change a ratio, a resistance or an inertia in it";
+    of_matrix(value, "must have one solution, and for these parameters it has none or many", help)
 }
 
 fn rotation(pool: &mut Pool, matrix: &Value) -> Vec<Condition> {

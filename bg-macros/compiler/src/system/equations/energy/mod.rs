@@ -75,7 +75,7 @@ impl Signals<'_> {
     /// The expressions with a number in the place of every reaction and of every variable of a faulty loop or law.
     fn with_values(&mut self, of: &[Id]) -> Vec<Id> {
         let number = self.pool.number(0.83);
-        let has_none = |symbol| matches!(symbol, Symbol::Multiplier(_) | Symbol::Loop | Symbol::Law(_));
+        let has_none = |symbol| matches!(symbol, Symbol::Multiplier(_) | Symbol::Unsolved(_) | Symbol::Law(_));
         substitute(&mut self.pool, of, &|symbol| has_none(symbol).then_some(number))
     }
 }

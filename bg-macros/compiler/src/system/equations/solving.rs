@@ -1,0 +1,203 @@
+//! The values of unknowns: algebraic loops, and what storages in derivative causality are and give.
+//!
+//! In: expressions that are to be zero. Out: the value of each unknown as an expression of states, parameters, inputs and time,
+//! put in its place everywhere; or faults.
+//! Method: unknowns that need each other are a group; a group is linear where its partial derivatives contain none of its own
+//! unknowns, and is then solved by elimination in symbols (`expr::gauss`). Switches stay as they are: a solution holds for the
+//! branches that its coefficients have.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::loops::groups;
+use super::memo::Entry;
+use super::signals::Signals;
+use super::unknowns::{Unknown, number};
+use super::{EquationFault, FallibleLaw};
+use crate::expr::{Id, Linear, Pool, Signs, Symbol, partial, signs, solve_linear, substitute};
+use crate::fault::Fault;
+use crate::graph::{NodeId, Parameter};
+
+/// A divisor of a solution that parameters may make zero.
+#[derive(Clone, Debug)]
+pub(super) struct Pivot {
+    /// What has no solution then.
+    pub what: String,
+    /// Where that begins.
+    pub node: NodeId,
+    /// The divisor.
+    pub value: Id,
+}
+
+/// How a group of equations is solved.
+enum Form {
+    /// A x = b.
+    Linear(Linear),
+    /// Not in symbols.
+    Nonlinear,
+}
+
+/// Why a group has no solution.
+enum Trouble {
+    Nonlinear,
+    Singular,
+}
+
+impl Signals<'_> {
+    /// The value of each unknown that has an equation; of what cannot be solved there is a fault.
+    pub(super) fn solved(&mut self, residuals: &BTreeMap<u32, Id>) -> BTreeMap<Symbol, Id> {
+        let numbers: Vec<u32> = residuals.keys().copied().collect();
+        let place: BTreeMap<u32, usize> = numbers.iter().enumerate().map(|(k, &number)| (number, k)).collect();
+        let needs: Vec<Vec<usize>> = residuals
+            .values()
+            .map(|&residual| self.pool.symbols(&[residual]).into_iter().filter_map(number))
+            .map(|needed| needed.filter_map(|number| place.get(&number).copied()).collect())
+            .collect();
+        let mut known = BTreeMap::new();
+        for group in groups(&needs) {
+            let group: Vec<u32> = group.into_iter().map(|k| numbers[k]).collect();
+            let before: Vec<Id> = group.iter().map(|number| residuals[number]).collect();
+            let equations = substitute(&mut self.pool, &before, &|symbol| known.get(&symbol).copied());
+            match self.solve_group(&group, &equations) {
+                Ok(values) => known.extend(group.into_iter().map(Symbol::Unsolved).zip(values)),
+                Err(trouble) => {
+                    let fault = self.unsolvable(&group, &trouble);
+                    self.fault_once(fault);
+                }
+            }
+        }
+        known
+    }
+
+    fn solve_group(&mut self, group: &[u32], equations: &[Id]) -> Result<Vec<Id>, Trouble> {
+        let Form::Linear(system) = self.form(group, equations) else { return Err(Trouble::Nonlinear) };
+        let parameters = &self.graph.parameters;
+        let is_proved = |pool: &Pool, id: Id| !signs(pool, id, &|symbol| range(parameters, symbol)).zero;
+        let solution = solve_linear(&mut self.pool, system, &is_proved).map_err(|_| Trouble::Singular)?;
+        for pivot in solution.doubtful {
+            self.doubt(group, pivot);
+        }
+        Ok(solution.values)
+    }
+
+    /// The equations as a linear system in their unknowns, where they are one.
+    fn form(&mut self, group: &[u32], equations: &[Id]) -> Form {
+        let (zero, mut rows) = (self.pool.zero(), vec![BTreeMap::new(); group.len()]);
+        let is_own = |symbol: Symbol| number(symbol).is_some_and(|number| group.contains(&number));
+        for (column, &unknown) in group.iter().enumerate() {
+            let slopes = partial(&mut self.pool, equations, Symbol::Unsolved(unknown));
+            if self.pool.symbols(&slopes).into_iter().any(is_own) {
+                return Form::Nonlinear;
+            }
+            let entries = rows.iter_mut().zip(slopes).filter(|(_, slope)| *slope != zero);
+            entries.for_each(|(row, slope)| row.extend([(column, slope)]));
+        }
+        let constants = substitute(&mut self.pool, equations, &|symbol| is_own(symbol).then_some(zero));
+        let right = constants.into_iter().map(|constant| self.pool.neg(constant)).collect();
+        Form::Linear(Linear { rows, right })
+    }
+
+    /// What a solution divides by may be zero: the model's `new` checks what parameters decide, a run tells the rest.
+    fn doubt(&mut self, group: &[u32], pivot: Id) {
+        let nodes = self.members(group);
+        let Some(&node) = nodes.first() else { return };
+        let is_parameter = |symbol: Symbol| matches!(symbol, Symbol::Parameter(_));
+        if self.pool.symbols(&[pivot]).into_iter().all(is_parameter) && !self.pool.has_select(&[pivot]) {
+            let what = format!("the system of {}", self.names(&nodes).join(", "));
+            self.pivots.push(Pivot { what, node, value: pivot });
+        } else {
+            let definition = self.graph.node(node);
+            let value = self.pool.powi(pivot, -1);
+            let law = FallibleLaw { kind: definition.kind.symbol(), element: definition.name.text.clone(), value };
+            self.fallible.insert(0, law);
+        }
+    }
+
+    /// The elements and junctions that unknowns belong to.
+    fn members(&self, group: &[u32]) -> Vec<NodeId> {
+        let mut nodes = Vec::new();
+        let mut seen = BTreeSet::new();
+        for &number in group {
+            let of = match self.unknowns.all[number as usize] {
+                Unknown::Variable(_, _, circle) => self.unknowns.circles[circle].nodes.clone(),
+                Unknown::State(node) | Unknown::Given(node) => vec![node],
+            };
+            nodes.extend(of.into_iter().filter(|node| seen.insert(*node)));
+        }
+        nodes
+    }
+
+    /// Names of elements and junctions, for messages.
+    pub(super) fn names(&self, nodes: &[NodeId]) -> Vec<String> {
+        nodes.iter().map(|&node| format!("`{}`", self.graph.node(node).name.text)).collect()
+    }
+
+    /// The fault of a group without a solution.
+    fn unsolvable(&self, group: &[u32], trouble: &Trouble) -> Fault {
+        let unknowns = || group.iter().map(|&number| self.unknowns.all[number as usize]);
+        let given = unknowns().find_map(|of| if let Unknown::Given(node) = of { Some(node) } else { None });
+        if let Some(node) = given {
+            let of: BTreeSet<NodeId> =
+                unknowns().filter_map(|of| if let Unknown::Given(node) = of { Some(node) } else { None }).collect();
+            let members = self.names(&of.into_iter().collect::<Vec<_>>());
+            return self.fault_of(node, &EquationFault::DependentOpen { members });
+        }
+        let circle =
+            unknowns().find_map(|of| if let Unknown::Variable(_, _, circle) = of { Some(circle) } else { None });
+        let first = circle.map(|circle| &self.unknowns.circles[circle]);
+        let members = match (first, trouble) {
+            (Some(circle), Trouble::Nonlinear) => self.names(&circle.nodes),
+            _ => self.names(&self.members(group)),
+        };
+        let fault = match trouble {
+            Trouble::Nonlinear => EquationFault::AlgebraicLoop { members },
+            Trouble::Singular => EquationFault::UndeterminedLoop { members },
+        };
+        match first {
+            Some(circle) => Fault::new(circle.span, &fault),
+            None => self.fault_of(self.members(group)[0], &fault),
+        }
+    }
+
+    /// A fault at the name of a node.
+    pub(super) fn fault_of(&self, node: NodeId, fault: &EquationFault) -> Fault {
+        Fault::new(self.graph.node(node).name.span, fault)
+    }
+
+    /// Puts values in the places of symbols in everything that has been calculated.
+    pub(super) fn put(&mut self, values: &BTreeMap<Symbol, Id>) {
+        if values.is_empty() {
+            return;
+        }
+        let mut pool = std::mem::take(&mut self.pool);
+        let before: Vec<Id> = self.calculated().into_iter().map(|id| *id).collect();
+        let after = substitute(&mut pool, &before, &|symbol| values.get(&symbol).copied());
+        self.calculated().into_iter().zip(after).for_each(|(place, id)| *place = id);
+        self.pool = pool;
+    }
+
+    /// Everything that has been calculated.
+    fn calculated(&mut self) -> Vec<&mut Id> {
+        let memo = &mut self.memo;
+        let variables = memo.efforts.iter_mut().chain(&mut memo.flows);
+        let done = variables.filter_map(|entry| if let Entry::Done(value) = entry { Some(value) } else { None });
+        let dependent = self.dependent.values_mut().filter_map(|dependent| dependent.state.as_mut());
+        let values = done.chain(memo.lets.iter_mut().flatten()).chain(dependent);
+        let mut places: Vec<&mut Id> = values.flat_map(|value| &mut value.0).collect();
+        places.extend(self.states.iter_mut().map(|state| &mut state.rate));
+        places.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
+        places.extend(self.fallible.iter_mut().map(|law| &mut law.value));
+        places.extend(self.pivots.iter_mut().map(|pivot| &mut pivot.value));
+        places
+    }
+}
+
+/// The signs that a symbol can have.
+fn range(parameters: &[Parameter], symbol: Symbol) -> Signs {
+    match symbol {
+        Symbol::Parameter(index) => {
+            let Parameter { lower, upper, .. } = &parameters[index as usize];
+            Signs::between(*lower, *upper)
+        }
+        _ => Signs::ANY,
+    }
+}
