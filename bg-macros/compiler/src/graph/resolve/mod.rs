@@ -17,7 +17,7 @@ use super::{
 };
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
 use crate::graph::units::{self, Dimension, Domain};
-use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role};
+use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role, Watch};
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -249,7 +249,10 @@ impl Resolver {
                     self.graph.closes.push(Close { joint, gap, shape, dimension });
                 }
                 Item::Impulse(_) => self.graph.impulse = true,
-                Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
+                Item::Observe(watched) => {
+                    let values = watched.iter().filter_map(Watch::value);
+                    values.for_each(|observation| self.observe(observation));
+                }
                 _ => {}
             }
         }

@@ -202,8 +202,8 @@ fn a_cylinder_takes_its_clauses_in_any_order() {
     let Item::Body(body) = items("body b { cylinder along y at [0, 1, 2] length 2 radius 1; }").remove(0) else {
         panic!("not a body")
     };
-    assert!(matches!(body.parts[0].shape, Shape::Cylinder { axis: Axis::Y, .. }));
-    assert_eq!(body.parts[0].to_string(), "cylinder radius 1 length 2 along y at [0, 1, 2];");
+    assert!(matches!(body.solids[0].shape, Shape::Cylinder { axis: Axis::Y, .. }));
+    assert_eq!(body.solids[0].to_string(), "cylinder radius 1 length 2 along y at [0, 1, 2];");
 }
 
 #[test]
