@@ -352,7 +352,8 @@ impl Resolver {
         let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
         let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
         if self.graph.observations.iter().any(|known| known.name == name) {
-            self.fault(observation.value.span, &DeclaredTwice { name: name.clone() });
+            let span = observation.name.as_ref().map_or(observation.value.span, |name| name.span);
+            self.fault(span, &DeclaredTwice { name: name.clone() });
         }
         self.observed.push(declared);
         self.graph.observations.push(Observation { name, value, shape: Shape::Scalar, unit });

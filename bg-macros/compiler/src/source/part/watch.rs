@@ -33,8 +33,12 @@ impl Seen<'_> {
         if let ExpressionKind::Name(name) = &observation.value.kind {
             let path = self.names.path(name);
             if let Some(output) = self.names.output(&path) {
-                let name = observation.name.or_else(|| output.name.clone());
-                return Observation { name, unit: observation.unit.or_else(|| output.unit.clone()), value: output.value.clone() };
+                let output = watched_at(output, observation.value.span);
+                return Observation {
+                    name: observation.name.or(output.name),
+                    unit: observation.unit.or(output.unit),
+                    value: output.value,
+                };
             }
         }
         self.names.value(&mut observation.value, None, self.faults);
@@ -54,7 +58,7 @@ impl Seen<'_> {
     fn all_of(&self, path: &str, span: Span) -> Vec<Observation> {
         let outputs = &self.flat.outputs;
         let is_inside = |output: &&Observation| output.name.as_ref().is_some_and(|name| name.text != path && is_at(&name.text, path));
-        let mut found: Vec<Observation> = outputs.iter().filter(is_inside).cloned().collect();
+        let mut found: Vec<_> = outputs.iter().filter(is_inside).map(|output| watched_at(output, span)).collect();
         if found.is_empty() {
             found.extend(self.flat.items.iter().flat_map(|item| of_item(item, path, span)));
         }
@@ -72,6 +76,12 @@ impl Seen<'_> {
         let near = near_miss(path, self.names.declared()).map(str::to_owned);
         PartFault::NothingToWatch { name: path.to_owned(), near }
     }
+}
+
+/// An output of a part whose name is mentioned at `span`.
+fn watched_at(output: &Observation, span: Span) -> Observation {
+    let name = output.name.as_ref().map(|name| Name { span, ..name.clone() });
+    Observation { name, ..output.clone() }
 }
 
 /// What there is to see of an item of this path.
