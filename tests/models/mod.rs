@@ -43,6 +43,9 @@ pub mod slider_crank;
 #[path = "../../bg-model/workbench/examples/spinning_top.rs"]
 #[allow(dead_code)]
 pub mod spinning_top;
+#[path = "../../bg-model/workbench/examples/train.rs"]
+#[allow(dead_code)]
+pub mod train;
 
 /// Hands the list of the hacksaw's models to the macro `$then`: name of a test, type and parameters.
 #[macro_export]
@@ -85,6 +88,7 @@ macro_rules! each_example {
             relativistic_mass: nonlinear RelativisticMass (RelativisticMassParameters);
             unequal_damper: nonlinear UnequalDamper (UnequalDamperParameters);
             rectifier: nonlinear Rectifier (RectifierParameters);
+            train: train Train (TrainParameters);
             free_body: free_body FreeBody (FreeBodyParameters);
             orbit: orbit Orbit (OrbitParameters);
             drives: drives Drives (DrivesParameters);

@@ -21,4 +21,5 @@ mod rlc_circuit;
 mod slider_crank;
 mod sources;
 mod spinning_top;
+mod train;
 mod truth;

@@ -57,9 +57,9 @@ fn carrier(part: &Part) -> Ident {
     let start = part.name.span.start();
     // FNV-1a over the file and the tokens.
     let text = format!("{} {}", part.name.span.file(), part.written.0);
-    let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    });
+    let hash = text
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
     format_ident!("__bond_graph_part_{}_{}_{}_{hash:016x}", part.name.text, start.line, start.column)
 }
 
@@ -69,7 +69,8 @@ fn answer(source: &Source, part: &Part) -> TokenStream {
     let mut next = 0;
     while let Some(part) = needed.get(next) {
         let inside = paths(&part.items).into_iter().filter_map(|path| named(source, path));
-        let new: Vec<&Part> = inside.filter(|part| needed.iter().all(|known| known.name.text != part.name.text)).collect();
+        let new: Vec<&Part> =
+            inside.filter(|part| needed.iter().all(|known| known.name.text != part.name.text)).collect();
         for part in new {
             if needed.iter().all(|known| known.name.text != part.name.text) {
                 needed.push(part);

@@ -350,7 +350,9 @@ impl BondGraph {
     #[must_use]
     pub fn is_clause(&self, term: &Term) -> bool {
         match &term.kind {
-            TermKind::Reference(Reference::Let(index)) => self.lets[*index].clause.as_ref().is_some_and(|clause| !clause.is_argument),
+            TermKind::Reference(Reference::Let(index)) => {
+                self.lets[*index].clause.as_ref().is_some_and(|clause| !clause.is_argument)
+            }
             TermKind::Component(inner, _) => self.is_clause(inner),
             _ => false,
         }

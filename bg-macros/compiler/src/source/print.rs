@@ -88,7 +88,8 @@ fn documentation(f: &mut Formatter<'_>, docs: &str) -> Result {
 fn indented(f: &mut Formatter<'_>, text: &str) -> Result {
     for (i, line) in text.lines().enumerate() {
         let feed = if i > 0 { "\n" } else { "" };
-        write!(f, "{feed}    {line}")?;
+        let indent = if line.is_empty() { "" } else { "    " };
+        write!(f, "{feed}{indent}{line}")?;
     }
     Ok(())
 }

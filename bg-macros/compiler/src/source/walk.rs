@@ -4,8 +4,8 @@
 //! inside of the item, such as a body's points, is not met.
 
 use crate::source::ast::{
-    Body, Element, Ends, Expression, ExpressionKind, Item, LawVariable, Name, Observation, Point, Port, Rigid, Scene, Shape, Solid,
-    Tune, Use, Watch,
+    Body, Element, Ends, Expression, ExpressionKind, Item, LawVariable, Name, Observation, Point, Port, Rigid, Scene,
+    Shape, Solid, Tune, Use, Watch,
 };
 
 /// What is met.
@@ -57,7 +57,8 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
         Item::Joint(joint) => {
             each(Met::Declared(&mut joint.name));
             ends(&mut joint.ends, each);
-            let clauses = [&mut joint.stiffness, &mut joint.damping, &mut joint.tilt_stiffness, &mut joint.tilt_damping];
+            let clauses =
+                [&mut joint.stiffness, &mut joint.damping, &mut joint.tilt_stiffness, &mut joint.tilt_damping];
             values(clauses.into_iter().flatten(), each);
         }
         Item::Spring(spring) => {

@@ -72,7 +72,9 @@ impl Emission<'_> {
         let ident = match symbol {
             Symbol::Time => format_ident!("t"),
             Symbol::State(index) => self.states[index as usize].clone(),
-            Symbol::Parameter(index) => format_ident!("p_{}", names::field(&equations.parameters[index as usize].name.text)),
+            Symbol::Parameter(index) => {
+                format_ident!("p_{}", names::field(&equations.parameters[index as usize].name.text))
+            }
             Symbol::Input(index) => format_ident!("u_{}", input(index)),
             Symbol::Slope(index) => format_ident!("slope_{}", input(index)),
             Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Loop => {

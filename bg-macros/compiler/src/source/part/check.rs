@@ -7,7 +7,7 @@ use proc_macro2::Span;
 use super::PartFault;
 use super::flat::Flat;
 use super::level::Level;
-use crate::fault::Fault;
+use crate::fault::{DeclaredTwice, Fault};
 use crate::source::ast::{Element, ElementKind, Expression, ExpressionKind, Graph, Item, Name, Part};
 use crate::source::drawing::Drawing;
 
@@ -40,12 +40,22 @@ pub(super) fn open(level: &mut Level, part: &Part) {
     }
 }
 
+/// No output of a part has the name of something in it: both would have one path.
+pub(super) fn outputs(level: &mut Level) {
+    for name in level.flat.outputs.iter().filter_map(|output| output.name.as_ref()) {
+        if level.names.has(&name.text) {
+            level.faults.push(Fault::new(name.span, &DeclaredTwice { name: name.text.clone() }));
+        }
+    }
+}
+
 /// A part as a graph of its own, with a source at each of its ports.
 pub(super) fn alone(part: &Part, flat: Flat) -> Graph {
     let ports: Vec<Item> = flat.items.iter().filter_map(|item| probe(item, &flat.ports)).collect();
-    let chains = flat.ports.iter().map(|port| {
-        Item::Chain(vec![Name { text: format!("{}.probe", port.text), span: port.span }, port.clone()])
-    });
+    let chains = flat
+        .ports
+        .iter()
+        .map(|port| Item::Chain(vec![Name { text: format!("{}.probe", port.text), span: port.span }, port.clone()]));
     let items = flat.items.iter().cloned().chain(ports).chain(chains).collect();
     let (docs, visibility, name) = (part.docs.clone(), part.visibility.clone(), part.name.clone());
     Graph { docs, visibility, name, items, drawing: Drawing::default() }

@@ -8,6 +8,7 @@ use crate::fault::Explain;
 pub enum PartFault {
     UnknownPart { name: String, near: Option<String> },
     UnknownParameter { part: String, name: String, near: Option<String> },
+    GivenInside { part: String, name: String },
     ContainsItself { circle: Vec<String> },
     PortWithoutBond { of: String, ports: Vec<String> },
     NoElement { array: String, index: i64, numbers: Vec<i64> },
@@ -31,7 +32,7 @@ impl Explain for PartFault {
     fn code(&self) -> &'static str {
         match self {
             F::UnknownPart { .. } => "BG0801",
-            F::UnknownParameter { .. } => "BG0802",
+            F::UnknownParameter { .. } | F::GivenInside { .. } => "BG0802",
             F::ContainsItself { .. } => "BG0803",
             F::PortWithoutBond { .. } => "BG0804",
             F::NoElement { .. } => "BG0805",
@@ -50,6 +51,7 @@ impl Explain for PartFault {
         match self {
             F::UnknownPart { name, .. } => format!("there is no part `{name}`"),
             F::UnknownParameter { part, name, .. } => format!("part `{part}` has no parameter or input `{name}`"),
+            F::GivenInside { part, name } => format!("part `{part}` gives `{name}` a value itself"),
             F::ContainsItself { circle } => format!("part `{}` contains itself: {}", circle[0], circle.join(" -> ")),
             F::PortWithoutBond { of, ports } => match &ports[..] {
                 [port] => format!("nothing is bonded to the port `{port}` of `{of}`"),
@@ -79,16 +81,20 @@ impl Explain for PartFault {
             | F::UnknownParameter { near: Some(near), .. }
             | F::NothingToStart { near: Some(near), .. }
             | F::NothingToWatch { near: Some(near), .. } => format!("did you mean `{near}`?"),
+            F::UnknownPart { name, .. } if name.contains("::") => "write the path of a `pub part`".to_owned(),
             F::UnknownPart { name, .. } => {
                 format!("declare `part {name} {{ ... }}`, or write the path of a part of elsewhere, `crate::{name}`")
             }
             F::UnknownParameter { name, .. } => format!("remove `{name}`, or declare `param {name}` in the part"),
+            F::GivenInside { name, .. } => format!("remove `{name}`, or make it a parameter of the part"),
             F::ContainsItself { .. } => "take one of the uses out".to_owned(),
             F::PortWithoutBond { of, ports } => format!("bond it, `{of}.{} -> ...;`", ports[0]),
             F::NoElement { .. } => "change the number, or the range of the index".to_owned(),
             F::NotAnArray { name } => format!("remove the brackets; a component of a vector is `{name}.x`"),
             F::IsAnArray { name, first, .. } => format!("say which one, such as `{name}[{first}]`"),
-            F::NotANumber { .. } => "write a whole number, or put the statement into `for i in 0..20 { ... }`".to_owned(),
+            F::NotANumber { .. } => {
+                "write a whole number, or put the statement into `for i in 0..20 { ... }`".to_owned()
+            }
             F::SameIndex { .. } => "give one of them another name".to_owned(),
             F::EmptyRange { .. } => "write the smaller number first: `0..20` are the numbers from 0 to 19".to_owned(),
             F::TooMany { .. } => "make the range smaller".to_owned(),

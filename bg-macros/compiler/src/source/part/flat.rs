@@ -79,7 +79,8 @@ impl Flat {
 
     /// The ground's points of this part.
     fn ground_points(&self) -> BTreeSet<String> {
-        let grounds = self.items.iter().filter_map(|item| if let Item::Ground(ground) = item { Some(ground) } else { None });
+        let grounds =
+            self.items.iter().filter_map(|item| if let Item::Ground(ground) = item { Some(ground) } else { None });
         grounds.flat_map(|ground| ground.points.iter().map(|point| point.name.text.clone())).collect()
     }
 }

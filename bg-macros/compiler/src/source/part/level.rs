@@ -10,7 +10,7 @@ use super::names::Names;
 use super::watch::Seen;
 use super::{check, place};
 use crate::fault::Faults;
-use crate::source::ast::{Ground, Item, Name, Part, Point, Port, Scene, Start, Use, Watch};
+use crate::source::ast::{Item, Name, Part, Point, Port, Scene, Start, Use, Watch};
 
 /// A level while it is written out.
 pub(super) struct Level<'f> {
@@ -23,7 +23,9 @@ pub(super) struct Level<'f> {
     /// The parameters and inputs of this level, each with its word.
     pub open: Vec<(&'static str, Name)>,
     starts: Vec<Start>,
-    grounds: Vec<Ground>,
+    /// Where the first ground of a part inside is, and the points of the others.
+    ground_inside: Option<usize>,
+    points: Vec<Point>,
     pub faults: &'f mut Faults,
 }
 
@@ -37,7 +39,8 @@ impl<'f> Level<'f> {
             with_ports: Vec::new(),
             open: Vec::new(),
             starts: Vec::new(),
-            grounds: Vec::new(),
+            ground_inside: None,
+            points: Vec::new(),
             faults,
         };
         let mut inside = inside.into_iter();
@@ -59,13 +62,24 @@ impl<'f> Level<'f> {
             start.of.text = format!("{prefix}{}", start.of.text);
             self.start(start);
         }
-        let (grounds, items): (Vec<Item>, _) = flat.items.into_iter().partition(|item| matches!(item, Item::Ground(_)));
-        self.grounds.extend(grounds.into_iter().filter_map(|item| if let Item::Ground(ground) = item { Some(ground) } else { None }));
-        self.flat.items.extend(items);
+        flat.items.into_iter().for_each(|item| self.item_inside(item));
         self.flat.outputs.extend(flat.outputs);
         self.flat.aliases.extend(flat.aliases);
         self.flat.uses.extend(flat.uses);
         self.with_ports.push((used.name.unwrap_or(used.part.name), flat.ports));
+    }
+
+    /// A statement of a part inside. Of all their grounds the first one stays.
+    fn item_inside(&mut self, item: Item) {
+        match item {
+            Item::Ground(ground) if self.ground_inside.is_some() => self.points.extend(ground.points),
+            other => {
+                if matches!(other, Item::Ground(_)) {
+                    self.ground_inside = Some(self.flat.items.len());
+                }
+                self.flat.items.push(other);
+            }
+        }
     }
 
     /// A statement of this level itself.
@@ -115,20 +129,28 @@ impl<'f> Level<'f> {
         check::ports(&mut self);
         if let Some(part) = whose {
             check::open(&mut self, part);
+            check::outputs(&mut self);
         }
         self.flat.names = self.names.declared().map(str::to_owned).collect();
         self.flat
     }
 
-    /// The points that parts have on the ground, on the ground of this level.
+    /// The points of all parts on one ground: that of this level, if it has one.
     fn one_ground(&mut self) {
-        let Some(first) = self.grounds.first() else { return };
-        let span = first.span;
-        let points: Vec<Point> = self.grounds.drain(..).flat_map(|ground| ground.points).collect();
-        let own = self.flat.items.iter_mut().find_map(|item| if let Item::Ground(ground) = item { Some(ground) } else { None });
-        match own {
-            Some(ground) => ground.points.extend(points),
-            None => self.flat.items.insert(0, Item::Ground(Ground { span, points })),
+        let Some(at) = self.ground_inside else { return };
+        let items = &mut self.flat.items;
+        let is_own = |k: &usize| *k != at && matches!(items[*k], Item::Ground(_));
+        let own = (0..items.len()).find(is_own);
+        if let Item::Ground(inside) = &mut items[at] {
+            let others = std::mem::take(&mut self.points);
+            match own {
+                None => inside.points.extend(others),
+                Some(_) => self.points = inside.points.drain(..).chain(others).collect(),
+            }
+        }
+        if let Some(Item::Ground(ground)) = own.map(|own| &mut items[own]) {
+            ground.points.append(&mut self.points);
+            items.remove(at);
         }
     }
 
@@ -136,7 +158,8 @@ impl<'f> Level<'f> {
     fn watch(&mut self, is_part: bool) {
         let mut items = std::mem::take(&mut self.flat.items);
         let places: Vec<usize> = (0..items.len()).filter(|&k| watched(&mut items[k]).is_some()).collect();
-        let lists: Vec<Vec<Watch>> = places.iter().filter_map(|&k| watched(&mut items[k]).map(std::mem::take)).collect();
+        let lists: Vec<Vec<Watch>> =
+            places.iter().filter_map(|&k| watched(&mut items[k]).map(std::mem::take)).collect();
         self.flat.items = items;
         let mut seen = Seen { flat: &self.flat, names: &mut self.names, faults: self.faults };
         let lists: Vec<Vec<_>> = lists.iter().map(|list| seen.observations(list)).collect();

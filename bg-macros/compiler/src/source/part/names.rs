@@ -37,7 +37,15 @@ impl Names {
             if let Item::Port(Port::Alias(name, of)) = item {
                 names.aliases.insert(name.text.clone(), of.text.clone());
             }
-            walk(item, &mut |met| if let Met::Declared(name) = met { names.declare(&name.text) });
+            // Outputs have names among themselves.
+            if matches!(item, Item::Observe(_) | Item::Scene(_)) {
+                continue;
+            }
+            walk(item, &mut |met| {
+                if let Met::Declared(name) = met {
+                    names.declare(&name.text);
+                }
+            });
         }
         for flat in inside {
             flat.names.iter().for_each(|name| names.declare(name));
@@ -62,6 +70,11 @@ impl Names {
     /// The declared names.
     pub fn declared(&self) -> impl Iterator<Item = &str> {
         self.declared.iter().map(String::as_str)
+    }
+
+    /// Whether something is declared that has this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.declared.contains(name)
     }
 
     /// The elements of an array, in order.
@@ -156,7 +169,9 @@ impl Names {
     /// The fault of an array that is named without a number.
     fn whole_array(&self, name: &str) -> Option<PartFault> {
         let ends = name.match_indices('.').map(|(at, _)| at).chain([name.len()]);
-        let whole = ends.map(|end| &name[..end]).find(|whole| !self.declared.contains(*whole) && self.arrays.contains_key(*whole))?;
+        let whole = ends
+            .map(|end| &name[..end])
+            .find(|whole| !self.declared.contains(*whole) && self.arrays.contains_key(*whole))?;
         let numbers = &self.arrays[whole];
         let first = numbers.first().copied().unwrap_or_default();
         Some(PartFault::IsAnArray { name: whole.to_owned(), first, count: numbers.len() })

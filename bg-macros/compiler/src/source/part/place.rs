@@ -9,8 +9,8 @@ use super::PartFault;
 use super::flat::Flat;
 use crate::fault::{Fault, Faults, near_miss};
 use crate::source::ast::{
-    BinaryOperator, Body, Bound, Expression, ExpressionKind, Item, Let, Name, Operation, Parameter, Start, StartKind, Unit,
-    Use,
+    BinaryOperator, Body, Bound, Expression, ExpressionKind, Item, Let, Name, Operation, Parameter, Start, StartKind,
+    Unit, Use,
 };
 use crate::source::clause::{Allowed, Clause, Given};
 use crate::source::words::{STARTS, word_of};
@@ -21,10 +21,7 @@ pub(super) fn give(flat: &mut Flat, used: &Use, prefix: &str, faults: &mut Fault
         let path = format!("{prefix}{}", argument.name.text);
         let what = format!("`{}` of part `{}`", argument.name.text, shown(used));
         let Some(index) = flat.items.iter().position(|item| open(item).is_some_and(|name| name.text == path)) else {
-            let known = flat.items.iter().filter_map(open).filter_map(|name| name.text.strip_prefix(prefix));
-            let near = near_miss(&argument.name.text, known).map(str::to_owned);
-            let (part, name) = (used.part.name.text.clone(), argument.name.text.clone());
-            faults.push(Fault::new(argument.name.span, &PartFault::UnknownParameter { part, name, near }));
+            faults.push(Fault::new(argument.name.span, &unknown(flat, used, prefix, &argument.name.text)));
             continue;
         };
         let given = match &flat.items[index] {
@@ -33,6 +30,18 @@ pub(super) fn give(flat: &mut Flat, used: &Use, prefix: &str, faults: &mut Fault
         };
         flat.items.splice(index..=index, given.into_iter().map(Item::Let));
     }
+}
+
+/// The fault of a parameter that is not open.
+fn unknown(flat: &Flat, used: &Use, prefix: &str, name: &str) -> PartFault {
+    let (part, name) = (used.part.name.text.clone(), name.to_owned());
+    let is_given = |item: &Item| matches!(item, Item::Let(given) if given.name.text == format!("{prefix}{name}"));
+    if flat.items.iter().any(is_given) {
+        return PartFault::GivenInside { part, name };
+    }
+    let known = flat.items.iter().filter_map(open).filter_map(|known| known.text.strip_prefix(prefix));
+    let near = near_miss(&name, known).map(str::to_owned);
+    PartFault::UnknownParameter { part, name, near }
 }
 
 /// `front: Leg`
@@ -83,7 +92,10 @@ fn parameter_given(parameter: &Parameter, what: &str, value: &Expression, faults
             lets.push(distance(parameter, bound, is_lower, of(distance_words(what, bound, is_lower)).allowed(sign)));
         }
     }
-    lets.insert(0, let_of(&parameter.name, &parameter.unit, value, of(format!("the parameter {what}")).allowed(allowed)));
+    lets.insert(
+        0,
+        let_of(&parameter.name, &parameter.unit, value, of(format!("the parameter {what}")).allowed(allowed)),
+    );
     lets
 }
 

@@ -9,7 +9,9 @@ use super::PartFault;
 use super::flat::{Flat, is_at};
 use super::names::Names;
 use crate::fault::{Fault, Faults, near_miss};
-use crate::source::ast::{ElementKind, Expression, ExpressionKind, Item, Joint, JointKind, JunctionKind, Name, Observation, Watch};
+use crate::source::ast::{
+    ElementKind, Expression, ExpressionKind, Item, Joint, JointKind, JunctionKind, Name, Observation, Watch,
+};
 
 /// What is at hand: the statements of the level and what the names mean.
 pub(super) struct Seen<'a> {
@@ -57,7 +59,9 @@ impl Seen<'_> {
     /// Of a part, of a thing, or of each element of an array.
     fn all_of(&self, path: &str, span: Span) -> Vec<Observation> {
         let outputs = &self.flat.outputs;
-        let is_inside = |output: &&Observation| output.name.as_ref().is_some_and(|name| name.text != path && is_at(&name.text, path));
+        let is_inside = |output: &&Observation| {
+            output.name.as_ref().is_some_and(|name| name.text != path && is_at(&name.text, path))
+        };
         let mut found: Vec<_> = outputs.iter().filter(is_inside).map(|output| watched_at(output, span)).collect();
         if found.is_empty() {
             found.extend(self.flat.items.iter().flat_map(|item| of_item(item, path, span)));

@@ -35,8 +35,8 @@ pub(super) struct Place {
 
 /// The words of statements that end with their block.
 const BLOCKS: [&str; 14] = [
-    "graph", "observe", "scene", "ground", "body", "joint", "spring", "drive", "contact", "tune", "without", "rigid", "part",
-    "for",
+    "graph", "observe", "scene", "ground", "body", "joint", "spring", "drive", "contact", "tune", "without", "rigid",
+    "part", "for",
 ];
 
 /// A walk over one level of tokens.

@@ -79,11 +79,7 @@ fn tuned(scene: &Scene, parameters: &[Parameter]) -> Staged<Vec<bool>> {
             Fault::new(name.span, &F::UnknownParameter { name: name.text.clone(), near })
         })
         .collect();
-    if faults.is_empty() {
-        Ok(known().map(|parameter| scene.tune.keeps(parameter)).collect())
-    } else {
-        Err(faults)
-    }
+    if faults.is_empty() { Ok(known().map(|parameter| scene.tune.keeps(parameter)).collect()) } else { Err(faults) }
 }
 
 /// What the scene asserts of its reduction.
