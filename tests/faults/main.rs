@@ -219,7 +219,7 @@ const PARTS: [(&str, &str); 14] = [
         "graph G { param a_b: N = 1; part a: Leg; Se f = a_b; 1 j: translation; I m = 2; f -> j -> m; }\n\
          part Leg { param ▸b: 1 = 2; let a = b; }",
     ),
-    ("BG0810", "graph G { part a: Leg { k = ▸-2; } }\npart Leg { param k: 1 = 2, above 0; let a = k; }"),
+    ("BG0810", "graph G { part a: Leg { k = -▸2; } }\npart Leg { param k: 1 = 2, above 0; let a = k; }"),
     ("BG0811", "part Leg { param ▸k: 1 = 2; }"),
     ("BG0812", "graph G { start ▸rod at [0, 0, 0]; }"),
     ("BG0813", "graph G { body rod { sphere radius 1; density 1; } start rod at [0, 0, 0]; start ▸rod at [0, 0, 1]; }"),

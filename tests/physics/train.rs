@@ -42,9 +42,11 @@ fn the_ends_swing_alike_in_the_scene() {
     let run = record(&EndsOfTheTrain::new(p).unwrap(), &instants(2.0 * PI / w, 40), 1e-11);
     for (name, wagon) in [("wagon[0].speed", 0.0), ("wagon[19].speed", 19.0)] {
         let size = shape(&whole, wagon);
-        let most = run.series(name).iter().zip(&run.times).fold(0.0_f64, |most, (speed, t)| {
-            most.max((speed - size * (w * t).cos()).abs())
-        });
+        let most = run
+            .series(name)
+            .iter()
+            .zip(&run.times)
+            .fold(0.0_f64, |most, (speed, t)| most.max((speed - size * (w * t).cos()).abs()));
         within(name, most / whole.amplitude, 1e-9);
     }
 }

@@ -48,11 +48,12 @@ fn factor(word: &str, indices: &Indices) -> Result<i64, String> {
     named.map(|(_, number)| *number).or_else(digits).ok_or_else(|| word.to_owned())
 }
 
-/// The arrays that a name goes through, each with its number: `a[1].b[2].c` gives (`a`, 1) and (`a[1].b`, 2).
+/// The arrays that a name goes through, each with its number: `a[1].b[2].c` gives (`a`, 1) and (`a[1].b`, 2). What is no number
+/// is left out.
 pub(super) fn elements(name: &str) -> impl Iterator<Item = (&str, i64)> {
-    name.match_indices('[').map(|(at, _)| {
-        let inside = name[at + 1..].split(']').next().unwrap_or_default();
-        (&name[..at], inside.parse().unwrap_or(i64::MAX))
+    name.match_indices('[').filter_map(|(at, _)| {
+        let inside = name[at + 1..].split(']').next()?;
+        Some((&name[..at], inside.parse().ok()?))
     })
 }
 

@@ -223,7 +223,7 @@ fn names_and_numbers_are_plain() {
 
 #[test]
 fn comments_and_attributes_stand_where_they_mean_something() {
-    let misplaced = "2:1 BG0120 only `graph`, `param`, `input` and `scene` have a documentation comment | write `//` \
+    let misplaced = "2:1 BG0120 only `graph`, `part`, `param`, `input` and `scene` have a documentation comment | write `//` \
     instead of `///`";
     check(&[
         ("/// A coil.\nI L = coil;", misplaced),
@@ -238,7 +238,7 @@ fn comments_and_attributes_stand_where_they_mean_something() {
 #[test]
 fn a_call_has_graphs() {
     for (text, fault) in [
-        ("", "1:1 BG0122 found no graph, expected at least one | write `graph NAME { ... }`\n"),
+        ("", "1:1 BG0122 found no graph and no part, expected at least one | write `graph NAME { ... }`\n"),
         ("graf G {}", "1:1 BG0101 `graf` begins no statement of the macro call | write `graph`\n"),
         ("pub grph G {}", "1:5 BG0102 found `grph`, expected `graph` or `part` | write `graph`\n"),
         (
