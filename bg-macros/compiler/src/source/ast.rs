@@ -3,14 +3,12 @@
 //! One tree serves both vocabularies; after `part::flatten` parts and repetitions no longer occur, after `mechanism::expand` the
 //! items of the second vocabulary.
 
-mod part;
-
 use proc_macro2::Span;
 
 use crate::source::clause::Clause;
 use crate::source::drawing::Drawing;
 
-pub use part::{Argument, For, Foreign, Part, PartPath, Port, Start, StartKind, Use, Written};
+pub use crate::source::ast_part::{Argument, For, Foreign, Part, PartPath, Port, Start, StartKind, Use, Written};
 
 /// All parts and graphs of one macro call.
 #[derive(Clone, Debug, Default)]

@@ -3,12 +3,14 @@
 //! In: tokens. Out: a tree of bond-graph words without parts for each model: the literal graph and one for each scene.
 
 pub mod ast;
+mod ast_part;
 pub mod clause;
 pub mod drawing;
 pub mod mechanism;
 pub mod names;
 pub mod part;
 pub mod print;
+mod print_part;
 pub mod scene;
 pub mod syntax;
 mod walk;

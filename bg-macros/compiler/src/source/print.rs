@@ -3,8 +3,6 @@
 //! In: any tree of [`crate::source::ast`]. Out: its text: four blanks per level, one statement per line, no parenthesis and no
 //! digit more than needed. No text ends with a line feed but that of a whole source.
 
-mod part;
-
 use std::fmt::{Display, Formatter, Result};
 
 use crate::source::ast::{
@@ -41,7 +39,7 @@ impl Display for Graph {
 }
 
 /// A block of statements with blank lines between its sections.
-fn statements(f: &mut Formatter<'_>, items: &[Item]) -> Result {
+pub(super) fn statements(f: &mut Formatter<'_>, items: &[Item]) -> Result {
     f.write_str("{")?;
     for (i, item) in items.iter().enumerate() {
         let before = i.checked_sub(1).and_then(|before| items.get(before));
@@ -66,7 +64,7 @@ const fn section(item: &Item) -> Option<u8> {
 }
 
 /// The words in front of `graph`.
-fn visibility(visibility: &syn::Visibility) -> String {
+pub(super) fn visibility(visibility: &syn::Visibility) -> String {
     let syn::Visibility::Restricted(restricted) = visibility else {
         return if matches!(visibility, syn::Visibility::Public(_)) { "pub ".into() } else { String::new() };
     };
@@ -77,7 +75,7 @@ fn visibility(visibility: &syn::Visibility) -> String {
 }
 
 /// Documentation as lines of `///`.
-fn documentation(f: &mut Formatter<'_>, docs: &str) -> Result {
+pub(super) fn documentation(f: &mut Formatter<'_>, docs: &str) -> Result {
     for line in docs.lines() {
         writeln!(f, "///{}{line}", if line.is_empty() { "" } else { " " })?;
     }
@@ -95,7 +93,7 @@ fn indented(f: &mut Formatter<'_>, text: &str) -> Result {
 }
 
 /// A block of statements, one per line.
-fn block(f: &mut Formatter<'_>, entries: &[String]) -> Result {
+pub(super) fn block(f: &mut Formatter<'_>, entries: &[String]) -> Result {
     if entries.is_empty() {
         return f.write_str("{}");
     }

@@ -83,7 +83,7 @@ impl Explain for PartFault {
             | F::NothingToWatch { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownPart { name, .. } if name.contains("::") => "write the path of a `pub part`".to_owned(),
             F::UnknownPart { name, .. } => {
-                format!("declare `part {name} {{ ... }}`, or write the path of a part of elsewhere, `crate::{name}`")
+                format!("declare `part {name} {{ ... }}`, or write the path of a part of elsewhere, `self::{name}`")
             }
             F::UnknownParameter { name, .. } => format!("remove `{name}`, or declare `param {name}` in the part"),
             F::GivenInside { name, .. } => format!("remove `{name}`, or make it a parameter of the part"),

@@ -125,7 +125,7 @@ impl Names {
         let mut path = name.to_owned();
         for _ in 0..=self.aliases.len() {
             let ends = path.match_indices('.').map(|(at, _)| at).chain([path.len()]);
-            let known = ends.filter_map(|end| Some((end, self.aliases.get(&path[..end])?))).last();
+            let known = ends.rev().find_map(|end| Some((end, self.aliases.get(&path[..end])?)));
             let Some((end, of)) = known else { break };
             path = format!("{of}{}", &path[end..]);
         }

@@ -189,7 +189,7 @@ fn all_of_a_word_is_what_its_table_lists_first() {
 
 #[test]
 fn each_fault_is_at_its_token() {
-    let known = "declare `part Log { ... }`, or write the path of a part of elsewhere, `crate::Log`";
+    let known = "declare `part Log { ... }`, or write the path of a part of elsewhere, `self::Log`";
     for (statements, found) in [
         ("part a: Lag;", "1:19 BG0801 there is no part `Lag` | did you mean `Leg`?"),
         ("part a: Flywheel::Log;", "1:19 BG0801 there is no part `Flywheel::Log` | write the path of a `pub part`"),

@@ -6,7 +6,7 @@ use std::fmt::{Debug, Formatter, Result};
 
 use proc_macro2::{Span, TokenStream};
 
-use super::{Expression, Item, Junction, Name, Source};
+use crate::source::ast::{Expression, Item, Junction, Name, Source};
 
 /// One `part NAME { ... }`: a piece of machine.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use super::{block, documentation, statements, visibility};
 use crate::source::ast::{Argument, For, Part, Port, Start, Use};
+use crate::source::print::{block, documentation, statements, visibility};
 use crate::source::words::{STARTS, word_of};
 
 impl Display for Part {
