@@ -11,8 +11,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::items::identifier;
-use crate::source::ast::{Foreign, Part, PartPath, Source};
-use crate::source::part::paths;
+use crate::source::ast::{Foreign, Part, PartPath, Source, used_parts};
 
 /// The macros of all parts that can be used elsewhere.
 #[must_use]
@@ -68,19 +67,17 @@ fn answer(source: &Source, part: &Part) -> TokenStream {
     let mut needed = vec![part];
     let mut next = 0;
     while let Some(part) = needed.get(next) {
-        let inside = paths(&part.items).into_iter().filter_map(|path| named(source, path));
-        let new: Vec<&Part> =
-            inside.filter(|part| needed.iter().all(|known| known.name.text != part.name.text)).collect();
-        for part in new {
-            if needed.iter().all(|known| known.name.text != part.name.text) {
-                needed.push(part);
+        for inside in used_parts(&part.items).into_iter().filter_map(|path| named(source, path)) {
+            if needed.iter().all(|known| known.name.text != inside.name.text) {
+                needed.push(inside);
             }
         }
         next += 1;
     }
-    let foreign = source.foreign.iter().filter(|foreign| {
-        needed.iter().any(|part| paths(&part.items).iter().any(|path| path.name.text == foreign.path.text))
-    });
+    let is_used = |foreign: &&Foreign| {
+        needed.iter().any(|part| used_parts(&part.items).iter().any(|path| path.name.text == foreign.path.text))
+    };
+    let foreign = source.foreign.iter().filter(is_used);
     needed.iter().map(|part| part.written.0.clone()).chain(foreign.map(repeated)).collect()
 }
 

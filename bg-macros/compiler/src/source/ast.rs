@@ -8,7 +8,9 @@ use proc_macro2::Span;
 use crate::source::clause::Clause;
 use crate::source::drawing::Drawing;
 
-pub use crate::source::ast_part::{Argument, For, Foreign, Part, PartPath, Port, Start, StartKind, Use, Written};
+pub use crate::source::ast_part::{
+    Argument, For, Foreign, Part, PartPath, Port, Start, StartKind, Use, Written, used_parts,
+};
 
 /// All parts and graphs of one macro call.
 #[derive(Clone, Debug, Default)]

@@ -130,3 +130,14 @@ pub struct For {
     /// The statements.
     pub items: Vec<Item>,
 }
+
+/// The paths of all parts that the statements use.
+#[must_use]
+pub fn used_parts(items: &[Item]) -> Vec<&PartPath> {
+    let each = items.iter().map(|item| match item {
+        Item::Use(used) => vec![&used.part],
+        Item::For(repeated) => used_parts(&repeated.items),
+        _ => Vec::new(),
+    });
+    each.flatten().collect()
+}

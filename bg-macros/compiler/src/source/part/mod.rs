@@ -21,7 +21,7 @@ mod tests;
 use std::collections::BTreeMap;
 
 use crate::fault::{Fault, Faults, Staged, near_miss};
-use crate::source::ast::{Graph, Item, Part, PartPath, Source, Use};
+use crate::source::ast::{Graph, Item, Part, PartPath, Source, Use, used_parts};
 use flat::{Flat, Placed};
 use level::Level;
 
@@ -82,18 +82,7 @@ pub fn flatten_leniently(source: &Source) -> (Flattened, Faults) {
 pub fn unasked(source: &Source) -> Option<&PartPath> {
     let lists = source.parts.iter().map(|part| &part.items).chain(source.graphs.iter().map(|graph| &graph.items));
     let is_unasked = |path: &&PartPath| source.foreign.iter().all(|known| known.path.text != path.name.text);
-    lists.flat_map(|items| paths(items)).filter(|path| path.is_foreign()).find(is_unasked)
-}
-
-/// The paths of all parts that the statements use.
-#[must_use]
-pub fn paths(items: &[Item]) -> Vec<&PartPath> {
-    let each = items.iter().map(|item| match item {
-        Item::Use(used) => vec![&used.part],
-        Item::For(repeated) => paths(&repeated.items),
-        _ => Vec::new(),
-    });
-    each.flatten().collect()
+    lists.flat_map(|items| used_parts(items)).filter(|path| path.is_foreign()).find(is_unasked)
 }
 
 /// Where the name of a part means something: the call, or what another call has answered.
