@@ -5,9 +5,10 @@ use proc_macro::TokenStream;
 
 /// Compiles multibond graphs of mechanisms, machines and circuits to Rust types that run.
 ///
-/// A call holds one or more graphs. Each becomes a model type, a parameter struct and, where it has inputs, an input
+/// A call holds graphs and parts. Each graph becomes a model type, a parameter struct and, where it has inputs, an input
 /// struct ([generated items](#generated-items)); so does each of its [scenes](#scenes), the uses of one mechanism, of
-/// which only what a use needs is calculated. Everything the compiler cannot accept is a compile error at the token
+/// which only what a use needs is calculated. A [part](#parts) is a piece of machine that graphs of this call, of the crate
+/// and of other crates use, often if need be. Everything the compiler cannot accept is a compile error at the token
 /// to change, with a code and one action as help ([faults](#faults)).
 ///
 /// ```
@@ -41,23 +42,24 @@ use proc_macro::TokenStream;
 /// # Statements
 ///
 /// ```text
-/// call      = { graph }
-/// graph     = [visibility] "graph" NAME "{" { statement } "}"
+/// call      = { graph | part }
+/// graph     = [visibility] "graph" NAME "{" { statement | scene } "}"
+/// part      = [visibility] "part" NAME "{" { statement | port } "}"
 /// statement = param | input | let | junction | element | chain | position | orientation | close | observe
-///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | orifice | start | expect | scene
+///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | orifice | start | expect | use | for
 /// expect    = "expect" "integral" "causality" ";"
 /// ```
 ///
 /// Order is free: a name may be used before it is declared. Outputs keep the order of declaration; so do states of one
 /// kind and unit, which stand side by side in the state vector: `description().states` names them. A statement ends with
-/// `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in front of `graph`, `scene`,
+/// `;`, or with its closing brace. Comments are Rust's. Documentation comments (`///`) stand in front of `graph`, `part`, `scene`,
 /// `param` and `input` and become the documentation of the generated items.
 ///
 /// Names are Rust identifiers, Rust's keywords excluded; `gen`, a keyword of the edition 2024 only, makes a field `r#gen`.
 /// A graph, a scene or a parameter may be called `Option`, `f64` or whatever else: generated code means something else by
-/// none of them. Names of `let`s, junctions, elements, tracks and outputs may have dots (`pin.slip`); those of graphs,
-/// scenes, parameters, inputs, bodies, points, joints, springs, drives, contacts, frictions, stops and orifices have none. All of a graph's names are
-/// different, its outputs' among themselves; `t` is the time.
+/// none of them. Names may have dots (`pin.slip`), but those of graphs, parts, scenes and points of bodies, and numbers in
+/// brackets (`link[3].bar`, [arrays](#arrays-and-repetitions)). All of a graph's names are different, its outputs' among
+/// themselves; `t` is the time.
 ///
 /// ## `param`, `input`, `let`
 ///
@@ -289,15 +291,15 @@ use proc_macro::TokenStream;
 /// ## `body`
 ///
 /// ```text
-/// body  = "body" NAME "{" { part | setting | point | start } "}"
-/// part  = ( "cuboid" EDGES | "cylinder" "radius" E "length" E "along" AXIS | "sphere" "radius" E )
+/// body  = "body" NAME "{" { solid | setting | point | start } "}"
+/// solid = ( "cuboid" EDGES | "cylinder" "radius" E "length" E "along" AXIS | "sphere" "radius" E )
 ///         { "at" E | "turned" E | "density" E } ";"
 /// setting = "density" E ";" | "mass" E ";" | "center" E ";" | "inertia" E ";"
 /// point = "point" NAME "=" E ";"
 /// start = "start" [POINT] "at" E ";" | "start" "turned" E ";" | "start" ("velocity" | "spin") (E | "guess") ";"
 /// ```
 ///
-/// A rigid body. Its mass, centre of mass and inertia tensor are the sums over its **parts** (`at`: the part's centre;
+/// A rigid body. Its mass, centre of mass and inertia tensor are the sums over its **solids** (`at`: the solid's centre;
 /// `turned`: its orientation; both in the body's axes), or **given**: `mass` (kg), `center` (m, the origin when left
 /// out) and `inertia` about the centre (kg\*m^2: three principal moments or a matrix). The start pose is that of the
 /// origin or of a point (m, inertial axes) and a rotation matrix; `velocity` (m/s) is that of the centre of mass,
@@ -535,11 +537,132 @@ use proc_macro::TokenStream;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
+/// # Parts
+///
+/// ```text
+/// part  = [visibility] "part" NAME "{" { statement | port } "}"
+/// port  = "port" ["0" | "1"] NAME ["[3]"] ":" DOMAIN ";" | "port" NAME "=" PATH ";"
+/// use   = "part" [NAME ["[" COUNT "]"] ":"] PART ( ";" | "{" { clause } "}" )
+/// clause = NAME "=" E ";" | "start" PATH ( "at" | "turned" | "velocity" | "spin" ) E ";"
+/// start = "start" PATH ( "at" | "turned" | "velocity" | "spin" ) E ";"
+/// ```
+///
+/// A part describes a piece of machine once. It may hold whatever a graph may, other parts among it, but no scenes. A graph
+/// or part uses it under a name of its own, as often as it likes. What is inside then has a path: in `part front: Leg` the
+/// spring is `front.spring`, its flow `front.spring.flow`, a parameter `front.damping`. Nothing inside means anything of the
+/// user's by accident: a name of the part is one of the part, only time, energies and the ground are everybody's.
+///
+/// - **Parameters and inputs.** `NAME = E;` gives one a value, an expression of the user's own names. It is then no parameter
+///   of the graph any more, but a name for the value, whose unit is checked; of a parameter it is constant during a run and
+///   inside of the range, which is checked here or, where it depends on parameters, by `new`. What is not given is a parameter
+///   or input of the graph under its path: `--set front.damping=900` on the command line, `tune { front.damping }` in a scene,
+///   the field `front_damping` in the parameter struct. Those of parts inside are given by their path: `inner.damping = 900;`.
+///   A parameter that nothing in the part uses is a fault (BG0811).
+/// - **Ports** are where a part meets the rest. `port hub: translation;` is a junction to bond to, `chassis -> front.hub;`: a
+///   1-junction for translations and rotations, a 0-junction in electrical, hydraulic and thermal domains; `port 0` and
+///   `port 1` say it. The user must bond each, or hand it on (BG0804). `port tip = bar.head;` is another name for a point, a
+///   body, a junction or a free axis inside, such as `pin.spin`. Whatever has no port can be reached, too, by its path.
+/// - **Bodies** of a part start where the user puts them: `start front.bar.head at [0, 1, 0];`, or inside of the use's braces
+///   `start bar.head at [0, 1, 0];`. This takes the place of what the body says itself.
+/// - **The ground** is one for all. Points that a part has on it are `ground.front.pivot` outside. Gravity, too, is the
+///   graph's: one `gravity` for all parts together.
+/// - **Outputs.** The `observe` of a part names what is worth seeing of it. A graph watches `front.length`, or
+///   [all of it](#observe); it may also calculate with these names.
+/// - **Without a name**, `part Leg;`, what is inside keeps its names and its parameters are those of the graph: a graph that
+///   begins with a machine and adds what drives it and what is seen of it.
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A spring leg under a vehicle.
+///     pub part Leg {
+///         param stiffness: N/m = 2e4, above 0;
+///         param damping: N*s/m = 800, at least 0;
+///         port hub: translation;
+///         port foot: translation;
+///         0 leg: translation; 1 squeeze: translation; C spring = stiffness; R damper = damping;
+///         foot -> leg -> hub; leg -> squeeze -> spring; squeeze -> damper;
+///         observe { length: m = spring.q; power: W = damper.power }
+///     }
+///     /// A beam on two of them, on a road that goes up and down.
+///     pub graph Trolley {
+///         param k: N/m = 2e4, above 0;
+///         part front: Leg { stiffness = k; }
+///         part rear: Leg { stiffness = 1.5 * k; damping = 900; }
+///         1 beam: translation; I load = 200; 1 road: translation; Sf bumps = 0.1 * sin(t / 1);
+///         bumps -> road; road -> front.foot; road -> rear.foot; front.hub -> beam; rear.hub -> beam; beam -> load;
+///         observe { front.length; all of rear; speed: m/s = beam.flow }
+///         scene Soft { tune all but k; }
+///     }
+/// }
+/// use bg_model::system::Model;
+///
+/// // The parameters that were left open: `k` of the graph, `front.damping` of the part.
+/// let trolley = Trolley::new(TrolleyParameters { k: 1e4, front_damping: 500.0 })?;
+/// let outputs: Vec<&str> = trolley.description().outputs.iter().map(|output| output.name).collect();
+/// assert_eq!(outputs, ["front.length", "rear.length", "rear.power", "speed"]);
+/// assert!(Soft::new(SoftParameters { front_damping: 500.0 }).is_ok());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// ## Parts of other calls and crates
+///
+/// A `pub part` is an item of its module like a function: another call, of this crate or another, uses it by its path,
+/// `part front: vehicles::Leg { .. }`, `part front: crate::legs::Leg;`. A name alone is that of a part of the same call; what
+/// `use` has brought into the module is `self::Leg`. `pub(crate) part` is for this crate, `part` for its call alone. What a part
+/// uses itself comes with it: its user needs neither those parts nor their crates. (The path is that of a macro with the
+/// part's tokens. Where it leads nowhere rustc says so, and then misses the models of the call.)
+///
+/// Faults inside of a part are at the part's own tokens, told once for all uses, and say in which one they are: `in part
+/// front: Leg`. A part that no graph of its call uses is looked at by itself: names, shapes and units.
+///
+/// ## Arrays and repetitions
+///
+/// ```text
+/// use   = "part" NAME "[" COUNT "]" ":" PART ...
+/// for   = "for" INDEX "in" FROM ".." TO "{" { statement } "}"
+/// array = a statement whose name is NAME "[" INDEX "in" FROM ".." TO "]"
+/// ```
+///
+/// `part link[20]: Link;` are twenty links, `link[0]` to `link[19]`. `for i in 1..20 { .. }` stands for its statements once for
+/// each number from 1 to 19; the index is a number in expressions, and in brackets of names sums and products of numbers and
+/// indices, `link[i - 1].tail`. `joint pin[i in 1..20]: ..` is the same around one statement, of whatever kind. Numbers are
+/// written out: none of them is known at run time only. An element that is not there is BG0805, with the length.
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     part Link {
+///         param length: m = 0.6, above 0;
+///         body bar {
+///             cylinder radius 0.005 length length along y density 7850;
+///             point head = [0, length / 2, 0]; point tail = [0, -length / 2, 0];
+///         }
+///         observe { angle: rad = bar.angle }
+///     }
+///     /// A chain of six links that hangs from a point, its lowest link pulled aside.
+///     pub graph Chain {
+///         param length: m = 0.1, above 0;
+///         gravity [0, -9.81, 0];
+///         ground { point pivot = [0, 0, 0]; }
+///         part link[i in 0..6]: Link { length = length; start bar.head at [0, -i * length, 0]; }
+///         joint top: revolute z (ground.pivot -> link[0].bar.head) { stiffness 1e5; damping 10; tilt stiffness 1e3; }
+///         joint pin[i in 1..6]: revolute z (link[i - 1].bar.tail -> link[i].bar.head) {
+///             stiffness 1e5; damping 10; tilt stiffness 1e3;
+///         }
+///         drive pull on link[5].bar.tail force = [0.1, 0, 0];
+///         observe { link[5].angle; pin[5].force }
+///         scene Planar { observe { all of link } expect planar; }
+///     }
+/// }
+/// # fn main() { assert_eq!((Chain::OUTPUTS, Planar::OUTPUTS), (4, 6)); }
+/// ```
+///
 /// # Scenes
 ///
 /// ```text
 /// scene  = "scene" NAME "{" { clause } "}"
-/// clause = observe | "tune" NAMES | "without" NAMES | "rigid" ( "joints" ";" | "{" NAME { "," NAME } "}" )
+/// clause = observe | "tune" ["all" "but"] NAMES | "without" NAMES | "rigid" ( "joints" ";" | "{" NAME { "," NAME } "}" )
 ///        | "angles" ";" | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
 /// NAMES  = "{" [NAME { "," NAME }] "}" | NAME { "," NAME } ";"
 /// ```
@@ -552,7 +675,7 @@ use proc_macro::TokenStream;
 /// | clause | |
 /// |---|---|
 /// | `observe { ... }` | the outputs, in place of the graph's; without it those of the graph |
-/// | `tune { a, b }` | the parameters that stay adjustable, and the only fields of the scene's parameter struct; the others are their defaults, as numbers. Without it all stay; `tune {}` keeps none |
+/// | `tune { a, b }` | the parameters that stay adjustable, and the only fields of the scene's parameter struct; the others are their defaults, as numbers. Without it all stay; `tune {}` keeps none; `tune all but { c }` keeps the others |
 /// | `without { a, b }` | joints, contacts, springs, drives, frictions, stops, orifices or elements that are not there, with their bonds |
 /// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
@@ -819,7 +942,8 @@ use proc_macro::TokenStream;
 /// # `observe`
 ///
 /// ```text
-/// observe = "observe" "{" [NAME [":" UNIT] "="] EXPRESSION { (";" | ",") ... } "}"
+/// observe = "observe" "{" entry { (";" | ",") entry } "}" | "observe" "all" "of" NAME ";"
+/// entry   = [NAME [":" UNIT] "="] EXPRESSION | "all" "of" NAME
 /// ```
 ///
 /// What the model's `outputs` gives, in the order of declaration. A name alone has the unit that it was declared with, such
@@ -827,6 +951,11 @@ use proc_macro::TokenStream;
 /// without it, and so does what has lost its unit in a product with a bare number, such as
 /// `2 * slide.travel`. A vector becomes three outputs with the suffixes `_x _y _z`, a matrix nine, `_11` to `_33`. Without a
 /// name the output is called like its expression.
+///
+/// `all of NAME` is what there is to see of it, each under its path: of a part what its own `observe` names, of an array that of
+/// all elements; of a body `position`, `orientation`, `momentum`, `angular_momentum`; of a joint `force`, `moment`, `gap` and
+/// the motion that is free; of a spring `force` and `distance`, of a contact `force`, `gap` and `speed`, of a drive its `power`;
+/// of an I `p` and `flow`, of a C `q` and `effort`, of other elements `effort` and `flow`, of a junction what it has one of.
 ///
 /// ```
 /// # use bg_model::bond_graph;
@@ -861,7 +990,7 @@ use proc_macro::TokenStream;
 ///
 /// | item | |
 /// |---|---|
-/// | `MotorParameters` | a struct of `f64` fields with units and defaults in their documentation; `Default`, serde's `Serialize` and `Deserialize` (unknown names refused, missing ones default), `bg_model::parameters::Parameters` for access by name; of a scene only what it tunes |
+/// | `MotorParameters` | a struct of `f64` fields with units and defaults in their documentation; `Default`, serde's `Serialize` and `Deserialize` (unknown names refused, missing ones default), `bg_model::parameters::Parameters` for access by name; of a scene only what it tunes. A parameter `link[3].length` of a part is the field `link_3_length` |
 /// | `MotorInputs` | a struct of `bg_model::input::Input`; only where there are inputs |
 /// | `Motor<S = f64>` | the model, generic over the scalar; its documentation has the tables of states and of operation counts |
 /// | `Motor::STATES`, `SWITCHES`, `OUTPUTS` | the sizes |
@@ -869,12 +998,15 @@ use proc_macro::TokenStream;
 /// | `impl System` | `rate`, `guards`, `project`, `state_name`, `switch_name`, `not_finite`, what joints hold and more; nothing is allocated |
 /// | `impl Model` | `start`, `impulse_energy`, `outputs`, `stored_energy`, `powers`, `description` with the tables, the expanded graph and, of a scene, the report |
 ///
+/// A part with a visibility becomes a macro of its name, by which other calls of `bond_graph!` ask for it.
+///
 /// Generated code names `::bg_model` only: a crate that uses the macro needs that one dependency.
 ///
 /// # Faults
 ///
 /// All faults of a stage are reported at once, each that is left when those before it have given way; a later stage looks
-/// at a graph that the earlier ones accepted. The stages are the parts of the table; the third has three in turn: names, then
+/// at a graph that the earlier ones accepted. The stages are the sections of the table, that of parts comes after the syntax; the
+/// third has three in turn: names, then
 /// ports and cardinalities, then shapes and units. An algebraic loop is one fault, however many circles its variables
 /// make. With a fault, the promised items are still there as stubs, so that rustc adds no errors about missing types.
 ///
@@ -902,7 +1034,7 @@ use proc_macro::TokenStream;
 /// | BG0119 | a cardinality other than 1 and 3 |
 /// | BG0120 | a documentation comment where none may be |
 /// | BG0121 | an attribute |
-/// | BG0122 | a call without a graph |
+/// | BG0122 | a call without a graph and without a part |
 /// | **mechanism words** | |
 /// | BG0201 | no such body |
 /// | BG0202 | no such point of the body |
@@ -974,7 +1106,7 @@ use proc_macro::TokenStream;
 /// | BG0516 | friction that cannot stick, since no momentum determines its flow |
 /// | **scenes** | |
 /// | BG0601 | two models of one name, or a model with the name of another one's parameter or input struct |
-/// | BG0602 | no such part to leave out |
+/// | BG0602 | no such thing to leave out |
 /// | BG0603 | no such parameter to tune |
 /// | BG0604 | a scene that is not planar as expected |
 /// | BG0605 | a scene with another number of states than expected |
@@ -984,6 +1116,21 @@ use proc_macro::TokenStream;
 /// | BG0701 | a number that no physics allows, such as a mass of 0 |
 /// | BG0702 | a matrix that no physics allows |
 /// | BG0703 | an orientation that is no rotation |
+/// | **parts** | |
+/// | BG0801 | no such part |
+/// | BG0802 | no such parameter or input of the part, or one that the part gives itself |
+/// | BG0803 | a part that contains itself |
+/// | BG0804 | a port without a bond |
+/// | BG0805 | an element that the array does not have |
+/// | BG0806 | brackets after what is no array, or an array without |
+/// | BG0807 | a word in brackets that is no index, or an index twice |
+/// | BG0808 | a range without a number, or with too many |
+/// | BG0809 | two parameters or inputs that would be one field |
+/// | BG0810 | a value outside of the parameter's range |
+/// | BG0811 | a parameter or input of a part that nothing in it uses |
+/// | BG0812 | a start of something that is no body |
+/// | BG0813 | a start given twice |
+/// | BG0814 | nothing to watch |
 #[proc_macro]
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
     bg_compiler::compile(tokens.into()).into()

@@ -9,7 +9,7 @@ use std::path::Path;
 fn messages() {
     let cases = trybuild::TestCases::new();
     cases.pass("tests/ui/pass*.rs");
-    for stage in ["syntax", "mechanism", "graph", "causality", "equations", "scene", "values"] {
+    for stage in ["syntax", "mechanism", "graph", "causality", "equations", "scene", "values", "part"] {
         cases.compile_fail(format!("tests/ui/{stage}_*.rs"));
     }
 }
@@ -41,5 +41,5 @@ fn no_error_follows() {
         // A fault is at its token, not at the whole call.
         assert!(!text.contains("bond_graph! {"), "{name}:\n{text}");
     }
-    assert_eq!(files, 22);
+    assert_eq!(files, 24);
 }

@@ -30,7 +30,7 @@ bond_graph! {
         observe {
             third: m = three.D.position;
             a: m = one.position.y; b: m = two.position.y; c: m = three.position.y; d: m = four.position.y; e: m = five.position.y;
-            gap: m = five.F.position - ground.F;
+            gap: m = f.gap;
         }
     }
 }

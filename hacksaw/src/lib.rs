@@ -25,3 +25,5 @@ pub mod precision;
 pub mod scenes;
 mod sources;
 pub mod summary;
+
+pub use mechanism::Mechanism;

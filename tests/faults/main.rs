@@ -28,7 +28,7 @@ const SYNTAX: [(&str, &str); 22] = [
     ("BG0112", "joint j: ▸revolute (a -> b);"),
     ("BG0113", "param ▸mass = 3;"),
     ("BG0114", "param mass: ▸kg;"),
-    ("BG0115", "param ▸a.b: m = 1;"),
+    ("BG0115", "scene ▸a.b {}"),
     ("BG0116", "param ▸type: m = 1;"),
     ("BG0117", "let a = ▸2.5f64;"),
     ("BG0118", DEEP),
@@ -240,6 +240,51 @@ const SCENES: [(&str, &str); 7] = [
     ("BG0608", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; start ▸impulse;"),
 ];
 
+/// Parts and graphs that use them.
+const PARTS: [(&str, &str); 14] = [
+    ("BG0801", "graph G { part a: ▸Lag; }\npart Leg { let a = 1; }"),
+    ("BG0802", "graph G { part a: Leg { ▸k = 1; } }\npart Leg { param j: 1 = 2; let a = j; }"),
+    ("BG0803", "graph G { part a: Leg; }\npart Leg { part b: ▸Leg; }"),
+    ("BG0804", "graph G { part ▸a: Leg; }\npart Leg { port hub: translation; I m = 2; hub -> m; }"),
+    ("BG0805", "graph G { part a[2]: Leg; let b = ▸a[2].a; }\npart Leg { let a = 1; }"),
+    ("BG0806", "graph G { part a: Leg; let b = ▸a[0].a; }\npart Leg { let a = 1; }"),
+    ("BG0807", "graph G { part a[2]: Leg; let b = ▸a[i].a; }\npart Leg { let a = 1; }"),
+    ("BG0808", "graph G { for i in 3..▸1 { let b[i] = 1; } }"),
+    (
+        "BG0809",
+        "graph G { param a_b: N = 1; part a: Leg; Se f = a_b; 1 j: translation; I m = 2; f -> j -> m; }\n\
+         part Leg { param ▸b: 1 = 2; let a = b; }",
+    ),
+    ("BG0810", "graph G { part a: Leg { k = -▸2; } }\npart Leg { param k: 1 = 2, above 0; let a = k; }"),
+    ("BG0811", "part Leg { param ▸k: 1 = 2; }"),
+    ("BG0812", "graph G { start ▸rod at [0, 0, 0]; }"),
+    ("BG0813", "graph G { body rod { sphere radius 1; density 1; } start rod at [0, 0, 0]; start ▸rod at [0, 0, 1]; }"),
+    ("BG0814", "graph G { observe { all of ▸a } }"),
+];
+
+/// More of parts.
+const MORE_OF_PARTS: [(&str, &str); 9] = [
+    (
+        "BG0802",
+        "graph G { part a: Leg { ▸foot.j = 1; } }\npart Leg { part foot: Foot { j = 1; } }\n\
+         part Foot { param j: 1 = 2; let a = j; }",
+    ),
+    ("BG0804", "graph G { part ▸a: Leg; }\npart Leg { port hub: translation; port foot: translation; hub -> foot; }"),
+    ("BG0806", "graph G { part a[2]: Leg; let b = ▸a.a; }\npart Leg { let a = 1; }"),
+    ("BG0807", "graph G { for i in 0..2 { for ▸i in 0..2 { let b[i] = 1; } } }"),
+    ("BG0808", "graph G { part a[▸100000]: Leg; }\npart Leg { let a = 1; }"),
+    ("BG0814", "graph G { part a: Leg; observe { all of ▸a } }\npart Leg { let a = 1; }"),
+    (
+        "BG0320",
+        "graph G { part a[9]: Leg; Se f = 1; 1 j: translation; f -> j; for i in 0..9 { j -> a[i].hub; } }\npart Leg { param k: N = 1; port hub: translation; I m = ▸k; hub -> m; }",
+    ),
+    (
+        "BG0316",
+        "graph G { param k: kg = 1; part a: Leg { l = ▸k; } Se f = 1; 1 j: translation; I m = 2; f -> j -> m; }\npart Leg { param l: m = 1; let a = l; }",
+    ),
+    ("BG0303", "part Leg { port hub: translation; I m = ▸mass; hub -> m; }"),
+];
+
 /// All stages that have faults.
 fn compiled(text: &str) -> Staged<()> {
     let source = syntax::parse(text.parse().unwrap_or_else(|error| panic!("{error}\n{text}")))?;
@@ -262,20 +307,28 @@ fn place(fault: &Fault) -> (usize, usize) {
 fn source(statements: &str) -> String {
     match statements {
         "" => MARK.to_string(),
-        _ if statements.starts_with("graph") => statements.to_owned(),
+        _ if statements.starts_with("graph") || statements.starts_with("part") => statements.to_owned(),
         DEEP => format!("graph G {{\nlet a = {}{MARK}(1){};\n}}", "(".repeat(100), ")".repeat(100)),
         _ => format!("graph G {{\n{statements}\n}}"),
     }
 }
 
 fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
-    SYNTAX.into_iter().chain(MECHANISM).chain(GRAPH).chain(CAUSALITY).chain(EQUATIONS).chain(VALUES).chain(SCENES)
+    SYNTAX
+        .into_iter()
+        .chain(MECHANISM)
+        .chain(GRAPH)
+        .chain(CAUSALITY)
+        .chain(EQUATIONS)
+        .chain(VALUES)
+        .chain(SCENES)
+        .chain(PARTS)
 }
 
 #[test]
 fn each_fault_has_its_code_and_its_place() {
     let mut wrong = String::new();
-    for (code, statements) in all().chain(MORE) {
+    for (code, statements) in all().chain(MORE).chain(MORE_OF_PARTS) {
         let (text, expected) = unmarked(&source(statements));
         let faults = compiled(&text).err().unwrap_or_default();
         let found: Vec<_> = faults.iter().map(|fault| (fault.code, place(fault))).collect();
@@ -289,7 +342,7 @@ fn each_fault_has_its_code_and_its_place() {
 #[test]
 fn the_catalogue_of_faults() {
     let mut catalogue = String::new();
-    for (code, statements) in all().chain(MORE) {
+    for (code, statements) in all().chain(MORE).chain(MORE_OF_PARTS) {
         let (text, _) = unmarked(&source(statements));
         for fault in compiled(&text).err().unwrap_or_default() {
             let statements = if statements == DEEP { "let a = ((...((1))...));" } else { statements };

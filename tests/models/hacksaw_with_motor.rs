@@ -1,11 +1,12 @@
 //! The power hacksaw, its crank driven by a direct-current motor through a gear.
 //!
-//! The mechanism is that of the application, `hacksaw::hacksaw_mechanism!`, with another drive.
+//! The mechanism is that of the application, the part `hacksaw::Mechanism`, with another drive.
 
-hacksaw::hacksaw_mechanism! {
+bg_model::bond_graph! {
     /// Bond-graph words for the motor, mechanism words for the saw; the gear's output shaft is a bond on the crank's pin.
     /// The rotor has its own inertia, so that the shaft to the crank is a torsion spring with a damper.
     pub graph HacksawWithMotor {
+        part hacksaw::Mechanism;
         /// Resistance of the winding.
         param winding: Ohm = 1.5, above 0;
         /// Inductance of the winding.

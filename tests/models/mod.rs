@@ -51,6 +51,9 @@ pub mod spinning_top;
 #[path = "../../bg-model/workbench/examples/stick_slip.rs"]
 #[allow(dead_code)]
 pub mod stick_slip;
+#[path = "../../bg-model/workbench/examples/train.rs"]
+#[allow(dead_code)]
+pub mod train;
 
 /// Hands the list of the hacksaw's models to the macro `$then`: name of a test, type and parameters.
 #[macro_export]
@@ -100,6 +103,7 @@ macro_rules! each_example {
             stick_slip: stick_slip StickSlip (StickSlipParameters);
             journal: brakes Journal (JournalParameters);
             carriage: brakes Carriage (CarriageParameters);
+            train: train Train (TrainParameters);
             free_body: free_body FreeBody (FreeBodyParameters);
             orbit: orbit Orbit (OrbitParameters);
             drives: drives Drives (DrivesParameters);

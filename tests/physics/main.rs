@@ -24,4 +24,5 @@ mod slider_crank;
 mod sources;
 mod spinning_top;
 mod stick_slip;
+mod train;
 mod truth;

@@ -33,6 +33,9 @@ const ALL: [&str; 7] = ["expanded", "resolved", "causal", "equations", "program"
 /// Every stage but the program, whose lists of values in three dimensions are longer than a reader follows.
 const SPATIAL: [&str; 1] = ["free_body"];
 
+/// The graph without its parts.
+const PARTS: [&str; 2] = ["trolley", "hanging_chain"];
+
 /// The expanded graph and its causality.
 const MECHANISMS: [&str; 7] = ["body", "pendulum", "prismatic", "spring", "drive", "contact", "bearing"];
 
@@ -40,7 +43,7 @@ const MECHANISMS: [&str; 7] = ["body", "pendulum", "prismatic", "spring", "drive
 const LARGE: [&str; 1] = ["slider_crank"];
 
 fn all() -> impl Iterator<Item = &'static str> {
-    WHOLE.into_iter().chain(SPATIAL).chain(MECHANISMS).chain(LARGE)
+    WHOLE.into_iter().chain(SPATIAL).chain(PARTS).chain(MECHANISMS).chain(LARGE)
 }
 
 fn text(model: &str) -> String {
@@ -88,6 +91,7 @@ fn small_models_stage_by_stage() {
 
 #[test]
 fn mechanisms_as_bond_graphs() {
+    PARTS.iter().for_each(|model| snapshot(model, &["source", "causal"]));
     MECHANISMS.iter().for_each(|model| snapshot(model, &["expanded", "causal"]));
     LARGE.iter().for_each(|model| snapshot(model, &["causal"]));
 }

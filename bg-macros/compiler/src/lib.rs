@@ -4,7 +4,7 @@
 //!
 //! | floor | from -> to | what no longer occurs after it |
 //! |---|---|---|
-//! | [`source`] | tokens -> [`source::ast::Graph`] of bond-graph words, one for each scene | tokens, scenes, bodies, joints |
+//! | [`source`] | tokens -> [`source::ast::Graph`] of bond-graph words, one for each scene | tokens, parts, scenes, bodies, joints |
 //! | [`graph`] | -> [`graph::causality::CausalGraph`] | names, missing ports, unknown units; bonds without a stroke |
 //! | [`system`] | -> [`system::equations::StateEquations`] and their derivatives | bonds; what a scene does not need |
 //! | [`program`] | -> [`program::Programs`] | order left open: flat single assignment |
@@ -27,19 +27,26 @@ pub mod system;
 use proc_macro2::TokenStream;
 
 use crate::fault::compile_errors;
-use crate::source::syntax;
+use crate::source::{part, syntax};
 
 /// Compiles one macro call. Faults come out as compile errors at their tokens, together with stubs of the promised items.
+///
+/// Where the call uses a part of another call that has not been asked yet, the result is the question: a call of that part's
+/// macro, which calls `bond_graph!` again, with the part in front of the tokens.
 #[must_use]
 pub fn compile(tokens: TokenStream) -> TokenStream {
-    let (source, faults) = syntax::parse_leniently(tokens);
+    let (source, faults) = syntax::parse_leniently(tokens.clone());
+    if let Some(path) = part::unasked(&source) {
+        return emit::question(path, &tokens);
+    }
     let models = if faults.is_empty() { pipeline::models(&source) } else { Err(faults) };
+    let mut items: TokenStream = emit::parts(&source);
     match models {
-        Ok(models) => models.iter().map(emit::model).collect(),
+        Ok(models) => items.extend(models.iter().map(emit::model)),
         Err(faults) => {
-            let mut items = compile_errors(&faults);
-            items.extend(emit::stub(&source));
-            items
+            items.extend(compile_errors(&faults));
+            items.extend(emit::stub(&part::flatten_leniently(&source).0.source));
         }
     }
+    items
 }

@@ -11,6 +11,7 @@ use crate::graph::causality::{self, CausalGraph};
 use crate::program::elimination::{self, Elimination};
 use crate::program::{self, Programs};
 use crate::source::ast::{Graph, Source};
+use crate::source::part::{self, Flattened};
 use crate::source::scene::{self, Variant};
 use crate::source::{mechanism, names};
 use crate::system::equations::{self, StateEquations};
@@ -53,20 +54,35 @@ pub struct Compiled {
     pub programs: Programs,
 }
 
-/// All models of a macro call. A fault of a literal graph is not repeated for its scenes.
+/// All models of a macro call. A fault of a literal graph is not repeated for its scenes, one of a part not for its uses.
 ///
 /// # Errors
-/// The faults of all graphs.
+/// The faults of all parts and graphs.
 pub fn models(source: &Source) -> Staged<Vec<Compiled>> {
+    let flattened = part::flatten(source)?;
+    of_graphs(&flattened).map_err(|faults| flattened.told(faults))
+}
+
+fn of_graphs(flattened: &Flattened) -> Staged<Vec<Compiled>> {
     let mut models = Vec::new();
-    let mut faults = names::check(source).err().unwrap_or_default();
-    for graph in &source.graphs {
+    let mut faults = names::check(&flattened.source).err().unwrap_or_default();
+    flattened.unused.iter().for_each(|part| faults.extend(of_part(part)));
+    for graph in &flattened.source.graphs {
         match scene::variants(graph) {
             Ok(variants) => each_variant(&variants, &mut models, &mut faults),
             Err(found) => faults.extend(found),
         }
     }
     if faults.is_empty() { Ok(models) } else { Err(faults) }
+}
+
+/// The faults of names, shapes and units of a part that no graph uses. What its user bonds to it is not there, so that faults of
+/// bonds count for nothing.
+fn of_part(part: &Graph) -> Faults {
+    let resolved = mechanism::expand(part).and_then(|expanded| graph::resolve(&expanded));
+    let mut faults = resolved.err().unwrap_or_default();
+    faults.retain(|fault| !graph::OF_BONDS.contains(&fault.code));
+    faults
 }
 
 fn each_variant(variants: &[Variant], models: &mut Vec<Compiled>, faults: &mut Faults) {

@@ -1,8 +1,9 @@
 //! The hacksaw with another drive: one that turns round in the middle of a run, and none at all.
 
-hacksaw::hacksaw_mechanism! {
+bg_model::bond_graph! {
     /// A torque that changes its sign at an instant: by a choice in its law, which is a switch, or by an input, which is none.
     pub graph ReversibleHacksaw {
+        part hacksaw::Mechanism;
         /// Drive torque on the crank about z, up to the reversal.
         param torque: N*m = 10;
         /// The instant of the reversal.

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::graph::{Input, Parameter};
-use crate::source::names::{INPUTS, PARAMETERS};
+use crate::source::names::{self, INPUTS, PARAMETERS};
 
 /// What the generated structs are made from.
 pub(super) struct Given<'a> {
@@ -16,8 +16,9 @@ pub(super) struct Given<'a> {
     pub(super) inputs: &'a [Input],
 }
 
-/// An identifier of the user's; raw where an edition has made it a keyword that others have not.
+/// An identifier of the user's, a path as one word; raw where an edition has made it a keyword that others have not.
 pub(super) fn identifier(name: &str) -> Ident {
+    let name = &names::field(name);
     let make = if name == "gen" { Ident::new_raw } else { Ident::new };
     make(name, Span::call_site())
 }

@@ -9,11 +9,13 @@ mod elimination;
 mod items;
 mod model;
 mod pairs;
+mod parts;
 mod picture;
 pub mod routine;
 mod series;
 mod stub;
 
 pub use model::model;
+pub use parts::{parts, question};
 pub use picture::picture;
 pub use stub::stub;

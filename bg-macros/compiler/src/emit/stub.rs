@@ -9,7 +9,7 @@ use super::items::{Given, identifier};
 use super::model::mechanism;
 use crate::graph::units::Dimension;
 use crate::graph::{Input, Parameter};
-use crate::source::ast::{Item, Source};
+use crate::source::ast::{Item, Name, Source};
 use crate::source::names::{self, Promised};
 
 /// Stubs of all models, each name once.
@@ -18,17 +18,21 @@ pub fn stub(source: &Source) -> TokenStream {
     names::models(source).0.into_iter().map(of_model).collect()
 }
 
+/// Whether two names are two fields.
+fn is_other(a: &Name, b: &Name) -> bool {
+    names::field(&a.text) != names::field(&b.text)
+}
+
 /// The stub of one model, with the parameters that it keeps.
 fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
     let model = &scene.map_or(&graph.name, |scene| &scene.name).text;
-    let tuned = scene.and_then(|scene| scene.tune.as_ref());
-    let keeps = |parameter: &str| tuned.is_none_or(|tuned| tuned.iter().any(|name| name.text == parameter));
+    let keeps = |parameter: &str| scene.is_none_or(|scene| scene.tune.keeps(parameter));
     let mut parameters: Vec<Parameter> = Vec::new();
     let mut inputs: Vec<Input> = Vec::new();
     for item in &graph.items {
         match item {
             Item::Parameter(found)
-                if keeps(&found.name.text) && parameters.iter().all(|known| known.name.text != found.name.text) =>
+                if keeps(&found.name.text) && parameters.iter().all(|known| is_other(&known.name, &found.name)) =>
             {
                 parameters.push(Parameter {
                     name: found.name.clone(),
@@ -40,7 +44,7 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
                     upper: None,
                 });
             }
-            Item::Input(found) if inputs.iter().all(|known| known.name.text != found.name.text) => {
+            Item::Input(found) if inputs.iter().all(|known| is_other(&known.name, &found.name)) => {
                 let (name, docs, unit) = (found.name.clone(), String::new(), String::new());
                 inputs.push(Input { name, docs, unit, dimension: Dimension::NONE });
             }

@@ -46,6 +46,9 @@ pub enum GraphFault {
 
 use GraphFault as F;
 
+/// The codes of what is wrong with the bonds that are there, or are missing.
+pub const OF_BONDS: [&str; 5] = ["BG0308", "BG0309", "BG0310", "BG0319", "BG0333"];
+
 impl Explain for GraphFault {
     fn code(&self) -> &'static str {
         match self {

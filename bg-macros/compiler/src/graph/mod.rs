@@ -17,7 +17,7 @@ pub use crate::source::ast::{Axis, BinaryOperator, Comparison, Direction, Elemen
 pub use crate::source::clause::{Allowed, Clause};
 pub use crate::source::drawing::{self, Drawing};
 pub use causality::{CausalGraph, End};
-pub use fault::GraphFault;
+pub use fault::{GraphFault, OF_BONDS};
 pub use resolve::resolve;
 pub use term::{Builtin, Operation, Reference, Term, TermKind};
 pub use typing::Shape;
@@ -356,7 +356,9 @@ impl BondGraph {
     #[must_use]
     pub fn is_clause(&self, term: &Term) -> bool {
         match &term.kind {
-            TermKind::Reference(Reference::Let(index)) => self.lets[*index].clause.is_some(),
+            TermKind::Reference(Reference::Let(index)) => {
+                self.lets[*index].clause.as_ref().is_some_and(|clause| !clause.is_argument)
+            }
             TermKind::Component(inner, _) => self.is_clause(inner),
             _ => false,
         }

@@ -1,15 +1,24 @@
 //! The source as a tree: what a user wrote, with the span of every name, before any name means anything.
 //!
-//! One tree serves both vocabularies; after `mechanism::expand` the items of the second one no longer occur.
+//! One tree serves both vocabularies; after `part::flatten` parts and repetitions no longer occur, after `mechanism::expand` the
+//! items of the second vocabulary.
 
 use proc_macro2::Span;
 
 use crate::source::clause::Clause;
 use crate::source::drawing::Drawing;
 
-/// All graphs of one macro call.
-#[derive(Clone, Debug)]
+pub use crate::source::ast_part::{
+    Argument, For, Foreign, Part, PartPath, Port, Start, StartKind, Use, Written, used_parts,
+};
+
+/// All parts and graphs of one macro call.
+#[derive(Clone, Debug, Default)]
 pub struct Source {
+    /// What parts of other macro calls are, as far as these have been asked.
+    pub foreign: Vec<Foreign>,
+    /// The parts in the order of declaration.
+    pub parts: Vec<Part>,
     /// The graphs in the order of declaration.
     pub graphs: Vec<Graph>,
 }
@@ -29,10 +38,10 @@ pub struct Graph {
     pub drawing: Drawing<Expression>,
 }
 
-/// A name, possibly dotted: `shaft`, `pin_b.force`.
+/// A name, possibly dotted and with whole numbers in brackets: `shaft`, `pin_b.force`, `link[3].bar`.
 #[derive(Clone, Debug)]
 pub struct Name {
-    /// The whole name with its dots.
+    /// The whole name with its dots. In brackets stand digits; before `part::flatten` also expressions of indices.
     pub text: String,
     /// Where it stands.
     pub span: Span,
@@ -57,8 +66,8 @@ pub enum Item {
     Track(Track),
     /// `close NAME = E;` a gap of joint NAME that the assembly of the start closes.
     Close(Close),
-    /// `observe { NAME: UNIT = E; E; ... }`
-    Observe(Vec<Observation>),
+    /// `observe { NAME: UNIT = E; E; all of NAME; ... }`
+    Observe(Vec<Watch>),
     /// `scene NAME { ... }`
     Scene(Scene),
     /// `ground { point P = E; ... }`
@@ -87,6 +96,14 @@ pub enum Item {
     Stop(Stop),
     /// `orifice NAME on JUNCTION { ... }`
     Orifice(Orifice),
+    /// `part NAME: PART { ... }`
+    Use(Use),
+    /// `port NAME: DOMAIN;`
+    Port(Port),
+    /// `start BODY at E;`
+    Start(Start),
+    /// `for i in 0..20 { ... }`
+    For(For),
 }
 
 /// A parameter: a number that stays the same during a run.
@@ -94,7 +111,7 @@ pub enum Item {
 pub struct Parameter {
     /// Documentation comment.
     pub docs: String,
-    /// Its name (no dots).
+    /// Its name.
     pub name: Name,
     /// Its unit.
     pub unit: Unit,
@@ -120,7 +137,7 @@ pub struct Bound {
 pub struct Input {
     /// Documentation comment.
     pub docs: String,
-    /// Its name (no dots).
+    /// Its name.
     pub name: Name,
     /// Its unit.
     pub unit: Unit,
@@ -330,6 +347,56 @@ pub struct Observation {
     pub value: Expression,
 }
 
+/// One entry of `observe`.
+#[derive(Clone, Debug)]
+pub enum Watch {
+    /// `NAME: UNIT = E`
+    Value(Observation),
+    /// `all of NAME`: what there is to see of a part, body, joint or element. No longer occurs after `part::flatten`.
+    All(Name),
+}
+
+impl Watch {
+    /// The output, if it is one.
+    #[must_use]
+    pub fn value(&self) -> Option<&Observation> {
+        if let Self::Value(observation) = self { Some(observation) } else { None }
+    }
+}
+
+/// Which parameters of a scene stay adjustable at run time.
+#[derive(Clone, Debug)]
+pub enum Tune {
+    /// All of them.
+    All,
+    /// `tune { a, b }`
+    Only(Vec<Name>),
+    /// `tune all but { a, b }`
+    AllBut(Vec<Name>),
+}
+
+impl Tune {
+    /// Whether the parameter stays adjustable.
+    #[must_use]
+    pub fn keeps(&self, parameter: &str) -> bool {
+        let among = |names: &[Name]| names.iter().any(|name| name.text == parameter);
+        match self {
+            Self::All => true,
+            Self::Only(names) => among(names),
+            Self::AllBut(names) => !among(names),
+        }
+    }
+
+    /// The parameters that it names.
+    #[must_use]
+    pub fn names(&self) -> &[Name] {
+        match self {
+            Self::All => &[],
+            Self::Only(names) | Self::AllBut(names) => names,
+        }
+    }
+}
+
 /// A scene: one use of the mechanism, a type of its own.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -338,9 +405,9 @@ pub struct Scene {
     /// The generated type's name.
     pub name: Name,
     /// What is watched.
-    pub observe: Vec<Observation>,
-    /// `tune { a, b }`: parameters that stay adjustable at run time. None: all of them.
-    pub tune: Option<Vec<Name>>,
+    pub observe: Vec<Watch>,
+    /// Which parameters stay adjustable.
+    pub tune: Tune,
     /// `without { cut }`: joints, contacts, springs, drives, elements that are left out.
     pub without: Vec<Name>,
     /// `rigid joints;` or `rigid { pin_b }`.
@@ -412,11 +479,11 @@ pub struct Baumgarte {
 /// A rigid body.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// Its name (no dots).
+    /// Its name.
     pub name: Name,
-    /// Its parts; empty when the mass properties are given.
-    pub parts: Vec<Part>,
-    /// `density E;` of all parts without one of their own, kg/m^3.
+    /// What it is made of; empty when the mass properties are given.
+    pub solids: Vec<Solid>,
+    /// `density E;` of all solids without one of their own, kg/m^3.
     pub density: Option<Expression>,
     /// `mass E;`, kg.
     pub mass: Option<Expression>,
@@ -438,7 +505,7 @@ pub struct Body {
 
 /// A solid of a body.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct Solid {
     /// What it is.
     pub shape: Shape,
     /// `at E`: its centre in the body's axes, m; the origin when left out.
@@ -454,7 +521,7 @@ pub struct Part {
 /// A solid's form.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// `cuboid [x, y, z]`: edges along the part's own axes, m.
+    /// `cuboid [x, y, z]`: edges along the solid's own axes, m.
     Cuboid(Expression),
     /// `cylinder radius E length E along z`, m.
     Cylinder {
@@ -522,7 +589,7 @@ pub struct Ends {
 /// A compliant joint.
 #[derive(Clone, Debug)]
 pub struct Joint {
-    /// Its name (no dots).
+    /// Its name.
     pub name: Name,
     /// Its freedoms.
     pub kind: JointKind,
@@ -545,7 +612,7 @@ pub struct Joint {
 /// A spring and damper along the line between two points.
 #[derive(Clone, Debug)]
 pub struct Spring {
-    /// Its name (no dots).
+    /// Its name.
     pub name: Name,
     /// What it joins.
     pub ends: Ends,
@@ -571,7 +638,7 @@ pub enum DriveKind {
 /// A source on a joint's free axis, on a body or on a body's point.
 #[derive(Clone, Debug)]
 pub struct Drive {
-    /// Its name (no dots).
+    /// Its name.
     pub name: Name,
     /// A joint, a body, or a point of a body.
     pub target: Name,
@@ -588,7 +655,7 @@ pub struct Drive {
 /// A sliding contact: a point of the first body slides along a line of the second.
 #[derive(Clone, Debug)]
 pub struct Contact {
-    /// Its name (no dots).
+    /// Its name.
     pub name: Name,
     /// What touches.
     pub ends: Ends,

@@ -15,6 +15,8 @@ pub struct Clause {
     pub given: Given,
     /// What physics allows.
     pub allowed: Allowed,
+    /// Whether it is what a part was given for a parameter, and not the clause of a mechanism word.
+    pub is_argument: bool,
 }
 
 /// What a clause may depend on.
@@ -60,7 +62,19 @@ impl Clause {
     /// A clause of numbers and parameters of which physics asks nothing.
     #[must_use]
     pub fn new(what: impl Into<String>, components: usize) -> Self {
-        Self { what: what.into(), components, given: Given::Constant, allowed: Allowed::Any }
+        Self { what: what.into(), components, given: Given::Constant, allowed: Allowed::Any, is_argument: false }
+    }
+
+    /// What a part is given for a parameter, or for an input, which may be anything.
+    #[must_use]
+    pub fn argument(what: impl Into<String>, given: Given) -> Self {
+        Self { given, is_argument: true, ..Self::new(what, 1) }
+    }
+
+    /// Whether it depends on parameters and numbers only.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        self.given == Given::Constant
     }
 
     /// The same with other dependence.

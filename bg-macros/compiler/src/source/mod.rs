@@ -1,13 +1,17 @@
 //! The description as its author wrote it: text, tree, mechanism words.
 //!
-//! In: tokens. Out: a tree of bond-graph words for each model: the literal graph and one for each scene.
+//! In: tokens. Out: a tree of bond-graph words without parts for each model: the literal graph and one for each scene.
 
 pub mod ast;
+mod ast_part;
 pub mod clause;
 pub mod drawing;
 pub mod mechanism;
 pub mod names;
+pub mod part;
 pub mod print;
+mod print_part;
 pub mod scene;
 pub mod syntax;
+mod walk;
 mod words;

@@ -11,41 +11,74 @@ use crate::source::ast::{Graph, Item, Name, Scene, Source};
 pub(crate) const PARAMETERS: &str = "Parameters";
 pub(crate) const INPUTS: &str = "Inputs";
 
-/// A fault of a model's name.
+/// The field of a parameter or input: its path as one word, `front_stiffness` of `front.stiffness`, `link_3_length` of
+/// `link[3].length`.
+pub(crate) fn field(name: &str) -> String {
+    name.replace("].", "_").replace(']', "").replace(['.', '['], "_")
+}
+
+/// A fault of the name of a model or field.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum NameFault {
     SameName { name: String },
+    SameField { name: String, of: String },
     NameOfStruct { name: String, of: String, part: &'static str },
 }
 
 impl Explain for NameFault {
     fn code(&self) -> &'static str {
-        "BG0601"
+        match self {
+            Self::SameField { .. } => "BG0809",
+            Self::SameName { .. } | Self::NameOfStruct { .. } => "BG0601",
+        }
     }
 
     fn message(&self) -> String {
         match self {
             Self::SameName { name } => format!("there are two models called `{name}`"),
+            Self::SameField { name, of } => {
+                format!("`{name}` and `{of}` would both be the field `{}`", field(name))
+            }
             Self::NameOfStruct { name, of, part } => format!("`{name}` would be a model and the {part} of `{of}`"),
         }
     }
 
     fn help(&self) -> String {
         match self {
-            Self::SameName { .. } => "give one of them another name".to_owned(),
+            Self::SameName { .. } | Self::SameField { .. } => "give one of them another name".to_owned(),
             Self::NameOfStruct { .. } => "give one of the two models another name".to_owned(),
         }
     }
 }
 
-/// Each generated struct of a macro call has a name of its own.
+/// Each generated struct of a macro call has a name of its own, and so has each of its fields.
 ///
 /// # Errors
-/// Models of one name, or with the name of another model's parameters or inputs.
+/// Models of one name, or with the name of another model's parameters or inputs; paths that are one word.
 pub fn check(source: &Source) -> Staged<()> {
-    let faults = models(source).1;
+    let mut faults = models(source).1;
+    source.graphs.iter().for_each(|graph| faults.extend(fields(graph)));
     if faults.is_empty() { Ok(()) } else { Err(faults) }
+}
+
+/// Parameters, or inputs, whose paths differ but not as words.
+fn fields(graph: &Graph) -> Faults {
+    let mut taken: BTreeMap<(bool, String), &str> = BTreeMap::new();
+    let mut faults = Faults::new();
+    for item in &graph.items {
+        let (is_input, name) = match item {
+            Item::Parameter(parameter) => (false, &parameter.name),
+            Item::Input(input) => (true, &input.name),
+            _ => continue,
+        };
+        let of = *taken.entry((is_input, field(&name.text))).or_insert(&name.text);
+        if of != name.text {
+            let fault = NameFault::SameField { name: name.text.clone(), of: of.to_owned() };
+            faults.push(Fault::new(name.span, &fault));
+        }
+    }
+    faults
 }
 
 /// A model of the source: a graph, or a scene of it.

@@ -9,7 +9,7 @@ use crate::source::ast::{
     Axis, AxisLaw, Baumgarte, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends,
     Expectation, Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind,
     Junction, JunctionKind, LawVariable, Let, Name, Observation, Operation, Orifice, Parameter, Part, Point, Rigid,
-    Role, Scene, Shape, Source, Spring, Stop, Track, Unit,
+    Role, Scene, Shape, Solid, Source, Spring, Stop, Track, Tune, Unit, Watch,
 };
 use crate::source::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
 
@@ -21,9 +21,10 @@ const MINUS: u8 = 3;
 
 impl Display for Source {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        for (i, graph) in self.graphs.iter().enumerate() {
+        let texts = self.parts.iter().map(Part::to_string).chain(self.graphs.iter().map(Graph::to_string));
+        for (i, text) in texts.enumerate() {
             let gap = if i > 0 { "\n" } else { "" };
-            writeln!(f, "{gap}{graph}")?;
+            writeln!(f, "{gap}{text}")?;
         }
         Ok(())
     }
@@ -32,15 +33,21 @@ impl Display for Source {
 impl Display for Graph {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         documentation(f, &self.docs)?;
-        write!(f, "{}graph {} {{", visibility(&self.visibility), self.name)?;
-        for (i, item) in self.items.iter().enumerate() {
-            let before = i.checked_sub(1).and_then(|before| self.items.get(before));
-            let gap = before.is_some_and(|before| section(item).is_none() || section(item) != section(before));
-            write!(f, "{}", if gap { "\n\n" } else { "\n" })?;
-            indented(f, &item.to_string())?;
-        }
-        f.write_str(if self.items.is_empty() { "}" } else { "\n}" })
+        write!(f, "{}graph {} ", visibility(&self.visibility), self.name)?;
+        statements(f, &self.items)
     }
+}
+
+/// A block of statements with blank lines between its sections.
+pub(super) fn statements(f: &mut Formatter<'_>, items: &[Item]) -> Result {
+    f.write_str("{")?;
+    for (i, item) in items.iter().enumerate() {
+        let before = i.checked_sub(1).and_then(|before| items.get(before));
+        let gap = before.is_some_and(|before| section(item).is_none() || section(item) != section(before));
+        write!(f, "{}", if gap { "\n\n" } else { "\n" })?;
+        indented(f, &item.to_string())?;
+    }
+    f.write_str(if items.is_empty() { "}" } else { "\n}" })
 }
 
 /// Which items stand together without a blank line; none beside one with a block.
@@ -57,7 +64,7 @@ const fn section(item: &Item) -> Option<u8> {
 }
 
 /// The words in front of `graph`.
-fn visibility(visibility: &syn::Visibility) -> String {
+pub(super) fn visibility(visibility: &syn::Visibility) -> String {
     let syn::Visibility::Restricted(restricted) = visibility else {
         return if matches!(visibility, syn::Visibility::Public(_)) { "pub ".into() } else { String::new() };
     };
@@ -68,7 +75,7 @@ fn visibility(visibility: &syn::Visibility) -> String {
 }
 
 /// Documentation as lines of `///`.
-fn documentation(f: &mut Formatter<'_>, docs: &str) -> Result {
+pub(super) fn documentation(f: &mut Formatter<'_>, docs: &str) -> Result {
     for line in docs.lines() {
         writeln!(f, "///{}{line}", if line.is_empty() { "" } else { " " })?;
     }
@@ -79,13 +86,14 @@ fn documentation(f: &mut Formatter<'_>, docs: &str) -> Result {
 fn indented(f: &mut Formatter<'_>, text: &str) -> Result {
     for (i, line) in text.lines().enumerate() {
         let feed = if i > 0 { "\n" } else { "" };
-        write!(f, "{feed}    {line}")?;
+        let indent = if line.is_empty() { "" } else { "    " };
+        write!(f, "{feed}{indent}{line}")?;
     }
     Ok(())
 }
 
 /// A block of statements, one per line.
-fn block(f: &mut Formatter<'_>, entries: &[String]) -> Result {
+pub(super) fn block(f: &mut Formatter<'_>, entries: &[String]) -> Result {
     if entries.is_empty() {
         return f.write_str("{}");
     }
@@ -130,7 +138,7 @@ impl Display for Item {
             }
             Self::Track(track) => track.fmt(f),
             Self::Close(close) => close.fmt(f),
-            Self::Observe(observations) => observe(f, observations),
+            Self::Observe(watched) => observe(f, watched),
             Self::Scene(scene) => scene.fmt(f),
             Self::Ground(ground) => ground.fmt(f),
             Self::Gravity(Gravity { acceleration, .. }) => write!(f, "gravity {acceleration};"),
@@ -145,6 +153,10 @@ impl Display for Item {
             Self::Friction(friction) => friction.fmt(f),
             Self::Stop(stop) => stop.fmt(f),
             Self::Orifice(orifice) => orifice.fmt(f),
+            Self::Use(used) => used.fmt(f),
+            Self::Port(port) => port.fmt(f),
+            Self::Start(start) => start.fmt(f),
+            Self::For(repeated) => repeated.fmt(f),
         }
     }
 }
@@ -198,7 +210,9 @@ impl Display for Unit {
 impl Display for Junction {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let kind = u8::from(self.kind == JunctionKind::One);
-        let cardinality = if self.cardinality == 1 { String::new() } else { format!("[{}]", self.cardinality) };
+        // A number at the end of a name would be read as the cardinality.
+        let is_plain = self.cardinality == 1 && !self.name.text.ends_with(']');
+        let cardinality = if is_plain { String::new() } else { format!("[{}]", self.cardinality) };
         let domain = self.domain.as_ref().map_or_else(String::new, |domain| format!(": {domain}"));
         write!(f, "{kind} {}{cardinality}{domain};", self.name)
     }
@@ -276,14 +290,23 @@ impl Display for Close {
 }
 
 /// `observe { a; b = E }`, on several lines when it is long.
-fn observe(f: &mut Formatter<'_>, observations: &[Observation]) -> Result {
-    let line = list(observations, "; ");
+fn observe(f: &mut Formatter<'_>, watched: &[Watch]) -> Result {
+    let line = list(watched, "; ");
     f.write_str("observe ")?;
     if line.chars().count() <= LINE {
         return f.write_str(&line);
     }
-    let entries: Vec<String> = observations.iter().map(|observation| format!("{observation};")).collect();
+    let entries: Vec<String> = watched.iter().map(|watch| format!("{watch};")).collect();
     block(f, &entries)
+}
+
+impl Display for Watch {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        match self {
+            Self::Value(observation) => observation.fmt(f),
+            Self::All(name) => write!(f, "all of {name}"),
+        }
+    }
 }
 
 impl Display for Observation {
@@ -303,7 +326,11 @@ impl Display for Scene {
         if !self.observe.is_empty() {
             entries.push(Item::Observe(self.observe.clone()).to_string());
         }
-        entries.extend(self.tune.as_ref().map(|names| format!("tune {}", list(names, ", "))));
+        match &self.tune {
+            Tune::All => {}
+            Tune::Only(names) => entries.push(format!("tune {}", list(names, ", "))),
+            Tune::AllBut(names) => entries.push(format!("tune all but {}", list(names, ", "))),
+        }
         if !self.without.is_empty() {
             entries.push(format!("without {}", list(&self.without, ", ")));
         }
@@ -345,7 +372,7 @@ impl Display for Point {
 
 impl Display for Body {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let mut entries: Vec<String> = self.parts.iter().map(Part::to_string).collect();
+        let mut entries: Vec<String> = self.solids.iter().map(Solid::to_string).collect();
         setting(&mut entries, "density", self.density.as_ref());
         setting(&mut entries, "mass", self.mass.as_ref());
         setting(&mut entries, "center", self.center.as_ref());
@@ -363,7 +390,7 @@ impl Display for Body {
     }
 }
 
-impl Display for Part {
+impl Display for Solid {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match &self.shape {
             Shape::Cuboid(edges) => write!(f, "cuboid {edges}")?,

@@ -11,7 +11,7 @@ use crate::source::drawing::Drawing;
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum SceneFault {
-    UnknownPart { name: String, near: Option<String> },
+    NothingToLeaveOut { name: String, near: Option<String> },
     UnknownJoint { name: String, near: Option<String> },
     NothingRigid,
 }
@@ -21,7 +21,7 @@ use SceneFault as F;
 impl Explain for SceneFault {
     fn code(&self) -> &'static str {
         match self {
-            F::UnknownPart { .. } => "BG0602",
+            F::NothingToLeaveOut { .. } => "BG0602",
             F::UnknownJoint { .. } => "BG0606",
             F::NothingRigid => "BG0608",
         }
@@ -29,7 +29,7 @@ impl Explain for SceneFault {
 
     fn message(&self) -> String {
         match self {
-            F::UnknownPart { name, .. } => format!("the mechanism has no part `{name}` to leave out"),
+            F::NothingToLeaveOut { name, .. } => format!("there is no `{name}` to leave out"),
             F::UnknownJoint { name, .. } => format!("there is no joint `{name}` to make rigid"),
             F::NothingRigid => "`start impulse` has nothing to act through: no joint is rigid, in no scene".to_owned(),
         }
@@ -37,10 +37,10 @@ impl Explain for SceneFault {
 
     fn help(&self) -> String {
         match self {
-            F::UnknownPart { near: Some(near), .. } | F::UnknownJoint { near: Some(near), .. } => {
+            F::NothingToLeaveOut { near: Some(near), .. } | F::UnknownJoint { near: Some(near), .. } => {
                 format!("did you mean `{near}`?")
             }
-            F::UnknownPart { .. } => "name a joint, contact, spring, drive, friction, stop or element".to_owned(),
+            F::NothingToLeaveOut { .. } => "name a joint, contact, spring, drive, friction, stop or element".to_owned(),
             F::UnknownJoint { .. } => "name a joint of the graph, or write `rigid joints;`".to_owned(),
             F::NothingRigid => "remove it, or make a joint rigid".to_owned(),
         }
@@ -61,7 +61,7 @@ pub struct Variant {
 /// The literal graph and one variant for each scene.
 ///
 /// # Errors
-/// Parts to leave out that there are not.
+/// Things to leave out that there are not.
 pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     let mut faults = Vec::new();
     let items: Vec<Item> = source.items.iter().filter(|item| !matches!(item, Item::Scene(_))).cloned().collect();
@@ -112,7 +112,7 @@ fn left(items: &[Item], without: &[Name], faults: &mut Vec<Fault>) -> Vec<Item> 
         let parts = || items.iter().filter_map(part_name);
         if parts().all(|part| part.text != name.text) {
             let near = near_miss(&name.text, parts().map(|part| part.text.as_str())).map(str::to_owned);
-            faults.push(Fault::new(name.span, &F::UnknownPart { name: name.text.clone(), near }));
+            faults.push(Fault::new(name.span, &F::NothingToLeaveOut { name: name.text.clone(), near }));
         }
     }
     let goes = |name: &Name| without.iter().any(|gone| gone.text == name.text);

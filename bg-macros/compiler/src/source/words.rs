@@ -1,6 +1,6 @@
 //! The words and symbols of the language that stand for one value each, for the parser and the printer alike.
 
-use crate::source::ast::{Axis, BinaryOperator, Comparison, DriveKind, ElementKind, Role, TrackKind};
+use crate::source::ast::{Axis, BinaryOperator, Comparison, DriveKind, ElementKind, Role, StartKind, TrackKind};
 
 /// The elements' symbols.
 pub(crate) const ELEMENTS: [(&str, ElementKind); 13] = [
@@ -29,6 +29,20 @@ pub(crate) const DRIVES: [(&str, DriveKind); 3] =
 /// What a track follows.
 pub(crate) const TRACKS: [(&str, TrackKind); 2] =
     [("position", TrackKind::Position), ("orientation", TrackKind::Orientation)];
+
+/// What is given of a body's start.
+pub(crate) const STARTS: [(&str, StartKind); 4] = [
+    ("at", StartKind::Place),
+    ("turned", StartKind::Orientation),
+    ("velocity", StartKind::Velocity),
+    ("spin", StartKind::Spin),
+];
+
+/// What has a name of its own in every graph.
+pub(crate) const QUANTITIES: [&str; 5] = ["t", "stored_energy", "supplied_power", "dissipated_power", "gravity_field"];
+
+/// The inertial frame's name, of which a graph has one.
+pub(crate) const GROUND: &str = "ground";
 
 /// The roles of a law's variable.
 pub(crate) const ROLES: [(&str, Role); 2] = [("effort", Role::Effort), ("flow", Role::Flow)];

@@ -12,6 +12,7 @@ use super::super::routine::Names;
 use super::Emission;
 use crate::expr::Symbol;
 use crate::program::{Operand, Routine};
+use crate::source::names;
 use crate::system::equations::StateEquations;
 
 /// `let name = value;` for the symbols that some routines use.
@@ -71,11 +72,13 @@ impl Emission<'_> {
 
     fn symbol_name(&self, symbol: Symbol) -> TokenStream {
         let equations = &self.model.equations;
-        let input = |index: u32| &equations.inputs[index as usize].name.text;
+        let input = |index: u32| names::field(&equations.inputs[index as usize].name.text);
         let ident = match symbol {
             Symbol::Time => format_ident!("t"),
             Symbol::State(index) => self.states[index as usize].clone(),
-            Symbol::Parameter(index) => format_ident!("p_{}", equations.parameters[index as usize].name.text),
+            Symbol::Parameter(index) => {
+                format_ident!("p_{}", names::field(&equations.parameters[index as usize].name.text))
+            }
             Symbol::Input(index) => format_ident!("u_{}", input(index)),
             Symbol::Slope(index) => format_ident!("slope_{}", input(index)),
             Symbol::Kept(index) => format_ident!("kept_{index}"),
@@ -116,7 +119,7 @@ pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
         DESCRIPTION Some None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {
-        used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", input.name.text)));
+        used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", names::field(&input.name.text))));
     }
     let mut identifiers = Vec::new();
     for (index, state) in equations.states.iter().enumerate() {

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
 use crate::graph::units::{self, Dimension, Domain};
-use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role};
+use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role, Watch};
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -264,7 +264,10 @@ impl Resolver {
                 Item::Impulse(_) => self.graph.impulse = true,
                 Item::Baumgarte(baumgarte) => self.graph.baumgarte = Some(self.decay(&baumgarte.rate)),
                 Item::IntegralCausality => self.graph.expects_integral = true,
-                Item::Observe(observations) => observations.iter().for_each(|observation| self.observe(observation)),
+                Item::Observe(watched) => {
+                    let values = watched.iter().filter_map(Watch::value);
+                    values.for_each(|observation| self.observe(observation));
+                }
                 _ => {}
             }
         }
@@ -366,7 +369,8 @@ impl Resolver {
         let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
         let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
         if self.graph.observations.iter().any(|known| known.name == name) {
-            self.fault(observation.value.span, &DeclaredTwice { name: name.clone() });
+            let span = observation.name.as_ref().map_or(observation.value.span, |name| name.span);
+            self.fault(span, &DeclaredTwice { name: name.clone() });
         }
         self.observed.push(declared);
         self.graph.observations.push(Observation { name, value, shape: Shape::Scalar, unit });

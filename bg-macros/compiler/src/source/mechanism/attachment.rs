@@ -5,7 +5,7 @@
 use super::{End, Expansion, MechanismFault, expression};
 use crate::fault::near_miss;
 use crate::source::ast::{
-    Axis, Contact, Drive, DriveKind, Element, ElementKind, Expression, ExpressionKind, Item, Name, Spring,
+    Axis, Contact, Drive, DriveKind, Element, ElementKind, Expression, ExpressionKind, Item, Let, Name, Spring,
 };
 use crate::source::clause::{Allowed, Clause, Given};
 
@@ -136,8 +136,7 @@ impl Expansion<'_> {
     }
 
     fn is_known(&self, target: &Name) -> bool {
-        let body = target.text.split('.').next().unwrap_or_default();
-        self.bodies.contains_key(body)
+        self.bodies.contains_key(self.on_body(&target.text).0)
     }
 
     fn wrong_drive(&mut self, drive: &Drive, takes: &'static str) {
@@ -155,6 +154,7 @@ impl Expansion<'_> {
         let given = self.source.items.iter().filter_map(|item| match item {
             Item::Parameter(parameter) => Some(parameter.name.text.as_str()),
             Item::Input(input) => Some(input.name.text.as_str()),
+            Item::Let(Let { name, clause: Some(clause), .. }) => clause.is_constant().then_some(name.text.as_str()),
             _ => None,
         });
         let given: Vec<&str> = given.chain(["t"]).collect();

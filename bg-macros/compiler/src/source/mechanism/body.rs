@@ -3,7 +3,7 @@
 //! In: `ast::Body`. Out: bond-graph words. Momenta and the tensor are in inertial axes; the tensor turns with the body.
 
 use super::{Expansion, MechanismFault, ORIGIN, is_among, is_vector, unknown_point};
-use crate::source::ast::{Axis, Body, Expression, ExpressionKind, Name, Part, Shape};
+use crate::source::ast::{Axis, Body, Expression, ExpressionKind, Name, Shape, Solid};
 use crate::source::clause::{Allowed, Clause, Given};
 
 impl Expansion<'_> {
@@ -11,7 +11,7 @@ impl Expansion<'_> {
     pub(super) fn body(&mut self, body: &Body) {
         let (name, span) = (&body.name.text, body.name.span);
         let given = body.mass.is_some() || body.inertia.is_some() || body.center.is_some();
-        match (body.parts.is_empty(), given) {
+        match (body.solids.is_empty(), given) {
             (true, true) => self.given_mass(body),
             (false, false) => self.mass_of_parts(body),
             (true, false) => self.fault(span, &MechanismFault::NoMass { name: name.clone() }),
@@ -93,8 +93,8 @@ impl Expansion<'_> {
             let clause = Clause::new(format!("the density of body `{name}`"), 1).allowed(Allowed::NotNegative);
             self.bind(&format!("{name}.density"), "kg/m^3", density, clause);
         }
-        let parts: Vec<String> = (1..=body.parts.len()).map(|k| format!("{name}.part{k}")).collect();
-        for (index, (part, label)) in body.parts.iter().zip(&parts).enumerate() {
+        let parts: Vec<String> = (1..=body.solids.len()).map(|k| format!("{name}.part{k}")).collect();
+        for (index, (part, label)) in body.solids.iter().zip(&parts).enumerate() {
             self.part(body, part, label, &format!("part {} of body `{name}`", index + 1));
         }
         let sum = |term: &dyn Fn(&String) -> String| parts.iter().map(term).collect::<Vec<_>>().join(" + ");
@@ -116,7 +116,7 @@ impl Expansion<'_> {
     }
 
     /// One solid; `words` name it.
-    fn part(&mut self, body: &Body, part: &Part, label: &str, words: &str) {
+    fn part(&mut self, body: &Body, part: &Solid, label: &str, words: &str) {
         let (name, span) = (&body.name.text, part.span);
         let size = |what: &str, components| {
             Clause::new(format!("the {what} of {words}"), components).allowed(Allowed::NotNegative)

@@ -3,7 +3,7 @@
 //! In: bodies, the ground, joints, springs and contacts. Out: a [`Drawing`] over the names that their fragments define.
 
 use super::{End, Expansion, expression};
-use crate::source::ast::{self, Body, Ends, Expression, Gravity, Ground, Name, Part};
+use crate::source::ast::{self, Body, Ends, Expression, Gravity, Ground, Name, Solid};
 use crate::source::drawing::{self, Drawing};
 
 impl Expansion<'_> {
@@ -19,7 +19,7 @@ impl Expansion<'_> {
             name: name.clone(),
             position: named(format!("{name}.position")),
             orientation: named(format!("{name}.orientation")),
-            solids: body.parts.iter().zip(1..).map(|(part, k)| solid(part, &format!("{name}.part{k}"))).collect(),
+            solids: body.solids.iter().zip(1..).map(|(part, k)| solid(part, &format!("{name}.part{k}"))).collect(),
             points: points.collect(),
         });
     }
@@ -60,7 +60,7 @@ impl Expansion<'_> {
 }
 
 /// A solid, whose quantities are named after `label`.
-fn solid(part: &Part, label: &str) -> drawing::Solid<Expression> {
+fn solid(part: &Solid, label: &str) -> drawing::Solid<Expression> {
     let of = |what: &str| expression(part.span, &format!("{label}.{what}"));
     let shape = match &part.shape {
         ast::Shape::Cuboid(_) => drawing::Shape::Cuboid(of("size")),

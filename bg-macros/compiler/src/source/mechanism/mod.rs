@@ -24,6 +24,7 @@ use crate::source::ast::{Body, Ends, Expression, Graph, Ground, Item, Joint, Let
 use crate::source::clause::{Clause, Given};
 use crate::source::drawing::Drawing;
 use crate::source::syntax;
+use crate::source::words::GROUND;
 
 pub use fault::MechanismFault;
 pub use part::{Part, part_of, parts};
@@ -41,9 +42,6 @@ pub fn expand(source: &Graph) -> Staged<Graph> {
         Err(expansion.faults)
     }
 }
-
-/// The fixed body's name.
-const GROUND: &str = "ground";
 
 /// One end of a joint: expressions as text.
 struct End {
@@ -218,12 +216,19 @@ impl<'a> Expansion<'a> {
         Some((from, to))
     }
 
+    /// The body and the point that a name stands for. A body in a part has a path; points have none, but those of the ground.
+    fn on_body<'n>(&self, name: &'n str) -> (&'n str, Option<&'n str>) {
+        let is_ground = name.split('.').next() == Some(GROUND);
+        let split = if is_ground { name.split_once('.') } else { name.rsplit_once('.') };
+        match split {
+            Some((body, point)) if !self.bodies.contains_key(name) => (body, Some(point)),
+            _ => (name, None),
+        }
+    }
+
     /// `body.POINT`, or `body` or `body.origin` for its origin.
     fn end(&mut self, name: &Name) -> Option<End> {
-        let (body, point) = match name.text.split_once('.') {
-            Some((body, point)) => (body, Some(point)),
-            None => (name.text.as_str(), None),
-        };
+        let (body, point) = self.on_body(&name.text);
         let points = if body == GROUND {
             self.ground.map_or(&[][..], |ground| &ground.points[..])
         } else if let Some(definition) = self.bodies.get(body) {

@@ -3,8 +3,8 @@
 //! In: an `ast::Graph` with its mechanism words. Out: a [`Part`] for each, in the order of the source, the ground
 //! first.
 
-use super::GROUND;
 use crate::source::ast::{Graph, Item};
+use crate::source::words::GROUND;
 
 /// A mechanism word that expands to nodes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub struct Part {
     /// What it is: `ground`, `body`, a joint's kind with its axes, `spring`, `contact`, `drive`,
     /// `friction`, `stop`, `orifice`.
     pub word: String,
-    /// Its name, the first component of its nodes' names.
+    /// Its name, with which its nodes' names begin.
     pub name: String,
 }
 
@@ -27,8 +27,9 @@ pub fn parts(graph: &Graph) -> Vec<Part> {
 /// The part that a node of this name belongs to, as an index.
 #[must_use]
 pub fn part_of(parts: &[Part], node: &str) -> Option<usize> {
-    let first = node.split('.').next().unwrap_or_default();
-    parts.iter().position(|part| part.name == first)
+    let is_of = |name: &str| node.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+    let named = parts.iter().enumerate().filter(|(_, part)| is_of(&part.name));
+    named.max_by_key(|(_, part)| part.name.len()).map(|(index, _)| index)
 }
 
 fn part(item: &Item) -> Option<Part> {

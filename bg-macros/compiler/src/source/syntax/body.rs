@@ -1,4 +1,4 @@
-//! Bodies: their parts, mass properties, points and start.
+//! Bodies: their solids, mass properties, points and start.
 //!
 //! In: `body NAME { ... }`. Out: a [`Body`].
 
@@ -8,7 +8,7 @@ use super::{
     cursor::{Cursor, Parsed, Place},
     statement::OPERATOR,
 };
-use crate::source::ast::{Axis, Body, Expression, ExpressionKind, Name, Part, Shape};
+use crate::source::ast::{Axis, Body, Expression, ExpressionKind, Name, Shape, Solid};
 
 /// The block of a body.
 const BODY: Place = Place {
@@ -17,7 +17,7 @@ const BODY: Place = Place {
     list: false,
 };
 
-/// The clauses of a part.
+/// The clauses of a solid.
 #[derive(Default)]
 struct Clauses {
     radius: Option<Expression>,
@@ -32,11 +32,11 @@ impl Cursor<'_> {
     /// `body NAME { ... }`
     pub fn body(&mut self) -> Parsed<Body> {
         self.advance();
-        let name = self.plain_name("the body")?;
+        let name = self.declared("the body")?;
         let mut block = self.group(Delimiter::Brace, "`{ ... }`", &BODY)?;
         let mut body = Body {
             name,
-            parts: Vec::new(),
+            solids: Vec::new(),
             density: None,
             mass: None,
             center: None,
@@ -55,8 +55,8 @@ impl Cursor<'_> {
     fn body_entry(&mut self, body: &mut Body) -> Parsed<()> {
         match self.word() {
             Some("cuboid" | "cylinder" | "sphere") => {
-                let part = self.part()?;
-                body.parts.push(part);
+                let solid = self.solid()?;
+                body.solids.push(solid);
             }
             Some("point") => {
                 let point = self.point()?;
@@ -101,7 +101,7 @@ impl Cursor<'_> {
     }
 
     /// A velocity or spin; `guess` alone stands for `[guess(0), guess(0), guess(0)]`.
-    fn motion(&mut self) -> Parsed<Expression> {
+    pub fn motion(&mut self) -> Parsed<Expression> {
         if self.word() != Some("guess") || !self.symbol_ahead(1, ";") {
             return self.expression();
         }
@@ -113,19 +113,19 @@ impl Cursor<'_> {
     }
 
     /// `cuboid [..] at [..] turned E density E;`
-    fn part(&mut self) -> Parsed<Part> {
+    fn solid(&mut self) -> Parsed<Solid> {
         let word = self.word().unwrap_or_default().to_owned();
         let span = self.advance();
         let edges = if word == "cuboid" { Some(self.expression()?) } else { None };
         let mut clauses = Clauses::default();
-        while self.part_clause(&word, &mut clauses)? {}
+        while self.solid_clause(&word, &mut clauses)? {}
         let shape = match (edges, word.as_str()) {
             (Some(edges), _) => Shape::Cuboid(edges),
             (None, "cylinder") => self.cylinder(&mut clauses)?,
             _ => Shape::Sphere(clauses.radius.take().ok_or_else(|| self.unexpected("`radius`"))?),
         };
         self.end_statement("an operator, `at`, `turned`, `density`");
-        Ok(Part { shape, at: clauses.at, turned: clauses.turned, density: clauses.density, span })
+        Ok(Solid { shape, at: clauses.at, turned: clauses.turned, density: clauses.density, span })
     }
 
     /// The cylinder of these clauses.
@@ -136,8 +136,8 @@ impl Cursor<'_> {
         Ok(Shape::Cylinder { radius, length, axis })
     }
 
-    /// One clause of a part of this shape; false when none is ahead.
-    fn part_clause(&mut self, shape: &str, clauses: &mut Clauses) -> Parsed<bool> {
+    /// One clause of a solid of this shape; false when none is ahead.
+    fn solid_clause(&mut self, shape: &str, clauses: &mut Clauses) -> Parsed<bool> {
         let is_cylinder = shape == "cylinder";
         let (word, slot) = match self.word() {
             Some("along") if is_cylinder => return self.along(clauses),

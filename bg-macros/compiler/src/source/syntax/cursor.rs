@@ -6,7 +6,7 @@
 
 use std::cell::RefCell;
 
-use proc_macro2::{Delimiter, Span, TokenStream};
+use proc_macro2::{Delimiter, Group, Span, TokenStream};
 
 use super::{
     SyntaxFault,
@@ -34,9 +34,9 @@ pub(super) struct Place {
 }
 
 /// The words of statements that end with their block.
-const BLOCKS: [&str; 15] = [
+const BLOCKS: [&str; 17] = [
     "graph", "observe", "scene", "ground", "body", "joint", "spring", "drive", "contact", "friction", "stop",
-    "orifice", "tune", "without", "rigid",
+    "orifice", "tune", "without", "rigid", "part", "for",
 ];
 
 /// A walk over one level of tokens.
@@ -51,15 +51,20 @@ pub(super) struct Cursor<'f> {
     place: &'static Place,
     /// How deeply the current expression is nested.
     pub depth: usize,
+    /// The repetition that the name of the present statement asks for, `pin[i in 1..20]`.
+    pub repetition: Option<Repetition>,
     faults: &'f RefCell<Faults>,
 }
+
+/// An index with the two ends of its numbers.
+pub(super) type Repetition = [Name; 3];
 
 impl<'f> Cursor<'f> {
     /// A walk over the whole macro call.
     pub fn new(stream: TokenStream, place: &'static Place, faults: &'f RefCell<Faults>) -> Self {
         let tokens = tokens(stream);
         let close = tokens.last().map_or_else(Span::call_site, |last| last.span);
-        Self { tokens, at: 0, head: 0, close, place, depth: 0, faults }
+        Self { tokens, at: 0, head: 0, close, place, depth: 0, repetition: None, faults }
     }
 
     /// The token ahead.
@@ -75,6 +80,11 @@ impl<'f> Cursor<'f> {
     /// Whether no token is left.
     pub fn ended(&self) -> bool {
         self.at >= self.tokens.len()
+    }
+
+    /// The kind of the block.
+    pub fn place(&self) -> &'static Place {
+        self.place
     }
 
     /// Where the token ahead stands, or the block's end.
@@ -145,6 +155,14 @@ impl<'f> Cursor<'f> {
         }
     }
 
+    /// The group in brackets `distance` tokens ahead.
+    pub fn brackets(&self, distance: usize) -> Option<&Group> {
+        match self.ahead(distance) {
+            Some(TokenKind::Group(group)) if group.delimiter() == Delimiter::Bracket => Some(group),
+            _ => None,
+        }
+    }
+
     /// Enters the group ahead when it has this delimiter.
     pub fn enter(&mut self, delimiter: Delimiter, place: &'static Place) -> Option<Self> {
         let inner = match self.peek() {
@@ -155,6 +173,7 @@ impl<'f> Cursor<'f> {
                 close: group.span_close(),
                 place,
                 depth: self.depth,
+                repetition: None,
                 faults: self.faults,
             },
             _ => return None,
@@ -222,39 +241,52 @@ impl<'f> Cursor<'f> {
 
 /// Names.
 impl Cursor<'_> {
-    /// A name, possibly dotted; `what` says whose.
+    /// A name, possibly dotted, possibly with numbers in brackets; `what` says whose.
     pub fn name(&mut self, what: &str) -> Parsed<Name> {
+        let mut name = self.first_word(what)?;
+        self.dotted(&mut name, &|cursor| cursor.brackets(0).is_some())?;
+        Ok(name)
+    }
+
+    /// The first word of a name; `what` says whose.
+    pub fn first_word(&mut self, what: &str) -> Parsed<Name> {
         let Some(first) = self.word().map(str::to_owned) else {
             return Err(self.unexpected(&format!("a name for {what}")));
         };
         if is_reserved(&first) {
             return Err(self.note(self.span(), &SyntaxFault::ReservedName { name: first }));
         }
-        let start = self.advance();
-        self.dotted(first, start)
+        Ok(Name { text: first, span: self.advance() })
     }
 
-    /// The rest of a name after its first word.
-    pub fn dotted(&mut self, mut text: String, start: Span) -> Parsed<Name> {
-        let mut end = start;
-        while self.eat(".").is_some() {
-            let Some(segment) = self.word() else {
-                return Err(self.unexpected("a component such as `x`"));
-            };
-            text.push('.');
-            text.push_str(segment);
-            end = self.advance();
+    /// The rest of a name after its first word; `is_index` says whether the group ahead has a number of the name.
+    pub fn dotted(&mut self, name: &mut Name, is_index: &dyn Fn(&Self) -> bool) -> Parsed<()> {
+        let mut end = name.span;
+        loop {
+            if is_index(self) {
+                end = self.span();
+                name.text += &self.index()?;
+            } else if self.eat(".").is_some() {
+                let Some(segment) = self.word() else {
+                    return Err(self.unexpected("a component such as `x`"));
+                };
+                name.text.push('.');
+                name.text.push_str(segment);
+                end = self.advance();
+            } else {
+                name.span = joined(name.span, end);
+                return Ok(());
+            }
         }
-        Ok(Name { text, span: joined(start, end) })
     }
 
     /// A name without dots; `what` says whose.
     pub fn plain_name(&mut self, what: &'static str) -> Parsed<Name> {
         let name = self.name(what)?;
-        if !name.text.contains('.') {
+        if !name.text.contains(['.', '[']) {
             return Ok(name);
         }
-        let instead = name.text.replace('.', "_");
+        let instead = crate::source::names::field(&name.text);
         Err(self.note(name.span, &SyntaxFault::DottedName { what, name: name.text, instead }))
     }
 
@@ -271,14 +303,23 @@ impl Cursor<'_> {
 
     /// Whether a name and a half arrow are ahead.
     pub fn starts_chain(&self) -> bool {
+        self.after_name().is_some_and(|after| self.symbol_ahead(after, "->"))
+    }
+
+    /// How far it is to what follows the name ahead.
+    pub fn after_name(&self) -> Option<usize> {
         let mut distance = 0;
         while self.word_ahead(distance).is_some() {
-            if !self.symbol_ahead(distance + 1, ".") {
-                return self.symbol_ahead(distance + 1, "->");
+            distance += 1;
+            while self.brackets(distance).is_some() {
+                distance += 1;
             }
-            distance += 2;
+            if !self.symbol_ahead(distance, ".") {
+                return Some(distance);
+            }
+            distance += 1;
         }
-        false
+        None
     }
 
     /// Whether `0 NAME` or `1 NAME` is ahead.

@@ -129,7 +129,7 @@ pub enum SyntaxFault {
     MisplacedDocumentation,
     /// An attribute other than a documentation comment.
     Attribute,
-    /// A macro call without a graph.
+    /// A macro call without a graph and without a part.
     NoGraph,
 }
 
@@ -192,10 +192,10 @@ impl Explain for SyntaxFault {
             Self::TooDeep { limit } => format!("the expression is nested deeper than {limit} levels"),
             Self::Cardinality { found } => format!("found {found}, expected a cardinality of 1 or 3"),
             Self::MisplacedDocumentation => {
-                "only `graph`, `param`, `input` and `scene` have a documentation comment".into()
+                "only `graph`, `part`, `param`, `input` and `scene` have a documentation comment".into()
             }
             Self::Attribute => "found an attribute, expected none: the language has no attributes".into(),
-            Self::NoGraph => "found no graph, expected at least one".into(),
+            Self::NoGraph => "found no graph and no part, expected at least one".into(),
         }
     }
 

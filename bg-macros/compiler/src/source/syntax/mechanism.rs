@@ -11,7 +11,7 @@ use super::{
 };
 use crate::source::ast::{
     Axis, AxisLaw, Baumgarte, Contact, Drive, DriveKind, ElementKind, Ends, Expression, Gravity, Ground, Item, Joint,
-    JointKind, Point, Spring,
+    JointKind, Name, Point, Spring,
 };
 use crate::source::words::{AXES, DRIVES, value_of, word_of};
 
@@ -55,7 +55,7 @@ impl Cursor<'_> {
         match word {
             "ground" => self.ground().map(Item::Ground),
             "gravity" => self.gravity().map(Item::Gravity),
-            "start" => self.impulse().map(Item::Impulse),
+            "start" => self.start_statement(),
             "baumgarte" => self.baumgarte().map(Item::Baumgarte),
             "expect" => self.expected_causality().map(|()| Item::IntegralCausality),
             "body" => self.body().map(Item::Body),
@@ -79,7 +79,9 @@ impl Cursor<'_> {
             if entry.word() != Some("point") {
                 return Err(entry.unknown_statement());
             }
-            points.push(entry.point()?);
+            entry.advance();
+            let name = entry.declared("the point")?;
+            points.push(entry.place_of(name)?);
             Ok(())
         });
         Ok(Ground { span, points })
@@ -89,6 +91,11 @@ impl Cursor<'_> {
     pub fn point(&mut self) -> Parsed<Point> {
         self.advance();
         let name = self.plain_name("the point")?;
+        self.place_of(name)
+    }
+
+    /// `= E;`
+    fn place_of(&mut self, name: Name) -> Parsed<Point> {
         self.expect("=")?;
         let place = self.expression()?;
         self.end_statement(OPERATOR);
@@ -103,12 +110,15 @@ impl Cursor<'_> {
         Ok(Gravity { span, acceleration })
     }
 
-    /// `start impulse;`
-    fn impulse(&mut self) -> Parsed<Span> {
+    /// `start impulse;`, `start BODY at E;`
+    fn start_statement(&mut self) -> Parsed<Item> {
+        if self.word_ahead(1) != Some("impulse") || !(self.symbol_ahead(2, ";") || self.ahead(2).is_none()) {
+            return self.start_outside().map(Item::Start);
+        }
         self.advance();
-        let span = self.expect_word("impulse")?;
+        let span = self.advance();
         self.end_statement("");
-        Ok(span)
+        Ok(Item::Impulse(span))
     }
 
     /// `baumgarte RATE;`
@@ -136,7 +146,7 @@ impl Cursor<'_> {
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`
     fn joint(&mut self) -> Parsed<Joint> {
         self.advance();
-        let name = self.plain_name("the joint")?;
+        let name = self.declared("the joint")?;
         self.expect(":")?;
         let kind = self.joint_kind()?;
         let ends = self.ends()?;
@@ -257,7 +267,7 @@ impl Cursor<'_> {
     /// `spring NAME (a.P -> b.Q) { ... }`
     fn spring(&mut self) -> Parsed<Spring> {
         self.advance();
-        let name = self.plain_name("the spring")?;
+        let name = self.declared("the spring")?;
         let ends = self.ends()?;
         let mut spring = Spring { name, ends, stiffness: None, damping: None, length: None };
         self.block_or_semicolon(&SPRING, |entry| {
@@ -273,7 +283,7 @@ impl Cursor<'_> {
     /// `drive NAME on TARGET torque = E;`
     fn drive(&mut self) -> Parsed<Drive> {
         self.advance();
-        let name = self.plain_name("the drive")?;
+        let name = self.declared("the drive")?;
         self.expect_word("on")?;
         let target = self.name("the drive's target")?;
         let kind = self.drive_kind()?;
@@ -313,7 +323,7 @@ impl Cursor<'_> {
     /// `contact NAME (a.P -> b.Q along x) { ... }`
     fn contact(&mut self) -> Parsed<Contact> {
         self.advance();
-        let name = self.plain_name("the contact")?;
+        let name = self.declared("the contact")?;
         let mut inner = self.group(Delimiter::Parenthesis, "`(a.P -> b.Q along x)`", &ENDS)?;
         let ends = inner.both_ends()?;
         let word = inner.expect_word("along")?;

@@ -20,6 +20,7 @@ mod expression;
 mod fault;
 mod friction;
 mod mechanism;
+mod part;
 mod scene;
 mod statement;
 mod token;
@@ -32,9 +33,9 @@ pub use expression::{DEEPEST, MOST_NESTED};
 pub use fault::SyntaxFault;
 
 /// The macro call's outermost level.
-const CALL: Place = Place { name: "the macro call", words: &["graph"], list: false };
+const CALL: Place = Place { name: "the macro call", words: &["graph", "part"], list: false };
 
-/// The graphs of a macro call, or all of its faults of syntax.
+/// The parts and graphs of a macro call, or all of its faults of syntax.
 ///
 /// # Errors
 /// Every fault of syntax, in the order of the source.
@@ -50,29 +51,40 @@ pub fn parse(tokens: TokenStream) -> Staged<Source> {
 #[must_use]
 pub fn parse_leniently(tokens: TokenStream) -> (Source, Vec<Fault>) {
     let faults = RefCell::new(Vec::new());
-    let mut graphs = Vec::new();
+    let mut source = Source::default();
     let mut call = Cursor::new(tokens, &CALL, &faults);
-    call.statements(|call| graph(call, &mut graphs));
-    if graphs.is_empty() && faults.borrow().is_empty() {
+    call.statements(|call| declaration(call, &mut source));
+    if source.graphs.is_empty() && source.parts.is_empty() && faults.borrow().is_empty() {
         call.note(call.span(), &SyntaxFault::NoGraph);
     }
-    (Source { graphs }, faults.into_inner())
+    (source, faults.into_inner())
 }
 
-/// `pub graph NAME { ... }`
-fn graph(call: &mut Cursor, graphs: &mut Vec<Graph>) -> Parsed<()> {
-    let docs = call.documentation();
-    let visibility = call.visibility()?;
-    if call.eat_word("graph").is_none() {
-        let is_private = matches!(visibility, syn::Visibility::Inherited);
-        return Err(if is_private { call.unknown_statement() } else { call.unexpected("`graph`") });
+/// `pub graph NAME { ... }`, `pub part NAME { ... }`
+fn declaration(call: &mut Cursor, source: &mut Source) -> Parsed<()> {
+    if call.is("@") {
+        return call.foreign(source);
     }
+    let docs = call.documentation().text;
+    let visibility = call.visibility()?;
+    let is_private = matches!(visibility, syn::Visibility::Inherited);
+    match call.word() {
+        Some("graph") => graph(call, docs, visibility, &mut source.graphs),
+        Some("part") => call.part(docs, visibility, source),
+        _ if is_private => Err(call.unknown_statement()),
+        _ => Err(call.unexpected("`graph` or `part`")),
+    }
+}
+
+/// `graph NAME { ... }`, after its documentation and visibility.
+fn graph(call: &mut Cursor, docs: String, visibility: syn::Visibility, graphs: &mut Vec<Graph>) -> Parsed<()> {
+    call.advance();
     let name = call.plain_name("the graph")?;
     let block = call.group(Delimiter::Brace, "`{ ... }`", &statement::GRAPH);
     let (items, read) = match block {
         Ok(block) => (statement::items(block), Ok(())),
         Err(reported) => (Vec::new(), Err(reported)),
     };
-    graphs.push(Graph { docs: docs.text, visibility, name, items, drawing: Drawing::default() });
+    graphs.push(Graph { docs, visibility, name, items, drawing: Drawing::default() });
     read
 }

@@ -9,7 +9,7 @@ use super::{
     cursor::{Cursor, Parsed, Place},
     token::TokenKind,
 };
-use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene};
+use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene, Tune, Watch};
 
 /// The block of a scene.
 const SCENE: Place =
@@ -28,17 +28,34 @@ const EXPECTATIONS: &[&str] = &["planar", "states", "integral"];
 const LIST: &str = "`{ NAME, NAME }`";
 
 impl Cursor<'_> {
-    /// `observe { NAME: UNIT = E; E }`
-    pub fn observe(&mut self) -> Parsed<Vec<Observation>> {
+    /// `observe { NAME: UNIT = E; E; all of NAME }`, or `observe all of NAME;`
+    pub fn observe(&mut self) -> Parsed<Vec<Watch>> {
         self.advance();
+        if self.starts_all() {
+            let all = self.all()?;
+            self.end_statement("");
+            return Ok(vec![all]);
+        }
         let mut block = self.group(Delimiter::Brace, "`{ ... }`", &OBSERVE)?;
-        let mut observations = Vec::new();
+        let mut watched = Vec::new();
         block.statements(|entry| {
-            observations.push(observation(entry)?);
+            watched.push(if entry.starts_all() { entry.all()? } else { Watch::Value(observation(entry)?) });
             entry.end_statement("an operator, `,`");
             Ok(())
         });
-        Ok(observations)
+        Ok(watched)
+    }
+
+    /// Whether `all of` is ahead.
+    fn starts_all(&self) -> bool {
+        self.word() == Some("all") && self.word_ahead(1) == Some("of")
+    }
+
+    /// `all of NAME`
+    fn all(&mut self) -> Parsed<Watch> {
+        self.advance();
+        self.advance();
+        Ok(Watch::All(self.name("what is watched")?))
     }
 
     /// `scene NAME { ... }`
@@ -49,7 +66,7 @@ impl Cursor<'_> {
             docs,
             name,
             observe: Vec::new(),
-            tune: None,
+            tune: Tune::All,
             without: Vec::new(),
             rigid: Rigid::None,
             angles: false,
@@ -74,10 +91,11 @@ impl Cursor<'_> {
                 scene.observe.extend(observations);
             }
             Some("tune") => {
-                let names = self.name_list("a parameter")?;
-                self.fill(&mut scene.tune, names, "tune", span);
+                self.fill(&mut filled.tune, (), "tune", span);
+                scene.tune = self.tune()?;
             }
             Some("without") => {
+                self.advance();
                 let names = self.name_list("what is left out")?;
                 scene.without.extend(names);
             }
@@ -100,9 +118,19 @@ impl Cursor<'_> {
         Ok(())
     }
 
-    /// `tune { a, b }` or `tune a, b;`
-    fn name_list(&mut self, what: &'static str) -> Parsed<Vec<Name>> {
+    /// `tune { a, b }`, `tune all but { a, b }`
+    fn tune(&mut self) -> Parsed<Tune> {
         self.advance();
+        if self.word() != Some("all") || self.word_ahead(1) != Some("but") {
+            return self.name_list("a parameter").map(Tune::Only);
+        }
+        self.advance();
+        self.advance();
+        self.name_list("a parameter").map(Tune::AllBut)
+    }
+
+    /// `{ a, b }` or `a, b;`
+    fn name_list(&mut self, what: &'static str) -> Parsed<Vec<Name>> {
         if let Some(mut block) = self.enter(Delimiter::Brace, &NAMES) {
             return Ok(block.names(what));
         }
@@ -159,6 +187,7 @@ impl Cursor<'_> {
 #[derive(Default)]
 struct Filled {
     observe: Option<()>,
+    tune: Option<()>,
     rigid: Option<()>,
     angles: Option<()>,
 }
@@ -176,12 +205,6 @@ fn observation(entry: &mut Cursor) -> Parsed<Observation> {
 
 /// Whether a name with `:` or `=` after it is ahead.
 fn starts_named(entry: &Cursor) -> bool {
-    let mut distance = 0;
-    while entry.word_ahead(distance).is_some() {
-        if !entry.symbol_ahead(distance + 1, ".") {
-            return entry.symbol_ahead(distance + 1, ":") || entry.symbol_ahead(distance + 1, "=");
-        }
-        distance += 2;
-    }
-    false
+    let is_after = |after| entry.symbol_ahead(after, ":") || entry.symbol_ahead(after, "=");
+    entry.after_name().is_some_and(is_after)
 }

@@ -17,48 +17,59 @@ use crate::source::ast::{
 use crate::source::words::{ELEMENTS, ROLES, TRACKS, value_of};
 
 /// The block of a graph.
-pub(super) const GRAPH: Place = Place {
-    name: "a graph",
-    words: &[
-        "param",
-        "1",
-        "R",
-        "body",
-        "scene",
-        "input",
-        "let",
-        "0",
-        "Se",
-        "Sf",
-        "I",
-        "C",
-        "TF",
-        "GY",
-        "MSe",
-        "MSf",
-        "rSe",
-        "MTF",
-        "MGY",
-        "MR",
-        "position",
-        "orientation",
-        "close",
-        "observe",
-        "ground",
-        "gravity",
-        "start",
-        "baumgarte",
-        "expect",
-        "joint",
-        "spring",
-        "drive",
-        "contact",
-        "friction",
-        "stop",
-        "orifice",
-    ],
-    list: false,
+pub(super) const GRAPH: Place = Place { name: "a graph", words: &WORDS, list: false };
+
+/// The block of a part: without scenes, with ports.
+pub(super) const PART: Place = Place { name: "a part", words: &WORDS_OF_PART, list: false };
+
+/// The words of a part: those of a graph but the scene's, in whose place stands the port's.
+const WORDS_OF_PART: [&str; WORDS.len()] = {
+    let mut words = WORDS;
+    words[4] = "port";
+    words
 };
+
+/// The words of a graph.
+const WORDS: [&str; 38] = [
+    "param",
+    "1",
+    "R",
+    "body",
+    "scene",
+    "input",
+    "let",
+    "0",
+    "Se",
+    "Sf",
+    "I",
+    "C",
+    "TF",
+    "GY",
+    "MSe",
+    "MSf",
+    "rSe",
+    "MTF",
+    "MGY",
+    "MR",
+    "position",
+    "orientation",
+    "close",
+    "observe",
+    "ground",
+    "gravity",
+    "start",
+    "baumgarte",
+    "expect",
+    "joint",
+    "spring",
+    "drive",
+    "contact",
+    "friction",
+    "stop",
+    "orifice",
+    "part",
+    "for",
+];
 
 /// Inside of `[3]` and `(effort u)`.
 const GROUP: Place = Place { name: "the group", words: &[], list: false };
@@ -69,7 +80,12 @@ pub(super) const OPERATOR: &str = "an operator";
 /// The items of a graph's block.
 pub(super) fn items(mut block: Cursor) -> Vec<Item> {
     let mut items = Vec::new();
-    block.statements(|cursor| item(cursor, &mut items));
+    block.statements(|cursor| {
+        let first = items.len();
+        let read = item(cursor, &mut items);
+        super::part::repeated(&mut items, first, cursor.repetition.take());
+        read
+    });
     items
 }
 
@@ -93,7 +109,7 @@ fn item(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
     match cursor.word() {
         Some("param") => parameter(cursor, docs.text, items),
         Some("input") => input(cursor, docs.text, items),
-        Some("scene") => cursor.scene(docs.text, items),
+        Some("scene") if cursor.place().words.contains(&"scene") => cursor.scene(docs.text, items),
         Some(word) if is_broken_chain(cursor, word) => chain(cursor, items),
         Some(word) => {
             let word = word.to_owned();
@@ -117,6 +133,9 @@ fn bond_graph_item(cursor: &mut Cursor, word: &str) -> Parsed<Item> {
         "let" => binding(cursor).map(Item::Let),
         "close" => close(cursor).map(Item::Close),
         "observe" => cursor.observe().map(Item::Observe),
+        "part" => cursor.part_use().map(Item::Use),
+        "for" => cursor.repetition().map(Item::For),
+        "port" if cursor.place().words.contains(&"port") => cursor.port().map(Item::Port),
         _ => cursor.mechanism_item(word),
     }
 }
@@ -124,7 +143,7 @@ fn bond_graph_item(cursor: &mut Cursor, word: &str) -> Parsed<Item> {
 /// `param NAME: UNIT = DEFAULT, above 0;`
 fn parameter(cursor: &mut Cursor, docs: String, items: &mut Vec<Item>) -> Parsed<()> {
     cursor.advance();
-    let name = cursor.plain_name("the parameter")?;
+    let name = cursor.declared("the parameter")?;
     let span = name.span;
     let unit = Unit { factors: Vec::new(), span };
     let default = Expression { kind: ExpressionKind::Number(0.0), span };
@@ -176,7 +195,7 @@ fn bound(cursor: &mut Cursor, parameter: &mut Parameter) -> Parsed<()> {
 /// `input NAME: UNIT;`
 fn input(cursor: &mut Cursor, docs: String, items: &mut Vec<Item>) -> Parsed<()> {
     cursor.advance();
-    let name = cursor.plain_name("the input")?;
+    let name = cursor.declared("the input")?;
     let span = name.span;
     let unit = declared_unit(cursor, "input", &name);
     let (unit, read) = match unit {
@@ -205,7 +224,7 @@ fn declared_unit(cursor: &mut Cursor, what: &'static str, name: &Name) -> Parsed
 /// `let NAME: UNIT = EXPRESSION;`
 fn binding(cursor: &mut Cursor) -> Parsed<Let> {
     cursor.advance();
-    let name = cursor.name("the value")?;
+    let name = cursor.declared("the value")?;
     let unit = if cursor.eat(":").is_some() { Some(cursor.unit()?) } else { None };
     cursor.expect("=")?;
     let value = cursor.expression()?;
@@ -236,12 +255,10 @@ fn chain(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
 
 /// `1 NAME, NAME[3]: rotation;`
 fn junctions(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
-    let zero = cursor.peek().and_then(TokenKind::number).is_some_and(|digit| digit == "0");
-    let kind = if zero { JunctionKind::Zero } else { JunctionKind::One };
-    cursor.advance();
+    let Some(kind) = cursor.junction_kind() else { return Err(cursor.unknown_statement()) };
     loop {
-        let name = cursor.name("the junction")?;
-        let cardinality = cardinality(cursor)?;
+        let name = cursor.declared_junction("the junction")?;
+        let cardinality = cursor.cardinality()?;
         let domain = if cursor.eat(":").is_some() { Some(cursor.name("the domain")?) } else { None };
         items.push(Item::Junction(Junction { kind, name, cardinality, domain }));
         if cursor.eat(",").is_none() {
@@ -252,19 +269,6 @@ fn junctions(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
     Ok(())
 }
 
-/// `[3]`, or nothing for a scalar junction.
-fn cardinality(cursor: &mut Cursor) -> Parsed<usize> {
-    let Some(mut inner) = cursor.enter(Delimiter::Bracket, &GROUP) else { return Ok(1) };
-    let cardinality = match inner.peek().and_then(TokenKind::number).as_deref() {
-        Some("1") => 1,
-        Some("3") => 3,
-        _ => return Err(inner.note(inner.span(), &SyntaxFault::Cardinality { found: inner.found() })),
-    };
-    inner.advance();
-    inner.finish("`]`")?;
-    Ok(cardinality)
-}
-
 /// `R NAME(w) = LAW in R start E;`, `R NAME(w) = LAW holds E;`, `rSe NAME = 0 at GAP of JOINT along x;`
 fn element(cursor: &mut Cursor, kind: ElementKind) -> Parsed<Element> {
     if cursor.word_ahead(1).is_none() {
@@ -272,7 +276,7 @@ fn element(cursor: &mut Cursor, kind: ElementKind) -> Parsed<Element> {
         return Err(cursor.unexpected("a name for the element"));
     }
     cursor.advance();
-    let name = cursor.name("the element")?;
+    let name = cursor.declared("the element")?;
     let variable = cursor.law_variable()?;
     cursor.expect("=")?;
     let law = cursor.expression()?;
@@ -317,6 +321,30 @@ fn held(cursor: &mut Cursor) -> Parsed<Held> {
 }
 
 impl Cursor<'_> {
+    /// `0` or `1`, if it is ahead.
+    pub fn junction_kind(&mut self) -> Option<JunctionKind> {
+        let kind = match self.peek().and_then(TokenKind::number)?.as_str() {
+            "0" => JunctionKind::Zero,
+            "1" => JunctionKind::One,
+            _ => return None,
+        };
+        self.advance();
+        Some(kind)
+    }
+
+    /// `[3]`, or nothing for a scalar junction.
+    pub fn cardinality(&mut self) -> Parsed<usize> {
+        let Some(mut inner) = self.enter(Delimiter::Bracket, &GROUP) else { return Ok(1) };
+        let cardinality = match inner.peek().and_then(TokenKind::number).as_deref() {
+            Some("1") => 1,
+            Some("3") => 3,
+            _ => return Err(inner.note(inner.span(), &SyntaxFault::Cardinality { found: inner.found() })),
+        };
+        inner.advance();
+        inner.finish("`]`")?;
+        Ok(cardinality)
+    }
+
     /// `(w)` or `(effort e)`, or nothing for a linear law.
     pub fn law_variable(&mut self) -> Parsed<Option<LawVariable>> {
         let Some(mut inner) = self.enter(Delimiter::Parenthesis, &GROUP) else { return Ok(None) };
@@ -336,7 +364,7 @@ impl Cursor<'_> {
 /// `position NAME of JUNCTION start E;`
 fn track(cursor: &mut Cursor, kind: TrackKind) -> Parsed<Track> {
     cursor.advance();
-    let name = cursor.name("the track")?;
+    let name = cursor.declared("the track")?;
     cursor.expect_word("of")?;
     let junction = cursor.name("the junction")?;
     let start = if cursor.eat_word("start").is_some() { Some(cursor.expression()?) } else { None };
@@ -347,7 +375,7 @@ fn track(cursor: &mut Cursor, kind: TrackKind) -> Parsed<Track> {
 /// `close NAME = E;`
 fn close(cursor: &mut Cursor) -> Parsed<Close> {
     cursor.advance();
-    let joint = cursor.name("the joint")?;
+    let joint = cursor.declared("the joint")?;
     cursor.expect("=")?;
     let gap = cursor.expression()?;
     cursor.end_statement(OPERATOR);

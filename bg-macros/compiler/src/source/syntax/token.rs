@@ -31,7 +31,7 @@ pub(super) enum TokenKind {
 const SINGLE: &str = "=<>!~+-*/%^&|@.,;:#$?'";
 
 /// The symbols of two characters that the language has, or that its users may expect of it.
-const PAIRS: [&str; 10] = ["->", "=>", "<=", ">=", "==", "!=", "&&", "||", "**", "::"];
+const PAIRS: [&str; 11] = ["->", "=>", "<=", ">=", "==", "!=", "&&", "||", "**", "::", ".."];
 
 /// The tokens of one level of `stream`.
 pub(super) fn tokens(stream: TokenStream) -> Vec<Token> {

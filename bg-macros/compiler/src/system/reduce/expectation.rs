@@ -70,21 +70,16 @@ pub fn wanted(scene: &Scene, parameters: &[Parameter]) -> Staged<Wanted> {
 
 /// For each parameter whether the scene tunes it.
 fn tuned(scene: &Scene, parameters: &[Parameter]) -> Staged<Vec<bool>> {
-    let Some(tune) = &scene.tune else { return Ok(vec![true; parameters.len()]) };
     let known = || parameters.iter().map(|parameter| parameter.name.text.as_str());
-    let faults: Vec<Fault> = tune
-        .iter()
+    let named = scene.tune.names().iter();
+    let faults: Vec<Fault> = named
         .filter(|name| known().all(|parameter| parameter != name.text))
         .map(|name| {
             let near = near_miss(&name.text, known()).map(str::to_owned);
             Fault::new(name.span, &F::UnknownParameter { name: name.text.clone(), near })
         })
         .collect();
-    if faults.is_empty() {
-        Ok(known().map(|parameter| tune.iter().any(|name| name.text == parameter)).collect())
-    } else {
-        Err(faults)
-    }
+    if faults.is_empty() { Ok(known().map(|parameter| scene.tune.keeps(parameter)).collect()) } else { Err(faults) }
 }
 
 /// What the scene asserts of its reduction.

@@ -26,6 +26,7 @@ fn unknown_words_have_a_near_miss_or_a_list() {
             `R`, \
              `body`, `scene`",
         ),
+        ("port p: rotation;", "2:1 BG0101 `port` begins no statement of a graph | write `part`"),
         ("scene S { obsrve { a } }", "2:11 BG0101 `obsrve` begins no statement of a scene | write `observe`"),
         ("body b { cubiod [1, 2, 3]; }", "2:10 BG0101 `cubiod` begins no statement of a body | write `cuboid`"),
         (
@@ -62,9 +63,14 @@ fn unexpected_tokens_name_what_could_stand_there() {
         ("I L = ;", "2:7 BG0102 found `;`, expected an expression | write an expression here"),
         ("let a = 2 w;", "2:11 BG0102 found `w`, expected an operator or `;` | write an operator here"),
         (
-            "let a = b[1];",
-            "2:10 BG0102 found `[ ... ]`, expected a component such as `.x` | write a component such as `.x` here",
+            "let a = b[];",
+            "2:11 BG0102 found the end of the brackets, expected a whole number | write a whole number here",
         ),
+        ("let a = b[1 / 2];", "2:13 BG0102 found `/`, expected `+`, `-` or `*` | write `+` here"),
+        ("let a = b[1.5];", "2:11 BG0102 found `1.5`, expected a whole number | write a whole number here"),
+        ("part a[n];", "2:7 BG0102 found `[ ... ]`, expected `{ ... }` or `;` | write `{ ... }`"),
+        ("for i in 0..3; a -> b;", "2:14 BG0102 found `;`, expected `+`, `-` or `*` | write `+` here"),
+        ("start rod up 3;", "2:11 BG0102 found `up`, expected `at`, `turned`, `velocity` or `spin` | write `at` here"),
         (
             "let a = b.0;",
             "2:11 BG0102 found `0`, expected a component such as `x` | write a component such as `x` here",
@@ -194,7 +200,11 @@ fn what_is_left_out_is_named() {
 #[test]
 fn names_and_numbers_are_plain() {
     check(&[
-        ("param a.b: m = 1;", "2:7 BG0115 found `a.b`, expected a name without dots for the parameter | write `a_b`"),
+        ("scene a.b {}", "2:7 BG0115 found `a.b`, expected a name without dots for the scene | write `a_b`"),
+        (
+            "body b { point p[1] = x; }",
+            "2:16 BG0115 found `p[1]`, expected a name without dots for the point | write `p_1`",
+        ),
         ("let a = x.abs();", "2:9 BG0115 found `x.abs`, expected a name without dots for a function | write `abs(x)`"),
         (
             "param type: m = 1;",
@@ -213,7 +223,7 @@ fn names_and_numbers_are_plain() {
 
 #[test]
 fn comments_and_attributes_stand_where_they_mean_something() {
-    let misplaced = "2:1 BG0120 only `graph`, `param`, `input` and `scene` have a documentation comment | write `//` \
+    let misplaced = "2:1 BG0120 only `graph`, `part`, `param`, `input` and `scene` have a documentation comment | write `//` \
     instead of `///`";
     check(&[
         ("/// A coil.\nI L = coil;", misplaced),
@@ -228,9 +238,9 @@ fn comments_and_attributes_stand_where_they_mean_something() {
 #[test]
 fn a_call_has_graphs() {
     for (text, fault) in [
-        ("", "1:1 BG0122 found no graph, expected at least one | write `graph NAME { ... }`\n"),
+        ("", "1:1 BG0122 found no graph and no part, expected at least one | write `graph NAME { ... }`\n"),
         ("graf G {}", "1:1 BG0101 `graf` begins no statement of the macro call | write `graph`\n"),
-        ("pub grph G {}", "1:5 BG0102 found `grph`, expected `graph` | write `graph`\n"),
+        ("pub grph G {}", "1:5 BG0102 found `grph`, expected `graph` or `part` | write `graph`\n"),
         (
             "pub(all) graph G {}",
             "1:4 BG0102 found `( ... )`, expected `(crate)`, `(super)` or `(in PATH)` | write `(crate)` here\n",

@@ -53,6 +53,16 @@ fn canonical_statements_print_as_they_are_written() {
         "expect integral causality;",
         "joint cross: universal x y (ground.O -> rod.B);",
         "drive push on frame.B force = [1, 0, 0];",
+        "part front: Leg;",
+        "part link[20]: other_crate::links::Link;",
+        "part ::a::Leg;",
+        "start front.bar.head at [0, 1, 2];",
+        "start link[2].bar turned rotation_z(a);",
+        "start rod spin [guess(0), guess(0), guess(0)];",
+        "link[0].hub -> link[1].hub;",
+        "1 node[2][1];",
+        "1 node[2][3]: translation;",
+        "let a = link[3].length * b[0].x;",
     ] {
         assert_eq!(statement(text), text);
     }
@@ -85,6 +95,65 @@ fn blocks_print_one_statement_per_line() {
 }
 ";
     assert_eq!(printed(text), text);
+}
+
+#[test]
+fn parts_print_as_they_are_written() {
+    let text = "/// A leg.
+pub part Leg {
+    param stiffness: N/m = 2, above 0;
+
+    port 1 hub: translation;
+
+    port 0 node[3]: electrical;
+
+    port tip = bar.tail;
+
+    part inner: Foot {
+        size = stiffness / 2;
+        start bar at [0, 0, 0];
+    }
+}
+
+graph G {
+    for i in 1..2 * n - 1 {
+        part link[i]: Leg;
+
+        link[i - 1].hub -> link[i].hub;
+
+        joint pin[i]: fixed (link[i - 1].tip -> link[i].tip) {
+            rigid;
+        }
+    }
+
+    observe { all of link; link[0].length }
+
+    scene S {
+        observe { all of link }
+        tune all but { a, link[0].stiffness }
+    }
+}
+";
+    assert_eq!(printed(text), text);
+}
+
+#[test]
+fn shorthands_of_parts_are_their_long_forms() {
+    assert_eq!(
+        statement("joint pin[i in 1..n]: fixed (a[i - 1] -> a[i]);"),
+        "for i in 1..n {\n    joint pin[i]: fixed (a[i - 1] -> a[i]);\n}"
+    );
+    assert_eq!(statement("1 a[k in 0..2]: rotation;"), "for k in 0..2 {\n    1 a[k][1]: rotation;\n}");
+    assert_eq!(statement("observe all of crank;"), "observe { all of crank }");
+    assert_eq!(statement("scene S { tune all but a; }"), "scene S {\n    tune all but { a }\n}");
+    assert_eq!(statement("part front: Leg { k = 2 }"), "part front: Leg {\n    k = 2;\n}");
+    let port = |text: &str| {
+        let source = parsed(&format!("part P {{ {text} }}"));
+        source.parts[0].items[0].to_string()
+    };
+    assert_eq!(port("port hub: rotation;"), "port 1 hub: rotation;");
+    assert_eq!(port("port wire: electrical;"), "port 0 wire: electrical;");
+    assert_eq!(port("port 1 loop_[3]: electrical;"), "port 1 loop_[3]: electrical;");
 }
 
 #[test]
@@ -203,8 +272,8 @@ fn a_cylinder_takes_its_clauses_in_any_order() {
     let Item::Body(body) = items("body b { cylinder along y at [0, 1, 2] length 2 radius 1; }").remove(0) else {
         panic!("not a body")
     };
-    assert!(matches!(body.parts[0].shape, Shape::Cylinder { axis: Axis::Y, .. }));
-    assert_eq!(body.parts[0].to_string(), "cylinder radius 1 length 2 along y at [0, 1, 2];");
+    assert!(matches!(body.solids[0].shape, Shape::Cylinder { axis: Axis::Y, .. }));
+    assert_eq!(body.solids[0].to_string(), "cylinder radius 1 length 2 along y at [0, 1, 2];");
 }
 
 #[test]

@@ -1,0 +1,122 @@
+//! What can be wrong with parts, their uses and repetitions.
+
+use crate::fault::Explain;
+
+/// A fault of a part.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
+pub enum PartFault {
+    UnknownPart { name: String, near: Option<String> },
+    UnknownParameter { part: String, name: String, near: Option<String> },
+    GivenInside { part: String, name: String },
+    ContainsItself { circle: Vec<String> },
+    PortWithoutBond { of: String, ports: Vec<String> },
+    NoElement { array: String, index: i64, numbers: Vec<i64> },
+    NotAnArray { name: String },
+    IsAnArray { name: String, first: i64, count: usize },
+    NotANumber { word: String },
+    EmptyRange { from: i64, to: i64 },
+    TooMany { most: i64 },
+    SameIndex { name: String },
+    OutsideRange { parameter: String, wanted: String },
+    Unused { part: String, word: &'static str, name: String },
+    NothingToStart { name: String, near: Option<String> },
+    StartTwice { body: String, clause: &'static str },
+    NothingToWatch { name: String, near: Option<String> },
+    WatchesNothing { part: String },
+}
+
+use PartFault as F;
+
+impl Explain for PartFault {
+    fn code(&self) -> &'static str {
+        match self {
+            F::UnknownPart { .. } => "BG0801",
+            F::UnknownParameter { .. } | F::GivenInside { .. } => "BG0802",
+            F::ContainsItself { .. } => "BG0803",
+            F::PortWithoutBond { .. } => "BG0804",
+            F::NoElement { .. } => "BG0805",
+            F::NotAnArray { .. } | F::IsAnArray { .. } => "BG0806",
+            F::NotANumber { .. } | F::SameIndex { .. } => "BG0807",
+            F::EmptyRange { .. } | F::TooMany { .. } => "BG0808",
+            F::OutsideRange { .. } => "BG0810",
+            F::Unused { .. } => "BG0811",
+            F::NothingToStart { .. } => "BG0812",
+            F::StartTwice { .. } => "BG0813",
+            F::NothingToWatch { .. } | F::WatchesNothing { .. } => "BG0814",
+        }
+    }
+
+    fn message(&self) -> String {
+        match self {
+            F::UnknownPart { name, .. } => format!("there is no part `{name}`"),
+            F::UnknownParameter { part, name, .. } => format!("part `{part}` has no parameter or input `{name}`"),
+            F::GivenInside { part, name } => format!("part `{part}` gives `{name}` a value itself"),
+            F::ContainsItself { circle } => format!("part `{}` contains itself: {}", circle[0], circle.join(" -> ")),
+            F::PortWithoutBond { of, ports } => match &ports[..] {
+                [port] => format!("nothing is bonded to the port `{port}` of `{of}`"),
+                _ => format!("nothing is bonded to the ports {} of `{of}`", listed(ports)),
+            },
+            F::NoElement { array, index, numbers } => {
+                format!("`{array}` has no [{index}]: its length is {}, from {}", numbers.len(), ends(numbers))
+            }
+            F::NotAnArray { name } => format!("`{name}` is no array"),
+            F::IsAnArray { name, count, .. } => format!("`{name}` is an array of {count}"),
+            F::NotANumber { word } => format!("`{word}` is no index of a repetition around it"),
+            F::SameIndex { name } => format!("`{name}` is the index of two repetitions, one inside of the other"),
+            F::EmptyRange { from, to } => format!("there is no number from {from} up to {to}, not included"),
+            F::TooMany { most } => format!("more than {most} repetitions"),
+            F::OutsideRange { parameter, wanted } => format!("{parameter} must be {wanted}"),
+            F::Unused { part, word, name } => format!("nothing in part `{part}` uses its {word} `{name}`"),
+            F::NothingToStart { name, .. } => format!("there is no body `{name}` to start, and no point of this name"),
+            F::StartTwice { body, clause } => format!("`start {clause}` of `{body}` is given twice"),
+            F::NothingToWatch { name, .. } => format!("nothing is called `{name}`"),
+            F::WatchesNothing { part } => format!("part `{part}` has no `observe`, so that there is nothing to watch"),
+        }
+    }
+
+    fn help(&self) -> String {
+        match self {
+            F::UnknownPart { near: Some(near), .. }
+            | F::UnknownParameter { near: Some(near), .. }
+            | F::NothingToStart { near: Some(near), .. }
+            | F::NothingToWatch { near: Some(near), .. } => format!("did you mean `{near}`?"),
+            F::UnknownPart { name, .. } if name.contains("::") => "write the path of a `pub part`".to_owned(),
+            F::UnknownPart { name, .. } => {
+                format!("declare `part {name} {{ ... }}`, or write the path of a part of elsewhere, `self::{name}`")
+            }
+            F::UnknownParameter { name, .. } => format!("remove `{name}`, or declare `param {name}` in the part"),
+            F::GivenInside { name, .. } => format!("remove `{name}`, or make it a parameter of the part"),
+            F::ContainsItself { .. } => "take one of the uses out".to_owned(),
+            F::PortWithoutBond { of, ports } => format!("bond it, `{of}.{} -> ...;`", ports[0]),
+            F::NoElement { .. } => "change the number, or the range of the index".to_owned(),
+            F::NotAnArray { name } => format!("remove the brackets; a component of a vector is `{name}.x`"),
+            F::IsAnArray { name, first, .. } => format!("say which one, such as `{name}[{first}]`"),
+            F::NotANumber { .. } => {
+                "write a whole number, or put the statement into `for i in 0..20 { ... }`".to_owned()
+            }
+            F::SameIndex { .. } => "give one of them another name".to_owned(),
+            F::EmptyRange { .. } => "write the smaller number first: `0..20` are the numbers from 0 to 19".to_owned(),
+            F::TooMany { .. } => "make the range smaller".to_owned(),
+            F::OutsideRange { .. } => "change the value, or the range in the part".to_owned(),
+            F::Unused { .. } => "remove it, or use it".to_owned(),
+            F::NothingToStart { .. } => "write the path of a body, or of a point of it".to_owned(),
+            F::StartTwice { .. } => "remove one of the two".to_owned(),
+            F::NothingToWatch { .. } => "write the path of a part, body, joint or element".to_owned(),
+            F::WatchesNothing { .. } => "name what to watch, or give the part an `observe { ... }`".to_owned(),
+        }
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// The first and the last of an array's numbers.
+fn ends(numbers: &[i64]) -> String {
+    match numbers {
+        [first, .., last] => format!("{first} to {last}"),
+        [only] => format!("{only} to {only}"),
+        [] => "none".to_owned(),
+    }
+}
