@@ -929,7 +929,7 @@ use proc_macro::TokenStream;
 ///
 /// The effort of sticking is solved for together with the reactions of [rigid joints](#rigid-joints), by d/dt(flow) = 0. The flow
 /// stays what the event has left of it, which is rounding, and decays with 1 1/s; no place is kept, so there is no creep
-/// beyond that. A flow counts as zero where the friction would brake it within 1e-13 s. Of several frictions that hold one
+/// beyond that. Modes of a machine that sticks have this decay among them. A flow counts as zero where the friction would brake it within 1e-13 s. Of several frictions that hold one
 /// motion, such as the four bearings of a crank mechanism, the first ones in the order of declaration bear the load, up to
 /// their limits: how they share it is not determined, the motion is.
 ///

@@ -11,7 +11,7 @@ use bg_compiler::pipeline::{self, Derived};
 use bg_compiler::source::ast::TrackKind;
 use bg_compiler::source::syntax;
 use bg_compiler::system::equations::{Kind, StateEquations};
-use bg_compiler::system::second_order;
+use bg_compiler::system::{reduce, second_order};
 use bg_model::bond_graph;
 use bg_model::input::Input;
 use bg_model::nalgebra::SVector;
@@ -104,6 +104,7 @@ fn compiled(text: &str) -> (CausalGraph, StateEquations) {
 fn attempt(text: &str) -> Staged<(CausalGraph, StateEquations)> {
     let source = syntax::parse(text.parse().expect("tokens"))?;
     let Derived { causal, mut equations, .. } = pipeline::derive(&source.graphs[0])?;
+    reduce::solve_reactions(&mut equations);
     second_order::arrange(&mut equations);
     Ok((causal, equations))
 }

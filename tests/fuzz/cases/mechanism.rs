@@ -106,6 +106,22 @@ fn extras(rng: &mut Rng, index: usize, statements: &mut Vec<String>) {
         });
     }
     if rarely(rng, 4) {
+        let clauses = one(
+            rng,
+            &[
+                "coulomb 2;",
+                "coulomb 0.2; radius size;",
+                "coulomb 1; static 2; stribeck 0.1;",
+                "coulomb push; creep 0.01;",
+            ],
+        );
+        statements.push(format!("friction seat{index} on pin{index} {{ {clauses} }}"));
+    }
+    if rarely(rng, 6) {
+        let clauses = one(rng, &["at most size; stiffness 1e4;", "at least -1; at most 1; stiffness 50; damping 0.3;"]);
+        statements.push(format!("stop end{index} on pin{index} {{ {clauses} }}"));
+    }
+    if rarely(rng, 4) {
         let law = scalar(rng, &["v".to_owned(), "push".to_owned()], 2);
         let axis = one(rng, &["x", "y", "z"]);
         statements.push(format!(
@@ -147,7 +163,7 @@ fn scene(rng: &mut Rng, index: usize, bodies: usize) -> String {
     };
     clauses.push(clause(rng, 2, &["tune {}", "tune { k }", "tune { angle, push }"]));
     clauses.push(clause(rng, 3, &["rigid joints;", "rigid { pin0 }"]));
-    clauses.push(clause(rng, 4, &["without { coil0 }", "without { act0 }", "without { pin0 }", "without { rub0 }"]));
+    clauses.push(clause(rng, 4, &["without { coil0 }", "without { act0 }", "without { pin0 }", "without { seat0 }"]));
     clauses.push(clause(rng, 4, &["angles;"]));
     clauses.push(clause(rng, 8, &["expect planar;", "expect states = 7;"]));
     format!("scene Scene{index} {{ {} }}", clauses.join(" "))

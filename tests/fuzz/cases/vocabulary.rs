@@ -6,7 +6,7 @@ use super::draw::{EXTREMES, one, rarely};
 use super::lexemes::joined;
 
 /// Words that begin a statement or a clause.
-const STATEMENTS: [&str; 51] = [
+const STATEMENTS: [&str; 57] = [
     "graph",
     "pub",
     "param",
@@ -58,6 +58,12 @@ const STATEMENTS: [&str; 51] = [
     "spin",
     "above",
     "least",
+    "friction",
+    "stop",
+    "orifice",
+    "coulomb",
+    "static",
+    "holds",
 ];
 
 /// Symbols of elements, kinds of joints and drives, domains, axes, roles.
