@@ -6,7 +6,12 @@ use super::draw::{EXTREMES, one, rarely};
 use super::lexemes::joined;
 
 /// Words that begin a statement or a clause.
-const STATEMENTS: [&str; 57] = [
+const STATEMENTS: [&str; 62] = [
+    "part",
+    "port",
+    "for",
+    "all",
+    "but",
     "graph",
     "pub",
     "param",

@@ -55,7 +55,7 @@ fn exported(source: &Source, part: &Part) -> Option<TokenStream> {
 fn carrier(part: &Part) -> Ident {
     let start = part.name.span.start();
     // FNV-1a over the file and the tokens.
-    let text = format!("{} {}", part.name.span.file(), part.written.0);
+    let text = format!("{:?} {}", part.name.span.local_file(), part.written.0);
     let hash = text
         .bytes()
         .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));

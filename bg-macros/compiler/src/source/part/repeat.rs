@@ -93,6 +93,11 @@ impl Writing<'_> {
                 }
             }),
         });
+        if let Item::Use(used) = &mut item {
+            let paths = used.arguments.iter_mut().map(|argument| &mut argument.name);
+            let paths = paths.chain(used.starts.iter_mut().map(|start| &mut start.of));
+            paths.for_each(|path| evaluate(&mut path.text, path.span, indices, faults));
+        }
         self.items.push(item);
     }
 

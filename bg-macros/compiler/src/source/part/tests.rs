@@ -131,6 +131,25 @@ fn arrays_and_repetitions_have_numbers_in_brackets() {
 }
 
 #[test]
+fn what_a_use_gives_to_parts_inside_may_have_indices() {
+    let text = "part A { param k: 1 = 1; let a = k; } part B { part a[2]: A; }
+        graph G { part b[i in 0..2]: B { a[1 - i].k = i; } }";
+    assert_eq!(
+        flat(text),
+        [
+            "param b[0].a[0].k: 1 = 1;",
+            "let b[0].a[0].a = b[0].a[0].k;",
+            "let b[0].a[1].k: 1 = 0;",
+            "let b[0].a[1].a = b[0].a[1].k;",
+            "let b[1].a[0].k: 1 = 1;",
+            "let b[1].a[0].a = b[1].a[0].k;",
+            "param b[1].a[1].k: 1 = 1;",
+            "let b[1].a[1].a = b[1].a[1].k;"
+        ]
+    );
+}
+
+#[test]
 fn bodies_start_where_the_user_puts_them_and_grounds_are_one() {
     let text = format!(
         "{BAR} graph G {{ ground {{ point O = [0, 0, 0]; }} part a: Bar {{ start bar.end at [1, 2, 3]; }} part b: Bar;
