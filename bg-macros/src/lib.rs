@@ -613,8 +613,8 @@ use proc_macro::TokenStream;
 /// uses itself comes with it: its user needs neither those parts nor their crates. (The path is that of a macro with the
 /// part's tokens. Where it leads nowhere rustc says so, and then misses the models of the call.)
 ///
-/// Faults inside of a part are at the part's own tokens, told once for all uses, and say in which one they are: `in part
-/// front: Leg`. A part that no graph of its call uses is looked at by itself: names, shapes and units.
+/// Faults inside of a part are at the part's own tokens, told once for all uses of a call, and say in which one they are: `in
+/// part front: Leg`. A part that no graph of its call uses is looked at by itself: names, shapes and units.
 ///
 /// ## Arrays and repetitions
 ///

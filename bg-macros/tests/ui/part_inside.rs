@@ -1,23 +1,18 @@
-//! A fault inside of a part of another call that is used three times: told once, at the part's token, with a use.
+//! A fault inside of a part that is used three times: told once, at the part's token, with a use.
 
 use bg_model::bond_graph;
 use bg_model::system::Model;
 
-mod wheels {
-    bg_model::bond_graph! {
-        pub(crate) part Wheel {
-            param mass: kg = 3, above 0;
-            param radius: m = 0.3, above 0;
-            port axle: rotation;
-            I inertia = mass * radius;
-            axle -> inertia;
-        }
-    }
-}
-
 bond_graph! {
+    part Wheel {
+        param mass: kg = 3, above 0;
+        param radius: m = 0.3, above 0;
+        port axle: rotation;
+        I inertia = mass * radius;
+        axle -> inertia;
+    }
     graph Cart {
-        part wheel[3]: crate::wheels::Wheel { mass = 5; }
+        part wheel[3]: Wheel { mass = 5; }
         Se push = 1;
         1 shaft: rotation;
         push -> shaft;
