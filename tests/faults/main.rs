@@ -153,7 +153,7 @@ const EQUATIONS: [(&str, &str); 14] = [
         "param k: N/m = 50;\n\
          1 j: translation; I m = 2; C s(q) = k * q * sqrt(-1) energy k * q ▸* q; j -> m; j -> s;",
     ),
-    ("BG0508", "0 a: translation; 1 b: translation; 0 c: translation; 1 d; a -> b -> c -> ▸d -> a;"),
+    ("BG0508", "0 a: translation; 1 b: translation; 0 c: translation; 1 d; a -> ▸b -> c -> d -> a;"),
     ("BG0509", "1 a: rotation; I J = 2 start 1; I wheel = 3 start ▸4; a -> J; a -> wheel;"),
     ("BG0510", "input v: m/s; 1 a: translation; I ▸m = 2; Sf s = v; s -> a -> m;"),
     ("BG0511", "1 a: translation; I ▸m = 2; MSf s = if t < 1 { 0 } else { 1 }; s -> a -> m;"),
@@ -496,7 +496,7 @@ fn the_advice_on_derivative_causality_leads_to_a_graph_that_compiles() {
             "graph G {{ Se e = 1; 1 shaft: rotation; I rotor = 2; I wheel = 3; e -> shaft -> rotor; {declared} {chain} }}"
         )
     };
-    let faults = compiled(&graph("", "shaft -> wheel;")).expect_err("two I on one junction");
+    let faults = compiled(&graph("expect integral causality;", "shaft -> wheel;")).expect_err("two I on one junction");
     let help = &faults[0].help;
     assert!(
         help.contains("C and an R") && help.contains("`rSe rigid = 0` at the 0-junction of `.. -> 0 -> 1 -> wheel`"),

@@ -155,7 +155,8 @@ fn the_expanded_graph_is_source_with_the_same_equations() {
 /// the order of sums. The equations are compared as sets of lines.
 #[test]
 fn the_order_of_the_chains_changes_no_stroke() {
-    for model in all() {
+    // In the divider's loop either resistor may give the effort: that is the first bond's choice.
+    for model in all().filter(|model| *model != "divider") {
         let mut source = syntax::parse(tokens(&text(model))).expect("the model is valid");
         let before = compiled(&source.to_string());
         let items = &mut source.graphs[0].items;

@@ -4,9 +4,9 @@
 //! has none.
 //! Method: Gaussian elimination on sparse rows. Of the entries that cannot vanish, numbers before others, the pivot is the one with
 //! the least product of other entries in its row and column (Markowitz 1957, The Elimination Form of the Inverse, Management Science
-//! 3); of numbers in one column none is taken that is much smaller than another. The first in order decides what is left open. An
-//! entry is zero where it is within rounding at arbitrary values of its symbols, by running error analysis: so a system that
-//! has no solution whatever its parameters is known as such, although its coefficients are rounded.
+//! 3); none is taken that is much smaller than another in its column. The first in order decides what is left open. An entry is
+//! zero where it is within rounding at arbitrary values of its symbols, by running error analysis: so a system that has no solution
+//! whatever its parameters is known as such, although its coefficients are rounded.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +16,7 @@ use crate::random::Random;
 /// What rounding leaves of parts that cancel, relative to the sum of their sizes.
 const RESIDUE: f64 = 64.0 * f64::EPSILON;
 
-/// A number is no pivot beside one in its column that is larger by more than this factor.
+/// An entry is no pivot beside one in its column that is larger by more than this factor, at arbitrary values of the symbols.
 const GROWTH: f64 = 10.0;
 
 /// A linear system; a row has its entries by their columns.
@@ -96,7 +96,7 @@ fn sampled(pool: &mut Pool, rows: &[BTreeMap<usize, Id>]) -> Vec<BTreeMap<usize,
     let mut random = Random::new(1);
     let values: BTreeMap<Symbol, f64> =
         pool.symbols(&all).into_iter().map(|symbol| (symbol, 0.5 + random.unit())).collect();
-    let entry = |id: Id| Entry { id, at: sized(pool, id, &|symbol| values[&symbol]) };
+    let entry = |id: Id| Entry { id, at: sized(pool, id, &|symbol| values[&symbol], &|_| false) };
     let mut matrix: Vec<BTreeMap<usize, Entry>> =
         rows.iter().map(|row| row.iter().map(|(&column, &id)| (column, entry(id))).collect()).collect();
     matrix.iter_mut().for_each(|row| row.retain(|_, entry| !vanishes(pool, *entry)));
@@ -133,13 +133,16 @@ impl Elimination<'_> {
         let mut largest: BTreeMap<usize, f64> = BTreeMap::new();
         for (&column, entry) in self.rows.iter().flat_map(|&row| &self.matrix[row]) {
             *in_column.entry(column).or_default() += 1;
-            let size = self.pool.as_number(entry.id).map_or(0.0, f64::abs);
+            let size = entry.at.value.abs();
             largest.entry(column).and_modify(|known| *known = known.max(size)).or_insert(size);
         }
         let mut candidates = Vec::new();
         for &row in &self.rows {
             for (&column, &pivot) in &self.matrix[row] {
-                if let Some(surety) = self.surety(pivot.id, largest[&column]) {
+                // What is not finite at arbitrary values cannot be compared.
+                let is_small = GROWTH * pivot.at.value.abs() < largest[&column];
+                if !is_small {
+                    let surety = self.surety(pivot.id);
                     let others = (self.matrix[row].len() - 1) * (in_column[&column] - 1);
                     candidates.push(((surety == Surety::Open, others, surety, row, column), pivot));
                 }
@@ -149,12 +152,12 @@ impl Elimination<'_> {
         Some((surety, Step { row, column, pivot }))
     }
 
-    /// What is known of an entry as a pivot; none where it is a number that is too small beside the column's largest.
-    fn surety(&self, entry: Id, largest: f64) -> Option<Surety> {
+    /// What is known of an entry as a pivot.
+    fn surety(&self, entry: Id) -> Surety {
         match self.pool.as_number(entry) {
-            Some(value) => (GROWTH * value.abs() >= largest && value.is_finite()).then_some(Surety::Number),
-            None if (self.is_proved)(self.pool, entry) => Some(Surety::Proved),
-            None => Some(Surety::Open),
+            Some(_) => Surety::Number,
+            None if (self.is_proved)(self.pool, entry) => Surety::Proved,
+            None => Surety::Open,
         }
     }
 

@@ -45,9 +45,9 @@ impl Sized {
     }
 }
 
-/// The value of a node, where symbols have these values and every switch its positive branch.
+/// The value of a node, where symbols have these values and switches these branches.
 #[must_use]
-pub fn sized(pool: &Pool, root: Id, of: &dyn Fn(Symbol) -> f64) -> Sized {
+pub fn sized(pool: &Pool, root: Id, of: &dyn Fn(Symbol) -> f64, is_negative: &dyn Fn(u32) -> bool) -> Sized {
     let mut known: HashMap<Id, Sized> = HashMap::new();
     for id in pool.reachable(&[root]) {
         let sized = match pool.node(id) {
@@ -66,7 +66,9 @@ pub fn sized(pool: &Pool, root: Id, of: &dyn Fn(Symbol) -> f64) -> Sized {
                 let arguments: Vec<f64> = arguments.iter().map(|argument| known[argument].value).collect();
                 Sized::exact(apply(*function, &arguments))
             }
-            Node::Select { positive, .. } => known[positive],
+            Node::Select { switch, negative, positive } => {
+                known[if is_negative(*switch) { negative } else { positive }]
+            }
         };
         known.insert(id, sized);
     }
@@ -88,10 +90,10 @@ mod tests {
         let of = |factor: f64| [(product, 1.0), (squares[0], -factor), (squares[1], 1.0)];
         let [zero, rest] = [1.0, 1.0 + 1e-6].map(|factor| pool.linear(0.0, &of(factor)));
         let value = |symbol| if symbol == Symbol::Parameter(0) { 0.37 } else { 1.13 };
-        let [zero, rest] = [zero, rest].map(|id| sized(&pool, id, &value));
+        let [zero, rest] = [zero, rest].map(|id| sized(&pool, id, &value, &|_| false));
         assert!(zero.value.abs() < 1e-15 * zero.size && rest.value.abs() > 1e-9 * rest.size, "{zero:?} {rest:?}");
         let inverse = pool.powi(difference, -2);
-        let found = sized(&pool, inverse, &value);
+        let found = sized(&pool, inverse, &value, &|_| false);
         assert!((found.value * 0.76 * 0.76 - 1.0).abs() < 1e-12 && found.size > found.value);
     }
 }

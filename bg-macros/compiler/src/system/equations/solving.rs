@@ -17,6 +17,9 @@ use crate::expr::{Id, Linear, Pool, Signs, Symbol, partial, signs, solve_linear,
 use crate::fault::Fault;
 use crate::graph::{NodeId, Parameter};
 
+/// How many members a message lists.
+const LISTED: usize = 6;
+
 /// A divisor of a solution that parameters may make zero.
 #[derive(Clone, Debug)]
 pub(super) struct Pivot {
@@ -102,7 +105,7 @@ impl Signals<'_> {
         let Some(&node) = nodes.first() else { return };
         let is_parameter = |symbol: Symbol| matches!(symbol, Symbol::Parameter(_));
         if self.pool.symbols(&[pivot]).into_iter().all(is_parameter) && !self.pool.has_select(&[pivot]) {
-            let what = format!("the system of {}", self.names(&nodes).join(", "));
+            let what = format!("the system of {}", self.listed(&nodes));
             self.pivots.push(Pivot { what, node, value: pivot });
         } else {
             let definition = self.graph.node(node);
@@ -126,6 +129,13 @@ impl Signals<'_> {
         nodes
     }
 
+    /// The first names of elements and junctions, for messages.
+    fn listed(&self, nodes: &[NodeId]) -> String {
+        let names = self.names(&nodes[..nodes.len().min(LISTED)]).join(", ");
+        let more = nodes.len().saturating_sub(LISTED);
+        if more == 0 { names } else { format!("{names} and {more} more") }
+    }
+
     /// Names of elements and junctions, for messages.
     pub(super) fn names(&self, nodes: &[NodeId]) -> Vec<String> {
         nodes.iter().map(|&node| format!("`{}`", self.graph.node(node).name.text)).collect()
@@ -146,7 +156,8 @@ impl Signals<'_> {
         let first = circle.map(|circle| &self.unknowns.circles[circle]);
         let members = match (first, trouble) {
             (Some(circle), Trouble::Nonlinear) => self.names(&circle.nodes),
-            _ => self.names(&self.members(group)),
+            // Efforts and flows of one ring are one fault.
+            _ => self.names(&self.members(group).into_iter().collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>()),
         };
         let fault = match trouble {
             Trouble::Nonlinear => EquationFault::AlgebraicLoop { members },
