@@ -212,8 +212,8 @@ impl<Mo: System<f64, N, 1>, const N: usize> System<f64, N, 0> for Unswitched<Mo>
         self.0.rate(t, x, &[false], dx);
     }
 
-    fn project(&self, t: f64, negative: &[bool; G], x: &mut SVector<f64, N>) {
-        self.0.project(t, negative, x);
+    fn project(&self, t: f64, _negative: &[bool; 0], x: &mut SVector<f64, N>) {
+        self.0.project(t, &[false], x);
     }
 
     fn state_name(&self, index: usize) -> &'static str {

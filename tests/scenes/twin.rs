@@ -38,8 +38,8 @@ where
         self.0.rate(t, x, &[false; G], dx);
     }
 
-    fn project(&self, t: f64, negative: &[bool; G], x: &mut SVector<f64, N>) {
-        self.0.project(t, negative, x);
+    fn project(&self, t: f64, _negative: &[bool; 0], x: &mut SVector<f64, N>) {
+        self.0.project(t, &[false; G], x);
     }
 }
 

@@ -110,3 +110,12 @@ fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
     let solution = matrix.svd(true, true).solve(right, least);
     solution.unwrap_or_else(|_| DVector::repeat(right.len(), f64::NAN))
 }
+
+fn dual<const N: usize>(x: &DVector<f64>, along: &DVector<f64>) -> SVector<Dual, N> {
+    SVector::from_fn(|state, _| Dual::new(x[state], along[state]))
+}
+
+/// 1 where true, 0 where not.
+fn mask(of: &[bool]) -> DVector<f64> {
+    DVector::from_iterator(of.len(), of.iter().map(|&is| if is { 1.0 } else { 0.0 }))
+}
