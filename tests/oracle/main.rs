@@ -105,6 +105,7 @@ fn attempt(text: &str) -> Staged<(CausalGraph, StateEquations)> {
     let source = syntax::parse(text.parse().expect("tokens"))?;
     let Derived { causal, mut equations, .. } = pipeline::derive(&source.graphs[0])?;
     reduce::solve_reactions(&mut equations);
+    equations.close();
     second_order::arrange(&mut equations);
     Ok((causal, equations))
 }

@@ -7,8 +7,7 @@
 use std::collections::BTreeMap;
 
 use crate::expr::{Function, Id, Node, Number, Pool, Symbol};
-use crate::system::equations::Quantity;
-use crate::system::solution::Solution;
+use crate::system::equations::{Quantity, Solution};
 
 /// The steps and what is wanted of them.
 #[derive(Clone, Debug, Default, PartialEq)]

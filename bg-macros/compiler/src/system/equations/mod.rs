@@ -34,12 +34,12 @@ use crate::expr::{Id, Pool, Symbol, text as expression_text};
 use crate::fault::Staged;
 use crate::graph::{CausalGraph, Input, Parameter};
 use crate::system::requirements::Requirements;
-use crate::system::solution::Solution;
 
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
 pub use origin::{Kind, Origin};
+pub use crate::system::solution::Solution;
 pub use shown::{Quantity, Shown};
 
 /// The model as scalar expressions over one pool.

@@ -14,6 +14,7 @@ fn derived(statements: &str) -> Result<StateEquations, Vec<Fault>> {
     let source = syntax::parse(text.parse().expect("tokens"))?;
     let mut equations = pipeline::derive(&source.graphs[0])?.equations;
     reduce::solve_reactions(&mut equations);
+    equations.close();
     Ok(equations)
 }
 
