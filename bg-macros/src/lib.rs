@@ -889,14 +889,13 @@ use proc_macro::TokenStream;
 ///         observe { tooth: N*m = wheel.effort }
 ///     }
 /// }
-/// use bg_model::system::{Model, System};
+/// use bg_model::run::Simulation;
 ///
 /// let model = Geared::new(GearedParameters::default())?;
 /// assert_eq!(Geared::STATES, 1);
-/// let start = model.start()?;
-/// let [tooth] = model.outputs(0.0, &start.x, &[]);
+/// let run = Simulation::new(&model).every(0.1).until(0.1).run()?;
 /// // 4 * 0.5 N*m turn 0.02 kg*m^2 and 16 times the rotor.
-/// assert!((tooth - 2.0 * 0.02 / (0.02 + 16.0 * 1e-3)).abs() < 1e-12);
+/// assert!((run["tooth"][0] - 2.0 * 0.02 / (0.02 + 16.0 * 1e-3)).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
