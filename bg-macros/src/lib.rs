@@ -46,7 +46,7 @@ use proc_macro::TokenStream;
 /// graph     = [visibility] "graph" NAME "{" { statement | scene } "}"
 /// part      = [visibility] "part" NAME "{" { statement | port } "}"
 /// statement = param | input | let | junction | element | chain | position | orientation | close | observe
-///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | orifice | start | expect | use | for
+///           | ground | gravity | body | joint | spring | drive | contact | friction | stop | orifice | start | baumgarte | expect | use | for
 /// expect    = "expect" "integral" "causality" ";"
 /// ```
 ///
@@ -1083,6 +1083,7 @@ use proc_macro::TokenStream;
 /// | BG0332 | a law of a variable that the element cannot have |
 /// | BG0333 | a graph without a bond |
 /// | BG0334 | a name that the language reserves: `t`, the time |
+/// | BG0335 | a rate of `baumgarte` that is no number above 0 |
 /// | **causality** | |
 /// | BG0401 | causal conflict: two bonds determine one effort or flow |
 /// | BG0402 | causal conflict: none determines it |

@@ -37,11 +37,11 @@ const CASES: [(&str, &str); 11] = [
     ),
     (
         "scene A {\n    without { band, ▸pivott }\n}",
-        "[BG0602] the mechanism has no part `pivott` to leave out\nhelp: did you mean `pivot`?",
+        "[BG0602] there is no `pivott` to leave out\nhelp: did you mean `pivot`?",
     ),
     (
         "scene A { without ▸engine; }",
-        "[BG0602] the mechanism has no part `engine` to leave out\nhelp: name a joint, contact, spring, drive or element",
+        "[BG0602] there is no `engine` to leave out\nhelp: name a joint, contact, spring, drive, friction, stop or element",
     ),
     (
         "scene A { tune { mass, ▸windng } }",

@@ -84,7 +84,7 @@ impl Explain for GraphFault {
             F::VariableRole { .. } => "BG0332",
             F::EmptyGraph { .. } => "BG0333",
             F::Reserved { .. } => "BG0334",
-            F::Decay => "BG0338",
+            F::Decay => "BG0335",
         }
     }
 
