@@ -107,7 +107,7 @@ const GRAPH: [(&str, &str); 35] = [
     ("BG0324", "let ▸a = 2 * a;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0327", "param ▸a: 1 = 2, above 3, below 1;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0334", "param ▸t: s = 2;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
-    ("BG0335", "baumgarte ▸-50;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
+    ("BG0335", "baumgarte -▸50;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0325", "position x of ▸j;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0326", "Se f = 1; 1 j: translation; I m = 2; R ▸r = 3 start 1; f -> j -> m; j -> r;"),
     ("BG0328", "param a: 1 = ▸2, above 3;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),

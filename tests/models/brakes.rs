@@ -15,7 +15,7 @@ bond_graph! {
             mass 2; inertia [0.1, 0.1, 0.1]; point end = [-0.5, 0, 0];
             start end at [0, 0, 0]; start turned rotation_z(angle);
         }
-        joint pin: revolute z (ground.pivot -> rod.end) { stiffness 1e4; damping 30; tilt stiffness 1e3; tilt damping 1; }
+        joint pin: revolute z (ground.pivot -> rod.end) { stiffness 3e3; damping 20; tilt stiffness 1e3; tilt damping 1; }
         friction seat on pin { coulomb grip; static still; viscous 1e-3; radius 0.1; }
         observe {
             angle: rad = pin.angle; speed: rad/s = pin.speed; seat.effort; force: N = norm(pin.force);

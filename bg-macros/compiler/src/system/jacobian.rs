@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use crate::expr::{Id, Pool, Symbol, derivative};
 use crate::system::equations::StateEquations;
-use crate::system::solution::Solution;
+use crate::system::equations::solution::Solution;
 
 /// df/dx and df/dt as expressions.
 #[derive(Clone, Debug)]

@@ -2,14 +2,12 @@
 //!
 //! In: a graph with its strokes. Out: the state equations, what a scene needs of them, their derivatives.
 
-mod definite;
 pub mod equations;
 pub mod jacobian;
 pub mod projection;
 pub mod reduce;
 pub mod requirements;
 pub mod second_order;
-pub mod solution;
 mod value;
 
 pub use equations::StateEquations;

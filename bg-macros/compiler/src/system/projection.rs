@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 
 use crate::expr::{Id, Pool, Symbol, derivative, substitute};
-use crate::system::definite::Factors;
+use crate::system::equations::definite::Factors;
 use crate::system::equations::{Holding, Kind, StateEquations};
 
 /// D over A_ii, the squared sine of the angle between a row and those before it, at which the projection is damped by half.

@@ -312,7 +312,9 @@ fn a_fault_in_a_part_is_told_once_and_names_a_use() {
 fn a_fault_of_one_use_names_that_use() {
     // The mass of `b` follows from that of `a`: only there is the causality derivative.
     let part = "part A { param k: kg = 1; port p: translation; I m = k; p -> m; }";
-    let text = format!("{part}\ngraph G {{ expect integral causality; part a: A; part b: A; Se e = 1; e -> a.p; Sf f = 1; f -> b.p; }}");
+    let text = format!(
+        "{part}\ngraph G {{ expect integral causality; part a: A; part b: A; Se e = 1; e -> a.p; Sf f = 1; f -> b.p; }}"
+    );
     let found = faults(&text);
     assert!(found.starts_with("1:50 BG0403 I `b.m`") && found.contains(", in part `b: A` | "), "{found}");
 }

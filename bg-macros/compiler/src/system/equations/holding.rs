@@ -9,7 +9,7 @@ use super::signals::Signals;
 use crate::expr::{Branch, Id, Pool, Symbol, derivative, substitute_switched};
 use crate::graph::units::Dimension;
 use crate::graph::{Axis, Direction, ElementKind, Held, JointId, NodeId};
-use crate::system::solution::{Known, filter};
+use crate::system::equations::solution::{Known, filter};
 
 /// A motion that a joint holds.
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@
 //! storages in integral causality turn theirs into rates, those in derivative causality differentiate theirs. What needs itself is an
 //! unknown at first, with an equation that is solved in symbols where it is linear.
 
+pub mod definite;
 mod dependent;
 mod energy;
 mod fallible;
@@ -20,6 +21,7 @@ mod reactions;
 mod requirements;
 mod shown;
 mod signals;
+pub mod solution;
 mod solving;
 mod storage;
 mod terms;
@@ -35,11 +37,11 @@ use crate::fault::Staged;
 use crate::graph::{CausalGraph, Input, Parameter};
 use crate::system::requirements::Requirements;
 
+pub use crate::system::equations::solution::Solution;
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
 pub use origin::{Kind, Origin};
-pub use crate::system::solution::Solution;
 pub use shown::{Quantity, Shown};
 
 /// The model as scalar expressions over one pool.

@@ -6,7 +6,7 @@
 use super::signals::Signals;
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 use crate::graph::Drawing;
-use crate::system::solution::Known;
+use crate::system::equations::solution::Known;
 
 /// The components of a quantity; none where it is not known.
 pub type Quantity = Option<Vec<Id>>;

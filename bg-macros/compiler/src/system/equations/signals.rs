@@ -18,7 +18,7 @@ use crate::graph::{
     BondGraph, BondId, CausalGraph, ElementKind, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
 };
 use crate::system::Value;
-use crate::system::solution::Solution;
+use crate::system::equations::solution::Solution;
 
 /// The derivation in progress.
 pub(super) struct Signals<'a> {

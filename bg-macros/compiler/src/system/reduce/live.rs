@@ -7,8 +7,8 @@
 use super::keep_switches;
 use super::report::{Fate, Report};
 use crate::expr::{Branch, Id, Node, Symbol};
+use crate::system::equations::solution::Known;
 use crate::system::equations::{Kind, StateEquations};
-use crate::system::solution::Known;
 
 /// Drops states and switches that no output needs.
 pub(super) fn drop_unwatched(equations: &mut StateEquations, report: &mut Report) {

@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 
 use super::{friction, loops};
 use crate::expr::{Id, Pool, Symbol, derivative, partial};
-use crate::system::definite::Factors;
+use crate::system::equations::definite::Factors;
+use crate::system::equations::solution::Solution;
 use crate::system::equations::{Reaction, Slip, StateEquations};
-use crate::system::solution::Solution;
 
 /// Solves for all multipliers. They stay symbols in the equations until these are closed.
 pub fn solve(equations: &mut StateEquations) {

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute, substitute_switched};
-use crate::system::definite::Factors;
+use crate::system::equations::definite::Factors;
 
 /// The reactions with their values.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,7 @@
 //! identically zero costs nothing, so a band stays a band.
 
 use crate::expr::{Id, Pool};
-use crate::system::solution::filter;
+use crate::system::equations::solution::filter;
 
 /// A = L D L^T.
 #[derive(Clone, Debug, Default)]
