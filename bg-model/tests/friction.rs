@@ -1,10 +1,13 @@
 //! Dry friction that sticks: known motions, by every integrator; rest, reversal, many at once.
 
+mod random;
+
 use bg_model::bond_graph;
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Observer, Settings, Span, integrate};
 use bg_model::system::Model;
+use random::random_numbers;
 
 bond_graph! {
     /// A block on an incline, thrown up it at the start.
@@ -255,16 +258,6 @@ fn shafts_that_are_one_slide_when_both_brakes_give_way() {
         assert!((outputs[2] + outputs[3] - 4.75).abs() < 1e-9, "{name}: {outputs:?}");
         let (outputs, _) = run(&model, integrator, 2.0);
         assert!((outputs[0] - 0.5).abs() < 1e-8 && (outputs[1] - 0.5).abs() < 1e-8, "{name}: {outputs:?}");
-    }
-}
-
-/// Marsaglia's xorshift generator (Journal of Statistical Software 8, 2003), in 0..1.
-fn random_numbers(mut seed: u64) -> impl FnMut() -> f64 {
-    move || {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 

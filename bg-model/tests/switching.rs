@@ -1,6 +1,7 @@
 //! Random switched oscillators: at every instant the branches agree with the guards, or the run ends in a true chatter.
 
 mod problems;
+mod random;
 
 use bg_model::failure::Cause;
 use bg_model::integrator::Dop853;
@@ -8,6 +9,7 @@ use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::System;
 use problems::*;
+use random::random_numbers;
 
 /// Three oscillators with position x_i and velocity x_(3+i), their damping and drive switched by a plane each.
 struct Oscillators {
@@ -51,16 +53,6 @@ impl Oscillators {
             (0..3).map(|i| self.plane[switch][i] * dx[3 * switch + i]).sum::<f64>()
         };
         slope(false) <= 0.0 && slope(true) >= 0.0
-    }
-}
-
-/// Marsaglia's xorshift generator (Journal of Statistical Software 8, 2003), in 0..1.
-fn random_numbers(mut seed: u64) -> impl FnMut() -> f64 {
-    move || {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 

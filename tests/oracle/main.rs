@@ -156,7 +156,7 @@ impl Sample {
             Symbol::Input(index) => self.inputs[index as usize],
             _ => 0.0,
         };
-        sized(&equations.pool, root, &of, &|switch| self.negative[switch as usize]).size
+        sized(&equations.pool, &[root], &of, &|switch| self.negative[switch as usize])[0].size
     }
 
     fn values(&self, equations: &StateEquations, roots: &[Id]) -> Vec<f64> {

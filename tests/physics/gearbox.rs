@@ -7,7 +7,7 @@ use super::truth::within;
 
 const VOLTAGE: f64 = 24.0;
 
-/// The motor whose flywheel has the rotor's inertia counted in by hand; `dc_motor` holds it against the matrix exponential.
+/// The motor whose flywheel includes the rotor's inertia; `dc_motor` holds it against the matrix exponential.
 fn equivalent(p: &Parameters) -> DcMotor {
     let flywheel = p.flywheel + p.ratio * p.ratio * p.rotor;
     let (winding, coil, constant, ratio, bearing) = (p.winding, p.coil, p.constant, p.ratio, p.bearing);

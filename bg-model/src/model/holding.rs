@@ -19,8 +19,9 @@ pub struct Slip {
 /// What the joints of a system hold.
 ///
 /// [`Joints::hold`](crate::capability::Joints::hold) writes, one after the other: the flow of each rigid motion, the flow of
-/// each compliant one, the gap of each rigid motion (its integral as the poses have it, 0 where they do not), the lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it
-/// changes the rate of each moved state.
+/// each compliant one, the gap of each rigid motion (its integral as the poses have it, 0 where they do not), the lower
+/// triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it changes
+/// the rate of each moved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Held {
     /// The motions that rigid joints hold, each with a reaction.

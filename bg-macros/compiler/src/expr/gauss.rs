@@ -96,9 +96,11 @@ fn sampled(pool: &mut Pool, rows: &[BTreeMap<usize, Id>]) -> Vec<BTreeMap<usize,
     let mut random = Random::new(1);
     let values: BTreeMap<Symbol, f64> =
         pool.symbols(&all).into_iter().map(|symbol| (symbol, 0.5 + random.unit())).collect();
-    let entry = |id: Id| Entry { id, at: sized(pool, id, &|symbol| values[&symbol], &|_| false) };
-    let mut matrix: Vec<BTreeMap<usize, Entry>> =
-        rows.iter().map(|row| row.iter().map(|(&column, &id)| (column, entry(id))).collect()).collect();
+    let mut at = sized(pool, &all, &|symbol| values[&symbol], &|_| false).into_iter();
+    let mut entries = |row: &BTreeMap<usize, Id>| {
+        row.iter().zip(at.by_ref()).map(|((&column, &id), at)| (column, Entry { id, at })).collect()
+    };
+    let mut matrix: Vec<BTreeMap<usize, Entry>> = rows.iter().map(&mut entries).collect();
     matrix.iter_mut().for_each(|row| row.retain(|_, entry| !vanishes(pool, *entry)));
     matrix
 }

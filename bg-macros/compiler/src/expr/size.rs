@@ -45,11 +45,11 @@ impl Sized {
     }
 }
 
-/// The value of a node, where symbols have these values and switches these branches.
+/// The values of nodes, where symbols have these values and switches these branches.
 #[must_use]
-pub fn sized(pool: &Pool, root: Id, of: &dyn Fn(Symbol) -> f64, is_negative: &dyn Fn(u32) -> bool) -> Sized {
+pub fn sized(pool: &Pool, roots: &[Id], of: &dyn Fn(Symbol) -> f64, is_negative: &dyn Fn(u32) -> bool) -> Vec<Sized> {
     let mut known: HashMap<Id, Sized> = HashMap::new();
-    for id in pool.reachable(&[root]) {
+    for id in pool.reachable(roots) {
         let sized = match pool.node(id) {
             Node::Number(number) => Sized::exact(number.value()),
             Node::Symbol(symbol) => Sized::exact(of(*symbol)),
@@ -72,7 +72,7 @@ pub fn sized(pool: &Pool, root: Id, of: &dyn Fn(Symbol) -> f64, is_negative: &dy
         };
         known.insert(id, sized);
     }
-    known[&root]
+    roots.iter().map(|root| known[root]).collect()
 }
 
 #[cfg(test)]
@@ -90,10 +90,10 @@ mod tests {
         let of = |factor: f64| [(product, 1.0), (squares[0], -factor), (squares[1], 1.0)];
         let [zero, rest] = [1.0, 1.0 + 1e-6].map(|factor| pool.linear(0.0, &of(factor)));
         let value = |symbol| if symbol == Symbol::Parameter(0) { 0.37 } else { 1.13 };
-        let [zero, rest] = [zero, rest].map(|id| sized(&pool, id, &value, &|_| false));
+        let [zero, rest] = sized(&pool, &[zero, rest], &value, &|_| false)[..] else { panic!("two values") };
         assert!(zero.value.abs() < 1e-15 * zero.size && rest.value.abs() > 1e-9 * rest.size, "{zero:?} {rest:?}");
         let inverse = pool.powi(difference, -2);
-        let found = sized(&pool, inverse, &value, &|_| false);
+        let found = sized(&pool, &[inverse], &value, &|_| false)[0];
         assert!((found.value * 0.76 * 0.76 - 1.0).abs() < 1e-12 && found.size > found.value);
     }
 }

@@ -32,7 +32,6 @@ const fn row(i: usize) -> usize {
 
 impl<S: Scalar> Factors<S> {
     /// Room for `n` rows.
-    /// Room for `n` rows.
     pub fn new(n: usize) -> Self {
         let zero = S::from_f64(0.0);
         Self { rows: vec![zero; row(n)], follows: vec![false; n], diagonal: vec![zero; n] }
@@ -42,12 +41,8 @@ impl<S: Scalar> Factors<S> {
     pub fn of(matrix: &[S]) -> Self {
         let n = (0..).find(|&n| row(n) == matrix.len()).expect("the length of a triangle");
         let mut factors = Self::new(n);
-        factors.factor(matrix);
+        factors.factor_where(matrix, |_, pivot, entry| pivot <= DISTINCT * entry);
         factors
-    }
-
-    fn factor(&mut self, matrix: &[S]) {
-        self.factor_where(matrix, |_, pivot, entry| pivot <= DISTINCT * entry);
     }
 
     /// The factors of the lower triangle `matrix` without the rows that are `dropped`.

@@ -19,7 +19,7 @@ use crate::model::capability::Joints;
 use crate::model::holding::{FITTING, Held, Redundancy, Slip, Slipping};
 use crate::model::nearest::nearest;
 use crate::model::scalar::Scalar;
-use crate::model::system::System;
+use crate::model::system::{System, branches_by_sign};
 use factors::Factors;
 pub use shared::{kept, redundant, share};
 pub(crate) use watch::{Broken, LoopWatch};
@@ -68,6 +68,16 @@ impl<S: Scalar> Hold<S> {
         let width = self.held.moved.len();
         let first = self.flows().len() + self.held.rigid.len() + self.matrix().len() + reaction * width;
         &self.entries[first..first + width]
+    }
+
+    /// The state that `impulses` of the reactions leave of `x`.
+    fn struck<const N: usize>(&self, mut x: SVector<S, N>, impulses: &[S]) -> SVector<S, N> {
+        for (reaction, &impulse) in impulses.iter().enumerate() {
+            for (&state, &by) in self.held.moved.iter().zip(self.moves(reaction)) {
+                x[state] = x[state] - by * impulse;
+            }
+        }
+        x
     }
 }
 
@@ -145,14 +155,12 @@ where
     Sys: System<S, N, G>,
     S: Scalar,
 {
-    let zero = S::from_f64(0.0);
-    let (mut negative, mut guards) = ([false; G], SVector::from([zero; G]));
-    // A guard may depend on another switch's branch.
-    for _ in 0..G {
-        system.guards(zero, x, &negative, &mut guards);
-        negative = guards.data.0[0].map(|guard| guard < zero);
-    }
-    negative
+    let guards = |negative: &[bool; G]| {
+        let mut guards = SVector::from([S::from_f64(0.0); G]);
+        system.guards(S::from_f64(0.0), x, negative, &mut guards);
+        guards
+    };
+    branches_by_sign(system.first_branches(), guards).0
 }
 
 /// The state after the impulses that bring the flows of rigid joints to zero, with the energy that they take: half of
@@ -165,12 +173,7 @@ fn strike<S: Scalar, const N: usize>(mut x: SVector<S, N>, read: &impl Fn(&SVect
     for _ in 0..20 {
         let rigid = before.held.rigid.len();
         let impulses = Factors::of(before.matrix()).solved(&before.flows()[..rigid]);
-        let mut moved = x;
-        for (reaction, &impulse) in impulses.iter().enumerate() {
-            for (&state, &by) in before.held.moved.iter().zip(before.moves(reaction)) {
-                moved[state] = moved[state] - by * impulse;
-            }
-        }
+        let moved = before.struck(x, &impulses);
         let after = read(&moved);
         if fastest(&after, rigid) >= fastest(&before, rigid) {
             break;

@@ -34,62 +34,58 @@ where
 {
     let mut kept = [1.0; K];
     let Some(pose) = pose else { return kept };
-    let (held, negative) = (system.held(), branches(system, &pose));
-    let place = Place { system, negative };
-    let mut following = place.following(&pose);
+    let start = Start { system, held: system.held(), negative: branches(system, &pose), pose };
+    let mut following = start.following(&start.pose);
     for seed in [1, 2] {
-        let Some(near) = following.contains(&true).then(|| place.moved(&pose, seed)).flatten() else { break };
-        let there = place.following(&near);
+        let Some(near) = following.contains(&true).then(|| start.moved(seed)).flatten() else { break };
+        let there = start.following(&near);
         following.iter_mut().zip(there).for_each(|(follows, there)| *follows &= there);
     }
-    for &(row, number) in held.closing {
+    for &(row, number) in start.held.closing {
         kept[number] = f64::from(u8::from(!following[row]));
     }
     kept
 }
 
-/// A system with its switches as they are at the start.
-struct Place<'a, Sys, const G: usize> {
+/// A system in its start pose.
+struct Start<'a, Sys, const N: usize, const G: usize> {
     system: &'a Sys,
+    held: Held,
     negative: [bool; G],
+    pose: SVector<f64, N>,
 }
 
-impl<Sys, const G: usize> Place<'_, Sys, G> {
-    fn hold<const N: usize>(&self, x: &SVector<f64, N>) -> Hold<f64>
-    where
-        Sys: System<f64, N, G> + Joints<f64, N, G>,
-    {
-        let mut hold = Hold::new(self.system.held());
+impl<Sys, const N: usize, const G: usize> Start<'_, Sys, N, G>
+where
+    Sys: System<f64, N, G> + Joints<f64, N, G>,
+{
+    fn hold(&self, x: &SVector<f64, N>) -> Hold<f64> {
+        let mut hold = Hold::new(self.held);
         hold.read(self.system, 0.0, x, &self.negative);
         hold
     }
 
     /// The rows that follow from those before them.
-    fn following<const N: usize>(&self, x: &SVector<f64, N>) -> Vec<bool>
-    where
-        Sys: System<f64, N, G> + Joints<f64, N, G>,
-    {
+    fn following(&self, x: &SVector<f64, N>) -> Vec<bool> {
         let factors = Factors::of(self.hold(x).matrix());
-        (0..self.system.held().rigid.len()).map(|row| factors.follows(row)).collect()
+        (0..self.held.rigid.len()).map(|row| factors.follows(row)).collect()
     }
 
     /// The pose a little further along a motion that the joints allow; none where nothing can move.
-    fn moved<const N: usize>(&self, x: &SVector<f64, N>, seed: u64) -> Option<SVector<f64, N>>
-    where
-        Sys: System<f64, N, G> + Joints<f64, N, G>,
-    {
-        let held = self.system.held();
-        let free = self.velocities(x, &self.pushed(x, seed));
-        let allowed = self.velocities(x, &self.fitted(self.pushed(x, seed)));
+    fn moved(&self, seed: u64) -> Option<SVector<f64, N>> {
+        let Held { pose, turning, .. } = self.held;
+        let pushed = self.pushed(seed);
+        let free = self.velocities(&pushed);
+        let allowed = self.velocities(&self.fitted(pushed));
         let largest = |velocities: &SVector<f64, N>, of: &[usize]| {
             of.iter().fold(0.0_f64, |largest, &state| largest.max(velocities[state].abs()))
         };
-        if largest(&allowed, held.pose) <= STILL * largest(&free, held.pose) {
+        if largest(&allowed, pose) <= STILL * largest(&free, pose) {
             return None;
         }
-        let turning = largest(&allowed, held.turning);
-        let fastest = if turning > 0.0 { turning } else { largest(&allowed, held.pose) };
-        let mut near = x + allowed * (FAR / fastest);
+        let turn = largest(&allowed, turning);
+        let fastest = if turn > 0.0 { turn } else { largest(&allowed, pose) };
+        let mut near = self.pose + allowed * (FAR / fastest);
         for _ in 0..CLOSINGS {
             self.system.project(0.0, &self.negative, &mut near);
         }
@@ -97,13 +93,10 @@ impl<Sys, const G: usize> Place<'_, Sys, G> {
     }
 
     /// The state with momenta that point anywhere.
-    fn pushed<const N: usize>(&self, x: &SVector<f64, N>, seed: u64) -> SVector<f64, N>
-    where
-        Sys: System<f64, N, G> + Joints<f64, N, G>,
-    {
-        let mut pushed = *x;
+    fn pushed(&self, seed: u64) -> SVector<f64, N> {
+        let mut pushed = self.pose;
         let mut number = seed;
-        for &state in self.system.held().moved {
+        for &state in self.held.moved {
             // The generator MMIX of Knuth, The Art of Computer Programming, vol. 2, 3.3.4.
             number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             pushed[state] = (number >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
@@ -112,33 +105,21 @@ impl<Sys, const G: usize> Place<'_, Sys, G> {
     }
 
     /// The state after the impulses of the joints.
-    fn fitted<const N: usize>(&self, mut x: SVector<f64, N>) -> SVector<f64, N>
-    where
-        Sys: System<f64, N, G> + Joints<f64, N, G>,
-    {
+    fn fitted(&self, x: SVector<f64, N>) -> SVector<f64, N> {
         let hold = self.hold(&x);
-        let impulses = Factors::of(hold.matrix()).solved(&hold.flows()[..hold.held.rigid.len()]);
-        for (reaction, impulse) in impulses.into_iter().enumerate() {
-            for (&state, by) in hold.held.moved.iter().zip(hold.moves(reaction)) {
-                x[state] -= by * impulse;
-            }
-        }
-        x
+        let impulses = Factors::of(hold.matrix()).solved(&hold.flows()[..self.held.rigid.len()]);
+        hold.struck(x, &impulses)
     }
 
     /// How the pose changes by the momenta of `pushed`, beyond what changes at rest.
-    fn velocities<const N: usize>(&self, x: &SVector<f64, N>, pushed: &SVector<f64, N>) -> SVector<f64, N>
-    where
-        Sys: System<f64, N, G> + Joints<f64, N, G>,
-    {
-        let Held { moved, pose, .. } = self.system.held();
-        let mut still = *x;
-        moved.iter().for_each(|&state| still[state] = 0.0);
+    fn velocities(&self, pushed: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut still = self.pose;
+        self.held.moved.iter().for_each(|&state| still[state] = 0.0);
         let [mut with, mut without] = [SVector::zeros(); 2];
         self.system.rate(0.0, pushed, &self.negative, &mut with);
         self.system.rate(0.0, &still, &self.negative, &mut without);
         let mut velocities = SVector::zeros();
-        pose.iter().for_each(|&state| velocities[state] = with[state] - without[state]);
+        self.held.pose.iter().for_each(|&state| velocities[state] = with[state] - without[state]);
         velocities
     }
 }

@@ -350,7 +350,7 @@ fn a_faulty_call_keeps_the_parameters_that_could_be_read() {
     assert!(items.contains(&"param x.k: 1 = 1;".to_owned()), "{items:#?}");
 }
 
-/// Everything that a graph with parts becomes, up to names, is what it is written out by hand.
+/// Everything that a graph with parts becomes, up to names, is what it is without parts.
 #[test]
 fn a_graph_of_parts_has_the_equations_of_the_graph_written_out() {
     let of_parts = format!("{LEG} graph G {{ param k: N/m = 5; part a: Leg {{ stiffness = k; }} {BONDS} }}");

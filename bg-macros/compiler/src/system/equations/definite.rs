@@ -5,7 +5,6 @@
 //! identically zero costs nothing, so a band stays a band.
 
 use crate::expr::{Id, Pool};
-use crate::system::equations::solution::filter;
 
 /// A = L D L^T.
 #[derive(Clone, Debug, Default)]
@@ -74,6 +73,12 @@ impl Factors {
         self.lower.iter_mut().for_each(|row| filter(row, kept));
         filter(&mut self.inverses, kept);
     }
+}
+
+/// The items whose place is kept; there may be fewer items than places.
+pub fn filter<T>(items: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    items.retain(|_| *kept.next().expect("a mark for each"));
 }
 
 #[cfg(test)]

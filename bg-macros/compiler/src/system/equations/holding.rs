@@ -9,7 +9,8 @@ use super::signals::Signals;
 use crate::expr::{Branch, Id, Pool, Symbol, derivative, substitute_switched};
 use crate::graph::units::Dimension;
 use crate::graph::{Axis, Direction, ElementKind, Held, JointId, NodeId};
-use crate::system::equations::solution::{Known, filter};
+use crate::system::equations::definite::filter;
+use crate::system::equations::solution::Known;
 
 /// A motion that a joint holds.
 #[derive(Clone, Debug)]

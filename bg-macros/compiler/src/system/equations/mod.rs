@@ -3,7 +3,7 @@
 //! In: [`CausalGraph`]. Out: [`StateEquations`]. No longer occurs: bonds, ports and junctions; scalars only from here.
 //! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one expression;
 //! storages in integral causality turn theirs into rates, those in derivative causality differentiate theirs. What needs itself is an
-//! unknown at first, with an equation that is solved in symbols where it is linear.
+//! initially unknown, with an equation that is solved in symbols where it is linear.
 
 pub mod definite;
 mod dependent;

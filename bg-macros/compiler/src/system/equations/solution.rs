@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use crate::expr::{Branch, Id, Node, Pool, Symbol, derivative, substitute, substitute_switched};
-use crate::system::equations::definite::Factors;
+use crate::system::equations::definite::{Factors, filter};
 
 /// The reactions with their values.
 #[derive(Clone, Debug, Default)]
@@ -82,12 +82,6 @@ impl Solution {
         self.factors.retain(kept);
         filter(&mut self.multipliers, kept);
     }
-}
-
-/// The items whose place is kept; there may be fewer items than places.
-pub fn filter<T>(items: &mut Vec<T>, kept: &[bool]) {
-    let mut kept = kept.iter();
-    items.retain(|_| *kept.next().expect("a mark for each"));
 }
 
 /// What a model still has after states and switches have gone.

@@ -5,44 +5,17 @@
 //! gives is in b. Its own l is not used then.
 
 use crate::expr::{Id, Pool, Symbol, substitute};
-use crate::system::equations::{Friction, Reaction};
+use crate::system::equations::Reaction;
 
 /// Rate at which a flow that truncation leaves decays while it sticks, 1/s: slow, so that no explicit step is the shorter for it.
 pub(super) const DECAY: f64 = 1.0;
 /// The part of its diagonal entry below which a pivot of dry friction counts as zero: others hold that motion already.
 const PART: f64 = 1e-10;
 
-/// The efforts as they enter b: those of what slides; zero of what sticks and of residual sinks.
-pub(super) fn known(pool: &mut Pool, reactions: &[Reaction]) -> Vec<Id> {
-    let zero = pool.zero();
-    reactions.iter().map(|reaction| effort(pool, reaction, zero)).collect()
-}
-
-/// The effort of a reaction whose multiplier has this value.
-pub(super) fn effort(pool: &mut Pool, reaction: &Reaction, value: Id) -> Id {
-    let Some(Friction { effort, .. }) = reaction.friction else { return value };
-    substitute(pool, &[effort], &|symbol| (symbol == reaction.multiplier).then_some(value))[0]
-}
-
-/// The equations' constants: of a residual sink where every effort is the known one, of dry friction where it sticks.
-pub(super) fn constants(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Vec<Id> {
-    let known = known(pool, reactions);
-    let of = |symbol: Symbol| reactions.iter().position(|reaction| reaction.multiplier == symbol).map(|k| known[k]);
-    let rigid = rigid(reactions);
-    let mut constants = substitute(pool, &expressions[..rigid], &of);
-    let zero = pool.zero();
-    for (reaction, &expression) in reactions.iter().zip(expressions).skip(rigid) {
-        let of = |symbol: Symbol| if symbol == reaction.multiplier { Some(zero) } else { of(symbol) };
-        constants.extend(substitute(pool, &[expression], &of));
-    }
-    constants
-}
-
 /// The left sides of the equations: of a residual sink with every effort as it is applied, of dry friction with its own as if
 /// it stuck.
-pub(super) fn residuals(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Vec<Id> {
-    let efforts = efforts(pool, reactions);
-    let place = |symbol: Symbol| reactions.iter().position(|reaction| reaction.multiplier == symbol);
+pub(super) fn residuals(pool: &mut Pool, multipliers: &[Symbol], efforts: &[Id], expressions: &[Id]) -> Vec<Id> {
+    let place = |symbol: Symbol| multipliers.iter().position(|&multiplier| multiplier == symbol);
     let residual = |(row, &expression): (usize, &Id)| {
         let effort = |symbol: Symbol| place(symbol).filter(|&other| other != row).map(|other| efforts[other]);
         substitute(pool, &[expression], &effort)[0]

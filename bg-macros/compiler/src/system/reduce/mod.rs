@@ -6,12 +6,12 @@
 
 mod affine;
 mod angle;
+mod closing;
 mod equal;
 pub mod expectation;
 mod friction;
 mod invariant;
 mod live;
-mod loops;
 mod reaction;
 mod report;
 

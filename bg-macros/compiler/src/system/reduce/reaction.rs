@@ -9,8 +9,8 @@
 
 use std::collections::BTreeMap;
 
-use super::{friction, loops};
-use crate::expr::{Id, Pool, Symbol, derivative, partial};
+use super::{closing, friction};
+use crate::expr::{Id, Pool, Symbol, derivative, partial, substitute};
 use crate::system::equations::definite::Factors;
 use crate::system::equations::solution::Solution;
 use crate::system::equations::{Reaction, Slip, StateEquations};
@@ -21,31 +21,35 @@ pub fn solve(equations: &mut StateEquations) {
     if reactions.is_empty() {
         return;
     }
-    let reactions = loops::arrange(equations, reactions);
+    let (reactions, moves) = closing::arrange(equations, reactions);
     let accelerations = accelerations(equations, &reactions);
     let pool = &mut equations.pool;
     let matrix = matrix(pool, &reactions, &accelerations);
     let decoupled = friction::decoupled(pool, &reactions, &matrix);
     let factors = Factors::of(pool, &decoupled, |pool, row, pivot, entry| inverse(pool, &reactions[row], pivot, entry));
-    let constants = friction::constants(pool, &reactions, &accelerations);
-    let right: Vec<Id> = constants.iter().map(|&constant| pool.neg(constant)).collect();
-    let solution = factors.solve(pool, &right);
-    let solved = reactions.iter().zip(solution);
-    let values = solved.map(|(reaction, value)| friction::effort(pool, reaction, value)).collect();
-    let residuals = friction::residuals(pool, &reactions, &accelerations);
+    let multipliers: Vec<Symbol> = reactions.iter().map(|reaction| reaction.multiplier).collect();
     let efforts = friction::efforts(pool, &reactions);
-    let multipliers = reactions.iter().map(|reaction| reaction.multiplier).collect();
-    equations.solution = Solution { multipliers, residuals, efforts, factors, values };
-    hold(equations, reactions, matrix);
-}
-
-/// Notes what the rigid joints hold, and what their reactions move.
-fn hold(equations: &mut StateEquations, reactions: Vec<Reaction>, matrix: Vec<Vec<Id>>) {
+    let residuals = friction::residuals(pool, &multipliers, &efforts, &accelerations);
+    let right = right(pool, &multipliers, &residuals);
+    let solved = factors.solve(pool, &right);
+    let values = (0..solved.len()).map(|row| with(pool, efforts[row], multipliers[row], solved[row])).collect();
     let rigid = friction::rigid(&reactions);
     let holding = &mut equations.holding;
-    holding.moves = loops::moves(&mut equations.pool, &equations.states, &reactions[..rigid]);
-    holding.matrix = matrix.into_iter().take(rigid).collect();
+    (holding.matrix, holding.moves) = (matrix.into_iter().take(rigid).collect(), moves);
     holding.rigid = reactions.into_iter().take(rigid).map(|reaction| reaction.slip).collect();
+    equations.solution = Solution { multipliers, residuals, efforts, factors, values };
+}
+
+/// -b of A l + b: the residuals without the reactions.
+fn right(pool: &mut Pool, multipliers: &[Symbol], residuals: &[Id]) -> Vec<Id> {
+    let zero = pool.zero();
+    let constants = substitute(pool, residuals, &|symbol| multipliers.contains(&symbol).then_some(zero));
+    constants.into_iter().map(|constant| pool.neg(constant)).collect()
+}
+
+/// What a reaction applies where its multiplier has this value.
+fn with(pool: &mut Pool, effort: Id, multiplier: Symbol, value: Id) -> Id {
+    substitute(pool, &[effort], &|symbol| (symbol == multiplier).then_some(value))[0]
 }
 
 /// 1 / D of a row.

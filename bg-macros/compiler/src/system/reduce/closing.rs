@@ -12,29 +12,42 @@ use super::friction;
 use crate::expr::{Id, Pool, partial};
 use crate::system::equations::{Kind, Origin, Reaction, State, StateEquations};
 
-/// The reactions, those of loops after those of the tree; dry friction comes last.
-pub(super) fn arrange(equations: &mut StateEquations, mut reactions: Vec<Reaction>) -> Vec<Reaction> {
+/// Momenta whose rates depend on reactions, each with the dependence on every row.
+pub(super) type Moves = Vec<(usize, Vec<Id>)>;
+
+/// The reactions, those of loops after those of the tree, with what they move; dry friction, which comes last, is none that
+/// holds a joint, and what it moves is not asked for.
+pub(super) fn arrange(equations: &mut StateEquations, mut reactions: Vec<Reaction>) -> (Vec<Reaction>, Moves) {
     let frictions = reactions.split_off(friction::rigid(&reactions));
     let moves = moves(&mut equations.pool, &equations.states, &reactions);
+    let (tree, closing) = split(equations, &reactions, &moves);
+    for (&row, number) in closing.iter().zip(0..) {
+        reactions[row].slip.kept = Some(number);
+    }
+    let order: Vec<usize> = tree.into_iter().chain(closing).collect();
+    let arranged = order.iter().map(|&row| reactions[row].clone()).chain(frictions).collect();
+    let rows = |by: &[Id]| order.iter().map(|&row| by[row]).collect();
+    (arranged, moves.iter().map(|(state, by)| (*state, rows(by))).collect())
+}
+
+/// The rows of joints that hang something new on the tree, and those of the others.
+fn split(equations: &StateEquations, reactions: &[Reaction], moves: &Moves) -> (Vec<usize>, Vec<usize>) {
     let pool = &equations.pool;
     let node = |state: usize| match equations.states[state].origin {
         Origin::Momentum(node, _) => Some(node),
         _ => None,
     };
-    let moved = |row: usize| moves.iter().filter(move |(_, moves)| !pool.is_zero(moves[row])).map(|(state, _)| *state);
+    let moved = |row: usize| moves.iter().filter(move |(_, by)| !pool.is_zero(by[row])).map(|(state, _)| *state);
     let mut seen = BTreeSet::new();
     let (mut tree, mut closing) = (Vec::new(), Vec::new());
-    for rows in of_joints(&reactions) {
+    for rows in of_joints(reactions) {
         let states: BTreeSet<usize> = rows.iter().flat_map(|&row| moved(row)).collect();
         let is_new = |state: &&usize| node(**state).is_none_or(|node| !seen.contains(&node));
         let hangs = states.iter().filter(is_new).count() >= rows.len();
         seen.extend(states.iter().filter_map(|&state| node(state)));
         if hangs { tree.extend(rows) } else { closing.extend(rows) }
     }
-    let mut numbers = 0..;
-    let mut closing: Vec<Reaction> = closing.into_iter().map(|row: usize| reactions[row].clone()).collect();
-    closing.iter_mut().for_each(|reaction| reaction.slip.kept = numbers.next());
-    tree.into_iter().map(|row: usize| reactions[row].clone()).chain(closing).chain(frictions).collect()
+    (tree, closing)
 }
 
 /// The rows of each joint, in the order of the joints' first rows.
@@ -50,7 +63,7 @@ fn of_joints(reactions: &[Reaction]) -> Vec<Vec<usize>> {
 }
 
 /// The momenta whose rates depend on multipliers, and how.
-pub(super) fn moves(pool: &mut Pool, states: &[State], reactions: &[Reaction]) -> Vec<(usize, Vec<Id>)> {
+fn moves(pool: &mut Pool, states: &[State], reactions: &[Reaction]) -> Moves {
     let is_moved = |kind| matches!(kind, Kind::Momentum | Kind::Displacement);
     let momenta: Vec<usize> = (0..states.len()).filter(|&state| is_moved(states[state].origin.kind())).collect();
     let rates: Vec<Id> = momenta.iter().map(|&state| states[state].rate).collect();
