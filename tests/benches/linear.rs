@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use bg_model::capability::{Elimination, Linearised};
-use bg_model::linear::{Field, Sparsity};
+use bg_model::linear::Field;
 use bg_model::nalgebra::{Complex, ComplexField, Const, DMatrix, DimMin, SMatrix, SVector};
 use bg_model::system::Model;
 use hacksaw::mechanism::{Full, FullParameters, Paper, PaperParameters, Rigid, RigidParameters};
@@ -61,21 +61,18 @@ where
     Mo: Model<f64, N, G, M> + Linearised<f64, N, G> + Elimination<f64, N>,
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
-    let Sparsity::Places(places) = model.sparsity() else { return };
+    let sparsity = model.sparsity();
     let factors = model.factors();
     let x = model.start().expect("the mechanism closes");
     let negative = [false; G];
     let (mut dx, mut slope) = (SVector::zeros(), SVector::zeros());
-    let mut entries = vec![0.0; places.len()];
+    let mut entries = vec![0.0; sparsity.len(N)];
     let rate = nanoseconds(200, || model.rate(0.0, black_box(&x), &negative, black_box(&mut dx)));
     let jacobian = nanoseconds(200, || {
         model.jacobian(0.0, black_box(&x), &negative, black_box(&mut entries), &mut slope);
     });
     let c = 1e-4;
-    let mut matrix = DMatrix::identity(N, N);
-    for (&(row, column), entry) in places.iter().zip(&entries) {
-        matrix[(usize::from(row), usize::from(column))] -= c * entry;
-    }
+    let matrix = DMatrix::identity(N, N) - sparsity.matrix(N, &entries) * c;
     let [eliminate, substitute] = generated(model, c, &entries);
     let [eliminate_complex, substitute_complex] = generated(model, Complex::new(c, c), &entries);
     let [fixed, dynamic] = dense::<f64, N>(&matrix);
@@ -88,7 +85,7 @@ where
         black_box(lu.solve_mut(&mut y));
         black_box(&y);
     });
-    println!("{}: {N} states, {} entries, {factors} factors; ns", model.description().name, places.len());
+    println!("{}: {N} states, {} entries, {factors} factors; ns", model.description().name, entries.len());
     println!("  rate {rate:.0}, jacobian {jacobian:.0}");
     println!(
         "  eliminate {eliminate:.0}, complex {eliminate_complex:.0}; substitute {substitute:.0}, complex {substitute_complex:.0}"

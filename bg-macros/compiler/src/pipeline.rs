@@ -123,7 +123,7 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let mut jacobian = jacobian::differentiate(&equations);
     equations.close();
     let mut second_order = second_order::differentiate(&equations);
-    let elimination = elimination::plan(equations.states.len(), &jacobian.places());
+    let elimination = elimination::plan(equations.states.len(), jacobian.unknowns.len(), &jacobian.places());
     let programs = program::programs(&mut equations, &mut jacobian, &mut second_order);
     Ok(Compiled { source, scenes, derived, reduction, equations, jacobian, second_order, elimination, programs })
 }

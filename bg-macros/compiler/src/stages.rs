@@ -140,11 +140,15 @@ fn equations_text(equations: &StateEquations) -> String {
 
 /// Every entry of the Jacobian and every df/dt that is not identically zero.
 fn jacobian_text(equations: &StateEquations, jacobian: &Jacobian) -> String {
-    let name = |index: usize| &equations.states[index].name;
+    let name = |index: usize| equations.states[index].name.as_str();
     let mut out = format!("{} entries\n", jacobian.entries.len());
+    let n = equations.states.len();
     for entry in &jacobian.entries {
         let value = equations.shown(&jacobian.pool, entry.value);
-        let _ = writeln!(out, "    d {}' / d {} = {value}", name(entry.row), name(entry.column));
+        let of = if entry.row < n { format!("{}'", name(entry.row)) } else { format!("equation {}", entry.row - n) };
+        let by =
+            if entry.column < n { name(entry.column).to_owned() } else { format!("reaction {}", entry.column - n) };
+        let _ = writeln!(out, "    d {of} / d {by} = {value}");
     }
     let slopes = jacobian.slopes.iter().enumerate().filter(|(_, slope)| !jacobian.pool.is_zero(**slope));
     for (index, &slope) in slopes {
@@ -164,7 +168,11 @@ fn second_text(equations: &StateEquations, second: &SecondOrder) -> String {
 
 /// The order of the pivots, the fill and the operations.
 fn elimination_text(equations: &StateEquations, elimination: &Elimination) -> String {
-    let pivots: Vec<&str> = elimination.order.iter().map(|&row| equations.states[row].name.as_str()).collect();
+    let name = |&row: &usize| match equations.states.get(row) {
+        Some(state) => state.name.clone(),
+        None => format!("reaction {}", row - equations.states.len()),
+    };
+    let pivots: Vec<String> = elimination.order.iter().map(name).collect();
     let count = |counts: Counts| {
         let Counts { additions, multiplications, divisions, .. } = counts;
         format!("{additions} additions, {multiplications} multiplications, {divisions} divisions")

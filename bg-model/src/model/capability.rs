@@ -19,7 +19,8 @@ pub trait Linearised<S: Scalar, const N: usize, const G: usize> {
         Sparsity::Full
     }
 
-    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`.
+    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`. With unknowns beside the states,
+    /// df/dt is that of the rates with what the unknowns change in it.
     fn jacobian(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S], slope: &mut SVector<S, N>);
 
     /// An elimination made for the sparsity; none by default.

@@ -289,19 +289,13 @@ fn dual_numbers_give_the_jacobian_that_the_model_knows() {
             Mo: Model<f64, N, G, M>,
         {
             use bg_model::capability::Linearised;
-            use bg_model::linear::Sparsity;
             use bg_model::nalgebra::SVector;
             let known = model.linearised().unwrap();
-            let Sparsity::Places(places) = known.sparsity() else { panic!("sparse") };
-            let mut entries = vec![0.0; places.len()];
+            let sparsity = known.sparsity();
+            let mut entries = vec![0.0; sparsity.len(N)];
             let x = SVector::from_column_slice(self.0);
             known.jacobian(0.0, &x, &[false; G], &mut entries, &mut SVector::zeros());
-            let mut jacobian = DMatrix::zeros(N, N);
-            places
-                .iter()
-                .zip(entries)
-                .for_each(|(&(row, column), entry)| jacobian[(row as usize, column as usize)] = entry);
-            jacobian
+            sparsity.matrix(N, &entries)
         }
     }
     let swing = model::<SwingAngle>(&[], &[]);

@@ -6,7 +6,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::program::elimination::{Elimination, Step, Substep};
+use crate::program::elimination::{Elimination, Row, Step, Substep};
 
 /// The value in a slot.
 fn value(slot: usize) -> Ident {
@@ -29,6 +29,7 @@ pub(super) fn factorisation(elimination: &Elimination) -> TokenStream {
     let steps = elimination.factorisation.iter().map(step);
     let values = (0..elimination.slots).map(value);
     quote! {
+        use ::bg_model::__private::Pivot;
         let minus = -c;
         let one = F::real(S::from_f64(1.0));
         let mut is_regular = true;
@@ -44,20 +45,21 @@ fn step(step: &Step) -> TokenStream {
         quote!(#left * #right)
     };
     match *step {
-        Step::Enter { slot, entry, is_pivot } => {
+        Step::Enter { slot, entry, of, is_pivot } => {
             let (value, entry) = (value(slot), Literal::usize_unsuffixed(entry));
-            if is_pivot {
-                quote!(let #value = ::bg_model::__private::Pivot::new(one + minus.scaled(entries[#entry]));)
-            } else {
-                quote!(let #value = minus.scaled(entries[#entry]);)
+            match (of, is_pivot) {
+                (Row::State, true) => quote!(let #value = Pivot::new(one + minus.scaled(entries[#entry]));),
+                (Row::State, false) => quote!(let #value = minus.scaled(entries[#entry]);),
+                (Row::Unknown, true) => quote!(let #value = Pivot::of_unknown(F::real(entries[#entry]));),
+                (Row::Unknown, false) => quote!(let #value = F::real(entries[#entry]);),
             }
         }
-        Step::Fill { slot, product: factors, is_pivot } => {
+        Step::Fill { slot, product: factors, of, is_pivot } => {
             let (value, product) = (value(slot), product(factors));
-            if is_pivot {
-                quote!(let #value = ::bg_model::__private::Pivot::new(one - #product);)
-            } else {
-                quote!(let #value = -(#product);)
+            match (of, is_pivot) {
+                (Row::State, true) => quote!(let #value = Pivot::new(one - #product);),
+                (Row::Unknown, true) => quote!(let #value = Pivot::of_unknown(-(#product));),
+                (_, false) => quote!(let #value = -(#product);),
             }
         }
         Step::Update { slot, product: factors, is_pivot } => {
@@ -79,10 +81,10 @@ fn step(step: &Step) -> TokenStream {
     }
 }
 
-/// The body of `substitute(factors, b)`; `factors` is an array.
-pub(super) fn substitution(elimination: &Elimination) -> TokenStream {
+/// The body of `substitute(factors, b)`; `factors` and `b`, of `n` states, are arrays.
+pub(super) fn substitution(elimination: &Elimination, n: usize) -> TokenStream {
     if !is_unrolled(elimination) {
-        return substitution_table(elimination);
+        return substitution_table(elimination, n);
     }
     let component = |row: usize| format_ident!("b{row}");
     let components: Vec<Ident> = (0..elimination.order.len()).map(component).collect();
@@ -96,8 +98,10 @@ pub(super) fn substitution(elimination: &Elimination) -> TokenStream {
             quote!(let #row = #row * factors[#slot];)
         }
     });
+    let (components, unknowns) = components.split_at(n);
     quote! {
         let [#(#components),*] = *b;
+        #(let #unknowns = F::real(S::from_f64(0.0));)*
         #(#steps)*
         *b = [#(#components),*];
     }
@@ -114,8 +118,11 @@ fn factorisation_table(elimination: &Elimination) -> TokenStream {
         .factorisation
         .chunk_by(|left, right| left.slot() == right.slot())
         .map(|steps| {
-            let (mut entry, mut scale, mut is_pivot) = (quote!(None), quote!(None), false);
+            let (mut entry, mut scale, mut is_pivot, mut of_unknown) = (quote!(None), quote!(None), false, false);
             for step in steps {
+                if let Step::Enter { of, .. } | Step::Fill { of, .. } = *step {
+                    of_unknown = of == Row::Unknown;
+                }
                 match *step {
                     Step::Enter { entry: number, .. } => {
                         let number = index(number);
@@ -133,7 +140,7 @@ fn factorisation_table(elimination: &Elimination) -> TokenStream {
                 }
             }
             let end = index(products.len());
-            quote!(Slot { entry: #entry, end: #end, is_pivot: #is_pivot, scale: #scale })
+            quote!(Slot { entry: #entry, end: #end, is_pivot: #is_pivot, of_unknown: #of_unknown, scale: #scale })
         })
         .collect();
     quote! {
@@ -144,7 +151,7 @@ fn factorisation_table(elimination: &Elimination) -> TokenStream {
     }
 }
 
-fn substitution_table(elimination: &Elimination) -> TokenStream {
+fn substitution_table(elimination: &Elimination, n: usize) -> TokenStream {
     let steps = elimination.substitution.iter().map(|step| {
         let (row, slot, column) = match *step {
             Substep::Subtract { row, slot, column } => (row, slot, column),
@@ -153,8 +160,21 @@ fn substitution_table(elimination: &Elimination) -> TokenStream {
         let (row, slot, column) = (index(row), index(slot), index(column));
         quote!((#row, #slot, #column))
     });
+    let rows = elimination.order.len();
+    let whole = (rows > n).then(|| {
+        quote! {
+            let mut whole = [F::real(S::from_f64(0.0)); #rows];
+            whole[..#n].copy_from_slice(b);
+        }
+    });
+    let (right, back) = match &whole {
+        Some(_) => (quote!(&mut whole), quote!(b.copy_from_slice(&whole[..#n]);)),
+        None => (quote!(b), TokenStream::new()),
+    };
     quote! {
         static STEPS: &[(u32, u32, u32)] = &[#(#steps),*];
-        ::bg_model::__private::table::substitute::<S, F>(STEPS, factors, b)
+        #whole
+        ::bg_model::__private::table::substitute::<S, F>(STEPS, factors, #right);
+        #back
     }
 }

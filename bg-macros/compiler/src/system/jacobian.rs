@@ -3,9 +3,12 @@
 //! In: [`StateEquations`]. Out: the places where df/dx can differ from zero, each with its expression, and df/dt, in a
 //! [`Jacobian`] with a pool of its own, so that no other function's order of operations depends on it. An entry that is
 //! identically zero has no place.
-//! Method: forward accumulation, one sweep for each state (Griewank & Walther 2008, Evaluating Derivatives, ch. 3). What
+//! Method: forward accumulation, one sweep for each column (Griewank & Walther 2008, Evaluating Derivatives, ch. 3). What
 //! the rates share, such as the force in a joint, is differentiated once for all rows, as equal expressions are one node.
-//! The reactions of rigid joints follow from the factors that solve for them, by the implicit function theorem.
+//! The reactions of rigid joints couple every state with every other, while the equations that give them are sparse. So these
+//! stand beside the rates, and the reactions beside the states: df/dx is f_x - f_l (r_l)^-1 r_x of the rates f(x, l) with
+//! r(x, l) = 0, and nobody has to multiply it out. Dry friction among them keeps df/dx itself, by the implicit function
+//! theorem from the factors that solve for the reactions: where others hold already what sticks, r_l has no inverse.
 
 use std::collections::BTreeMap;
 
@@ -18,18 +21,22 @@ use crate::system::equations::solution::Solution;
 pub struct Jacobian {
     /// The expressions.
     pub pool: Pool,
+    /// The reactions that stand beside the states, each with the equation that gives it: rows and columns behind those of
+    /// the states.
+    pub unknowns: Vec<Symbol>,
     /// The entries, row by row, in each row by column.
     pub entries: Vec<Entry>,
-    /// df/dt of every rate; an input contributes through its own derivative, [`Symbol::Slope`].
+    /// df/dt of every rate, the reactions' change with time in it; an input contributes through its own derivative,
+    /// [`Symbol::Slope`].
     pub slopes: Vec<Id>,
 }
 
-/// An entry of df/dx that is not identically zero.
+/// An entry that is not identically zero.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Entry {
-    /// The rate's state.
+    /// The rate's state, or, behind the states, the unknown whose equation it is.
     pub row: usize,
-    /// The state that the rate is differentiated by.
+    /// The state or the unknown that it is differentiated by.
     pub column: usize,
     /// The derivative.
     pub value: Id,
@@ -53,39 +60,57 @@ impl Jacobian {
 #[must_use]
 pub fn differentiate(equations: &StateEquations) -> Jacobian {
     let mut pool = equations.pool.clone();
-    let rates = Rates::of(equations);
+    let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
+    let unknowns = equations.solution.smooth(&pool).to_vec();
+    let rows: Vec<Id> = rates.iter().copied().chain(equations_of(&mut pool, equations, &unknowns)).collect();
+    let columns = (0..rates.len()).map(Symbol::state).chain(unknowns.iter().copied());
     let mut entries = Vec::new();
-    for column in 0..equations.states.len() {
-        let seeds = BTreeMap::from([(Symbol::state(column), pool.one())]);
-        let values = rates.along(&mut pool, &seeds);
+    for (column, symbol) in columns.enumerate() {
+        let mut seeds = BTreeMap::from([(symbol, pool.one())]);
+        if unknowns.is_empty() {
+            seeds = equations.solution.with_rates(&mut pool, &seeds);
+        }
+        let values = derivative(&mut pool, &rows, &seeds);
         let entry = |(row, value)| Entry { row, column, value };
         entries.extend(values.into_iter().enumerate().map(entry).filter(|entry| !pool.is_zero(entry.value)));
     }
     entries.sort_by_key(|entry| (entry.row, entry.column));
+    let slopes = slopes(&mut pool, equations, &rates);
+    let mut jacobian = Jacobian { pool, unknowns, entries, slopes };
+    jacobian.close(&equations.solution);
+    jacobian
+}
+
+/// The equations of the unknowns: left sides that are zero. A reaction that is not kept is zero.
+fn equations_of(pool: &mut Pool, equations: &StateEquations, unknowns: &[Symbol]) -> Vec<Id> {
+    let mut equation = |(row, &unknown): (usize, &Symbol)| {
+        let residual = equations.solution.residuals[row];
+        let Some(kept) = equations.holding.kept(row) else { return residual };
+        let (kept, unknown) = (pool.symbol(Symbol::Kept(kept)), pool.symbol(unknown));
+        let (asked, left) = (pool.mul(kept, residual), pool.mul(kept, unknown));
+        pool.linear(0.0, &[(asked, 1.0), (unknown, 1.0), (left, -1.0)])
+    };
+    unknowns.iter().enumerate().map(&mut equation).collect()
+}
+
+/// df/dt of every rate.
+fn slopes(pool: &mut Pool, equations: &StateEquations, rates: &[Id]) -> Vec<Id> {
     let mut seeds = BTreeMap::from([(Symbol::Time, pool.one())]);
     for index in 0..equations.inputs.len() {
         let [input, slope] = [Symbol::Input, Symbol::Slope].map(|symbol| Symbol::numbered(symbol, index));
         seeds.insert(input, pool.symbol(slope));
     }
-    let slopes = rates.along(&mut pool, &seeds);
-    Jacobian { pool, entries, slopes }
+    let seeds = equations.solution.with_rates(pool, &seeds);
+    derivative(pool, rates, &seeds)
 }
 
-/// The rates, in which reactions of rigid joints are symbols.
-struct Rates<'a> {
-    open: Vec<Id>,
-    solution: &'a Solution,
-}
-
-impl<'a> Rates<'a> {
-    fn of(equations: &'a StateEquations) -> Self {
-        Self { open: equations.states.iter().map(|state| state.rate).collect(), solution: &equations.solution }
-    }
-
-    /// The rates' derivatives where symbols change as `seeds` say, and the reactions with them.
-    fn along(&self, pool: &mut Pool, seeds: &BTreeMap<Symbol, Id>) -> Vec<Id> {
-        let seeds = self.solution.with_rates(pool, seeds);
-        let values = derivative(pool, &self.open, &seeds);
-        self.solution.closed(pool, &values)
+impl Jacobian {
+    /// Puts the reactions' values in their places.
+    fn close(&mut self, solution: &Solution) {
+        let roots = self.roots();
+        let closed = solution.closed(&mut self.pool, &roots);
+        let (entries, slopes) = closed.split_at(self.entries.len());
+        self.entries.iter_mut().zip(entries).for_each(|(entry, &value)| entry.value = value);
+        self.slopes = slopes.to_vec();
     }
 }

@@ -10,6 +10,7 @@ pub(crate) mod table;
 
 pub(crate) use differences::differences;
 pub use field::Field;
+use nalgebra::DMatrix;
 pub(crate) use pivot::Pivot;
 
 /// Where a Jacobian can differ from zero.
@@ -21,6 +22,15 @@ pub enum Sparsity {
     ///
     /// Row and column of every entry, in the order of storage.
     Places(&'static [(u16, u16)]),
+    /// At these places only, with unknowns l beside the states that equations r(x, l) = 0 give: df/dx is
+    /// f_x - f_l (r_l)^-1 r_x of the rates f(x, l).
+    Bordered {
+        /// Row and column of every entry, in the order of storage: those of the unknowns and their equations are behind those
+        /// of the states.
+        places: &'static [(u16, u16)],
+        /// How many unknowns there are.
+        unknowns: usize,
+    },
 }
 
 impl Sparsity {
@@ -29,7 +39,7 @@ impl Sparsity {
     pub const fn len(&self, n: usize) -> usize {
         match self {
             Self::Full => n * n,
-            Self::Places(entries) => entries.len(),
+            Self::Places(places) | Self::Bordered { places, .. } => places.len(),
         }
     }
 
@@ -37,7 +47,29 @@ impl Sparsity {
     pub(crate) fn place(&self, k: usize, n: usize) -> (usize, usize) {
         match self {
             Self::Full => (k % n, k / n),
-            Self::Places(entries) => (usize::from(entries[k].0), usize::from(entries[k].1)),
+            Self::Places(places) | Self::Bordered { places, .. } => {
+                (usize::from(places[k].0), usize::from(places[k].1))
+            }
+        }
+    }
+
+    /// The `n` by `n` matrix df/dx of these entries; where the unknowns are not determined, numbers that are not finite.
+    #[must_use]
+    pub fn matrix(&self, n: usize, entries: &[f64]) -> DMatrix<f64> {
+        let unknowns = if let Self::Bordered { unknowns, .. } = self { *unknowns } else { 0 };
+        let mut whole = DMatrix::zeros(n + unknowns, n + unknowns);
+        for (k, &entry) in entries.iter().enumerate() {
+            whole[self.place(k, n)] = entry;
+        }
+        let states = whole.view((0, 0), (n, n)).into_owned();
+        if unknowns == 0 {
+            return states;
+        }
+        let by_states = whole.view((n, 0), (unknowns, n)).into_owned();
+        let by_unknowns = whole.view((n, n), (unknowns, unknowns)).into_owned();
+        match by_unknowns.lu().solve(&by_states) {
+            Some(change) => states - whole.view((0, n), (n, unknowns)) * change,
+            None => states * f64::NAN,
         }
     }
 }

@@ -12,12 +12,21 @@ use crate::model::scalar::Scalar;
 #[derive(Clone, Copy, Debug)]
 pub struct Pivot<F> {
     value: F,
-    /// The largest size so far, at least 1: the 1 of I - c J.
+    /// The largest size so far; of a state at least 1: the 1 of I - c J.
     largest: f64,
 }
 
 impl<F> Pivot<F> {
-    /// The pivot of this first value.
+    /// The pivot of this first value in the row of an unknown.
+    #[inline(always)]
+    pub fn of_unknown<S: Scalar>(value: F) -> Self
+    where
+        F: Field<S>,
+    {
+        Self { value, largest: value.size() }
+    }
+
+    /// The pivot of this first value in the row of a state.
     #[inline(always)]
     pub fn new<S: Scalar>(value: F) -> Self
     where

@@ -15,6 +15,8 @@ pub struct Slot {
     pub end: u32,
     /// Whether it is a pivot, which becomes its reciprocal.
     pub is_pivot: bool,
+    /// Whether its row is an unknown's equation: it has the entry as it is, without c and without 1.
+    pub of_unknown: bool,
     /// The pivot that it is divided by, where it is.
     pub scale: Option<u32>,
 }
@@ -34,16 +36,22 @@ pub fn eliminate<S: Scalar, F: Field<S>>(
         let products = products[begin..slot.end as usize].iter();
         let mut products = products.map(|&(left, right)| factors[left as usize] * factors[right as usize]);
         begin = slot.end as usize;
-        let entry = slot.entry.map(|entry| minus.scaled(entries[entry as usize]));
+        let entry = slot.entry.map(|entry| {
+            let entry = entries[entry as usize];
+            if slot.of_unknown { F::real(entry) } else { minus.scaled(entry) }
+        });
+        let mut first = || entry.or_else(|| products.next().map(|product| -product));
         factors[index] = if slot.is_pivot {
-            let one = F::real(S::from_f64(1.0));
-            let first = match entry {
-                Some(entry) => one + entry,
-                None => products.next().map_or(one, |product| one - product),
+            let first = first();
+            let pivot = if slot.of_unknown {
+                Pivot::of_unknown(first.unwrap_or(F::real(S::from_f64(0.0))))
+            } else {
+                let one = F::real(S::from_f64(1.0));
+                Pivot::new(first.map_or(one, |first| one + first))
             };
-            products.fold(Pivot::new(first), Pivot::minus).reciprocal(&mut is_regular)
+            products.fold(pivot, Pivot::minus).reciprocal(&mut is_regular)
         } else {
-            let first = entry.or_else(|| products.next().map(|product| -product));
+            let first = first();
             let value = products.fold(first.unwrap_or(F::real(S::from_f64(0.0))), |value, product| value - product);
             slot.scale.map_or(value, |by| value * factors[by as usize])
         };

@@ -90,7 +90,12 @@ where
         let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], SVector::zeros());
         flow.jacobian(self.start.t, &self.start.x, &mut entries, &mut slope);
         let is_faulty = |(_, value): &(usize, f64)| !value.is_finite();
-        let entry = entries.into_iter().enumerate().find(is_faulty).map(|(k, value)| (sparsity.place(k, N).0, value));
+        let state = |k: usize| {
+            let (row, column) = sparsity.place(k, N);
+            if row < N { Some(row) } else { Some(column).filter(|&column| column < N) }
+        };
+        let mut faulty = entries.into_iter().enumerate().filter(is_faulty);
+        let entry = faulty.find_map(|(k, value)| Some((state(k)?, value)));
         entry.or_else(|| first_not_finite(&slope))
     }
 

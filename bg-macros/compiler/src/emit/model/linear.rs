@@ -27,13 +27,19 @@ impl Emission<'_> {
         let Parts { functions, body, results } = self.derivatives();
         let (entries, slopes) = results.split_at(count);
         let parts = (!functions.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #functions }));
+        let unknowns = self.model.jacobian.unknowns.len();
+        let sparsity = if unknowns == 0 {
+            quote!(::bg_model::linear::Sparsity::Places(&ENTRIES))
+        } else {
+            quote!(::bg_model::linear::Sparsity::Bordered { places: &ENTRIES, unknowns: #unknowns })
+        };
         let elimination = accessor("elimination", &quote!(Elimination<S, #n>), &quote!(Some(self)));
         quote! {
             #parts
             impl<S: Scalar> ::bg_model::capability::Linearised<S, #n, #g> for Model<S> {
                 fn sparsity(&self) -> ::bg_model::linear::Sparsity {
                     static ENTRIES: [(u16, u16); #count] = [#(#places),*];
-                    ::bg_model::linear::Sparsity::Places(&ENTRIES)
+                    #sparsity
                 }
                 #[inline(never)]
                 fn jacobian(
@@ -64,7 +70,8 @@ impl Emission<'_> {
         let n = &self.shape.n;
         let plan = &self.model.elimination;
         let (count, slots) = (self.model.jacobian.entries.len(), plan.slots);
-        let (factorisation, substitution) = (elimination::factorisation(plan), elimination::substitution(plan));
+        let (factorisation, substitution) =
+            (elimination::factorisation(plan), elimination::substitution(plan, self.model.equations.states.len()));
         quote! {
             impl<S: Scalar> ::bg_model::capability::Elimination<S, #n> for Model<S> {
                 fn factors(&self) -> usize {

@@ -1,6 +1,6 @@
 //! The elimination of I - c J along the pattern of J.
 //!
-//! In: the places of J. Out: an [`Elimination`]: the order of the pivots and the operations of factorisation and solution
+//! In: the places of J, and of the equations of unknowns beside the states, if there are any. Out: an [`Elimination`]: the order of the pivots and the operations of factorisation and solution
 //! in single steps, without a search and without loops. No place that stays zero occurs in them.
 //! Method: L U with pivots on the diagonal (`order`), each place of L and U calculated at once as in Doolittle's algorithm
 //! (`steps`; Golub, Van Loan, Matrix Computations, 4th edition, section 3.2), fill found on the way (Duff, Erisman, Reid,
@@ -16,7 +16,8 @@ use pattern::Pattern;
 
 use crate::program::Counts;
 
-/// How I - c J is factored and solved. A slot is an index into the factors: the places of L and U beside the diagonal, and
+/// How I - c J is factored and solved: with unknowns, the matrix of the rows (I - c f_x, -c f_l) of states and (r_x, r_l) of
+/// unknowns, whose right sides are zero. A slot is an index into the factors: the places of L and U beside the diagonal, and
 /// the reciprocals of the pivots that are not 1.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Elimination {
@@ -35,21 +36,25 @@ pub struct Elimination {
 /// A step of the factorisation.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Step {
-    /// The slot becomes -c times this entry of J, plus 1 on the diagonal.
+    /// The slot becomes its place of the matrix, with this entry of J.
     Enter {
         /// What is entered.
         slot: usize,
         /// The entry's number.
         entry: usize,
+        /// What the row is of.
+        of: Row,
         /// Whether the slot is a pivot's.
         is_pivot: bool,
     },
-    /// The slot, without an entry of J, becomes minus this product of slots, plus 1 on the diagonal.
+    /// The slot, without an entry of J, becomes minus this product of slots, plus 1 on the diagonal of a state.
     Fill {
         /// What is filled.
         slot: usize,
         /// The factors.
         product: (usize, usize),
+        /// What the row is of.
+        of: Row,
         /// Whether the slot is a pivot's.
         is_pivot: bool,
     },
@@ -74,6 +79,15 @@ pub enum Step {
         /// The pivot's reciprocal.
         by: usize,
     },
+}
+
+/// What a row of the matrix is of.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Row {
+    /// A state: -c times entries of J, plus 1 on the diagonal.
+    State,
+    /// An unknown: the entries of its equation.
+    Unknown,
 }
 
 impl Step {
@@ -111,11 +125,11 @@ pub enum Substep {
     },
 }
 
-/// Plans the elimination for a Jacobian of `n` rows with these places.
+/// Plans the elimination for a Jacobian of `n` states and `unknowns` behind them with these places.
 #[must_use]
-pub fn plan(n: usize, places: &[(usize, usize)]) -> Elimination {
-    let order = order::best(&Pattern::new(n, places));
-    steps::in_order(order, places)
+pub fn plan(n: usize, unknowns: usize, places: &[(usize, usize)]) -> Elimination {
+    let order = order::best(&Pattern::new(n + unknowns, places));
+    steps::in_order(order, n, places)
 }
 
 impl Elimination {
@@ -125,10 +139,11 @@ impl Elimination {
         let mut counts = Counts { additions: usize::from(!self.factorisation.is_empty()), ..Counts::default() };
         for step in &self.factorisation {
             match step {
-                Step::Enter { is_pivot, .. } => {
+                Step::Enter { of: Row::State, is_pivot, .. } => {
                     counts.multiplications += 1;
                     counts.additions += usize::from(*is_pivot);
                 }
+                Step::Enter { of: Row::Unknown, .. } => {}
                 Step::Fill { .. } | Step::Update { .. } => {
                     counts.multiplications += 1;
                     counts.additions += 1;

@@ -1,6 +1,6 @@
 //! The operations of an elimination in a given order.
 //!
-//! In: the order of the pivots, the places of J. Out: an [`Elimination`].
+//! In: the order of the pivots, the places of J and of the unknowns' equations. Out: an [`Elimination`].
 //! Method: row by row in the order of the pivots; u_ij = a_ij - sum l_ik u_kj and l_ij likewise, k ascending (Golub, Van
 //! Loan, Matrix Computations, 4th edition, section 3.2). The product l_ik u_kj takes the pivot's reciprocal once: it goes
 //! into the column of L or the row of U, whichever is shorter, and the solution takes it on the other side.
@@ -8,18 +8,19 @@
 use std::collections::BTreeMap;
 
 use super::pattern::Pattern;
-use super::{Elimination, Step, Substep};
+use super::{Elimination, Row, Step, Substep};
 
-/// The elimination with the pivots in this order.
-pub(super) fn in_order(order: Vec<usize>, places: &[(usize, usize)]) -> Elimination {
+/// The elimination with the pivots in this order; `n` of the rows are of states.
+pub(super) fn in_order(order: Vec<usize>, n: usize, places: &[(usize, usize)]) -> Elimination {
     let mut position = vec![0; order.len()];
     order.iter().enumerate().for_each(|(at, &row)| position[row] = at);
     let permuted = places.iter().map(|&(row, column)| (position[row], position[column]));
     let entries: BTreeMap<(usize, usize), usize> = permuted.zip(0..).collect();
     let filled = Filled::new(order.len(), &entries);
-    let mut sweep = Sweep { filled, entries, slots: BTreeMap::new(), steps: Vec::new() };
+    let of: Vec<Row> = order.iter().map(|&row| if row < n { Row::State } else { Row::Unknown }).collect();
+    let mut sweep = Sweep { filled, of, entries, slots: BTreeMap::new(), steps: Vec::new() };
     (0..order.len()).for_each(|row| sweep.row(row));
-    let substitution = sweep.substitution(&order);
+    let substitution = needed(sweep.substitution(&order), order.len(), n);
     let beside_pivots = sweep.slots.keys().filter(|place| place.0 != place.1);
     let fill = beside_pivots.filter(|place| !sweep.entries.contains_key(place)).count();
     Elimination { order, fill, slots: sweep.slots.len(), factorisation: sweep.steps, substitution }
@@ -54,8 +55,35 @@ impl Filled {
     }
 }
 
+/// The steps without those that subtract what is zero, as the right sides of unknowns are, and without those that no state
+/// needs.
+fn needed(mut steps: Vec<Substep>, rows: usize, n: usize) -> Vec<Substep> {
+    let rows_of = |step: &Substep| match *step {
+        Substep::Subtract { row, column, .. } => (row, column),
+        Substep::Scale { row, .. } => (row, row),
+    };
+    let of_states: Vec<bool> = (0..rows).map(|row| row < n).collect();
+    let mut filled = of_states.clone();
+    steps.retain(|step| {
+        let (row, column) = rows_of(step);
+        filled[row] |= filled[column];
+        filled[column]
+    });
+    let mut used = of_states;
+    steps.reverse();
+    steps.retain(|step| {
+        let (row, column) = rows_of(step);
+        used[column] |= used[row];
+        used[row]
+    });
+    steps.reverse();
+    steps
+}
+
 struct Sweep {
     filled: Filled,
+    /// What the rows are of, in the order of the pivots.
+    of: Vec<Row>,
     /// The numbers of J's entries by place, in the order of the pivots.
     entries: BTreeMap<(usize, usize), usize>,
     /// The slots by place, in the order of the pivots; none for a pivot that is 1.
@@ -76,6 +104,7 @@ impl Sweep {
             }
         }
         let pivot = self.value(row, row, &lower);
+        assert!(pivot.is_some() || self.of[row] == Row::State, "an unknown is in its equation");
         if let Some(slot) = pivot {
             self.steps.push(Step::Invert { slot });
         }
@@ -95,7 +124,7 @@ impl Sweep {
         let is_pivot = row == column;
         let before = self.steps.len();
         if let Some(&entry) = self.entries.get(&(row, column)) {
-            self.steps.push(Step::Enter { slot, entry, is_pivot });
+            self.steps.push(Step::Enter { slot, entry, of: self.of[row], is_pivot });
         }
         for &k in lower.iter().take_while(|&&k| k < column) {
             let (Some(&left), Some(&right)) = (self.slots.get(&(row, k)), self.slots.get(&(k, column))) else {
@@ -103,7 +132,7 @@ impl Sweep {
             };
             let product = (left, right);
             self.steps.push(if self.steps.len() == before {
-                Step::Fill { slot, product, is_pivot }
+                Step::Fill { slot, product, of: self.of[row], is_pivot }
             } else {
                 Step::Update { slot, product, is_pivot }
             });

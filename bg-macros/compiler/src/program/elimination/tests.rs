@@ -28,11 +28,14 @@ impl Source {
 /// The factors of I - c J by the steps, and how often each slot was entered.
 fn factors(elimination: &Elimination, c: f64, entries: &[f64]) -> Vec<f64> {
     let mut slots = vec![f64::NAN; elimination.slots];
-    let one = |is_pivot: bool| if is_pivot { 1.0 } else { 0.0 };
+    let first = |of: Row, is_pivot: bool| if is_pivot && of == Row::State { 1.0 } else { 0.0 };
     for step in &elimination.factorisation {
         match *step {
-            Step::Enter { slot, entry, is_pivot } => slots[slot] = one(is_pivot) - c * entries[entry],
-            Step::Fill { slot, product, is_pivot } => slots[slot] = one(is_pivot) - slots[product.0] * slots[product.1],
+            Step::Enter { slot, entry, of: Row::Unknown, .. } => slots[slot] = entries[entry],
+            Step::Enter { slot, entry, of, is_pivot } => slots[slot] = first(of, is_pivot) - c * entries[entry],
+            Step::Fill { slot, product, of, is_pivot } => {
+                slots[slot] = first(of, is_pivot) - slots[product.0] * slots[product.1];
+            }
             Step::Update { slot, product, .. } => slots[slot] -= slots[product.0] * slots[product.1],
             Step::Invert { slot } => slots[slot] = 1.0 / slots[slot],
             Step::Scale { slot, by } => slots[slot] *= slots[by],
@@ -70,7 +73,7 @@ fn residual(places: &[(usize, usize)], entries: &[f64], c: f64, y: &[f64], b: &[
 fn steps_solve_the_system() {
     for seed in 0..400 {
         let (n, places, entries) = draw(seed);
-        let elimination = plan(n, &places);
+        let elimination = plan(n, 0, &places);
         let mut source = Source(Random::new(seed + 1000));
         let b: Vec<f64> = (0..n).map(|_| source.number()).collect();
         for c in [0.0, 0.7, 1.0] {
@@ -82,6 +85,52 @@ fn steps_solve_the_system() {
             assert!(residual < 1e-14, "seed {seed}: {residual:e}");
         }
     }
+}
+
+/// With unknowns z behind the states: (I - c f_x) y - c f_z z = b, r_x y + r_z z = 0.
+#[test]
+fn unknowns_are_solved_for_beside_the_states() {
+    for seed in 0..400 {
+        let mut source = Source(Random::new(seed));
+        let (n, unknowns) = (1 + source.below(8), 1 + source.below(6));
+        let size = n + unknowns;
+        let mut places = source.places(size);
+        places.extend((n..size).filter(|&row| !places.contains(&(row, row))).map(|row| (row, row)).collect::<Vec<_>>());
+        let entry = |&(row, column): &(usize, usize)| {
+            let diagonal = if row == column && row >= n { 1.0 } else { 0.0 };
+            diagonal + source.number() / (2 * size) as f64
+        };
+        let entries: Vec<f64> = places.iter().map(entry).collect();
+        let elimination = plan(n, unknowns, &places);
+        for c in [0.0, 0.7, 1.0] {
+            let slots = factors(&elimination, c, &entries);
+            let b: Vec<f64> = (0..size).map(|row| if row < n { source.number() } else { 0.0 }).collect();
+            let mut y = b.clone();
+            solve(&elimination, &slots, &mut y);
+            // The steps leave out what no state needs: the unknowns follow from the states, by the dense equations.
+            let z = dense_unknowns(n, &places, &entries, &y);
+            y[n..].copy_from_slice(&z);
+            let mut left: Vec<f64> = (0..size).map(|row| if row < n { y[row] - b[row] } else { 0.0 }).collect();
+            for (&(row, column), entry) in places.iter().zip(&entries) {
+                left[row] += if row < n { -c * entry * y[column] } else { entry * y[column] };
+            }
+            let residual = left.into_iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+            assert!(residual < 1e-13, "seed {seed}: {residual:e}");
+        }
+    }
+}
+
+/// z of r_x y + r_z z = 0, by iteration: r_z is near 1.
+fn dense_unknowns(n: usize, places: &[(usize, usize)], entries: &[f64], y: &[f64]) -> Vec<f64> {
+    let mut z = vec![0.0; y.len() - n];
+    for _ in 0..200 {
+        let mut left = vec![0.0; z.len()];
+        for (&(row, column), entry) in places.iter().zip(entries).filter(|(place, _)| place.0 >= n) {
+            left[row - n] += entry * if column < n { y[column] } else { z[column - n] };
+        }
+        z.iter_mut().zip(&left).for_each(|(z, left)| *z -= left);
+    }
+    z
 }
 
 /// What dense elimination in the same order fills, all entries positive and the diagonal large, so that nothing cancels.
@@ -107,12 +156,12 @@ fn fill_is_that_of_dense_elimination_and_never_above_the_natural_orders() {
     let mut less = 0;
     for seed in 0..400 {
         let (n, places, _) = draw(seed);
-        let elimination = plan(n, &places);
+        let elimination = plan(n, 0, &places);
         let mut rows = elimination.order.clone();
         rows.sort_unstable();
         assert_eq!(rows, (0..n).collect::<Vec<_>>(), "seed {seed}: every row is a pivot's once");
         assert_eq!(elimination.fill, dense_fill(n, &places, &elimination.order).len(), "seed {seed}");
-        let natural = steps::in_order((0..n).collect(), &places);
+        let natural = steps::in_order((0..n).collect(), n, &places);
         assert_eq!(natural.fill, dense_fill(n, &places, &natural.order).len(), "seed {seed}");
         assert!(elimination.fill <= natural.fill, "seed {seed}");
         less += usize::from(elimination.fill < natural.fill);
@@ -123,9 +172,9 @@ fn fill_is_that_of_dense_elimination_and_never_above_the_natural_orders() {
 #[test]
 fn an_arrow_that_points_down_does_not_fill() {
     let arrow: Vec<(usize, usize)> = (1..6).flat_map(|k| [(0, k), (k, 0)]).collect();
-    let elimination = plan(6, &arrow);
+    let elimination = plan(6, 0, &arrow);
     assert_eq!((elimination.fill, &elimination.order[4..]), (0, &[0, 5][..]));
-    assert_eq!(steps::in_order((0..6).collect(), &arrow).fill, 20);
+    assert_eq!(steps::in_order((0..6).collect(), 6, &arrow).fill, 20);
     // Five entries in L, five in U, and the last two pivots; the others are 1.
     assert_eq!(elimination.slots, 12);
     let counts = elimination.factorisation_counts();
@@ -136,10 +185,10 @@ fn an_arrow_that_points_down_does_not_fill() {
 
 #[test]
 fn a_pivot_that_is_one_costs_nothing() {
-    let elimination = plan(3, &[(0, 1), (1, 2), (2, 2)]);
+    let elimination = plan(3, 0, &[(0, 1), (1, 2), (2, 2)]);
     let inverted = elimination.factorisation.iter().filter(|step| matches!(step, Step::Invert { .. })).count();
     assert_eq!((inverted, elimination.slots), (1, 3));
-    assert!(plan(4, &[]).factorisation.is_empty() && plan(4, &[]).substitution.is_empty());
+    assert!(plan(4, 0, &[]).factorisation.is_empty() && plan(4, 0, &[]).substitution.is_empty());
 }
 
 #[test]
@@ -148,7 +197,7 @@ fn the_reciprocal_goes_to_the_shorter_side() {
     places.extend((1..5).map(|k| (k, 0)));
     places.push((0, 1));
     places.extend((1..5).map(|k| (k, k)));
-    let elimination = steps::in_order((0..5).collect(), &places);
+    let elimination = steps::in_order((0..5).collect(), 5, &places);
     let scaled = elimination.factorisation.iter().filter(|step| matches!(step, Step::Scale { .. })).count();
     // U has one entry in the first row, L has four in its column; column 1 has three below, row 1 none to the right.
     assert_eq!(scaled, 1);

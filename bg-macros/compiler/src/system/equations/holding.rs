@@ -77,6 +77,13 @@ impl Holding {
         self.rigid.iter().any(|slip| slip.kept.is_some())
     }
 
+    /// The number of a reaction's [`Symbol::Kept`], where it has one.
+    #[must_use]
+    pub fn kept(&self, row: usize) -> Option<u32> {
+        // Rows of reactions and of held motions are the same where any of them is kept or not.
+        self.rigid.get(row).filter(|_| self.is_shared())?.kept
+    }
+
     /// What must stay where the reaction of this row is wanted and may have to be shared among joints.
     pub fn shared(&self, row: usize) -> Vec<Id> {
         let slip = self.rigid.get(row).filter(|_| self.is_shared());

@@ -30,6 +30,13 @@ impl Solution {
         self.multipliers.iter().position(|&multiplier| multiplier == symbol)
     }
 
+    /// The reactions whose equations have a regular derivative by them: all, or none where there is dry friction.
+    #[must_use]
+    pub fn smooth(&self, pool: &Pool) -> &[Symbol] {
+        let is_itself = |(&effort, &symbol): (&Id, &Symbol)| *pool.node(effort) == Node::Symbol(symbol);
+        if self.efforts.iter().zip(&self.multipliers).all(is_itself) { &self.multipliers } else { &[] }
+    }
+
     /// The value of a reaction.
     #[must_use]
     pub fn value(&self, symbol: Symbol) -> Option<Id> {

@@ -25,14 +25,14 @@ impl<F: Field<f64>, const N: usize> Factors<F, N> {
 
     /// Factors I - `c` J. Gives whether the matrix is regular.
     pub fn factor(&mut self, flow: &impl Flow<N>, c: F, jacobian: &Jacobian<N>) -> bool {
-        let elimination = flow.elimination();
+        let elimination = flow.elimination().filter(|_| !jacobian.is_replaced);
         self.is_dense = !elimination.is_some_and(|elimination| self.eliminate(elimination, c, jacobian));
         flow.count_factorisation(self.is_dense && elimination.is_some());
         if !self.is_dense {
             return true;
         }
         let dense = self.dense.get_or_insert_with(Dense::new);
-        dense.factor(|rows| fill(rows, flow.sparsity(), c, &jacobian.entries))
+        dense.factor(|rows| fill(rows, jacobian.sparsity(flow), c, &jacobian.entries))
     }
 
     /// Factors I - `c` J along the planned order. Gives whether no pivot is too small.
@@ -64,6 +64,12 @@ fn fill<F: Field<f64>, const N: usize>(rows: &mut [[F; N]], sparsity: Sparsity, 
         Sparsity::Places(places) => {
             for ((i, j), entry) in places.iter().zip(entries) {
                 rows[usize::from(*i)][usize::from(*j)] = -c.scaled(*entry);
+            }
+        }
+        Sparsity::Bordered { .. } => {
+            let matrix = sparsity.matrix(N, entries);
+            for (j, column) in matrix.column_iter().enumerate() {
+                column.iter().enumerate().for_each(|(i, entry)| rows[i][j] = -c.scaled(*entry));
             }
         }
     }

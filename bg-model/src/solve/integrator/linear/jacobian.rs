@@ -1,18 +1,22 @@
 //! The Jacobian for a step, also where a law has an infinite derivative.
 //!
 //! In: a flow and a step from a point. Out: its derivatives there, in the order of its sparsity. Where one of them is no
-//! number, as that of a square root at zero, a difference over the step stands in for it. An implicit method only needs a
-//! Jacobian that makes its iteration converge; of a Rosenbrock method the error estimate shows what is amiss.
+//! number, as that of a square root at zero, a difference over the step stands in for it; where there are unknowns beside the
+//! states, differences for all. An implicit method only needs a Jacobian that makes its iteration converge; of a Rosenbrock
+//! method the error estimate shows what is amiss.
 
 use nalgebra::SVector;
 
+use crate::model::linear::{Sparsity, differences};
 use crate::solve::integrator::{Flow, Point, Scale};
 
 /// The derivatives of a rate at one point.
 #[derive(Clone, Debug)]
 pub(in crate::solve::integrator) struct Jacobian<const N: usize> {
-    /// df/dx in the order of the flow's sparsity.
+    /// df/dx in the order of the sparsity.
     pub entries: Vec<f64>,
+    /// Whether the entries are differences in all places in place of the flow's own.
+    pub is_replaced: bool,
     /// df/dt, per s.
     pub slope: SVector<f64, N>,
 }
@@ -20,16 +24,29 @@ pub(in crate::solve::integrator) struct Jacobian<const N: usize> {
 impl<const N: usize> Jacobian<N> {
     /// Nothing yet; room is made at the first evaluation.
     pub fn new() -> Self {
-        Self { entries: Vec::new(), slope: SVector::zeros() }
+        Self { entries: Vec::new(), is_replaced: false, slope: SVector::zeros() }
     }
 
     /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known.
     pub fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+        self.is_replaced = false;
         self.entries.resize(flow.sparsity().len(N), 0.0);
         flow.jacobian(start.t, &start.x, &mut self.entries, &mut self.slope);
-        if !self.is_finite() {
+        if self.is_finite() {
+            return;
+        }
+        if matches!(flow.sparsity(), Sparsity::Bordered { .. }) {
+            self.is_replaced = true;
+            self.entries.resize(Sparsity::Full.len(N), 0.0);
+            differences(|t, x, rate| flow.rate(t, x, rate), start.t, &start.x, &mut self.entries, &mut self.slope);
+        } else {
             self.replace_faulty(flow, start, h, scale);
         }
+    }
+
+    /// Where the entries are.
+    pub fn sparsity(&self, flow: &impl Flow<N>) -> Sparsity {
+        if self.is_replaced { Sparsity::Full } else { flow.sparsity() }
     }
 
     /// Whether all derivatives are finite.
