@@ -901,12 +901,16 @@ use proc_macro::TokenStream;
 ///
 /// ## Algebraic loops
 ///
-/// A bond variable that needs itself, through resistors, two-ports or modulation, is solved for where the equations of the loop are
-/// linear in it: a divider, a bridge, resistors on both sides of a transformer. Parameters stay symbols. What the solution divides
+/// A bond variable that needs itself, through resistors, two-ports or modulation, is solved for. It is in symbols where the equations of
+/// the loop are linear in it: a divider, a bridge, resistors on both sides of a transformer. Parameters stay symbols. What the solution divides
 /// by is checked by `new` where parameters can make it zero. A law with an `if` is linear branch by branch: the branch is that in which
 /// the solution lies, and an event leads from one to the other.
 ///
-/// - A loop that is not linear is BG0501, with its members.
+/// A loop that is not linear, such as a diode or a turbulent valve in series with a resistor, is left to Newton's iteration, from zero on,
+/// each time that a rate is evaluated. Its last step is part of the equations, so Jacobians, Taylor series and events are exact. Of
+/// several solutions it is the one that this finds. Where it finds none, the run ends with an error that names the loop.
+///
+/// - A loop that is not linear and depends on the reaction of a rigid joint is BG0501, with its members.
 /// - A loop that leaves its variables open, such as a closed ring of junctions, is BG0508.
 ///
 /// # Events
@@ -1090,7 +1094,7 @@ use proc_macro::TokenStream;
 /// | BG0403 | derivative causality where integral causality is expected, or of a displacement from the poses |
 /// | BG0404 | a law that would have to work the other way round |
 /// | **equations** | |
-/// | BG0501 | an algebraic loop that is not linear |
+/// | BG0501 | an algebraic loop that is not linear and depends on a reaction |
 /// | BG0502 | a transformer's law that is not linear |
 /// | BG0503 | a stored energy that the compiler cannot find |
 /// | BG0504 | a given energy whose derivative is not the law |

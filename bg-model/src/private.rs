@@ -5,6 +5,7 @@
 
 pub use bg_macros::picture;
 
+pub use crate::model::iteration::{Equations, newton};
 pub use crate::model::linear::pivot::Pivot;
 pub use crate::model::parameters::serialized::{deserialize, serialize};
 pub use crate::model::reactions::{Started, fit, kept, redundant, share};

@@ -128,7 +128,8 @@ const CAUSALITY: [(&str, &str); 4] = [
 const EQUATIONS: [(&str, &str); 14] = [
     (
         "BG0501",
-        "Se e = 1; 1 j: translation; param g: m/N^2/s = 1; R a = 1; 0 k; R b(effort e) = g * e * e; e -> j -> a; j -> ▸k -> b;",
+        "Se e = 1; 1 j: translation; param g: m/N^3/s = 1; R a = 1; 0 k; R b(effort e) = g * hold.effort * e * e; e -> j -> a; j -> ▸k -> b;
+         1 l: translation; I m = 2; rSe hold = 0; l -> m; l -> hold;",
     ),
     (
         "BG0502",
@@ -442,9 +443,10 @@ fn all_faults_of_causality_come_at_once() {
 #[test]
 fn all_algebraic_loops_come_at_once() {
     // Two loops, one with several circles in it, which is one fault all the same; and an energy that is not known.
-    let text = "graph G {\nparam g: m/N^2/s = 1; Se e = 1; 1 j: translation; R a = 1; 0 k; R b(effort e) = g * e * e; e -> j -> a; j -> ▸k -> b;\n\
-         Se f = 1; 1 l: translation; R c = 1; 0 m; R d(effort e) = g * e * e; 1 n; R g1 = 3; 0 o; R h = 4; f -> l -> c; l -> ▸m -> d;\n\
-         m -> n -> g1; n -> o -> h;\n1 p: translation; I i = 1; C s(q) = 3 ▸* exp(sin(q / 1)); p -> i; p -> s;\n}";
+    let text = "graph G {\nparam g: m/N^3/s = 1; Se e = 1; 1 j: translation; R a = 1; 0 k; R b(effort e) = g * hold.effort * e * e; e -> j -> a; j -> ▸k -> b;\n\
+         Se f = 1; 1 l: translation; R c = 1; 0 m; R d(effort e) = g * hold.effort * e * e; 1 n; R g1 = 3; 0 o; R h = 4; f -> l -> c; l -> ▸m -> d;\n\
+         m -> n -> g1; n -> o -> h;\n1 p: translation; I i = 1; C s(q) = 3 ▸* exp(sin(q / 1)); p -> i; p -> s;\n\
+         1 q: translation; I u = 2; rSe hold = 0; q -> u; q -> hold;\n}";
     check_all(text, &["BG0501", "BG0501", "BG0503"]);
     // A loop of junctions names these.
     let faults =

@@ -93,4 +93,64 @@ bond_graph! {
             dissipated: J = integral(dissipated_power);
         }
     }
+
+    /// A capacitor charged through a resistor and a diode: a loop that is not linear.
+    pub graph Charger {
+        /// Amplitude of the source.
+        param amplitude: V = 10;
+        /// Its frequency.
+        param frequency: rad/s = 31.4;
+        /// Resistance in series.
+        param series: Ohm = 0.5, above 0;
+        /// Saturation current of the diode.
+        param saturation: A = 0.1, above 0;
+        /// Its thermal voltage: soft, so that polynomials can follow it.
+        param thermal: V = 1, above 0;
+        /// Capacitance.
+        param capacitance: F = 0.1, above 0;
+        /// Resistance of the load.
+        param resistance: Ohm = 10, above 0;
+        MSe source = amplitude * sin(frequency * t);
+        1 line: electrical;
+        R R1 = series;
+        R diode(effort u) = saturation * (exp(u / thermal) - 1);
+        0 output;
+        C C1 = capacitance;
+        R load = resistance;
+        source -> line -> R1; line -> diode; line -> output -> C1; output -> load;
+        observe {
+            voltage: V = output.effort;
+            current: A = line.flow;
+            stored: J = stored_energy;
+            supplied: J = integral(supplied_power);
+            dissipated: J = integral(dissipated_power);
+        }
+    }
+
+    /// Three throttles, laminar and turbulent, that meet in a node without volume: from a pump, to a tank and to an accumulator.
+    pub graph Manifold {
+        /// Pressure of the pump.
+        param pump: Pa = 2e7;
+        /// What each throttle has at small flows.
+        param laminar: Pa*s/m^3 = 1e9, at least 0;
+        /// What it has beside at large ones.
+        param turbulent: Pa*s^2/m^6 = 1e13, above 0;
+        /// The accumulator's volume for each pressure.
+        param compliance: m^3/Pa = 1e-10, above 0;
+        Se source = pump;
+        1 supply: hydraulic; 0 node; 1 drain: hydraulic; 1 side: hydraulic;
+        R A(f) = laminar * f + turbulent * f * abs(f);
+        R B(effort p) = 2 * p / (laminar + sqrt(laminar * laminar + 8 * turbulent * abs(p)));
+        R D(effort p) = 2 * p / (laminar + sqrt(laminar * laminar + 2 * turbulent * abs(p)));
+        C accumulator = compliance;
+        source -> supply -> A; supply -> node -> drain -> B; node -> side -> D; side -> accumulator;
+        observe {
+            node: Pa = node.effort;
+            filling: m^3/s = side.flow;
+            pressure: Pa = accumulator.effort;
+            stored: J = stored_energy;
+            supplied: J = integral(supplied_power);
+            dissipated: J = integral(dissipated_power);
+        }
+    }
 }

@@ -83,6 +83,8 @@ macro_rules! each_example {
             bridge: loops Bridge (BridgeParameters);
             lever: loops Lever (LeverParameters);
             clipped: loops Clipped (ClippedParameters);
+            charger: loops Charger (ChargerParameters);
+            manifold: loops Manifold (ManifoldParameters);
             hydraulic_cylinder: hydraulic_cylinder HydraulicCylinder (HydraulicCylinderParameters, HydraulicCylinderInputs { pump_flow });
             orifice: orifice Orifice (OrificeParameters);
             slider_crank: slider_crank SliderCrank (SliderCrankParameters);

@@ -1,7 +1,10 @@
-use bond_graph_tests::models::loops::{Bridge, BridgeParameters, Clipped, ClippedParameters, Lever, LeverParameters};
+use bond_graph_tests::models::loops::{
+    Bridge, BridgeParameters, Charger, ChargerParameters, Clipped, ClippedParameters, Lever, LeverParameters, Manifold,
+    ManifoldParameters,
+};
 use bond_graph_tests::support::record::{instants, record};
 
-use super::truth::within;
+use super::truth::{root, within};
 
 /// Thevenin: the bridge is a source with an inner resistance, the coil's current an exponential.
 #[test]
@@ -73,5 +76,52 @@ fn a_loop_with_a_switch_takes_the_branch_of_its_solution() {
         within("voltage", (found[k] - voltage(0.5 * k as f64 / (current.len() - 1) as f64, expected)).abs(), 1e-6);
     }
     assert!(current.iter().any(|&i| i > 0.5) && found.iter().any(|&u| u < -0.1), "both branches are taken");
+    within("energy", run.imbalance() / run.last("supplied"), 1e-9);
+}
+
+/// The current is where resistor, diode and capacitor take what the source gives: s = R i + d + u with i = i0 (exp(d / n) - 1).
+#[test]
+fn a_diode_in_a_loop_lets_current_through_one_way() {
+    let p = ChargerParameters { saturation: 1e-9, thermal: 0.05, ..ChargerParameters::default() };
+    let model = Charger::new(p.clone()).unwrap();
+    let run = record(&model, &instants(1.0, 1000), 1e-10);
+    let current = |t: f64, voltage: f64| {
+        let rest = p.amplitude * (p.frequency * t).sin() - voltage;
+        let through = |drop: f64| p.saturation * (drop / p.thermal).exp_m1();
+        through(root(|drop| p.series * through(drop) + drop - rest, rest.min(0.0) - 1.0, 1.5))
+    };
+    let rate = |t: f64, [u, _]: [f64; 2]| [(current(t, u) - u / p.resistance) / p.capacitance, 0.0];
+    let truth = integrated([0.0, 0.0], 1.0, 20_000, &rate);
+    let (voltage, flow) = (run.series("voltage"), run.series("current"));
+    for k in 0..voltage.len() {
+        let ([expected, _], t) = (truth[20 * k], 1e-3 * k as f64);
+        within("voltage", (voltage[k] - expected).abs(), 1e-7);
+        within("current", (flow[k] - current(t, expected)).abs(), 1e-6);
+    }
+    assert!(voltage[1000] > 5.0, "{}", voltage[1000]);
+    within("energy", run.imbalance() / run.last("supplied"), 1e-9);
+}
+
+/// The node has the pressure at which what comes through one throttle leaves through the others.
+#[test]
+fn throttles_that_meet_share_the_flow() {
+    let p = ManifoldParameters::default();
+    let run = record(&Manifold::new(p.clone()).unwrap(), &instants(1e-3, 100), 1e-11);
+    let through = |drop: f64, part: f64| {
+        let (a, b) = (p.laminar, part * p.turbulent);
+        2.0 * drop / (a + (a * a + 4.0 * b * drop.abs()).sqrt())
+    };
+    let node = |pressure: f64| {
+        let left = |node: f64| through(p.pump - node, 1.0) - through(node, 2.0) - through(node - pressure, 0.5);
+        root(left, 0.0, p.pump)
+    };
+    let rate = |_: f64, [pressure, _]: [f64; 2]| [through(node(pressure) - pressure, 0.5) / p.compliance, 0.0];
+    let truth = integrated([0.0, 0.0], 1e-3, 20_000, &rate);
+    let (pressure, at_node) = (run.series("pressure"), run.series("node"));
+    for k in 0..pressure.len() {
+        let [expected, _] = truth[200 * k];
+        within("pressure", (pressure[k] - expected).abs() / p.pump, 1e-8);
+        within("node", (at_node[k] - node(expected)).abs() / p.pump, 1e-8);
+    }
     within("energy", run.imbalance() / run.last("supplied"), 1e-9);
 }

@@ -1,4 +1,4 @@
-//! Two resistors that need each other, one of them not linear.
+//! Two resistors that need each other, one of them not linear, with a conductance that a reaction sets.
 
 use bg_model::bond_graph;
 use bg_model::integrator::Dop853;
@@ -12,8 +12,13 @@ bond_graph! {
         1 armature: electrical;
         R Ra = winding;
         0 node;
-        param conductance: A/V^3 = 0.1;
-        R Rb(effort u) = conductance * u * u * u;
+        1 shaft: rotation;
+        I rotor = 0.01;
+        rSe brake = 0;
+        shaft -> rotor;
+        shaft -> brake;
+        param conductance: A/V^3/N/m = 0.1;
+        R Rb(effort u) = conductance * brake.effort * u * u * u;
         supply -> armature -> Ra;
         armature -> node -> Rb;
     }

@@ -6,6 +6,7 @@ pub mod description;
 pub mod drawing;
 pub mod holding;
 pub mod input;
+pub(crate) mod iteration;
 pub mod linear;
 pub mod mechanism;
 pub(crate) mod nearest;

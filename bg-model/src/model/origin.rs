@@ -26,6 +26,9 @@ impl Origin {
     pub(crate) fn action(&self) -> &'static str {
         match self.kind {
             "input" => "give it finite numbers there",
+            "algebraic loop" => {
+                "Newton's iteration finds no solution of these laws there: they may have none, or not be smooth at it"
+            }
             _ => "keep what its law divides by, or takes a root, power or logarithm of, in range",
         }
     }

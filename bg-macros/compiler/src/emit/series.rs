@@ -4,6 +4,10 @@
 //! a loop over the orders, for the coefficients. Products, quotients and functions need the coefficients of lower orders as
 //! well, which rows of a work table keep; see `bg_model::series`. What does not change has no coefficients behind the
 //! start: nothing is left of it in the loop.
+//!
+//! What iterations find is a number at the start only. A step of Newton's iteration on series gives the coefficient of an order
+//! where all lower ones are right and that one is 0 (Brent and Kung 1978, Fast algorithms for manipulating formal power series),
+//! so each order is gone through twice: for that coefficient, then with it.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -18,6 +22,8 @@ pub(super) struct Reads {
     pub values: TokenStream,
     /// `let`s of the states' coefficients, from `x`.
     pub states: TokenStream,
+    /// How many unknowns iterations find; they are the last results of the routine.
+    pub found: usize,
 }
 
 /// How many numbers each order takes, and the body of `expand`, from the routine of the rates.
@@ -34,7 +40,19 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> (usi
     let ((start, start_rates), (order, order_rates)) = (written(true), written(false));
     let (products, places) = (start.products, (2 * start.products + start.others).max(1));
     let (start, order) = (start.tokens, order.tokens);
-    let Reads { values, states } = reads;
+    let Reads { values, states, found } = reads;
+    let (start_rates, _) = start_rates.split_at(start_rates.len() - found);
+    let (order_rates, coefficients) = order_rates.split_at(order_rates.len() - found);
+    let order = if *found == 0 {
+        order
+    } else {
+        quote! {
+            found = [S::from_f64(0.0); #found];
+            #order
+            found = [#(#coefficients),*];
+            #order
+        }
+    };
     let array = routine::array(routine);
     // What does not change with time, and yet is no constant of the model: it depends on inputs.
     let fixed = routine::assignments(&fixed, names);

@@ -23,6 +23,8 @@ pub struct Environment<'a> {
     pub slopes: &'a [f64],
     /// Rates of the states.
     pub rates: &'a [f64],
+    /// What iterations have found.
+    pub found: &'a [f64],
     /// Whether each switch's guard is below zero.
     pub negative: &'a [bool],
 }
@@ -38,6 +40,7 @@ impl Environment<'_> {
             Symbol::Storage(index) => self.storage[index as usize],
             Symbol::Slope(index) => self.slopes[index as usize],
             Symbol::Rate(index) => self.rates[index as usize],
+            Symbol::Found(index) => self.found[index as usize],
             Symbol::Kept(_) => 1.0,
             Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Unsolved(_) => {
                 panic!("no value of {symbol:?}")
@@ -132,6 +135,7 @@ mod tests {
             slopes: &[-7.0],
             rates: &[11.0],
             negative: &[false, true],
+            ..Environment::default()
         };
         assert_eq!(
             evaluate(&pool, &[sum, product, angle, select, s], &environment),

@@ -31,6 +31,9 @@ pub enum Symbol {
     Kept(u32),
     /// A bond variable or state whose equation is not solved yet.
     Unsolved(u32),
+    /// What an iteration has found for a bond variable, nearly its value. It has no derivatives: the last step of the iteration,
+    /// which is in the equations, has them.
+    Found(u32),
     /// The derivative of an input with respect to time.
     Slope(u32),
     /// The rate of a state.

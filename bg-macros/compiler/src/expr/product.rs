@@ -2,7 +2,7 @@
 //!
 //! In: nodes with whole exponents. Out: a number, a node, a [`Node::Product`], or one of these times a number.
 //! Numbers and signs stand in front of the product, powers of one base are one factor, an inner product is flattened,
-//! and the square of a square root is its argument. `x/x` is 1 for every x; a zero factor makes the product 0, and 1/0
+//! the square of a square root is its argument, and `x^2/abs(x)` is `abs(x)`. `x/x` is 1 for every x; a zero factor makes the product 0, and 1/0
 //! is the number infinity. A power beyond [`MOST_EXPONENT`] is a call of `pow`, so that exponents never overflow.
 
 use std::collections::BTreeMap;
@@ -64,6 +64,10 @@ impl Pool {
             draft.multiply(root, -(exponent / 2 * 2));
             self.multiply(&mut draft, argument, exponent / 2);
         }
+        while let Some((size, argument)) = self.square_over_size(&draft) {
+            draft.multiply(argument, -2);
+            draft.multiply(size, 2);
+        }
         self.complete(draft)
     }
 
@@ -91,6 +95,17 @@ impl Pool {
     fn whole_power_of_root(&self, draft: &Draft) -> Option<(Id, Id, i32)> {
         draft.factors.iter().find_map(|(&id, &exponent)| match self.node(id) {
             Node::Call(Function::Sqrt, arguments) if exponent.unsigned_abs() > 1 => Some((id, arguments[0], exponent)),
+            _ => None,
+        })
+    }
+
+    /// `abs(x)` that the square of `x` is divided by, and `x`: derivatives of `x*abs(x)` have it, and a value at 0 without it.
+    fn square_over_size(&self, draft: &Draft) -> Option<(Id, Id)> {
+        draft.factors.iter().find_map(|(&id, &exponent)| match self.node(id) {
+            Node::Call(Function::Abs, arguments) if exponent < 0 => {
+                let squared = draft.factors.get(&arguments[0]).is_some_and(|&exponent| exponent > 1);
+                squared.then_some((id, arguments[0]))
+            }
             _ => None,
         })
     }
@@ -144,6 +159,22 @@ mod tests {
         let (one, zero) = (pool.one(), pool.zero());
         assert_eq!(pool.mul(one, x), x);
         assert_eq!(pool.mul(x, zero), zero);
+    }
+
+    #[test]
+    fn a_square_over_its_size_has_a_value_at_zero() {
+        let mut pool = Pool::new();
+        let [x, ..] = letters(&mut pool);
+        let size = pool.call(Function::Abs, &[x]);
+        let square = pool.powi(x, 2);
+        assert_eq!(pool.div(square, size), size);
+        let drag = pool.mul(x, size);
+        let slope = crate::expr::partial(&mut pool, &[drag], Symbol::State(0))[0];
+        assert_eq!(slope, pool.scale(2.0, size));
+        // Odd powers keep the sign: x^3/abs(x)^3 is x/abs(x).
+        let cubes = [pool.powi(x, 3), pool.powi(size, 3)];
+        let ratio = pool.div(cubes[0], cubes[1]);
+        assert_eq!(ratio, pool.div(x, size));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::pairs::{Paired, pair};
 use super::tape::{Tape, tape};
 use super::{Counts, Program, Request, Routine, schedule};
 use crate::expr::{Id, Pool};
+use crate::system::equations::Iteration;
 use crate::system::{Jacobian, SecondOrder, StateEquations};
 
 /// Longer rates are not inlined into an integrator's step: they would only fill the cache.
@@ -44,6 +45,8 @@ pub struct Running {
     pub paired_rate: Option<Paired>,
     /// The guards of all switches.
     pub guards: Routine,
+    /// The equations of all iterations.
+    pub loops: Routine,
     /// The reactions, where joints close loops and they may not be unique; outputs then read them.
     pub reactions: Routine,
     /// The scalar outputs.
@@ -116,7 +119,10 @@ fn alone(pool: &mut Pool, name: &str, roots: &[Id]) -> Program<1> {
 }
 
 fn running(equations: &mut StateEquations) -> Running {
-    let rates = roots(&equations.states, |state| state.rate);
+    // With the unknowns of iterations after the rates: a series has to know how they change.
+    let mut rates = roots(&equations.states, |state| state.rate);
+    rates.extend(equations.iterations.iter().flat_map(|iteration| &iteration.values));
+    let loops: Vec<Id> = equations.iterations.iter().flat_map(Iteration::equations).collect();
     let guards = roots(&equations.switches, |switch| switch.guard);
     let reactions = if equations.holding.is_shared() { equations.solution.values.clone() } else { Vec::new() };
     let outputs = roots(&equations.outputs, |output| output.value);
@@ -127,6 +133,7 @@ fn running(equations: &mut StateEquations) -> Running {
     let requests = [
         Request { name: "rate", roots: &rates },
         Request { name: "guards", roots: &guards },
+        Request { name: "loops", roots: &loops },
         Request { name: "reactions", roots: &reactions },
         Request { name: "outputs", roots: &outputs },
         Request { name: "project", roots: &projections },
@@ -135,9 +142,9 @@ fn running(equations: &mut StateEquations) -> Running {
         Request { name: "powers", roots: &powers },
     ];
     let Program { constants, routines } = schedule(&mut equations.pool, requests);
-    let [rate, guards, reactions, outputs, project, settle, stored_energy, powers] = routines;
+    let [rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers] = routines;
     let paired_rate = pair(&rate);
-    Running { constants, rate, paired_rate, guards, reactions, outputs, project, settle, stored_energy, powers }
+    Running { constants, rate, paired_rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers }
 }
 
 fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondOrderPrograms {
@@ -184,16 +191,17 @@ impl Running {
         self.rate.counts.total() <= INLINED
     }
 
-    /// All of them; those of rigid joints where there are any.
+    /// All of them; those of iterations and of rigid joints where there are any.
     #[must_use]
     pub fn routines(&self) -> Vec<&Routine> {
-        let of_rigid_joints = |routine| Some(routine).filter(|routine: &&Routine| !routine.results.is_empty());
-        let Self { rate, guards, reactions, outputs, project, settle, stored_energy, powers, .. } = self;
+        let where_any = |routine| Some(routine).filter(|routine: &&Routine| !routine.results.is_empty());
+        let Self { rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers, .. } = self;
         [rate, guards]
             .into_iter()
-            .chain(of_rigid_joints(reactions))
+            .chain(where_any(loops))
+            .chain(where_any(reactions))
             .chain([outputs, project])
-            .chain(of_rigid_joints(settle))
+            .chain(where_any(settle))
             .chain([stored_energy, powers])
             .collect()
     }

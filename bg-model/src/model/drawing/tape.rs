@@ -42,6 +42,8 @@ pub struct Moment<'a> {
     pub negative: &'a [bool],
     /// The reactions of the rigid joints, where joints close loops.
     pub reactions: &'a [f64],
+    /// What has been found for the unknowns of algebraic loops.
+    pub found: &'a [f64],
 }
 
 impl Tape {
@@ -94,6 +96,7 @@ impl Reader<'_> {
                 if moment.negative[switch] { negative } else { positive }
             }
             10 => moment.reactions[self.index()],
+            11 => moment.found[self.index()],
             other => unreachable!("a tape has no operation {other}"),
         })
     }
@@ -202,6 +205,7 @@ mod tests {
             inputs: &[[30.0, 10.0]],
             negative: &[false, true],
             reactions: &[],
+            found: &[],
         };
         let mut values = Vec::new();
         tape.evaluate(&moment, &mut values);

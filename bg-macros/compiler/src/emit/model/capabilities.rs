@@ -109,7 +109,17 @@ impl Emission<'_> {
             let reads = |symbol: Symbol| matches!(symbol, Symbol::State(_)) == is_state;
             names::bindings(&[routine], &|symbol| if reads(symbol) { self.dynamic_binding(symbol) } else { None })
         };
-        let reads = series::Reads { values: reading(false), states: reading(true) };
+        let found = self.model.equations.found();
+        let first = names::reads_found(routine).then(|| {
+            quote! {
+                let mut found = {
+                    let [x] = &series[0].data.0;
+                    self.found(t, x, negative)
+                };
+            }
+        });
+        let inputs = reading(false);
+        let reads = series::Reads { values: quote!(#inputs #first), states: reading(true), found };
         let (width, expansion) = self.with_names(routine.is_long(), |names| series::expansion(routine, names, &reads));
         quote! {
             impl<S: Scalar> ::bg_model::capability::Series<S, #n, #g> for Model<S> {

@@ -17,14 +17,21 @@ use crate::system::equations::StateEquations;
 
 /// `let name = value;` for the symbols that some routines use.
 pub(super) fn bindings(routines: &[&Routine], binding: &dyn Fn(Symbol) -> Option<TokenStream>) -> TokenStream {
+    symbols(routines).into_iter().filter_map(binding).collect()
+}
+
+/// Whether the routine reads what iterations have found.
+pub(super) fn reads_found(routine: &Routine) -> bool {
+    symbols(&[routine]).iter().any(|symbol| matches!(symbol, Symbol::Found(_)))
+}
+
+/// The symbols that some routines use.
+fn symbols(routines: &[&Routine]) -> BTreeSet<Symbol> {
     let operands = routines.iter().flat_map(|routine| {
         let inside = routine.assignments.iter().flat_map(|assignment| assignment.operation.operands());
         inside.chain(routine.results.iter().copied())
     });
-    let used: BTreeSet<Symbol> = operands
-        .filter_map(|operand| if let Operand::Symbol(symbol) = operand { Some(symbol) } else { None })
-        .collect();
-    used.into_iter().filter_map(binding).collect()
+    operands.filter_map(|operand| if let Operand::Symbol(symbol) = operand { Some(symbol) } else { None }).collect()
 }
 
 impl Emission<'_> {
@@ -44,9 +51,11 @@ impl Emission<'_> {
         })
     }
 
-    /// Inputs, their slopes and states that the routine uses.
+    /// Inputs, their slopes and states that the routine uses, and what iterations find for it.
     pub(super) fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
-        bindings(&[routine], &|symbol| self.dynamic_binding(symbol))
+        let found = reads_found(routine).then(|| quote!(let found = self.found(t, x, negative);));
+        let bindings = bindings(&[routine], &|symbol| self.dynamic_binding(symbol));
+        quote! { #found #bindings }
     }
 
     /// An input at time `t`, its slope there, or a state of `x`.
@@ -89,6 +98,7 @@ impl Emission<'_> {
             Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Unsolved(_) => {
                 unreachable!("a model's equations contain no {symbol:?}")
             }
+            Symbol::Found(index) => return entry("found", index),
             Symbol::Unknown(index) => return entry("u", index),
             Symbol::Rate(index) => return entry("r", index),
         };
@@ -115,7 +125,7 @@ fn entry(array: &str, index: u32) -> TokenStream {
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
-    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b reactions kept \
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b reactions kept found \
         DESCRIPTION Some None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {

@@ -47,12 +47,14 @@ impl Emission<'_> {
     fn shown(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
         let (reactions, values) = self.shown_reactions();
+        let (iterated, found) = self.shown_found();
         let inputs: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         quote! {
             fn shown(
                 &self, t: f64, x: &SVector<f64, #n>, negative: &[bool; #g], values: &mut ::std::vec::Vec<f64>,
             ) {
                 #reactions
+                #iterated
                 let parameters: ::std::vec::Vec<f64> = (0..DESCRIPTION.parameters.len())
                     .map(|index| ::bg_model::parameters::Parameters::value(&self.parameters, index))
                     .collect();
@@ -64,6 +66,7 @@ impl Emission<'_> {
                         inputs: &[#([self.inputs.#inputs.value(t), self.inputs.#inputs.slope(t)]),*],
                         negative,
                         reactions: #values,
+                        found: #found,
                     },
                     values,
                 );

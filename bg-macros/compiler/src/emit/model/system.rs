@@ -15,8 +15,9 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let (rate, guards, project) = (self.rate(), self.guards(), self.project());
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
-        let (next_break, first_branches) = (self.next_break(), self.first_branches());
+        let (next_break, first_branches, iterations) = (self.next_break(), self.first_branches(), self.iterations());
         quote! {
+            #iterations
             impl<S: Scalar> ::bg_model::system::System<S, #n, #g> for Model<S> {
                 #rate
                 #guards
@@ -37,6 +38,8 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let running = &self.model.programs.running;
         let (body, rates) = self.with_pairs(&running.rate, running.paired_rate.as_ref(), "constant");
+        // The unknowns of iterations come after the rates.
+        let rates = &rates[..self.model.equations.states.len()];
         let inline = self.inline();
         quote! {
             #inline

@@ -145,10 +145,8 @@ fn random_graphs() {
                 parameters: &parameters,
                 inputs: &inputs,
                 unknowns: &unknowns,
-                storage: &[],
-                slopes: &[],
-                rates: &[],
                 negative: &negative,
+                ..Environment::default()
             };
             assert_equal(&pool, &program, &requests, &environment);
         }

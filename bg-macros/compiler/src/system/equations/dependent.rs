@@ -191,7 +191,8 @@ impl Signals<'_> {
             let Switched { element, condition } = self.switched(switch);
             return Some(self.fault_of(node, &EquationFault::DependentJumps { kind, name, element, condition }));
         }
-        if symbols.iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_))) {
+        // A reaction, or what an iteration finds: their rates of change are not known here.
+        if symbols.iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_) | Symbol::Unsolved(_))) {
             let members = self.names(&[node]);
             return Some(self.fault_of(node, &EquationFault::DependentOpen { members }));
         }

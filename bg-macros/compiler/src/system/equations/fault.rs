@@ -6,7 +6,7 @@ use crate::fault::Explain;
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum EquationFault {
-    AlgebraicLoop { members: Vec<String> },
+    AlgebraicLoop { members: Vec<String>, reactions: Vec<String> },
     UndeterminedLoop { members: Vec<String> },
     DependentStart { kind: ElementKind, name: String, by: Vec<String> },
     DependentOnInput { kind: ElementKind, name: String, input: String },
@@ -47,9 +47,11 @@ impl Explain for EquationFault {
 
     fn message(&self) -> String {
         match self {
-            F::AlgebraicLoop { members } => {
-                format!("algebraic loop: each of these needs the next: {}", members.join(" -> "))
-            }
+            F::AlgebraicLoop { members, reactions } => format!(
+                "algebraic loop that is not linear and depends on the reaction of {}, which is not known before it: {}",
+                reactions.join(", "),
+                members.join(" -> ")
+            ),
             F::UndeterminedLoop { members } => format!(
                 "algebraic loop: {} need each other in a way that leaves their efforts and flows open, or has no solution",
                 members.join(", ")
@@ -117,8 +119,9 @@ impl Explain for EquationFault {
 
     fn help(&self) -> String {
         match self {
-            F::AlgebraicLoop { members } => format!(
-                "break the loop with a storage: bond a C or an I to one of its junctions, for example at {}",
+            F::AlgebraicLoop { members, reactions } => format!(
+                "make {} compliant, or break the loop with a storage: bond a C or an I to one of its junctions, for example at {}",
+                reactions.first().map_or("the joint", String::as_str),
                 members.first().map_or("one of them", String::as_str)
             ),
             F::UndeterminedLoop { .. } => {

@@ -3,7 +3,7 @@
 //! In: [`CausalGraph`]. Out: [`StateEquations`]. No longer occurs: bonds, ports and junctions; scalars only from here.
 //! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one expression;
 //! storages in integral causality turn theirs into rates, those in derivative causality differentiate theirs. What needs itself is an
-//! initially unknown, with an equation that is solved in symbols where it is linear.
+//! initially unknown, with an equation that is solved in symbols where it is linear, by an iteration at run time where it is not.
 
 pub mod definite;
 mod dependent;
@@ -12,12 +12,14 @@ mod fallible;
 mod fault;
 mod friction;
 mod holding;
+mod iteration;
 mod kinematics;
 mod laws;
 mod loops;
 mod memo;
 mod origin;
 mod reactions;
+mod replace;
 mod requirements;
 mod shown;
 mod signals;
@@ -41,6 +43,7 @@ pub use crate::system::equations::solution::Solution;
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
+pub use iteration::Iteration;
 pub use origin::{Kind, Origin};
 pub use shown::{Quantity, Shown};
 
@@ -79,6 +82,8 @@ pub struct StateEquations {
     pub settled: Vec<(usize, Id)>,
     /// What laws give that can make numbers which are not finite, in the order of evaluation.
     pub fallible: Vec<FallibleLaw>,
+    /// The algebraic loops that are solved at run time.
+    pub iterations: Vec<Iteration>,
     /// Reactions of rigid joints that are not solved for yet.
     pub reactions: Vec<Reaction>,
     /// Those that are: symbols in the equations until these are closed.
@@ -188,7 +193,7 @@ pub struct Output {
 /// Derives the state equations.
 ///
 /// # Errors
-/// Algebraic loops that are not linear or leave something open, storages in derivative causality whose states have no derivative,
+/// Algebraic loops that leave something open, storages in derivative causality whose states have no derivative,
 /// transformers that are not linear, energies that cannot be found, numbers that no physics allows.
 pub fn derive(causal: &CausalGraph) -> Staged<StateEquations> {
     let mut kept = BTreeSet::new();
@@ -228,6 +233,7 @@ fn symbol_name(symbol: Symbol, states: &[State], parameters: &[Parameter], input
         Symbol::Multiplier(index) => format!("multiplier_{index}"),
         Symbol::Kept(index) => format!("kept_{index}"),
         Symbol::Unsolved(index) => format!("unsolved_{index}"),
+        Symbol::Found(index) => format!("found_{index}"),
         Symbol::Slope(index) => format!("{}'", inputs[index as usize].name.text),
         Symbol::Rate(index) => format!("{}'", states[index as usize].name),
     }

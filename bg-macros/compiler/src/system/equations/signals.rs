@@ -7,9 +7,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::dependent::{Dependent, Way, dependents, way};
 use super::fallible::Nature;
+use super::iteration::Loop;
 use super::memo::{Entry, Memo};
 use super::solving::Pivot;
-use super::unknowns::Unknowns;
+use super::unknowns::{Unknown, Unknowns};
 use super::{FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
@@ -38,6 +39,8 @@ pub(super) struct Signals<'a> {
     pub(super) dependent: BTreeMap<NodeId, Dependent>,
     /// What has no value yet.
     pub(super) unknowns: Unknowns,
+    /// The algebraic loops that are left to iterations.
+    pub(super) loops: Vec<Loop>,
     /// What solutions divide by and parameters may make zero.
     pub(super) pivots: Vec<Pivot>,
     pub(super) switches: Vec<Switch>,
@@ -65,6 +68,7 @@ impl<'a> Signals<'a> {
             reactions: BTreeMap::new(),
             dependent: BTreeMap::new(),
             unknowns: Unknowns::default(),
+            loops: Vec::new(),
             pivots: Vec::new(),
             switches: Vec::new(),
             owner: String::new(),
@@ -119,7 +123,7 @@ impl<'a> Signals<'a> {
         let mut requirements = self.requirements();
         requirements.decide(&self.graph.parameters)?;
         let shown = self.shown(bonds);
-        Ok(StateEquations {
+        let mut equations = StateEquations {
             pool: self.pool,
             parameters: self.graph.parameters.clone(),
             inputs: self.graph.inputs.clone(),
@@ -136,6 +140,7 @@ impl<'a> Signals<'a> {
             projections,
             settled: Vec::new(),
             fallible: self.fallible,
+            iterations: Vec::new(),
             reactions,
             solution: Solution::default(),
             holding,
@@ -144,7 +149,9 @@ impl<'a> Signals<'a> {
             shown,
             requirements,
             texts,
-        })
+        };
+        equations.iterate(self.loops);
+        Ok(equations)
     }
 
     /// Whether a storage has no state of its own.
@@ -273,6 +280,11 @@ impl<'a> Signals<'a> {
 
     /// A symbol's name in texts.
     pub(super) fn symbol_name(&self, symbol: Symbol) -> String {
+        if let Symbol::Unsolved(number) = symbol
+            && let Unknown::Variable(role, bond, _) = self.unknowns.all[number as usize]
+        {
+            return text::variable(self, role, bond);
+        }
         super::symbol_name(symbol, &self.states, &self.graph.parameters, &self.graph.inputs)
     }
 
@@ -280,6 +292,7 @@ impl<'a> Signals<'a> {
     pub(super) fn forget(&mut self) {
         self.memo = Memo::new(self.graph);
         self.unknowns.residuals.clear();
+        self.loops.clear();
         self.pivots.clear();
         self.faults.clear();
     }

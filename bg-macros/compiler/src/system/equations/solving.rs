@@ -3,11 +3,12 @@
 //! In: expressions that are to be zero. Out: the value of each unknown as an expression of states, parameters, inputs and time,
 //! put in its place everywhere; or faults.
 //! Method: unknowns that need each other are a group; a group is linear where its partial derivatives contain none of its own
-//! unknowns, and is then solved by elimination in symbols (`expr::gauss`). Switches stay as they are: a solution holds for the
-//! branches that its coefficients have.
+//! unknowns, and is then solved by elimination in symbols (`expr::gauss`); an algebraic loop that is not linear is left to an
+//! iteration at run time (`iteration`). Switches stay as they are: a solution holds for the branches that its coefficients have.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::iteration::Loop;
 use super::loops::groups;
 use super::memo::Entry;
 use super::signals::Signals;
@@ -62,13 +63,45 @@ impl Signals<'_> {
             let equations = substitute(&mut self.pool, &before, &|symbol| known.get(&symbol).copied());
             match self.solve_group(&group, &equations) {
                 Ok(values) => known.extend(group.into_iter().map(Symbol::Unsolved).zip(values)),
+                Err(Trouble::Nonlinear) if self.is_iterated(&group, &equations) => {
+                    let members = self.circles(&group);
+                    self.note_iterated(&group, &members);
+                    self.loops.push(Loop { members, unknowns: group, residuals: equations });
+                }
                 Err(trouble) => {
-                    let fault = self.unsolvable(&group, &trouble);
+                    let fault = self.unsolvable(&group, &equations, &trouble);
                     self.fault_once(fault);
                 }
             }
         }
         known
+    }
+
+    /// Whether an iteration can find the unknowns: bond variables that no reaction depends on, which is solved for after them.
+    fn is_iterated(&self, group: &[u32], equations: &[Id]) -> bool {
+        let is_variable = |&number: &u32| matches!(self.unknowns.all[number as usize], Unknown::Variable(..));
+        let symbols = self.pool.symbols(equations);
+        group.iter().all(is_variable) && !symbols.into_iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_)))
+    }
+
+    /// Where the iteration finds nothing, a run says which loop it was.
+    fn note_iterated(&mut self, group: &[u32], members: &[String]) {
+        for &number in group {
+            let (kind, value) = ("algebraic loop", self.pool.symbol(Symbol::Unsolved(number)));
+            self.fallible.insert(0, FallibleLaw { kind, element: members.join(", "), value });
+        }
+    }
+
+    /// The names of the elements in the circles of these unknowns.
+    fn circles(&self, group: &[u32]) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for node in self.members(group) {
+            let name = &self.graph.node(node).name.text;
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
     }
 
     fn solve_group(&mut self, group: &[u32], equations: &[Id]) -> Result<Vec<Id>, Trouble> {
@@ -142,7 +175,7 @@ impl Signals<'_> {
     }
 
     /// The fault of a group without a solution.
-    fn unsolvable(&self, group: &[u32], trouble: &Trouble) -> Fault {
+    fn unsolvable(&self, group: &[u32], equations: &[Id], trouble: &Trouble) -> Fault {
         let unknowns = || group.iter().map(|&number| self.unknowns.all[number as usize]);
         let given = unknowns().find_map(|of| if let Unknown::Given(node) = of { Some(node) } else { None });
         if let Some(node) = given {
@@ -160,13 +193,26 @@ impl Signals<'_> {
             _ => self.names(&self.members(group).into_iter().collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>()),
         };
         let fault = match trouble {
-            Trouble::Nonlinear => EquationFault::AlgebraicLoop { members },
+            Trouble::Nonlinear => EquationFault::AlgebraicLoop { members, reactions: self.reactions_in(equations) },
             Trouble::Singular => EquationFault::UndeterminedLoop { members },
         };
         match first {
             Some(circle) => Fault::new(circle.span, &fault),
             None => self.fault_of(self.members(group)[0], &fault),
         }
+    }
+
+    /// The names of what gives the reactions in these equations.
+    fn reactions_in(&self, equations: &[Id]) -> Vec<String> {
+        let symbols = self.pool.symbols(equations);
+        let first =
+            |number: u32| self.reactions.iter().filter(|(_, first)| **first <= number).max_by_key(|(_, first)| **first);
+        let sinks = symbols.into_iter().filter_map(|symbol| {
+            let Symbol::Multiplier(number) = symbol else { return None };
+            first(number).map(|(&sink, _)| format!("`{}`", self.holder(sink)))
+        });
+        let names: BTreeSet<String> = sinks.collect();
+        names.into_iter().collect()
     }
 
     /// A fault at the name of a node.
@@ -198,6 +244,7 @@ impl Signals<'_> {
         places.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
         places.extend(self.fallible.iter_mut().map(|law| &mut law.value));
         places.extend(self.pivots.iter_mut().map(|pivot| &mut pivot.value));
+        places.extend(self.loops.iter_mut().flat_map(|nonlinear| &mut nonlinear.residuals));
         places
     }
 }

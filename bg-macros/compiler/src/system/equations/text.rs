@@ -40,12 +40,20 @@ fn loops(signals: &Signals<'_>) -> Vec<String> {
     for (k, unknown) in signals.unknowns.all.iter().enumerate() {
         let Unknown::Variable(role, bond, _) = *unknown else { continue };
         let first = k == 0 || signals.unknowns.all[k - 1] != *unknown;
+        if signals.loops.iter().any(|nonlinear| nonlinear.unknowns.contains(&(k as u32))) {
+            continue;
+        }
         if let Some(value) = signals.known(role, bond).filter(|_| first) {
             lines.push(format!(
                 "{} = {}, from an algebraic loop",
                 variable(signals, role, bond),
                 shown(signals, &value.0)
             ));
+        }
+    }
+    for nonlinear in &signals.loops {
+        for residual in &nonlinear.residuals {
+            lines.push(format!("0 = {}, by Newton's iteration", shown(signals, &[*residual])));
         }
     }
     lines
@@ -87,7 +95,7 @@ fn letter(role: Role) -> char {
 }
 
 /// `e[a -> b]` or `f[a -> b]`.
-fn variable(signals: &Signals<'_>, role: Role, bond: BondId) -> String {
+pub(super) fn variable(signals: &Signals<'_>, role: Role, bond: BondId) -> String {
     let ends = signals.graph.bond(bond);
     format!("{}[{} -> {}]", letter(role), name(signals, ends.from), name(signals, ends.to))
 }

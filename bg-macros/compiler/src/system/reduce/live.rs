@@ -93,6 +93,7 @@ fn forget(equations: &mut StateEquations, known: &Known) {
         }
     }
     equations.fallible.retain(|law| known.has(pool, law.value));
+    equations.iterations.retain(|iteration| iteration.residuals.iter().all(|&residual| known.has(pool, residual)));
     equations.shown.prune(pool, known);
     let (holding, solution) = (&mut equations.holding, &mut equations.solution);
     let (mut held, mut solved) = (holding.known(pool, known), solution.known(pool, known));

@@ -15,7 +15,7 @@ mod live;
 mod reaction;
 mod report;
 
-use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
+use crate::expr::{Branch, Id, Pool, Symbol};
 use crate::system::equations::StateEquations;
 
 pub use reaction::solve as solve_reactions;
@@ -144,72 +144,6 @@ fn keep_switches(equations: &mut StateEquations, branches: &[Branch]) {
 /// Whether an expression depends on parameters and numbers only.
 fn is_constant(pool: &Pool, id: Id) -> bool {
     pool.symbols(&[id]).into_iter().all(|symbol| matches!(symbol, Symbol::Parameter(_)))
-}
-
-impl StateEquations {
-    /// Every expression of the model that depends on states.
-    fn roots(&mut self) -> Vec<&mut Id> {
-        let mut roots: Vec<&mut Id> = Vec::new();
-        for state in &mut self.states {
-            roots.push(&mut state.start);
-            roots.push(&mut state.rate);
-        }
-        roots.extend(&mut self.guesses);
-        roots.extend(self.gaps.iter_mut().map(|gap| &mut gap.value));
-        roots.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
-        roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
-        for reaction in &mut self.reactions {
-            roots.push(&mut reaction.slip.flow);
-            roots.extend(&mut reaction.slip.gap);
-            roots
-                .extend(reaction.friction.iter_mut().flat_map(|friction| [&mut friction.effort, &mut friction.sticks]));
-        }
-        roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
-        roots.extend(self.projections.iter_mut().chain(&mut self.settled).map(|(_, id)| id));
-        roots
-    }
-
-    /// Puts the values of the reactions in the places of their symbols, everywhere.
-    ///
-    /// Where joints close loops, outputs and what is shown keep the symbols: there a model shares reactions that are not
-    /// unique before it evaluates these.
-    pub fn close(&mut self) {
-        let solution = std::mem::take(&mut self.solution);
-        if solution.values.is_empty() {
-            return;
-        }
-        let (outputs, shown) = (self.outputs.clone(), self.shown.clone());
-        self.replace(&|symbol| solution.value(symbol));
-        if self.holding.is_shared() {
-            (self.outputs, self.shown) = (outputs, shown);
-        }
-        self.solution = solution;
-    }
-
-    /// Replaces symbols everywhere.
-    fn replace(&mut self, replace: &dyn Fn(Symbol) -> Option<Id>) {
-        self.replace_switched(replace, &Branch::Kept);
-    }
-
-    fn replace_switched(&mut self, replace: &dyn Fn(Symbol) -> Option<Id>, branch: &dyn Fn(u32) -> Branch) {
-        let mut pool = std::mem::take(&mut self.pool);
-        let before: Vec<Id> = self.roots().into_iter().map(|id| *id).collect();
-        let after = substitute_switched(&mut pool, &before, replace, branch);
-        for (root, id) in self.roots().into_iter().zip(after) {
-            *root = id;
-        }
-        // By themselves, after the others: so they have no influence on the order of terms.
-        let values: Vec<Id> = self.fallible.iter().map(|law| law.value).collect();
-        let after = substitute_switched(&mut pool, &values, replace, branch);
-        for (law, value) in self.fallible.iter_mut().zip(after) {
-            law.value = value;
-        }
-        // What is held and shown comes after, so that it has no influence on the order of the rates' nodes.
-        self.solution.replace(&mut pool, replace, branch);
-        self.holding.replace(&mut pool, replace, branch);
-        self.shown.replace(&mut pool, replace, branch);
-        self.pool = pool;
-    }
 }
 
 #[cfg(test)]

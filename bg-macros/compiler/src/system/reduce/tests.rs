@@ -159,17 +159,7 @@ fn outputs(of: &StateEquations, parameters: &[f64], unknowns: &[f64]) -> Vec<Vec
         evaluate(
             &of.pool,
             roots,
-            &Environment {
-                time,
-                states,
-                parameters,
-                inputs: &inputs,
-                unknowns,
-                storage: &[],
-                slopes: &[],
-                rates: &[],
-                negative,
-            },
+            &Environment { time, states, parameters, inputs: &inputs, unknowns, negative, ..Environment::default() },
         )
     };
     let mut x = at(&starts, 0.0, &[], &[]);

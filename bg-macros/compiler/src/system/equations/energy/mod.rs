@@ -235,9 +235,8 @@ impl Check<'_> {
                 inputs: &sample.inputs,
                 unknowns: &sample.unknowns,
                 storage: state,
-                slopes: &[],
-                rates: &[],
                 negative,
+                ..Environment::default()
             };
             evaluate(&self.pool, roots, &environment)
         };

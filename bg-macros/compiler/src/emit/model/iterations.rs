@@ -1,0 +1,67 @@
+//! Algebraic loops that are solved at run time.
+//!
+//! In: iterations with the program of their equations. Out: functions of the model that find their unknowns. Nothing for models
+//! without.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use super::{Emission, Shape, names};
+
+impl Emission<'_> {
+    /// What iterations find for pictures, as `f64`, and what is handed over of it.
+    pub(super) fn shown_found(&self) -> (Option<TokenStream>, TokenStream) {
+        if self.model.equations.found() == 0 {
+            return (None, quote!(&[]));
+        }
+        let found = quote! {
+            let found = self.found(S::from_f64(t), &x.map(S::from_f64).data.0[0], negative).map(|found| found.to_f64());
+        };
+        (Some(found), quote!(&found))
+    }
+
+    /// `found`, and the equations that it solves, one group of unknowns after the other.
+    pub(super) fn iterations(&self) -> Option<TokenStream> {
+        let Shape { n, g, .. } = &self.shape;
+        let equations = &self.model.equations;
+        let (count, routine) = (equations.found(), &self.model.programs.running.loops);
+        let mut behind = 0;
+        let groups = equations.iterations.iter().map(|iteration| {
+            let (first, length) = (iteration.first as usize, iteration.residuals.len());
+            let equations = behind..behind + iteration.equations().count();
+            behind = equations.end;
+            let [begin, end, from, to] =
+                [first, first + length, equations.start, equations.end].map(Literal::usize_unsuffixed);
+            quote! {
+                let solved = ::bg_model::__private::newton(|u: &[f64; #length]| {
+                    found[#begin..#end].copy_from_slice(&u.map(S::from_f64));
+                    ::bg_model::__private::Equations::of(&self.loops(t, x, negative, &found)[#from..#to])
+                });
+                found[#begin..#end].copy_from_slice(&solved.map(S::from_f64));
+            }
+        });
+        let groups: TokenStream = groups.collect();
+        let bindings = names::bindings(&[routine], &|symbol| self.dynamic_binding(symbol));
+        let (statements, results) = self.body(routine);
+        let length = results.len();
+        (count > 0).then(|| {
+            quote! {
+                impl<S: Scalar> Model<S> {
+                    fn loops(&self, t: S, x: &[S; #n], negative: &[bool; #g], found: &[S; #count]) -> [S; #length] {
+                        let c = &self.constants;
+                        #bindings
+                        #statements
+                        [#(#results),*]
+                    }
+                    /// What the unknowns of algebraic loops are, nearly; not numbers where that is not found.
+                    #[inline(never)]
+                    fn found(&self, t: S, x: &[S; #n], negative: &[bool; #g]) -> [S; #count] {
+                        let mut found = [S::from_f64(0.0); #count];
+                        #groups
+                        found
+                    }
+                }
+            }
+        })
+    }
+}

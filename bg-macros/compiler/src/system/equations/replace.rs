@@ -1,0 +1,76 @@
+//! Values in the places of symbols, in all equations.
+//!
+//! In: [`StateEquations`], what stands for each symbol. Out: the same with it in every expression.
+
+use super::StateEquations;
+use crate::expr::{Branch, Id, Symbol, substitute_switched};
+
+impl StateEquations {
+    /// Every expression of the model that depends on states.
+    fn roots(&mut self) -> Vec<&mut Id> {
+        let mut roots: Vec<&mut Id> = Vec::new();
+        for state in &mut self.states {
+            roots.push(&mut state.start);
+            roots.push(&mut state.rate);
+        }
+        roots.extend(&mut self.guesses);
+        roots.extend(self.gaps.iter_mut().map(|gap| &mut gap.value));
+        roots.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
+        roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
+        for reaction in &mut self.reactions {
+            roots.push(&mut reaction.slip.flow);
+            roots.extend(&mut reaction.slip.gap);
+            roots
+                .extend(reaction.friction.iter_mut().flat_map(|friction| [&mut friction.effort, &mut friction.sticks]));
+        }
+        roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
+        for iteration in &mut self.iterations {
+            roots.extend(iteration.roots());
+        }
+        roots.extend(self.projections.iter_mut().chain(&mut self.settled).map(|(_, id)| id));
+        roots
+    }
+
+    /// Puts the values of the reactions in the places of their symbols, everywhere.
+    ///
+    /// Where joints close loops, outputs and what is shown keep the symbols: there a model shares reactions that are not
+    /// unique before it evaluates these.
+    pub fn close(&mut self) {
+        let solution = std::mem::take(&mut self.solution);
+        if solution.values.is_empty() {
+            return;
+        }
+        let (outputs, shown) = (self.outputs.clone(), self.shown.clone());
+        self.replace(&|symbol| solution.value(symbol));
+        if self.holding.is_shared() {
+            (self.outputs, self.shown) = (outputs, shown);
+        }
+        self.solution = solution;
+    }
+
+    /// Replaces symbols everywhere.
+    pub fn replace(&mut self, replace: &dyn Fn(Symbol) -> Option<Id>) {
+        self.replace_switched(replace, &Branch::Kept);
+    }
+
+    /// Replaces symbols and decides switches everywhere.
+    pub fn replace_switched(&mut self, replace: &dyn Fn(Symbol) -> Option<Id>, branch: &dyn Fn(u32) -> Branch) {
+        let mut pool = std::mem::take(&mut self.pool);
+        let before: Vec<Id> = self.roots().into_iter().map(|id| *id).collect();
+        let after = substitute_switched(&mut pool, &before, replace, branch);
+        for (root, id) in self.roots().into_iter().zip(after) {
+            *root = id;
+        }
+        // By themselves, after the others: so they have no influence on the order of terms.
+        let values: Vec<Id> = self.fallible.iter().map(|law| law.value).collect();
+        let after = substitute_switched(&mut pool, &values, replace, branch);
+        for (law, value) in self.fallible.iter_mut().zip(after) {
+            law.value = value;
+        }
+        // What is held and shown comes after, so that it has no influence on the order of the rates' nodes.
+        self.solution.replace(&mut pool, replace, branch);
+        self.holding.replace(&mut pool, replace, branch);
+        self.shown.replace(&mut pool, replace, branch);
+        self.pool = pool;
+    }
+}
