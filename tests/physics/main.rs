@@ -14,6 +14,7 @@ mod hacksaw_with_motor;
 mod hydraulic_cylinder;
 mod joints;
 mod loops;
+mod mechanisms;
 mod mass_spring_damper;
 mod modulated;
 mod nonlinear;
