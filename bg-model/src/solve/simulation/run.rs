@@ -20,8 +20,9 @@ use crate::solve::stepper::Stepper;
 const MOVED: f64 = 10.0;
 /// How often a sample is projected at most.
 const PROJECTIONS: usize = 6;
-/// How much less another projection moves, at most, where the first one has led to the motion's own branch.
-const AGAIN: f64 = 1e-3;
+/// How much less another projection moves, at most, where the first one has led to the motion's own branch: about the error
+/// beside the distance of the branches.
+const AGAIN: f64 = 0.05;
 
 /// A run under way.
 pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
@@ -202,8 +203,8 @@ where
         if moved <= MOVED || self.loops.is_none() {
             return moved <= MOVED;
         }
-        let again = self.stepper.project();
-        again <= AGAIN * moved || again <= MOVED * self.stepper.project()
+        let [again, once_more] = [self.stepper.project(), self.stepper.project()];
+        again <= AGAIN * moved || again <= MOVED * once_more
     }
 
     /// The first instant after `t` (s) and before the end, by more than rounding, at which the system has a step end;
