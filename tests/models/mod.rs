@@ -6,6 +6,7 @@ pub mod drives;
 pub mod hacksaw_with_motor;
 pub mod joints;
 pub mod loops;
+pub mod mechanisms;
 pub mod modulated;
 pub mod nonlinear;
 pub mod permuted;

@@ -83,6 +83,19 @@ pub enum AssemblyError {
     /// Rigid joints hold the same motion at the start but not near it: the start pose is singular.
     #[error("the start pose is singular: in it {0}; start a little beside it, or make one of them compliant")]
     Redundant(Redundancy),
+    /// Rigid joints leave no motion, and no source gives one.
+    #[error(
+        "the mechanism cannot move: rigid joints {} hold it together in every direction; leave one of them out, make it \
+         compliant, or give it another free axis", quoted(.joints)
+    )]
+    Immobile {
+        /// The joints that clash: those that hold what others hold, or all where each holds something of its own.
+        joints: Vec<&'static str>,
+    },
+}
+
+fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 fn also_torn(others: &[Slipping]) -> String {

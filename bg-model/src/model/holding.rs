@@ -37,11 +37,13 @@ pub struct Held {
     /// The rigid motions of joints that close loops, which may follow from others: the row, and its place in
     /// [`Joints::kept`](crate::capability::Joints::kept).
     pub closing: &'static [(usize, usize)],
+    /// Whether sources give flows, so that something moves, or is to move, where [`Held::moved`] is zero.
+    pub is_driven: bool,
 }
 
 impl Held {
     /// No joint holds anything.
-    pub const NOTHING: Self = Self { rigid: &[], compliant: &[], moved: &[], pose: &[], turning: &[], closing: &[] };
+    pub const NOTHING: Self = Self { rigid: &[], compliant: &[], moved: &[], pose: &[], turning: &[], closing: &[], is_driven: false };
 
     /// How many numbers [`Joints::hold`](crate::capability::Joints::hold) writes.
     #[must_use]

@@ -52,6 +52,13 @@ impl<S: Scalar> Factors<S> {
         factors
     }
 
+    /// How many rows of the lower triangle `matrix` do not follow from others, without those that are `left_out`.
+    pub fn rank(matrix: &[S], left_out: &[bool]) -> usize {
+        let mut factors = Self::new(left_out.len());
+        factors.factor_where(matrix, |row, pivot, entry| left_out[row] || pivot <= DISTINCT * entry);
+        factors.follows.iter().filter(|&&follows| !follows).count()
+    }
+
     /// Replaces the factors by those of the lower triangle `matrix`; `follows` says of a row, its pivot and its entry on the
     /// diagonal whether it takes no part. Allocates nothing.
     pub fn factor_where(&mut self, matrix: &[S], follows: impl Fn(usize, f64, f64) -> bool) {

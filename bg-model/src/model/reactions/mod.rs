@@ -9,6 +9,7 @@
 //! place of b: it changes the flows by A l and the momenta by what the reactions move.
 
 mod factors;
+mod immobile;
 mod shared;
 mod watch;
 
@@ -86,7 +87,8 @@ impl<S: Scalar> Hold<S> {
 /// Allocates.
 ///
 /// # Errors
-/// [`AssemblyError::Torn`] where velocities do not fit, [`AssemblyError::Redundant`] where reactions are not unique.
+/// [`AssemblyError::Torn`] where velocities do not fit, [`AssemblyError::Redundant`] where reactions are not unique,
+/// [`AssemblyError::Immobile`] where nothing can move.
 pub fn fit<Sys, S, const N: usize, const G: usize, const U: usize, const K: usize>(
     system: &Sys,
     unknowns: [f64; U],
@@ -126,6 +128,9 @@ where
     let x = state(&values);
     let hold = read(&x);
     let factors = Factors::of(hold.matrix());
+    if let Some(joints) = immobile::immobile(&hold, &factors) {
+        return Err(AssemblyError::Immobile { joints });
+    }
     if let Some(redundancy) = factors.redundancy(held.rigid, &dropped(system)) {
         return Err(AssemblyError::Redundant(redundancy));
     }

@@ -73,6 +73,18 @@ impl<const N: usize> Method<N> for AnyMethod<N> {
         inside!(self, method => method.attempt(flow, start, h, scale, end))
     }
 
+    fn error_after(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &SVector<f64, N>,
+        project: impl Fn(&mut SVector<f64, N>),
+    ) -> Option<f64> {
+        inside!(self, method => method.error_after(flow, start, h, scale, end, project))
+    }
+
     fn advance(&mut self) {
         inside!(self, method => method.advance());
     }

@@ -304,6 +304,18 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
         &self.changes
     }
 
+    fn error_after(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &SVector<f64, N>,
+        project: impl Fn(&mut SVector<f64, N>),
+    ) -> Option<f64> {
+        if self.is_implicit { None } else { self.explicit.error_after(flow, start, h, scale, end, project) }
+    }
+
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
         if self.is_implicit {
             self.implicit.largest_error(start, scale, end)

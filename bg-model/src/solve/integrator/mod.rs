@@ -163,6 +163,20 @@ pub trait Method<const N: usize> {
         end: &mut SVector<f64, N>,
     ) -> f64;
 
+    /// The norm of what `project` leaves of the last attempt's error estimate; none where the method does not say. Joints that
+    /// hold a motion take away what a step errs in it.
+    fn error_after(
+        &mut self,
+        _flow: &impl Flow<N>,
+        _start: &Point<N>,
+        _h: f64,
+        _scale: &Scale<N>,
+        _end: &SVector<f64, N>,
+        _project: impl Fn(&mut SVector<f64, N>),
+    ) -> Option<f64> {
+        None
+    }
+
     /// The last attempt was accepted: its end, perhaps projected, is the start of the next.
     fn advance(&mut self) {}
 

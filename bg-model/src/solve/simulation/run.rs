@@ -16,8 +16,13 @@ use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Method, StepControl, is_finite};
 use crate::solve::stepper::Stepper;
 
-/// The norm of a projection above which a step is rejected. It is below 2 where a step errs by as much as is allowed.
+/// The norm of a projection above which it is looked at more closely. It is below 2 where a step errs by as much as is allowed.
 const MOVED: f64 = 10.0;
+/// How often a sample is projected at most.
+const PROJECTIONS: usize = 6;
+/// How much less another projection moves, at most, where the first one has led to the motion's own branch: about the error
+/// beside the distance of the branches.
+const AGAIN: f64 = 0.05;
 
 /// A run under way.
 pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
@@ -167,10 +172,12 @@ where
             error = self.stepper.attempt(h);
             self.pace.follow(self.stepper.method.control());
             self.stepper.end.t = t_new;
+            if error > 1.0 && self.loops.is_some() {
+                error = self.stepper.error_after_projection().unwrap_or(error);
+            }
             if error <= 1.0 && is_finite(&self.stepper.end.x) {
-                let moved = self.stepper.project();
+                let is_near = self.project() || !self.pace.is_adaptive();
                 self.stepper.evaluate_end();
-                let is_near = moved <= MOVED || !self.pace.is_adaptive();
                 if is_near && is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
                     self.pace.accept(t_new, h, error);
                     return Ok(());
@@ -185,6 +192,19 @@ where
                 return Err(self.lost(error));
             }
         }
+    }
+
+    /// Projects the end of the step; gives whether it is still on the branch of the motion on which the step began.
+    ///
+    /// Near a singular pose steps err much in what joints hold, which the projection takes away. It is Newton's step, so
+    /// where the branches are far apart beside the error, another one moves by the error's square only, or by rounding.
+    fn project(&mut self) -> bool {
+        let moved = self.stepper.project();
+        if moved <= MOVED || self.loops.is_none() {
+            return moved <= MOVED;
+        }
+        let [again, once_more] = [self.stepper.project(), self.stepper.project()];
+        again <= AGAIN * moved || again <= MOVED * once_more
     }
 
     /// The first instant after `t` (s) and before the end, by more than rounding, at which the system has a step end;
@@ -246,7 +266,9 @@ where
             }
             let part = (instant - self.stepper.start.t) / self.stepper.h;
             let mut x = self.stepper.dense(part.min(1.0));
-            self.stepper.system.project(instant, &self.stepper.negative, &mut x);
+            // The dense output errs more than the step, and most near a singular pose.
+            let most = if self.loops.is_some() { PROJECTIONS } else { 1 };
+            let _ = (0..most).find(|_| self.stepper.project_state(instant, &mut x) <= MOVED);
             observer.sample(instant, &x, &self.stepper.negative);
         }
     }

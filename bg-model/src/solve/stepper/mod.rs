@@ -10,6 +10,9 @@ use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_
 use crate::solve::statistics::Statistics;
 use frozen::Frozen;
 
+/// What rounding may leave of a projection, beside what it leaves of another one.
+const ROUNDING: f64 = 10.0;
+
 /// A system, a method and the step between two points that is being made.
 #[derive(Debug)]
 pub(crate) struct Stepper<'a, Sys, M, const N: usize, const G: usize> {
@@ -54,12 +57,38 @@ where
         method.attempt(&flow, start, h, scale, &mut end.x)
     }
 
+    /// The norm of what the projection leaves of the last attempt's error, at most 1 where that is rounding; none where the
+    /// method does not say.
+    pub fn error_after_projection(&mut self) -> Option<f64> {
+        let (system, negative, h) = (self.system, self.negative, self.h);
+        let (method, flow, start, end, scale) = self.split();
+        // Newton's steps: what the second leaves is rounding.
+        let project = |x: &mut SVector<f64, N>| {
+            system.project(end.t, &negative, x);
+            system.project(end.t, &negative, x);
+        };
+        let error = method.error_after(&flow, start, h, scale, &end.x, project)?;
+        let mut once = end.x;
+        project(&mut once);
+        let mut again = once;
+        system.project(end.t, &negative, &mut again);
+        let rounding = scale.norm(&(again - once), &once);
+        Some(if error <= ROUNDING * rounding { error.min(1.0) } else { error })
+    }
+
     /// Moves the end of the step back onto the invariants. Gives the norm of what that changes where joints may be rigid:
     /// it is of the size of the error, unless the step has led to another branch of the motion.
     pub fn project(&mut self) -> f64 {
-        let Point { t, x, .. } = &mut self.end;
+        let Point { t, mut x, .. } = self.end;
+        let moved = self.project_state(t, &mut x);
+        self.end.x = x;
+        moved
+    }
+
+    /// The same with any state, at time `t` (s).
+    pub fn project_state(&self, t: f64, x: &mut SVector<f64, N>) -> f64 {
         let before = *x;
-        self.system.project(*t, &self.negative, x);
+        self.system.project(t, &self.negative, x);
         if self.system.joints().is_some() { self.scale.norm(&(*x - before), x) } else { 0.0 }
     }
 

@@ -8,6 +8,7 @@ use quote::{format_ident, quote};
 
 use super::super::items::identifier;
 use super::{Emission, Shape};
+use crate::expr::{Symbol, substitute};
 use crate::program::{Program, Programs};
 use crate::system::equations::{Kind, Slip};
 
@@ -121,6 +122,20 @@ impl Emission<'_> {
         quote!(&[#(#indices),*])
     }
 
+    /// Whether sources give flows: whether something moves, or is to move, where the momenta that joints change are zero.
+    fn is_driven(&self) -> bool {
+        let equations = &self.model.equations;
+        let is_of_pose = |kind| matches!(kind, Kind::Position | Kind::Orientation | Kind::Angle);
+        let pose = equations.states.iter().filter(|state| is_of_pose(state.origin.kind())).map(|state| state.rate);
+        let flows = equations.holding.rigid.iter().map(|slip| slip.flow);
+        let mut pool = equations.pool.clone();
+        let zero = pool.zero();
+        let is_moved = |state: usize| equations.holding.moves.iter().any(|(moved, _)| *moved == state);
+        let at_rest = |symbol: Symbol| symbol.as_state().filter(|&state| is_moved(state)).map(|_| zero);
+        let given = substitute(&mut pool, &pose.chain(flows).collect::<Vec<_>>(), &at_rest);
+        given.into_iter().any(|flow| !pool.is_zero(flow))
+    }
+
     /// What the joints hold.
     pub(super) fn joints(&self) -> TokenStream {
         let Some(Program { routines: [routine], .. }) = &self.model.programs.holding else { return TokenStream::new() };
@@ -131,12 +146,12 @@ impl Emission<'_> {
         let closing = self.closing();
         let pose = self.states_of(&[Kind::Position, Kind::Orientation, Kind::Angle, Kind::Displacement]);
         let turning = self.states_of(&[Kind::Orientation, Kind::Angle]);
-        let kept = self.shared().kept();
+        let (kept, is_driven) = (self.shared().kept(), self.is_driven());
         let (body, entries) = self.running(routine, &format_ident!("holding_constants"));
         quote! {
             impl<S: Scalar> ::bg_model::capability::Joints<S, #n, #g> for Model<S> {
                 fn held(&self) -> ::bg_model::holding::Held {
-                    ::bg_model::holding::Held { rigid: &[#rigid], compliant: &[#compliant], moved: &[#(#moved),*], pose: #pose, turning: #turning, closing: #closing }
+                    ::bg_model::holding::Held { rigid: &[#rigid], compliant: &[#compliant], moved: &[#(#moved),*], pose: #pose, turning: #turning, closing: #closing, is_driven: #is_driven }
                 }
                 #kept
                 #[inline(never)]

@@ -117,6 +117,13 @@ fn combine<const N: usize>(row: Row, k: &Stages<N>, i: usize) -> f64 {
     row.iter().fold(-0.0, |sum, (stage, weight)| sum + weight * k[*stage].data.0[0][i])
 }
 
+/// The norm of two error estimates of different orders.
+fn joined(first: f64, second: f64) -> f64 {
+    let both = first * first + 0.01 * second * second;
+    // Both differences vanish exactly at a state of rest.
+    if both == 0.0 { 0.0 } else { first * first / both.sqrt() }
+}
+
 impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// Evaluates the stages from `first` up to `behind`. Their sums are written out, so that each finds its weights as
     /// constants; the rate stands there once, which is less to compile and takes no longer.
@@ -173,10 +180,7 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         if T::SECOND.is_empty() {
             return h.abs() * first;
         }
-        let second = largest(&second);
-        let both = first * first + 0.01 * second * second;
-        // Both differences vanish exactly at a state of rest.
-        if both == 0.0 { 0.0 } else { h.abs() * first * first / both.sqrt() }
+        h.abs() * joined(first, largest(&second))
     }
 }
 
@@ -220,6 +224,34 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         flow.rate(start.t + h, end, &mut self.k[T::END]);
         let late = h.abs() * largest(&self.errors(T::LATE, start, scale, end));
         if late > norm { late } else { norm }
+    }
+
+    fn error_after(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &SVector<f64, N>,
+        project: impl Fn(&mut SVector<f64, N>),
+    ) -> Option<f64> {
+        let mut reached = *end;
+        project(&mut reached);
+        let left = |difference: &dyn Fn(usize) -> f64| {
+            let mut other = SVector::from_fn(|i, _| end[i] - h * difference(i));
+            project(&mut other);
+            largest::<N>(&std::array::from_fn(|i| (reached[i] - other[i]).abs() / scale.allowed(i, start.x[i], end[i])))
+        };
+        let first = left(&|i| combine(T::ERROR, &self.k, i));
+        if !T::SECOND.is_empty() {
+            let second = left(&|i| combine(T::B, &self.k, i) - combine(T::SECOND, &self.k, i));
+            return Some(joined(first, second));
+        }
+        if T::LATE.is_empty() || first > 1.0 {
+            return Some(first);
+        }
+        flow.rate(start.t + h, end, &mut self.k[T::END]);
+        Some(first.max(left(&|i| combine(T::LATE, &self.k, i))))
     }
 
     fn advance(&mut self) {
