@@ -385,6 +385,10 @@ use proc_macro::TokenStream;
 /// `Cause::Singular`. A start in such a pose is an error, `AssemblyError::Redundant`. If a motion that followed from the
 /// others at the start does so no more, the run ends with `Cause::Torn`.
 ///
+/// Joints that leave no motion at all, such as a parallelogram with a rod across, are an error of `start`,
+/// `AssemblyError::Immobile`, which names those that clash. A frame that joints only fix may stand, and so may what sources of
+/// flow move.
+///
 /// ## `spring`, `contact`
 ///
 /// ```text

@@ -88,18 +88,45 @@ fn the_flyball_governor_sinks_as_published() {
     let run = record(&model, &instants(f64::from(seconds), 10 * seconds), 1e-10);
     let names = ["turned", "height", "right", "left", "speed", "climb", "right_speed", "left_speed"];
     let truth: [(usize, [f64; 8]); 3] = [
-        (1, [
-            0.622_106_681_402_675_7, 0.523_836_475_569_575_7, 0.496_173_869_075_900_2, 0.496_173_869_075_900_2,
-            6.103_717_808_830_863, 0.459_271_810_436_133_9, -0.522_673_929_753_980_2, -0.522_673_929_753_980_2,
-        ]),
-        (10, [
-            5.586_346_965_869_006, 0.501_420_922_379_567_7, 0.521_833_301_625_546_2, 0.521_833_301_625_546_2,
-            6.271_125_741_876_555, -0.122_151_492_897_728_9, 0.140_885_579_479_526_7, 0.140_885_579_479_526_7,
-        ]),
-        (50, [
-            27.942_531_991_042_956, 0.535_563_103_721_643_4, 0.482_874_576_586_939_8, 0.482_874_576_586_939_8,
-            6.022_496_499_758_459, -0.543_682_690_277_873, 0.613_917_046_788_889_5, 0.613_917_046_788_889_5,
-        ]),
+        (
+            1,
+            [
+                0.622_106_681_402_675_7,
+                0.523_836_475_569_575_7,
+                0.496_173_869_075_900_2,
+                0.496_173_869_075_900_2,
+                6.103_717_808_830_863,
+                0.459_271_810_436_133_9,
+                -0.522_673_929_753_980_2,
+                -0.522_673_929_753_980_2,
+            ],
+        ),
+        (
+            10,
+            [
+                5.586_346_965_869_006,
+                0.501_420_922_379_567_7,
+                0.521_833_301_625_546_2,
+                0.521_833_301_625_546_2,
+                6.271_125_741_876_555,
+                -0.122_151_492_897_728_9,
+                0.140_885_579_479_526_7,
+                0.140_885_579_479_526_7,
+            ],
+        ),
+        (
+            50,
+            [
+                27.942_531_991_042_956,
+                0.535_563_103_721_643_4,
+                0.482_874_576_586_939_8,
+                0.482_874_576_586_939_8,
+                6.022_496_499_758_459,
+                -0.543_682_690_277_873,
+                0.613_917_046_788_889_5,
+                0.613_917_046_788_889_5,
+            ],
+        ),
     ];
     for (sample, values) in truth.into_iter().filter(|(sample, _)| *sample < run.times.len()) {
         for (name, value) in names.into_iter().zip(values) {
@@ -166,21 +193,25 @@ impl Crank {
 fn the_slider_crank_turns_through_its_dead_centres() {
     for (crank, rod) in [(0.1, 0.35), (0.12, 0.3), (0.2, 0.2)] {
         let hand = Crank { crank, rod, torque: 5.0 };
-        let p = RigidSliderCrankParameters { torque: hand.torque, crank_angle: 0.4, crank_length: crank, rod_length: rod };
+        let p =
+            RigidSliderCrankParameters { torque: hand.torque, crank_angle: 0.4, crank_length: crank, rod_length: rod };
         let run = record(&RigidSliderCrank::new(p).unwrap(), &instants(3.0, 300), 1e-10);
         let [angles, rods, sliders, speeds] = ["angle", "rod_angle", "slider_x", "speed"].map(|name| run.series(name));
         let mut angle = 0.4;
         let apart = |a: f64, b: f64| (a - b).sin().abs() + (1.0 - (a - b).cos());
         let mut largest = [0.0_f64; 3];
         for k in 0..angles.len() {
-            angle += (angles[k] - angle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+            angle +=
+                (angles[k] - angle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
             let [rod_angle, x, ..] = hand.pose(angle);
             let found = [apart(rods[k], rod_angle), (sliders[k] - x).abs(), (speeds[k] - hand.speed(angle, 0.4)).abs()];
             largest = std::array::from_fn(|i| largest[i].max(found[i]));
         }
         println!("{crank} {rod}: {:.1} turns", angle / std::f64::consts::TAU);
         assert!(angle > 4.0 * std::f64::consts::TAU, "{angle}");
-        for (what, value, bound) in [("rod", largest[0], 1e-8), ("slider", largest[1], 1e-9), ("speed", largest[2], 1e-7)] {
+        for (what, value, bound) in
+            [("rod", largest[0], 1e-8), ("slider", largest[1], 1e-9), ("speed", largest[2], 1e-7)]
+        {
             within(what, value, bound);
         }
     }
