@@ -9,6 +9,7 @@
 //! place of b: it changes the flows by A l and the momenta by what the reactions move.
 
 mod factors;
+mod impact;
 mod shared;
 mod watch;
 
@@ -21,6 +22,7 @@ use crate::model::nearest::nearest;
 use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign};
 use factors::Factors;
+pub(crate) use impact::{After, Collision};
 pub use shared::{kept, redundant, share};
 pub(crate) use watch::{Broken, LoopWatch};
 

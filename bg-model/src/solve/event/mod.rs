@@ -11,6 +11,7 @@ mod branch;
 mod condition;
 mod detect;
 mod guarded;
+mod impact;
 mod locate;
 mod minimum;
 mod noise;
@@ -20,6 +21,7 @@ use nalgebra::SVector;
 
 pub(crate) use condition::{Condition, Located, Never, Stop};
 use guarded::Guarded;
+pub(crate) use impact::Struck;
 
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;
