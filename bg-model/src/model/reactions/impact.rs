@@ -6,7 +6,7 @@
 //! Newton's law: a flow v towards a stop becomes -e v, or leaves faster. Impulses L of the stops, which do not pull, and of the
 //! rigid joints, whose flows stay zero, change the flows by A L, with A = -J M^-1 J^T of all of them. Which of several stops
 //! give an impulse is a linear complementarity problem: an impulse that pulls is taken away, a stop that is passed gets one,
-//! of several the last, until none is wrong. Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts
+//! of several the last, until none is wrong. What leaves a stop too slowly to be seen is kept there. Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts
 //! (1996), chapter 8; C. Glocker, Set-Valued Force Laws (2001), chapter 9; K. G. Murty, Note on a Bard-type scheme for solving the
 //! complementarity problem, Opsearch 11 (1974), whose choice of the last ends. Impulses of dry friction are none: what it
 //! can hold is bounded.
@@ -15,7 +15,7 @@ use nalgebra::SVector;
 
 use super::factors::{DISTINCT, Factors};
 use crate::model::capability::Impacts;
-use crate::model::holding::Stops;
+use crate::model::holding::{Stop, Stops};
 use crate::model::scalar::Scalar;
 
 /// Flows and impulses that are smaller beside the largest are rounding.
@@ -51,10 +51,11 @@ pub(crate) struct Collision<S> {
     part: Vec<S>,
     /// The flow that each row is to have after it.
     target: Vec<S>,
-    /// Of each stop whether it is reached, gives an impulse, gives back nothing.
+    /// Of each stop whether it is reached, gives an impulse, gives back nothing, keeps what would leave too slowly to be seen.
     closed: Vec<bool>,
     active: Vec<bool>,
     plastic: Vec<bool>,
+    kept: Vec<bool>,
     outcome: Vec<After>,
 }
 
@@ -82,6 +83,7 @@ impl<S: Scalar> Collision<S> {
             closed: vec![false; stops],
             active: vec![false; stops],
             plastic: vec![false; stops],
+            kept: vec![false; stops],
             outcome: vec![After::Untouched; stops],
         }
     }
@@ -98,7 +100,7 @@ impl<S: Scalar> Collision<S> {
 
     /// Lets the state `x` at time `t` (s) jump where the stops whose switches are `closed` are reached. `is_low` says of a switch
     /// whether a rebound is as good as none that rises so far from the stop, in the unit of its displacement, and whether the
-    /// accuracy of the run decides that or only rounding. Gives whether something was hit. Allocates nothing.
+    /// accuracy of the run decides that or only rounding. Gives whether it jumps. Allocates nothing.
     pub fn strike<I, const N: usize, const G: usize>(
         &mut self,
         impacts: &I,
@@ -116,6 +118,7 @@ impl<S: Scalar> Collision<S> {
             self.closed[k] = closed(self.table.stops[k].switch);
             let (speed, back) = (self.speed(k), self.restitution(k) * self.speed(k));
             self.plastic[k] = speed <= 0.0 || back <= self.rest(k).max(0.0);
+            self.kept[k] = false;
         }
         let start = *x;
         for _ in 0..=stops {
@@ -129,10 +132,9 @@ impl<S: Scalar> Collision<S> {
             // The loads when it leaves, for how far it does.
             impacts.impact(t, x, &clear, &mut self.after);
             let mut is_settled = true;
-            for k in 0..stops {
-                let rebounds = self.active[k] && !self.plastic[k];
-                if rebounds && is_low(self.table.stops[k].switch, self.rise(k), self.rest(k) < 0.0) {
-                    (self.plastic[k], is_settled) = (true, false);
+            for k in (0..stops).filter(|&k| self.outcome[k] == After::Clear) {
+                if is_low(self.table.stops[k].switch, self.rise(k), self.rest(k) < 0.0) {
+                    (self.plastic[k], self.kept[k], is_settled) = (true, true, false);
                 }
             }
             if is_settled {
@@ -140,7 +142,30 @@ impl<S: Scalar> Collision<S> {
             }
         }
         self.integrate(x);
-        (0..stops).any(|k| self.active[k] && self.speed(k) > 0.0)
+        self.active.contains(&true)
+    }
+
+    /// The switches of the stops that nothing leaves, in whose order they are looked at where several bear a load.
+    pub fn resting(&self) -> impl Iterator<Item = (usize, usize)> {
+        let rests = |&(k, _): &(usize, &Stop)| self.outcome[k] == After::Rests;
+        self.table.stops.iter().enumerate().filter(rests).map(|(k, stop)| (k, stop.switch))
+    }
+
+    /// The rate of the flow towards a stop, where the loads are known.
+    pub fn load(&self, k: usize) -> f64 {
+        self.of_stop(&self.after, 2, k)
+    }
+
+    /// Finds the loads at this state and in these branches. Allocates nothing.
+    pub fn loads<I, const N: usize, const G: usize>(
+        &mut self,
+        impacts: &I,
+        (t, x): (S, &SVector<S, N>),
+        negative: &[bool; G],
+    ) where
+        I: Impacts<S, N, G>,
+    {
+        impacts.impact(t, x, negative, &mut self.after);
     }
 
     /// The flow of a row.
@@ -168,7 +193,7 @@ impl<S: Scalar> Collision<S> {
 
     /// How far a rebound rises from the stop, if the load stays.
     fn rise(&self, k: usize) -> f64 {
-        let (speed, load) = (Self::flow(&self.after, self.table.rigid + k), self.of_stop(&self.after, 2, k));
+        let (speed, load) = (Self::flow(&self.after, self.table.rigid + k), self.load(k));
         if load > 0.0 { 0.5 * speed * speed / load } else { f64::INFINITY }
     }
 
@@ -209,7 +234,7 @@ impl<S: Scalar> Collision<S> {
             let flow = self.before[rigid + k];
             let restitution = self.before[self.table.rows() + k];
             self.target[rigid + k] = if self.plastic[k] { zero } else { -(restitution * flow) };
-            self.active[k] = self.closed[k] && flow.to_f64() > 0.0;
+            self.active[k] = self.kept[k] || self.closed[k] && flow.to_f64() > 0.0;
         }
         self.after.copy_from_slice(&self.before);
         self.total.fill(zero);
@@ -266,7 +291,9 @@ impl<S: Scalar> Collision<S> {
         let largest = self.part.iter().fold(0.0_f64, |largest, part| largest.max(part.to_f64().abs()));
         let is_wrong = |&k: &usize| {
             let row = rigid + k;
-            if self.active[k] {
+            if self.kept[k] {
+                false
+            } else if self.active[k] {
                 self.part[row].to_f64() > ROUNDING * largest
             } else {
                 self.closed[k] && changed(row) > self.target[row].to_f64() + ROUNDING * scale

@@ -1,7 +1,9 @@
 //! Impacts: the state jumps where something reaches a stop.
 //!
-//! In: a point at which the guards of stops are at zero. Out: the state after the impact ([`Collision`]), with the branches
-//! of those stops that are left again; which branch holds where something rests, the guards decide as at any event.
+//! In: a point at which the guards of stops are at zero. Out: the state after the impact ([`Collision`]), with the branches of
+//! these stops. Where something is left without speed it rests if the load presses it there: of several stops which bear one,
+//! one whose effort would pull is taken away, one towards which something would move is added, of several the last, until none
+//! is wrong.
 //!
 //! A rebound is none where it rises less than [`LOW`] of what the tolerances allow for its place, unless the stop says below
 //! which speed it is none, or where rounding does not let its end be found.
@@ -15,6 +17,8 @@ use crate::model::system::System;
 use crate::solve::integrator::Method;
 use crate::solve::stepper::Stepper;
 
+/// How often the choice of the stops that bear a load is changed.
+const CHANGES: usize = 100;
 /// The part of the error that the tolerances allow for a place.
 const LOW: f64 = 0.01;
 
@@ -53,8 +57,9 @@ impl<const G: usize> Watch<G> {
         let mut rebounds = [false; G];
         for (k, after) in collision.outcomes() {
             rebounds[k] = after == After::Clear && negative[k] && jumps;
-            switches[k] &= after != After::Clear;
+            switches[k] &= after == After::Untouched;
         }
+        self.rest(stepper, collision);
         Struck { switches, rebounds, jumps }
     }
 
@@ -70,6 +75,7 @@ impl<const G: usize> Watch<G> {
     {
         let mut clear = [false; G];
         let Some(collision) = collision else { return clear };
+        collision.switches().for_each(|k| self.is_stop[k] = true);
         stepper.negative = stepper.system.first_branches();
         let start = stepper.start;
         let beyond = stepper.guards(start.t, &start.x);
@@ -78,8 +84,30 @@ impl<const G: usize> Watch<G> {
         clear
     }
 
+    /// Finds the stops that bear the load among those on which something may rest.
+    fn rest<Sys, M, const N: usize>(&self, stepper: &mut Stepper<'_, Sys, M, N, G>, collision: &mut Collision<f64>)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let system = stepper.system;
+        let Some(impacts) = system.impacts() else { return };
+        collision.resting().for_each(|(_, switch)| stepper.negative[switch] = false);
+        let start = stepper.start;
+        for _ in 0..CHANGES {
+            let effort = stepper.guards(start.t, &start.x);
+            let noise = self.noise(stepper, start.t, &start.x, &effort);
+            collision.loads(impacts, (start.t, &start.x), &stepper.negative);
+            let is_wrong = |&(k, switch): &(usize, usize)| {
+                if stepper.negative[switch] { collision.load(k) > 0.0 } else { effort[switch] < -noise[switch] }
+            };
+            let Some((_, wrong)) = collision.resting().filter(is_wrong).last() else { return };
+            stepper.negative[wrong] = !stepper.negative[wrong];
+        }
+    }
+
     /// Lets the state jump where the stops of these switches are reached, and dry friction slide that an impact moves; what it
-    /// brings to rest is added to `switches`. Gives whether something was hit.
+    /// brings to rest is added to `switches`. Gives whether the state jumps.
     fn collide<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
@@ -112,15 +140,13 @@ impl<const G: usize> Watch<G> {
         }
         let after = stepper.guards(start.t, &x);
         stepper.negative = negative;
-        let mut is_stop = [false; G];
         for (k, outcome) in collision.outcomes() {
-            is_stop[k] = true;
             stepper.negative[k] |= outcome == After::Clear;
             if outcome != After::Untouched {
                 self.leave(k, place[k]);
             }
         }
-        for k in (0..G).filter(|&k| jumps && first[k] && !is_stop[k]) {
+        for k in (0..G).filter(|&k| jumps && first[k] && !self.is_stop[k]) {
             if (after[k] - place[k]).abs() > CERTAIN * noise[k] {
                 switches[k] |= after[k].abs() <= CERTAIN * noise[k] && negative[k];
                 stepper.negative[k] = if switches[k] { negative[k] } else { after[k] < 0.0 };
