@@ -110,6 +110,7 @@ use proc_macro::TokenStream;
 /// element = KIND NAME ["(" ["effort" | "flow"] NAME ")"] "=" EXPRESSION { clause } ";"
 /// clause  = "in" EXPRESSION | "at" EXPRESSION | "start" EXPRESSION | "energy" EXPRESSION
 ///         | "of" JOINT [("along" | "about") AXIS] | "holds" EXPRESSION
+///         | "restitution" EXPRESSION | "rest" "below" EXPRESSION
 /// ```
 ///
 /// Without a variable the law is linear in the expression. With one, `R bearing(w) = ...`, the expression is the law
@@ -149,6 +150,9 @@ use proc_macro::TokenStream;
 ///   the other way. At rest it sticks: the effort is the one that keeps the flow at 0, up to E in either direction ([dry
 ///   friction](#dry-friction)). E and the law may depend on everything but reactions that the friction itself changes
 ///   (BG0515, of the law only). Where the law at 0 is more than E, it holds that. A momentum has to determine the flow, and no input (BG0516).
+/// - `restitution E` (only a scalar rSe `= 0 at GAP` of no joint) makes it a **stop**, which acts one way only: GAP is how far its
+///   end is passed, which stays at 0 or below ([stops with a restitution](#stops-with-a-restitution)). E is of parameters, from 0 to
+///   1 (BG0704), and so is V of `rest below V`. A momentum has to determine the flow, and no input (BG0517).
 /// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
 /// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
 ///   may be left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the
@@ -408,7 +412,7 @@ use proc_macro::TokenStream;
 ///
 /// ```text
 /// friction = "friction" NAME "on" TARGET "{" { ("coulomb" | "static" | "stribeck" | "viscous" | "normal" | "radius" | "creep") E ";" } "}"
-/// stop     = "stop" NAME "on" TARGET "{" { ("at" "most" | "at" "least" | "stiffness" | "damping" | "start") E ";" } "}"
+/// stop     = "stop" NAME "on" TARGET "{" { ("at" "most" | "at" "least" | "stiffness" | "damping" | "restitution" | "rest" "below" | "start") E ";" } "}"
 /// ```
 ///
 /// The TARGET is a joint, for its free axis (of a cylindrical one the rotation; `pin.slide` is the other), a contact, for its line,
@@ -435,11 +439,15 @@ use proc_macro::TokenStream;
 /// from `start` (0 when left out) on. With sin p = d / (2 sqrt(k m)) a mass m that hits stiffness k and damping d leaves with
 /// exp(-(pi - 2 p) tan p) of its speed, whatever that is: for 0.8 take sin p = 0.0744, for 0.5 sin p = 0.2553.
 ///
+/// With `restitution e` in the place of stiffness and damping it does not give way: what hits it with a speed v leaves with e v,
+/// 0 to 1, at the same instant; what is too slow rests on it ([stops with a restitution](#stops-with-a-restitution)).
+///
 /// | name | |
 /// |---|---|
 /// | `NAME.effort`, `.power` | of the friction, against the motion; of the stop only `.effort` |
 /// | `NAME.pressed` | the force that presses, where there is one |
 /// | `NAME.spring`, `NAME.damper` | the stop's elements; `NAME.spring.q` is the displacement |
+/// | `NAME.upper`, `NAME.lower`, `NAME.place` | those of a stop with a restitution, one for each end, and the displacement; `NAME.power` |
 ///
 /// ```
 /// # use bg_model::bond_graph;
@@ -455,7 +463,7 @@ use proc_macro::TokenStream;
 ///         body carriage { mass 3; inertia [0.1, 0.1, 0.1]; start velocity [2, 0, 0]; }
 ///         joint guide: prismatic x (ground -> carriage) { rigid; }
 ///         friction rub on guide { coulomb 5; }
-///         stop ends on guide { at most 0.2; at least -0.1; stiffness 1e4; damping 20; }
+///         stop ends on guide { at most 0.2; at least -0.1; restitution 0.6; }
 ///
 ///         observe { pin.angle; journal.effort; x: m = guide.travel; ends.effort }
 ///     }
@@ -844,6 +852,7 @@ use proc_macro::TokenStream;
 /// | stiffness matrix | symmetric, no eigenvalue negative |
 /// | resistance matrix | its symmetric part without a negative eigenvalue; with an inverse where its flow follows from its effort |
 /// | start orientation, `turned`, the frame of an I | a rotation matrix, to six digits |
+/// | restitution of a stop | from 0 to 1 |
 ///
 /// A parameter's range that proves it, such as `above 0` for a mass, saves the check. What depends on states, inputs or time, or
 /// on a comparison, is not looked at. An R that gives power on purpose is a law of its variable, `R r(f) = -3 * f`, or
@@ -940,10 +949,56 @@ use proc_macro::TokenStream;
 /// motion, such as the four bearings of a crank mechanism, the first ones in the order of declaration bear the load, up to
 /// their limits: how they share it is not determined, the motion is.
 ///
+/// ## Stops with a restitution
+///
+/// Where something reaches the end of such a stop with a speed v, the momenta jump so that it leaves with e v: Newton's law of
+/// impact. The impulse acts through the masses of the whole mechanism; rigid joints and storages in derivative causality take
+/// part in it, with impulses of their own, so that all flows which they hold stay zero. Of several stops reached at one instant
+/// each gives back its part or is left faster; none pulls. Compliant joints and springs give no impulse, nor does dry friction:
+/// what these can bear is bounded. Friction that sticks slides after an impact which moves it.
+///
+/// Rebounds become lower and lower. One that would rise less than a hundredth of what the tolerances allow for the place (1e-10 m
+/// where it is about 1 m, by default) counts as none, with `rest below V` one that begins with less than V. Then it **rests**: the stop
+/// holds it by the reaction that keeps the flow at zero, solved for together with those of rigid joints and of
+/// dry friction, until that would pull. `restitution 0` is a plastic stop. A stop has one switch for each end, *being clear of* it.
+///
+/// - **At the instant of an impact** a sample is of the state before it, an observer's event of the state after it, and so is the end
+///   of a run: another one that goes on from there begins after the impact. At the start of a run the first sample is after it.
+/// - **`NAME.effort`** is that of resting, with the sign of a spring's: positive at the upper end. An impact is no effort of finite size.
+///   It is in integrals: `integral(NAME.effort)` jumps by the impulse, `integral(pin.force.x)` by that of a rigid joint. An integral of
+///   what is not linear in the efforts, such as `norm(pin.force)`, does not.
+/// - **Energy**: an impact takes (1 - e^2) of the energy that the speed v has there. `integral(NAME.power)` and `integral(dissipated_power)`
+///   jump by it, so that stored = supplied - dissipated holds over a run; so does the small energy of a rebound that counts as none.
+/// - The start must be between the ends, to 1e-9 m or rad (BG0704).
+/// - Not there: friction by the impulse of a stop, `extended::integrate`.
+///
+/// Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter 8; C. Glocker, Set-Valued Force Laws
+/// (2001); R. M. Brach, Mechanical Impact Dynamics (1991).
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A ball that is dropped on a floor.
+///     graph Ball {
+///         1 fall: translation; I ball = 2; Se weight = -19.62; weight -> fall -> ball;
+///         stop floor on fall { at least 0; start 1.25; restitution 0.5; }
+///         observe { height: m = floor.place; floor.effort; lost: J = integral(dissipated_power) }
+///     }
+/// }
+/// use bg_model::run::Simulation;
+///
+/// let model = Ball::new(BallParameters::default())?;
+/// let run = Simulation::new(&model).every(0.1).until(2.0).run()?;
+/// // It rests after 1.514 s, when the floor has taken all of the energy.
+/// assert!((run["lost"][20] - 2.0 * 9.81 * 1.25).abs() < 1e-6);
+/// assert!((run["floor.effort"][20] + 19.62).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Energy
 ///
 /// `stored_energy` is the energy in all I and C, `supplied_power` that of all sources into the model (weights and
-/// drives included, and what modulated storages take up), `dissipated_power` that of all R out of it: d(stored)/dt =
+/// drives included, and what modulated storages take up), `dissipated_power` that of all R and of stops with a restitution out of it: d(stored)/dt =
 /// supplied - dissipated.
 ///
 /// # `observe`
@@ -1056,6 +1111,7 @@ use proc_macro::TokenStream;
 /// | BG0211 | a universal joint with twice the same axis |
 /// | BG0212 | a contact without a law |
 /// | BG0213 | a friction or stop on a joint without a free axis |
+/// | BG0214 | a stop with a restitution and a stiffness or damping |
 /// | **names, ports, shapes, units** | |
 /// | BG0301 | not a coherent SI unit |
 /// | BG0302 | a name declared twice, or two outputs of one name |
@@ -1112,6 +1168,7 @@ use proc_macro::TokenStream;
 /// | BG0512 | a storage in derivative causality whose effort or flow cannot be solved for |
 /// | BG0515 | friction that depends on a reaction which depends on the friction |
 /// | BG0516 | friction that cannot stick, since no momentum determines its flow |
+/// | BG0517 | a stop with a restitution that nothing can hit, since no momentum determines its flow |
 /// | **scenes** | |
 /// | BG0601 | two models of one name, or a model with the name of another one's parameter or input struct |
 /// | BG0602 | no such thing to leave out |
@@ -1124,6 +1181,7 @@ use proc_macro::TokenStream;
 /// | BG0701 | a number that no physics allows, such as a mass of 0 |
 /// | BG0702 | a matrix that no physics allows |
 /// | BG0703 | an orientation that is no rotation |
+/// | BG0704 | a restitution outside of 0 to 1, or a start beyond the end of a stop |
 /// | **parts** | |
 /// | BG0801 | no such part |
 /// | BG0802 | no such parameter or input of the part, or one that the part gives itself |

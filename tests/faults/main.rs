@@ -41,7 +41,7 @@ const SYNTAX: [(&str, &str); 22] = [
 /// More parentheses than the parser follows.
 const DEEP: &str = "deep";
 
-const MECHANISM: [(&str, &str); 13] = [
+const MECHANISM: [(&str, &str); 14] = [
     (
         "BG0201",
         "body rod { sphere radius 1; density 1; }\njoint pin: fixed (ground -> ▸rodd) { stiffness 1; tilt stiffness 1; }",
@@ -78,6 +78,7 @@ const MECHANISM: [(&str, &str); 13] = [
         "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> rod) { stiffness 1; }\n\
          friction seat on ▸pin { coulomb 1; }",
     ),
+    ("BG0214", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness ▸1e4; restitution 0.5; }"),
 ];
 
 const GRAPH: [(&str, &str); 35] = [
@@ -125,7 +126,7 @@ const CAUSALITY: [(&str, &str); 4] = [
     ("BG0404", "Sf a = 1; 1 j: translation; R ▸r(effort e) = 2 * e; a -> j -> r;"),
 ];
 
-const EQUATIONS: [(&str, &str); 14] = [
+const EQUATIONS: [(&str, &str); 15] = [
     (
         "BG0501",
         "Se e = 1; 1 j: translation; param g: m/N^3/s = 1; R a = 1; 0 k; R b(effort e) = g * hold.effort * e * e; e -> j -> a; j -> ▸k -> b;
@@ -169,21 +170,29 @@ const EQUATIONS: [(&str, &str); 14] = [
          friction ▸rub on guide { coulomb 0.3; normal guide.force.y; }",
     ),
     ("BG0516", "Sf drum = 1; 1 j: translation; R ▸rub(v) = 2 holds 3; drum -> j -> rub;"),
+    ("BG0517", "Sf drum = 1; 1 j: translation; drum -> j; stop ▸end on j { at most 2; restitution 0.5; }"),
 ];
 
 /// Values that no physics allows.
-const VALUES: [(&str, &str); 3] = [
+const VALUES: [(&str, &str); 4] = [
     ("BG0701", "Se f = 1; 1 j: translation; I m = 2; R r = -▸3; f -> j -> m; j -> r;"),
     ("BG0702", "body rod { mass 1; inertia ▸[[1, 2, 0], [0, 2, 0], [0, 0, 3]]; }"),
     ("BG0703", "body rod { sphere radius 1; density 1; start turned ▸[[1, 0.2, 0], [0, 1, 0], [0, 0, 1]]; }"),
+    ("BG0704", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; restitution ▸1.2; }"),
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 26] = [
+const MORE: [(&str, &str); 32] = [
     ("BG0202", "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> ▸rod.end) { stiffness 1; }"),
     ("BG0202", "body rod { sphere radius 1; density 1; point end = [1, 0, 0]; start ▸top at [0, 0, 0]; }"),
     ("BG0203", "1 j: translation; I m = 2; j -> m; friction ▸rub on j { viscous 2; }"),
     ("BG0203", "1 j: translation; I m = 2; j -> m; stop ▸end on j { at most 2; }"),
+    ("BG0203", "1 j: translation; I m = 2; j -> m; stop ▸end on j { restitution 0.5; }"),
+    ("BG0204", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness 1; rest below ▸1; }"),
+    ("BG0316", "param e: m = 1; 1 j: translation; I m = 2; j -> m; stop end on j { at most 2; restitution ▸e; }"),
+    ("BG0323", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; restitution ▸t; }"),
+    ("BG0326", "Se f = 1; 1 j: translation; I m = 2; R ▸r = 2 restitution 0.5; f -> j -> m; j -> r;"),
+    ("BG0704", "1 j: translation; I m = 2; j -> m; stop ▸end on j { at most 2; start 3; restitution 0.5; }"),
     ("BG0203", "Se p = 1; 1 j: hydraulic; p -> j; orifice ▸o on j { area 1; coefficient 1; density 1; }"),
     ("BG0204", "1 j: translation; I m = 2; j -> m; friction rub on j { coulomb 2; stribeck ▸3; }"),
     ("BG0303", "1 j: translation; I m = 2; j -> m; friction rub on ▸jj { coulomb 2; }"),

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
-use crate::model::holding::Held;
+use crate::model::holding::{Held, Stops};
 use crate::model::linear::{Field, Sparsity};
 use crate::model::scalar::Scalar;
 
@@ -83,6 +83,21 @@ pub trait Joints<S: Scalar, const N: usize, const G: usize> {
     fn hold(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S]);
 }
 
+/// A system with stops that give back a part of the speed with which something hits them.
+pub trait Impacts<S: Scalar, const N: usize, const G: usize> {
+    /// The stops, and the states that impulses change.
+    fn stops(&self) -> Stops;
+
+    /// For each motion of [`Stops::closing`] 1, or 0 where it follows from the others and takes no part.
+    fn kept(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Writes what an impact at time `t` (s) and state `x` is calculated from into `entries`: in the order and of the length of
+    /// [`Stops`].
+    fn impact(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S]);
+}
+
 /// A capability that is not there.
 #[derive(Clone, Copy, Debug)]
 pub enum Absent {}
@@ -131,6 +146,15 @@ impl<S: Scalar, const N: usize, const G: usize> Joints<S, N, G> for Absent {
         match *self {}
     }
     fn hold(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut [S]) {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize, const G: usize> Impacts<S, N, G> for Absent {
+    fn stops(&self) -> Stops {
+        match *self {}
+    }
+    fn impact(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut [S]) {
         match *self {}
     }
 }

@@ -43,13 +43,60 @@ pub struct Held {
 
 impl Held {
     /// No joint holds anything.
-    pub const NOTHING: Self = Self { rigid: &[], compliant: &[], moved: &[], pose: &[], turning: &[], closing: &[], is_driven: false };
+    pub const NOTHING: Self =
+        Self { rigid: &[], compliant: &[], moved: &[], pose: &[], turning: &[], closing: &[], is_driven: false };
 
     /// How many numbers [`Joints::hold`](crate::capability::Joints::hold) writes.
     #[must_use]
     pub const fn entries(&self) -> usize {
         let reactions = self.rigid.len();
         2 * reactions + self.compliant.len() + reactions * (reactions + 1) / 2 + reactions * self.moved.len()
+    }
+}
+
+/// A stop that gives back a part of the speed with which something hits it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stop {
+    /// Its name.
+    pub name: &'static str,
+    /// Its switch, negative while something is clear of it. The guard then is how far its end is passed.
+    pub switch: usize,
+}
+
+/// The stops of a system, and what impulses change.
+///
+/// [`Impacts::impact`](crate::capability::Impacts::impact) writes, one after the other: the flow of each rigid motion and of each
+/// stop, positive towards it; of each stop the restitution, the speed of a rebound below which something rests on it (-1 where
+/// the accuracy of the run decides), and the rate of its flow; the lower triangle of the symmetric, negative definite matrix A
+/// by rows, where impulses L change the flows by A L; and for each row by how much one unit of its impulse changes the moved
+/// states, then the integrals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stops {
+    /// How many motions rigid joints hold: the first rows.
+    pub rigid: usize,
+    /// Those of them that may follow from others, each with its place in [`Impacts::kept`](crate::capability::Impacts::kept).
+    pub closing: &'static [(usize, usize)],
+    /// The stops: the rows after those.
+    pub stops: &'static [Stop],
+    /// The momenta that impulses change.
+    pub moved: &'static [usize],
+    /// The integrals that go along.
+    pub integrals: &'static [usize],
+}
+
+impl Stops {
+    /// How many rows there are.
+    #[must_use]
+    pub const fn rows(&self) -> usize {
+        self.rigid + self.stops.len()
+    }
+
+    /// How many numbers [`Impacts::impact`](crate::capability::Impacts::impact) writes.
+    #[must_use]
+    pub const fn entries(&self) -> usize {
+        let rows = self.rows();
+        let moves = rows * (self.moved.len() + self.integrals.len());
+        rows + 3 * self.stops.len() + rows * (rows + 1) / 2 + moves
     }
 }
 

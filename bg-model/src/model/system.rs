@@ -5,7 +5,7 @@
 use nalgebra::SVector;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::{Absent, Joints, Linearised, SecondOrder, Series};
+use crate::model::capability::{Absent, Impacts, Joints, Linearised, SecondOrder, Series};
 use crate::model::description::Description;
 use crate::model::holding::Redundancy;
 use crate::model::origin::Origin;
@@ -82,6 +82,12 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// What joints hold; nothing by default.
     #[inline]
     fn joints(&self) -> Option<&impl Joints<S, N, G>> {
+        None::<&Absent>
+    }
+
+    /// What impacts are calculated from: where something hits a stop, the state jumps. By default nothing is hit.
+    #[inline]
+    fn impacts(&self) -> Option<&impl Impacts<S, N, G>> {
         None::<&Absent>
     }
 }

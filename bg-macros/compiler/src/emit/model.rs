@@ -4,6 +4,7 @@
 //! the scalar; flat single assignments over fixed-size vectors. Each trait has a file of its own in this folder.
 
 mod capabilities;
+mod impacts;
 mod iterations;
 mod linear;
 pub(super) mod mechanism;

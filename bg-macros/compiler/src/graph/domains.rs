@@ -323,6 +323,20 @@ impl LawCheck<'_, '_> {
                 self.faults.push(Fault::new(self.node.name.span, &GraphFault::NotStorage { name, clause }));
             }
         }
+        let pure = Quantity::Known(Dimension::NONE);
+        let of_stop = [
+            ("the restitution", "restitution", &element.restitution, pure),
+            ("the speed of rest", "rest below", &element.rest, flow),
+        ];
+        for (what, clause, term, unit) in of_stop {
+            let Some(term) = term else { continue };
+            let typed = self.types.of(term, None, self.faults);
+            self.expect(what, term, typed, Shape::Scalar, &[unit]);
+            if shape != Shape::Scalar {
+                let name = self.node.name.text.clone();
+                self.faults.push(Fault::new(self.node.name.span, &GraphFault::NotStorage { name, clause }));
+            }
+        }
         if let Some(term) = &element.energy {
             let variable = self.variable_and_result(Role::Flow, effort, flow).0;
             let typed = self.types.of(term, Some((shape, variable)), self.faults);

@@ -177,6 +177,10 @@ pub struct Element {
     pub held: Option<Held>,
     /// The effort up to which an R of dry friction sticks.
     pub sticking: Option<Term>,
+    /// Of a residual sink that is a stop: its coefficient of restitution.
+    pub restitution: Option<Term>,
+    /// The speed of a rebound below which something rests on the stop.
+    pub rest: Option<Term>,
 }
 
 /// The joint that a residual sink is part of, and the direction in which a scalar one holds it.
@@ -371,7 +375,8 @@ impl BondGraph {
             let NodeKind::Element(element) = &node.kind else { continue };
             let clauses = [&element.frame, &element.displacement, &element.start, &element.energy, &element.sticking];
             element.law.term().visit(each);
-            clauses.into_iter().flatten().for_each(|term| term.visit(each));
+            let of_stop = [&element.restitution, &element.rest];
+            clauses.into_iter().chain(of_stop).flatten().for_each(|term| term.visit(each));
         }
         self.tracks.iter().filter_map(|track| track.start.as_ref()).for_each(|term| term.visit(each));
         self.closes.iter().for_each(|close| close.gap.visit(each));

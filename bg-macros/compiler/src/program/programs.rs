@@ -24,6 +24,8 @@ pub struct Programs {
     pub second_order: Option<SecondOrderPrograms>,
     /// What joints hold, with a constant table of its own.
     pub holding: Option<Program<1>>,
+    /// What impacts are calculated from, with a constant table of its own.
+    pub impacts: Option<Program<1>>,
     /// Functions of parameters and unknowns, from which the start is made.
     pub starting: Starting,
     /// The scalars of what is asked of values, in the order of the requirements: in `new`, in `start`. None where nothing is asked.
@@ -92,14 +94,14 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let derivatives = jacobian.roots();
     let jacobian = schedule(&mut jacobian.pool, [Request { name: "jacobian", roots: &derivatives }]);
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
-    let holding = holding(equations);
+    let (holding, impacts) = (holding(equations), impacts(equations));
     let starting = starting(equations);
     let fallible = roots(&equations.fallible, |law| law.value);
     let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
     let required = [("required", false), ("required_at_start", true)]
         .map(|(name, is_of_start)| required(equations, name, is_of_start));
     let shown = tape(&equations.pool, &equations.solution, &equations.shown.quantities());
-    Programs { running, jacobian, second_order, holding, starting, required, not_finite, shown }
+    Programs { running, jacobian, second_order, holding, impacts, starting, required, not_finite, shown }
 }
 
 /// The operations of the rate function as it would be generated from the equations.
@@ -166,6 +168,13 @@ fn holding(equations: &StateEquations) -> Option<Program<1>> {
     (!equations.holding.is_empty()).then(|| alone(&mut equations.pool.clone(), "hold", &entries))
 }
 
+/// In a pool of its own, too.
+fn impacts(equations: &StateEquations) -> Option<Program<1>> {
+    let mut pool = equations.pool.clone();
+    let entries = equations.impacts.entries(&mut pool);
+    (!equations.impacts.is_empty()).then(|| alone(&mut pool, "impact", &entries))
+}
+
 fn starting(equations: &mut StateEquations) -> Starting {
     let gaps = roots(&equations.gaps, |gap| gap.value);
     let starts = roots(&equations.states, |state| state.start);
@@ -227,7 +236,7 @@ impl Programs {
     pub fn costs(&self) -> impl Iterator<Item = (&str, Counts)> {
         let running = self.running.routines().into_iter();
         let second_order = self.second_order.iter().flat_map(SecondOrderPrograms::routines);
-        let holding = self.holding.iter().flat_map(|program| &program.routines);
+        let holding = self.holding.iter().chain(&self.impacts).flat_map(|program| &program.routines);
         let routines = running.chain(&self.jacobian.routines).chain(second_order).chain(holding);
         routines.map(|routine| (routine.name.as_str(), routine.counts))
     }

@@ -237,6 +237,10 @@ pub struct Element {
     pub held: Option<Held>,
     /// `holds E`: the effort up to which an R keeps its flow at zero; its law is that of dry friction.
     pub sticking: Option<Expression>,
+    /// `restitution E`: a residual sink is a stop, and this is its coefficient.
+    pub restitution: Option<Expression>,
+    /// `rest below E`: the speed of a rebound below which what hits the stop rests on it.
+    pub rest: Option<Expression>,
 }
 
 impl Element {
@@ -254,6 +258,8 @@ impl Element {
             energy: None,
             held: None,
             sticking: None,
+            restitution: None,
+            rest: None,
         }
     }
 }
@@ -706,7 +712,8 @@ impl Friction {
     }
 }
 
-/// The ends of a free axis or of a junction's displacement: one-sided springs with dampers.
+/// The ends of a free axis or of a junction's displacement: one-sided springs with dampers, or rigid with a coefficient of
+/// restitution.
 #[derive(Clone, Debug)]
 pub struct Stop {
     /// Its name (no dots).
@@ -721,8 +728,30 @@ pub struct Stop {
     pub stiffness: Option<Expression>,
     /// `damping E;`
     pub damping: Option<Expression>,
+    /// `restitution E;` in the place of stiffness and damping: the part of its speed with which something leaves that hits it.
+    pub restitution: Option<Expression>,
+    /// `rest below E;` the speed of a rebound below which it rests.
+    pub rest: Option<Expression>,
     /// `start E;` the displacement at t = 0; 0 when left out.
     pub start: Option<Expression>,
+}
+
+impl Stop {
+    /// A stop without clauses.
+    #[must_use]
+    pub fn new(name: Name, target: Name) -> Self {
+        Self {
+            name,
+            target,
+            least: None,
+            most: None,
+            stiffness: None,
+            damping: None,
+            restitution: None,
+            rest: None,
+            start: None,
+        }
+    }
 }
 
 /// A sharp edge that a fluid flows through: the flow goes with the square root of the pressure.

@@ -49,6 +49,10 @@ pub enum Allowed {
     Dissipative,
     /// A resistance whose flow follows from its effort, so that it has a reciprocal.
     Invertible,
+    /// Numbers from 0 to 1.
+    Fraction,
+    /// The way to the end of a stop, which is not negative but for what closing the joints leaves of it.
+    Clearance,
     /// The inertia of a rigid body: principal moments or a symmetric matrix, positive, none of the moments larger than the other
     /// two together.
     Inertia,

@@ -228,6 +228,8 @@ impl Display for Element {
             clause("start", self.start.as_ref()),
             clause("energy", self.energy.as_ref()),
             clause("holds", self.sticking.as_ref()),
+            clause("restitution", self.restitution.as_ref()),
+            clause("rest below", self.rest.as_ref()),
         ];
         let held = self.held.as_ref().map_or_else(String::new, |held| format!(" of {held}"));
         write!(f, "{}{held};", clauses.concat())
@@ -508,6 +510,8 @@ impl Display for Stop {
         setting(&mut entries, "at most", self.most.as_ref());
         setting(&mut entries, "stiffness", self.stiffness.as_ref());
         setting(&mut entries, "damping", self.damping.as_ref());
+        setting(&mut entries, "restitution", self.restitution.as_ref());
+        setting(&mut entries, "rest below", self.rest.as_ref());
         setting(&mut entries, "start", self.start.as_ref());
         write!(f, "stop {} on {}", self.name, self.target)?;
         settings(f, &entries)

@@ -84,7 +84,8 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
         Item::Stop(stop) => {
             on_target((&mut stop.name, &mut stop.target), each);
             let ends = [&mut stop.least, &mut stop.most];
-            let clauses = [&mut stop.stiffness, &mut stop.damping, &mut stop.start];
+            let clauses =
+                [&mut stop.stiffness, &mut stop.damping, &mut stop.restitution, &mut stop.rest, &mut stop.start];
             values(ends.into_iter().chain(clauses).flatten(), each);
         }
         Item::Orifice(orifice) => {
@@ -142,7 +143,8 @@ fn of_element(element: &mut Element, each: &mut dyn FnMut(Met)) {
     each(Met::Value(&mut element.law, variable));
     element.energy.iter_mut().for_each(|energy| each(Met::Value(energy, variable)));
     let clauses = [&mut element.frame, &mut element.displacement, &mut element.start, &mut element.sticking];
-    values(clauses.into_iter().flatten(), each);
+    let of_stop = [&mut element.restitution, &mut element.rest];
+    values(clauses.into_iter().chain(of_stop).flatten(), each);
     element.held.iter_mut().for_each(|held| each(Met::Named(&mut held.joint)));
 }
 

@@ -50,6 +50,7 @@ pub fn arrange(equations: &mut StateEquations) {
         *state = to[*state] as usize;
     }
     equations.holding.renumber(&|state| Some(to[state] as usize));
+    equations.impacts.renumber(&|state| Some(to[state] as usize));
     equations.pool.renumber_states(&to);
 }
 

@@ -9,7 +9,7 @@ use crate::model::scalar::Scalar;
 
 /// A pivot below this part of the entry it came from follows from the rows before it. Rounding leaves some 1e-15 of the
 /// entry, so five digits of the reactions are left here, and a row that does follow comes out far below.
-const DISTINCT: f64 = 1e-10;
+pub(super) const DISTINCT: f64 = 1e-10;
 
 /// A part of a row that is smaller beside it is rounding.
 const PART: f64 = 1e-6;
@@ -95,6 +95,12 @@ impl<S: Scalar> Factors<S> {
     /// The solution of A y = b; zero in rows that follow.
     pub fn solved(&self, b: &[S]) -> Vec<S> {
         let mut y = b.to_vec();
+        self.solve(&mut y);
+        y
+    }
+
+    /// Replaces b by the solution y of A y = b; zero in rows that follow. Allocates nothing.
+    pub fn solve(&self, y: &mut [S]) {
         let n = y.len();
         for i in 0..n {
             for j in 0..i {
@@ -115,7 +121,6 @@ impl<S: Scalar> Factors<S> {
                 y[i] = S::from_f64(0.0);
             }
         }
-        y
     }
 
     /// How row `i` is nearest to a combination of those before it: their factors, into the first `i` of `parts`.

@@ -10,6 +10,7 @@
 
 mod factors;
 mod immobile;
+mod impact;
 mod shared;
 mod watch;
 
@@ -22,6 +23,7 @@ use crate::model::nearest::nearest;
 use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign};
 use factors::Factors;
+pub(crate) use impact::{After, Collision};
 pub use shared::{kept, redundant, share};
 pub(crate) use watch::{Broken, LoopWatch};
 

@@ -5,6 +5,7 @@
 
 use super::guarded::Guarded;
 use super::{CERTAIN, Watch, check_finite, clearance};
+use crate::model::reactions::Collision;
 use crate::model::system::{System, branches_by_sign};
 use crate::solve::integrator::{Method, is_finite};
 use crate::solve::stepper::Stepper;
@@ -14,31 +15,43 @@ use crate::solve::stepper::Stepper;
 const PROBES: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
 impl<const G: usize> Watch<G> {
-    /// Chooses the branches at the start of the run by the signs of the guards.
-    pub fn begin_by_sign<Sys, M, const N: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
+    /// Chooses the branches at the start of the run by the signs of the guards, where stops are reached after the impact. Gives
+    /// the switches of stops that are left again.
+    pub fn begin_by_sign<Sys, M, const N: usize>(
+        &mut self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        collision: Option<&mut Collision<f64>>,
+    ) -> [bool; G]
     where
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
         if G == 0 {
-            return;
+            return [false; G];
         }
+        let clear = self.strike_at_begin(stepper, collision);
         let start = stepper.start;
         let first = stepper.system.first_branches();
         (stepper.negative, self.start.value) = branches_by_sign(first, |negative| {
             stepper.negative = *negative;
             stepper.guards(start.t, &start.x)
         });
+        stepper.negative = std::array::from_fn(|k| stepper.negative[k] || clear[k]);
+        clear
     }
 
     /// Decides the branches of the guards that are exactly zero at the start of the run, by steps that are small
-    /// compared with `step` (s); where these leave the guard zero, the positive branch holds.
-    pub fn begin_by_probe<Sys, M, const N: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, step: f64)
-    where
+    /// compared with `step` (s); where these leave the guard zero, the positive branch holds. Those that are `known` stay.
+    pub fn begin_by_probe<Sys, M, const N: usize>(
+        &mut self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        known: [bool; G],
+        step: f64,
+    ) where
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
-        let undecided: [bool; G] = std::array::from_fn(|k| self.start.value[k] == 0.0);
+        let undecided: [bool; G] = std::array::from_fn(|k| self.start.value[k] == 0.0 && !known[k]);
         if undecided.contains(&true) {
             self.choose(stepper, &undecided, [false; G], step);
         }

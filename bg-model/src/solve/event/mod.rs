@@ -11,6 +11,7 @@ mod branch;
 mod condition;
 mod detect;
 mod guarded;
+mod impact;
 mod locate;
 mod minimum;
 mod noise;
@@ -20,6 +21,7 @@ use nalgebra::SVector;
 
 pub(crate) use condition::{Condition, Located, Never, Stop};
 use guarded::Guarded;
+pub(crate) use impact::Struck;
 
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;
@@ -43,6 +45,8 @@ pub(crate) struct Watch<const G: usize> {
     end: Reading<G>,
     /// What its last event has left of each guard that has stayed near zero since.
     remainder: [f64; G],
+    /// The switches of stops, whose guards are places: what passes its end further than before has come to it again.
+    is_stop: [bool; G],
     /// Events since `crowd_start` (s).
     crowd: u32,
     crowd_start: f64,
@@ -60,7 +64,7 @@ pub(crate) struct Crossing<const G: usize> {
 impl<const G: usize> Watch<G> {
     pub fn new() -> Self {
         let reading = Reading { value: SVector::zeros(), slope: SVector::zeros(), noise: [0.0; G] };
-        Self { start: reading, end: reading, remainder: [0.0; G], crowd: 0, crowd_start: f64::NAN }
+        Self { start: reading, end: reading, remainder: [0.0; G], is_stop: [false; G], crowd: 0, crowd_start: f64::NAN }
     }
 
     /// The end of the step becomes the start of the next one; the branches stay.

@@ -35,7 +35,8 @@ impl<const G: usize> Watch<G> {
             let (ahead, back) = ((ahead[k] - value[k]).abs(), (back[k] - value[k]).abs());
             let change = if ahead < back { ahead } else { back };
             // No number beside the point says nothing about it.
-            larger(MARGIN * self.remainder[k], if change.is_finite() { change } else { 0.0 })
+            let margin = if self.is_stop[k] { 1.0 } else { MARGIN };
+            larger(margin * self.remainder[k], if change.is_finite() { change } else { 0.0 })
         })
     }
 

@@ -112,6 +112,9 @@ where
     Sys: System<S, N, G>,
 {
     check(span, accuracy, instants)?;
+    if system.impacts().is_some() {
+        return Err(Fault::BadInput("stops with a restitution make the state jump, which only runs in `f64` follow"));
+    }
     let mut run = Run::new(system, start, span, accuracy);
     run.begin();
     for &instant in instants {

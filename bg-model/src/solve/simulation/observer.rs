@@ -6,10 +6,12 @@ use crate::solve::statistics::Statistics;
 
 /// Is told what a run gives, in the order of time. Every method does nothing by default.
 pub trait Observer<const N: usize, const G: usize> {
-    /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there.
+    /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there. At the instant of an impact it is
+    /// the state before it; at the start of a run the state after it.
     fn sample(&mut self, _t: f64, _x: &SVector<f64, N>, _negative: &[bool; G]) {}
 
-    /// Switch `switch` has changed its branch at `t` (s) and state `x`; `negative` are the branches after that.
+    /// Switch `switch` has changed its branch at `t` (s) and state `x`, or its stop was hit and is left again; `negative` are the
+    /// branches after that, `x` the state after the impact.
     fn event(&mut self, _t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {}
 
     /// A step was accepted that leads to `t` (s), on the way to `t_end` (s).

@@ -8,9 +8,9 @@ use super::pace::{self, Pace};
 use super::rounding::RoundingWatch;
 use super::sampling::Sampling;
 use super::settings::{Settings, Span};
-use crate::model::reactions::{Broken, LoopWatch};
+use crate::model::reactions::{Broken, Collision, LoopWatch};
 use crate::model::system::System;
-use crate::solve::event::{Condition, Crossing, Stop, Watch};
+use crate::solve::event::{Condition, Crossing, Stop, Struck, Watch};
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Method, StepControl, is_finite};
@@ -38,6 +38,8 @@ pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
     limit: u64,
     /// Of joints that close loops, where there are any.
     loops: Option<LoopWatch>,
+    /// Of impacts on stops, where there are any.
+    collision: Option<Collision<f64>>,
     /// Of the error estimates, where the tolerances may be below it.
     rounding: Option<RoundingWatch>,
 }
@@ -66,6 +68,7 @@ where
     ) -> Self {
         let has_breaks = stepper.system.next_break(span.t0) < f64::INFINITY;
         let loops = stepper.system.joints().and_then(LoopWatch::new);
+        let collision = stepper.system.impacts().map(Collision::new);
         Self {
             stepper,
             pace: Pace::new(control, span, settings, has_breaks),
@@ -77,13 +80,14 @@ where
             attempts: 0,
             limit: settings.step_limit,
             loops,
+            collision,
             rounding: RoundingWatch::new(settings.tolerances.relative),
         }
     }
 
     /// Finds the first step, the branches at the start and the condition's side.
     pub fn begin(&mut self, control: StepControl, settings: &Settings<N>) -> Result<(), Cause> {
-        self.watch.begin_by_sign(&mut self.stepper);
+        let clear = self.watch.begin_by_sign(&mut self.stepper, self.collision.as_mut());
         self.stepper.evaluate_start();
         self.check_start()?;
         let longest = self.span.length().min(settings.largest_step);
@@ -92,7 +96,7 @@ where
             let first = pace::first_step(&flow, start, scale, order, longest);
             self.pace.begin(first);
         }
-        self.watch.begin_by_probe(&mut self.stepper, self.pace.reach());
+        self.watch.begin_by_probe(&mut self.stepper, clear, self.pace.reach());
         self.stepper.end = self.stepper.start;
         self.check_start()?;
         let outcome = self.condition.begin(&mut self.stepper, self.pace.reach());
@@ -308,8 +312,8 @@ where
         };
         let before = self.stepper.negative;
         let h = self.stepper.h;
-        self.switch(switches, observer)?;
-        if is_at_start && self.stepper.negative == before {
+        let jumps = self.switch(switches, observer)?;
+        if is_at_start && self.stepper.negative == before && !jumps {
             // The branch is right, so the step was too long for the guard's course.
             self.stepper.statistics.rejected += 1;
             self.pace.reject(h, f64::NAN);
@@ -321,20 +325,23 @@ where
         jumps.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))
     }
 
-    /// Lets the switches whose guards are at zero find their branches at the start of the next step.
-    fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<(), Cause> {
+    /// Lets the switches whose guards are at zero find their branches at the start of the next step, where the state jumps if
+    /// something has hit a stop. Gives whether it does.
+    fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<bool, Cause> {
         let t = self.stepper.start.t;
         let before = self.stepper.negative;
+        let struck = self.watch.strike(&mut self.stepper, switches, self.collision.as_mut());
+        let Struck { switches, rebounds, jumps } = struck;
         self.watch.settle(&mut self.stepper, switches, self.pace.reach());
         self.check_start()?;
         for (switch, before) in before.into_iter().enumerate() {
-            if self.stepper.negative[switch] != before {
+            if self.stepper.negative[switch] != before || rebounds[switch] {
                 self.stepper.statistics.events += 1;
                 observer.event(t, &self.stepper.start.x, switch, &self.stepper.negative);
             }
         }
         let is_crowded = self.watch.is_crowded(t, self.span.t_end - self.span.t0);
-        if is_crowded { Err(self.accumulate(switches)) } else { Ok(()) }
+        if is_crowded { Err(self.accumulate(switches)) } else { Ok(jumps) }
     }
 
     pub fn finish(self, ended: Ended) -> Finish<N, G> {

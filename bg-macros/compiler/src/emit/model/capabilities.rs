@@ -26,20 +26,22 @@ impl Emission<'_> {
     /// The implementations of all capabilities that the model has.
     pub(super) fn capabilities(&self) -> TokenStream {
         let (linear, second_order, series, joints) = (self.linear(), self.second_order(), self.series(), self.joints());
-        quote! { #linear #second_order #series #joints }
+        let impacts = self.impacts();
+        quote! { #linear #second_order #series #joints #impacts }
     }
 
     /// The functions that hand them over.
     pub(super) fn accessors(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let Programs { second_order, holding, .. } = &self.model.programs;
+        let Programs { second_order, holding, impacts, .. } = &self.model.programs;
         let itself = quote!(Some(self));
         let linearised = accessor("linearised", &quote!(Linearised<S, #n, #g>), &itself);
         let second_order =
             second_order.as_ref().map(|_| accessor("second_order", &quote!(SecondOrder<S, #n, #g>), &itself));
         let series = accessor("series", &quote!(Series<S, #n, #g>), &self.series_where_known());
         let joints = holding.as_ref().map(|_| accessor("joints", &quote!(Joints<S, #n, #g>), &itself));
-        quote! { #linearised #second_order #series #joints }
+        let impacts = impacts.as_ref().map(|_| accessor("impacts", &quote!(Impacts<S, #n, #g>), &itself));
+        quote! { #linearised #second_order #series #joints #impacts }
     }
 
     /// The model as its series: none is known where an input changes with time.

@@ -7,6 +7,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::{Emission, Shape};
+use crate::system::equations::Slip;
 
 /// How many rows may follow from others.
 pub(super) struct Shared {
@@ -137,15 +138,15 @@ impl Emission<'_> {
         let values = if reactions.is_some() { quote!(&reactions) } else { quote!(&[]) };
         (reactions, values)
     }
+}
 
-    /// The rows that may follow from others, each with its number.
-    pub(super) fn closing(&self) -> TokenStream {
-        let rows = self.model.equations.holding.rigid.iter().enumerate();
-        let rows = rows.filter_map(|(row, slip)| Some((row, slip.kept? as usize)));
-        let rows = rows.map(|(row, number)| {
-            let [row, number] = [row, number].map(Literal::usize_unsuffixed);
-            quote!((#row, #number))
-        });
-        quote!(&[#(#rows),*])
-    }
+/// The rows that may follow from others, each with its number.
+pub(super) fn closing(rigid: &[Slip]) -> TokenStream {
+    let rows = rigid.iter().enumerate();
+    let rows = rows.filter_map(|(row, slip)| Some((row, slip.kept? as usize)));
+    let rows = rows.map(|(row, number)| {
+        let [row, number] = [row, number].map(Literal::usize_unsuffixed);
+        quote!((#row, #number))
+    });
+    quote!(&[#(#rows),*])
 }

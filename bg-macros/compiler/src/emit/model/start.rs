@@ -7,6 +7,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::super::items::identifier;
+use super::shared::closing;
 use super::{Emission, Shape};
 use crate::expr::{Symbol, substitute};
 use crate::program::{Program, Programs};
@@ -143,7 +144,7 @@ impl Emission<'_> {
         let holding = &self.model.equations.holding;
         let (rigid, compliant) = (slips(&holding.rigid), slips(&holding.compliant));
         let moved = holding.moves.iter().map(|(state, _)| Literal::usize_unsuffixed(*state));
-        let closing = self.closing();
+        let closing = closing(&holding.rigid);
         let pose = self.states_of(&[Kind::Position, Kind::Orientation, Kind::Angle, Kind::Displacement]);
         let turning = self.states_of(&[Kind::Orientation, Kind::Angle]);
         let (kept, is_driven) = (self.shared().kept(), self.is_driven());

@@ -42,7 +42,7 @@ impl Emission<'_> {
     }
 
     fn constant_tables(&self) -> Vec<Table<'_>> {
-        let Programs { running, jacobian, second_order, holding, .. } = &self.model.programs;
+        let Programs { running, jacobian, second_order, holding, impacts, .. } = &self.model.programs;
         let table = |prefix, doc, constants, paired| Table { prefix, doc, constants, paired };
         let of_rates = " What depends on parameters only.";
         let of_jacobian = " What depends on parameters only, of the Jacobian.";
@@ -53,6 +53,8 @@ impl Emission<'_> {
             table("slope_constant", of_jacobian, &jacobian.constants, None),
         ];
         tables.extend(holding.as_ref().map(|program| table("holding_constant", of_holding, &program.constants, None)));
+        let of_impacts = " What depends on parameters only, of impacts.";
+        tables.extend(impacts.as_ref().map(|program| table("impact_constant", of_impacts, &program.constants, None)));
         tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, paired_forces, .. }| {
             table("second_constant", of_forces, constants, paired_forces.as_ref())
         }));

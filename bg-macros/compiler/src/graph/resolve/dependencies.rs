@@ -68,6 +68,13 @@ impl Resolver {
             if let Some(start) = &element.start {
                 faults.extend(self.start_depends(start, &node.name.text));
             }
+            for (clause, term) in [("restitution", &element.restitution), ("rest below", &element.rest)] {
+                let by = term.as_ref().and_then(|term| Some((term, self.first_of_run(term)?)));
+                faults.extend(by.map(|(term, by)| {
+                    let what = format!("the `{clause}` of `{}`", node.name.text);
+                    Fault::new(term.span, &GraphFault::NotConstant { what, by: self.describe(by) })
+                }));
+            }
         }
         for track in &self.graph.tracks {
             if let Some(start) = &track.start {
@@ -104,9 +111,14 @@ impl Resolver {
     }
 
     fn start_depends(&self, start: &Term, name: &str) -> Option<Fault> {
-        let by = self.depends(start).into_iter().find(|reference| !is_constant(*reference))?;
+        let by = self.first_of_run(start)?;
         let what = format!("the start value of `{name}`");
         Some(Fault::new(start.span, &GraphFault::NotConstant { what, by: self.describe(by) }))
+    }
+
+    /// The first thing that a term depends on and that is no parameter.
+    fn first_of_run(&self, term: &Term) -> Option<Reference> {
+        self.depends(term).into_iter().find(|reference| !is_constant(*reference))
     }
 
     /// What a term depends on; of the clauses of mechanism words that may depend on little, which are looked at themselves, only

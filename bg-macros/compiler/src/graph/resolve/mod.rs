@@ -307,13 +307,16 @@ impl Resolver {
         let start = element.start.as_ref().map(|term| self.term(term, Place::Start));
         let energy = element.energy.as_ref().map(|term| self.term(term, Place::Law(variable)));
         let sticking = element.sticking.as_ref().map(|term| self.term(term, Place::Plain));
+        let [restitution, rest] =
+            [&element.restitution, &element.rest].map(|term| term.as_ref().map(|term| self.term(term, Place::Plain)));
         let stores = matches!(kind, ElementKind::I) || (kind == ElementKind::C && displacement.is_none());
         if stores {
             self.graph.storages.push(Storage::Element(id));
         }
         let text = law_text(element);
         let held = element.held.as_ref().map(|held| Held { joint: self.joint(&held.joint), direction: held.direction });
-        let element_node = Element { kind, law, text, frame, displacement, start, energy, held, sticking };
+        let element_node =
+            Element { kind, law, text, frame, displacement, start, energy, held, sticking, restitution, rest };
         let node = Node { name: element.name.clone(), kind: NodeKind::Element(element_node), bonds: Vec::new() };
         self.graph.nodes.push(node);
     }
@@ -339,6 +342,8 @@ impl Resolver {
             ("in", element.frame.is_some(), kind == K::I),
             ("of", element.held.is_some(), kind == K::RSe),
             ("holds", element.sticking.is_some(), is_of_flow(element)),
+            ("restitution", element.restitution.is_some(), is_one_sided(element)),
+            ("rest below", element.rest.is_some(), is_one_sided(element)),
         ];
         for (clause, given, fits) in clauses {
             if given && !fits {
@@ -514,6 +519,12 @@ impl Resolver {
 fn is_of_flow(element: &ast::Element) -> bool {
     let is_flow = |variable: &ast::LawVariable| variable.role != Some(Role::Effort);
     matches!(element.kind, ElementKind::R | ElementKind::Mr) && element.variable.as_ref().is_some_and(is_flow)
+}
+
+/// Whether an element can be a stop: a residual sink of no joint that keeps its flow at zero and knows its displacement.
+fn is_one_sided(element: &ast::Element) -> bool {
+    let ast::Element { kind, law, displacement, held, .. } = element;
+    *kind == ElementKind::RSe && law.number() == Some(0.0) && displacement.is_some() && held.is_none()
 }
 
 /// The law as the user wrote it.

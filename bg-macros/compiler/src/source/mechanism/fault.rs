@@ -19,6 +19,7 @@ pub enum MechanismFault {
     SameAxes { name: String },
     NoLaw { name: String },
     NoFreeAxis { word: &'static str, name: String, target: String },
+    RestitutionAnd { name: String, clause: &'static str },
 }
 
 use MechanismFault as F;
@@ -39,6 +40,7 @@ impl Explain for MechanismFault {
             F::SameAxes { .. } => "BG0211",
             F::NoLaw { .. } => "BG0212",
             F::NoFreeAxis { .. } => "BG0213",
+            F::RestitutionAnd { .. } => "BG0214",
         }
     }
 
@@ -60,6 +62,9 @@ impl Explain for MechanismFault {
             F::NoLaw { name } => format!("contact `{name}` has no law"),
             F::NoFreeAxis { word, name, target } => {
                 format!("{word} `{name}` has no axis to act on: `{target}` leaves none free")
+            }
+            F::RestitutionAnd { name, clause } => {
+                format!("stop `{name}` has both `restitution` and `{clause}`: it is rigid or it gives way")
             }
         }
     }
@@ -89,6 +94,7 @@ impl Explain for MechanismFault {
             F::NoFreeAxis { .. } => {
                 "name a revolute, prismatic or cylindrical joint, a contact, or a 1-junction".to_owned()
             }
+            F::RestitutionAnd { clause, .. } => format!("remove `{clause}`, or `restitution`"),
         }
     }
 }

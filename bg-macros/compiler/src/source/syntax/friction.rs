@@ -13,8 +13,11 @@ const FRICTION: Place = Place {
 };
 
 /// The block of a stop.
-const STOP: Place =
-    Place { name: "a stop", words: &["at least", "at most", "stiffness", "damping", "start"], list: false };
+const STOP: Place = Place {
+    name: "a stop",
+    words: &["at least", "at most", "stiffness", "damping", "restitution", "rest below", "start"],
+    list: false,
+};
 
 /// The block of an orifice.
 const ORIFICE: Place = Place { name: "an orifice", words: &["area", "coefficient", "density", "laminar"], list: false };
@@ -41,13 +44,15 @@ impl Cursor<'_> {
     /// `stop NAME on TARGET { ... }`
     pub fn stop(&mut self) -> Parsed<Stop> {
         let (name, target) = self.named_on("the stop")?;
-        let mut stop = Stop { name, target, least: None, most: None, stiffness: None, damping: None, start: None };
+        let mut stop = Stop::new(name, target);
         self.block_or_semicolon(&STOP, |entry| {
             entry.setting(&mut [
                 ("at least", &mut stop.least),
                 ("at most", &mut stop.most),
                 ("stiffness", &mut stop.stiffness),
                 ("damping", &mut stop.damping),
+                ("restitution", &mut stop.restitution),
+                ("rest below", &mut stop.rest),
                 ("start", &mut stop.start),
             ])
         });

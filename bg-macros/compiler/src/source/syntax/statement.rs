@@ -299,9 +299,14 @@ fn clause(cursor: &mut Cursor, element: &mut Element) -> Parsed<bool> {
         Some("start") => ("start", &mut element.start),
         Some("energy") => ("energy", &mut element.energy),
         Some("holds") => ("holds", &mut element.sticking),
+        Some("restitution") => ("restitution", &mut element.restitution),
+        Some("rest") => ("rest below", &mut element.rest),
         _ => return Ok(false),
     };
     let span = cursor.advance();
+    if word == "rest below" {
+        cursor.expect_word("below")?;
+    }
     let value = cursor.expression()?;
     cursor.fill(slot, value, word, span);
     Ok(true)

@@ -20,6 +20,7 @@ pub enum EquationFault {
     DisplacementOfOtherFlow { name: String },
     FrictionOfReaction { name: String, by: String },
     CannotStick { name: String, input: Option<String> },
+    CannotStop { name: String },
 }
 
 use crate::graph::ElementKind;
@@ -42,6 +43,7 @@ impl Explain for EquationFault {
             F::DependentOpen { .. } => "BG0512",
             F::FrictionOfReaction { .. } => "BG0515",
             F::CannotStick { .. } => "BG0516",
+            F::CannotStop { .. } => "BG0517",
         }
     }
 
@@ -114,6 +116,9 @@ impl Explain for EquationFault {
             F::CannotStick { name, input: None } => {
                 format!("R `{name}` cannot stick: no momentum determines its flow")
             }
+            F::CannotStop { name } => {
+                format!("nothing can hit stop `{name}`: no momentum determines its flow, or an input does")
+            }
         }
     }
 
@@ -163,6 +168,9 @@ impl Explain for EquationFault {
             }
             F::CannotStick { input: Some(_), .. } => "use a parameter or a function of `t` for the input".to_owned(),
             F::CannotStick { input: None, .. } => "bond an I to its junction, or leave `holds` out".to_owned(),
+            F::CannotStop { .. } => {
+                "let it act where a mass moves, or give it a stiffness and a damping for the restitution".to_owned()
+            }
         }
     }
 }

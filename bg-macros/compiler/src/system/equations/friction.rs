@@ -7,7 +7,7 @@
 //! their own branches: while it slides, the flow, which has to come to zero; while it sticks, what the effort leaves of the limit.
 
 use super::signals::Signals;
-use super::{EquationFault, Friction, Reaction, Slip, Switch};
+use super::{EquationFault, Reaction, Slip, Switch, Switched};
 use crate::expr::{Function, Id, Pool, Symbol, derivative, partial};
 use crate::fault::Fault;
 use crate::graph::{Element, ElementKind, NodeId};
@@ -103,9 +103,9 @@ impl Signals<'_> {
         let multiplier = self.pool.symbol(friction.multiplier);
         let effort = self.moving(ways, against, multiplier);
         let (zero, one) = (self.pool.zero(), self.pool.one());
-        let sticks = self.moving(ways, [zero; 2], one);
-        let friction = Some(Friction { effort, sticks });
-        Reaction { slip, multiplier: frictions[own].multiplier, friction }
+        let acts = self.moving(ways, [zero; 2], one);
+        let switched = Some(Switched { effort, acts });
+        Reaction { slip, multiplier: frictions[own].multiplier, switched, rebound: None }
     }
 
     /// One of three values: sliding forwards, sliding backwards, sticking.

@@ -210,6 +210,9 @@ impl Signals<'_> {
         let graph = self.graph;
         let mut gaps = Vec::new();
         for sink in self.elements(|kind| kind == ElementKind::RSe) {
+            if self.is_stop(sink) {
+                continue;
+            }
             let (joint, held) = (self.holder(sink).to_owned(), self.held(sink));
             let Some(gap) = graph.element(sink).and_then(|element| element.displacement.as_ref()) else { continue };
             if graph.closes.iter().all(|close| held.is_none_or(|held| held.joint != close.joint)) {

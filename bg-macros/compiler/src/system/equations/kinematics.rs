@@ -10,7 +10,7 @@ use super::signals::Signals;
 use super::unknowns::number;
 use crate::expr::{Id, Symbol, derivative, same_polynomial, substitute};
 use crate::fault::Fault;
-use crate::graph::{NodeId, Storage};
+use crate::graph::{ElementKind, NodeId, Storage};
 use crate::system::Value;
 
 impl Signals<'_> {
@@ -32,7 +32,10 @@ impl Signals<'_> {
                 next += 3;
             }
         }
-        let seeds = self.track_seeds();
+        let mut seeds = self.track_seeds();
+        if !self.stops().is_empty() {
+            self.add_displacements(&mut seeds);
+        }
         let faults: Vec<Fault> = nodes.into_iter().filter_map(|node| self.prove(node, &seeds)).collect();
         self.given_flows.clear();
         self.forget();
@@ -51,6 +54,19 @@ impl Signals<'_> {
             }
         }
         seeds
+    }
+
+    /// The rates of the displacements of C, which the place of a stop may be.
+    fn add_displacements(&mut self, seeds: &mut BTreeMap<Symbol, Id>) {
+        for (storage, first, _) in self.layout.clone() {
+            let Storage::Element(node) = storage else { continue };
+            if self.graph.element(node).is_some_and(|element| element.kind == ElementKind::C) {
+                let bond = self.graph.node(node).bonds[0];
+                let flow = self.flow(bond).scale(&mut self.pool, self.graph.sign(bond, node));
+                let flow = self.without_loops(&flow);
+                seeds.extend(flow.0.into_iter().enumerate().map(|(k, id)| (Symbol::state(first + k), id)));
+            }
+        }
     }
 
     fn prove(&mut self, node: NodeId, seeds: &BTreeMap<Symbol, Id>) -> Option<Fault> {

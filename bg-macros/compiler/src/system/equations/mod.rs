@@ -12,6 +12,7 @@ mod fallible;
 mod fault;
 mod friction;
 mod holding;
+pub mod impact;
 mod iteration;
 mod kinematics;
 mod laws;
@@ -25,6 +26,7 @@ mod shown;
 mod signals;
 pub mod solution;
 mod solving;
+mod stop;
 mod storage;
 mod terms;
 #[cfg(test)]
@@ -43,6 +45,7 @@ pub use crate::system::equations::solution::Solution;
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
+pub use impact::{Impacts, Rebound};
 pub use iteration::Iteration;
 pub use origin::{Kind, Origin};
 pub use shown::{Quantity, Shown};
@@ -90,6 +93,8 @@ pub struct StateEquations {
     pub solution: Solution,
     /// What joints hold.
     pub holding: Holding,
+    /// What impacts are calculated from.
+    pub impacts: Impacts,
     /// Whether impulses of the rigid joints make the start velocities fit.
     pub impulse: bool,
     /// The rate of Baumgarte's terms, 1/s; none where rigid joints are kept by projection.
@@ -124,17 +129,19 @@ pub struct Reaction {
     pub slip: Slip,
     /// The effort.
     pub multiplier: Symbol,
-    /// Of dry friction, which is no reaction while it slides.
-    pub friction: Option<Friction>,
+    /// Of dry friction, which is no reaction while it slides, and of a stop, which is none while nothing rests on it.
+    pub switched: Option<Switched>,
+    /// Of a stop.
+    pub rebound: Option<Rebound>,
 }
 
-/// What dry friction gives in place of its multiplier.
+/// What dry friction or a stop gives in place of its multiplier.
 #[derive(Clone, Debug)]
-pub struct Friction {
-    /// The effort: that of the law where it slides, the multiplier where it sticks.
+pub struct Switched {
+    /// The effort: the multiplier where it holds; where it does not, that of the law of sliding, of a stop 0.
     pub effort: Id,
-    /// 1 where it sticks, 0 where it slides.
-    pub sticks: Id,
+    /// 1 where it sticks or something rests on it, else 0.
+    pub acts: Id,
 }
 
 /// One residual of the assembly.
@@ -155,7 +162,7 @@ pub struct Gap {
 pub struct Switch {
     /// What switches: an element, a `let` or an output.
     pub element: String,
-    /// The comparison as written; of dry friction the way in which it slides.
+    /// The comparison as written; of dry friction the way in which it slides, of a stop `clear`.
     pub condition: String,
     /// The guard: below zero the first branch holds.
     pub guard: Id,
@@ -164,12 +171,17 @@ pub struct Switch {
     pub remembers: bool,
 }
 
+/// The condition of a stop's switch.
+const CLEAR: &str = "clear";
+
 impl Switch {
     /// What holds in the first branch, and of whom.
     #[must_use]
     pub fn name(&self) -> String {
         let Self { element, condition, .. } = self;
-        if self.remembers {
+        if self.remembers && condition == CLEAR {
+            format!("being clear of `{element}`")
+        } else if self.remembers {
             format!("sliding {condition} of `{element}`")
         } else {
             format!("`if {condition}` of `{element}`")

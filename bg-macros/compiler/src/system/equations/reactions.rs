@@ -10,7 +10,7 @@ use crate::graph::{ElementKind, NodeId};
 use crate::system::Value;
 
 impl Signals<'_> {
-    /// The unknown effort of a residual sink or of dry friction.
+    /// The unknown effort of a residual sink, of a stop or of dry friction.
     pub(super) fn reaction(&mut self, node: NodeId) -> Value {
         let components = self.graph.bond(self.graph.node(node).bonds[0]).cardinality;
         let symbols: Vec<Symbol> = self.multipliers(node, components).collect();
@@ -21,12 +21,13 @@ impl Signals<'_> {
         (self.reactions[&node]..).take(components).map(Symbol::Multiplier)
     }
 
-    /// Every residual sink's multipliers with the flows they keep at zero, then those of dry friction.
+    /// Every residual sink's multipliers with the flows they keep at zero, then those of stops and of dry friction.
     pub(super) fn reactions(&mut self) -> Vec<Reaction> {
         let graph = self.graph;
         let is_held = |node: &NodeId| self.reactions.contains_key(node);
         let held: Vec<NodeId> = self.dependent.keys().copied().filter(is_held).collect();
-        let nodes = self.elements(|kind| kind == ElementKind::RSe).into_iter().chain(held);
+        let sinks = self.elements(|kind| kind == ElementKind::RSe).into_iter().filter(|&node| !self.is_stop(node));
+        let nodes: Vec<NodeId> = sinks.chain(held).collect();
         let mut reactions = Vec::new();
         for node in nodes {
             let Some(element) = graph.element(node) else { continue };
@@ -34,7 +35,12 @@ impl Signals<'_> {
                 let slips = self.dependent_slips(node);
                 let multipliers = self.multipliers(node, slips.len());
                 let pairs = multipliers.zip(slips);
-                reactions.extend(pairs.map(|(multiplier, slip)| Reaction { slip, multiplier, friction: None }));
+                reactions.extend(pairs.map(|(multiplier, slip)| Reaction {
+                    slip,
+                    multiplier,
+                    switched: None,
+                    rebound: None,
+                }));
                 continue;
             }
             let bond = graph.node(node).bonds[0];
@@ -50,9 +56,10 @@ impl Signals<'_> {
                 let (direction, unit) = (self.direction_of(node, k), graph.bond(bond).flow_unit());
                 let gap = gap.as_ref().map(|gap| gap[k]);
                 let slip = Slip { joint, direction, unit, flow, kept: None, gap };
-                reactions.push(Reaction { slip, multiplier, friction: None });
+                reactions.push(Reaction { slip, multiplier, switched: None, rebound: None });
             }
         }
+        reactions.extend(self.resting_reactions());
         reactions.extend(self.sticking_reactions());
         reactions
     }

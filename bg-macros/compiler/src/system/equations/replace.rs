@@ -20,8 +20,7 @@ impl StateEquations {
         for reaction in &mut self.reactions {
             roots.push(&mut reaction.slip.flow);
             roots.extend(&mut reaction.slip.gap);
-            roots
-                .extend(reaction.friction.iter_mut().flat_map(|friction| [&mut friction.effort, &mut friction.sticks]));
+            roots.extend(reaction.switched.iter_mut().flat_map(|switched| [&mut switched.effort, &mut switched.acts]));
         }
         roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
         for iteration in &mut self.iterations {
@@ -70,6 +69,7 @@ impl StateEquations {
         // What is held and shown comes after, so that it has no influence on the order of the rates' nodes.
         self.solution.replace(&mut pool, replace, branch);
         self.holding.replace(&mut pool, replace, branch);
+        self.impacts.replace(&mut pool, replace, branch);
         self.shown.replace(&mut pool, replace, branch);
         self.pool = pool;
     }

@@ -24,11 +24,16 @@ impl Signals<'_> {
         asked.extend(laws(self.causal));
         asked.extend(orientations(graph));
         asked.extend(laminar_ranges(graph));
+        asked.extend(restitutions(graph));
         asked.retain(|(subject, term)| subject.allowed != Allowed::Rotation || !is_rotation(graph, term));
         let values: Vec<Value> = asked.iter().map(|(_, term)| self.evaluate(term, None)).collect();
+        let clearances = self.clearances();
         self.switches.truncate(switches);
         let mut requirements = Requirements::over(std::mem::replace(&mut self.pool, pool));
         for ((subject, _), value) in asked.iter().zip(&values) {
+            requirements.ask(subject, value);
+        }
+        for (subject, value) in &clearances {
             requirements.ask(subject, value);
         }
         for Pivot { what, node, value } in &self.pivots {
@@ -101,6 +106,17 @@ fn orientations(graph: &BondGraph) -> Vec<Asked<'_>> {
     asked
         .map(|(what, term)| (Subject { what, unit: String::new(), span: term.span, allowed: Allowed::Rotation }, term))
         .collect()
+}
+
+/// The restitutions of stops in bond-graph words.
+fn restitutions(graph: &BondGraph) -> Vec<Asked<'_>> {
+    let of = |node: NodeId| Some((graph.node(node), graph.element(node)?.restitution.as_ref()?));
+    let given = (0..graph.nodes.len()).filter_map(|node| of(NodeId(node)));
+    let asked = given.filter(|(_, term)| !graph.is_clause(term)).map(|(node, term)| {
+        let what = format!("the restitution of stop `{}`", node.name.text);
+        (Subject { what, unit: String::new(), span: term.span, allowed: Allowed::Fraction }, term)
+    });
+    asked.collect()
 }
 
 /// The second arguments of `root`, but those that are of a law's variable.

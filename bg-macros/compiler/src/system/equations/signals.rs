@@ -11,7 +11,7 @@ use super::iteration::Loop;
 use super::memo::{Entry, Memo};
 use super::solving::Pivot;
 use super::unknowns::{Unknown, Unknowns};
-use super::{FallibleLaw, Gap, Holding, Origin, Output, State, StateEquations, Switch, storage, text};
+use super::{FallibleLaw, Gap, Holding, Impacts, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::units::Dimension;
@@ -144,6 +144,7 @@ impl<'a> Signals<'a> {
             reactions,
             solution: Solution::default(),
             holding,
+            impacts: Impacts::default(),
             impulse: self.graph.impulse,
             baumgarte: self.graph.baumgarte,
             shown,

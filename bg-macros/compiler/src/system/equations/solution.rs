@@ -15,7 +15,7 @@ pub struct Solution {
     pub multipliers: Vec<Symbol>,
     /// A l + b, with the reactions as symbols.
     pub residuals: Vec<Id>,
-    /// What each reaction applies: itself; of dry friction the effort of its law where it slides.
+    /// What each reaction applies: itself; of dry friction the effort of its law where it slides, of a stop 0 where nothing rests on it.
     pub efforts: Vec<Id>,
     /// The factors of A.
     pub factors: Factors,
@@ -30,7 +30,7 @@ impl Solution {
         self.multipliers.iter().position(|&multiplier| multiplier == symbol)
     }
 
-    /// The reactions whose equations have a regular derivative by them: all, or none where there is dry friction.
+    /// The reactions whose equations have a regular derivative by them: all, or none where there is dry friction or a stop.
     #[must_use]
     pub fn smooth(&self, pool: &Pool) -> &[Symbol] {
         let is_itself = |(&effort, &symbol): (&Id, &Symbol)| *pool.node(effort) == Node::Symbol(symbol);
@@ -117,6 +117,12 @@ impl<'a> Known<'a> {
     #[must_use]
     pub fn has_state(&self, state: usize) -> bool {
         self.states[state]
+    }
+
+    /// Whether a switch is there.
+    #[must_use]
+    pub fn has_switch(&self, switch: u32) -> bool {
+        self.switches[switch as usize]
     }
 
     /// Whether an expression needs nothing that has gone.

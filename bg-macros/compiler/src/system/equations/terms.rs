@@ -153,10 +153,11 @@ impl Signals<'_> {
         self.pool.sum(&powers)
     }
 
-    /// The power of all resistors out of the model.
+    /// The power of all resistors out of the model, and of stops, which take some in the instants of impacts.
     pub(super) fn dissipated_power(&mut self) -> Id {
         let resistors = self.elements(|kind| matches!(kind, ElementKind::R | ElementKind::Mr));
-        let powers: Vec<Id> = resistors.into_iter().map(|node| self.power_into(node)).collect();
+        let taking = resistors.into_iter().chain(self.stops());
+        let powers: Vec<Id> = taking.map(|node| self.power_into(node)).collect();
         self.pool.sum(&powers)
     }
 

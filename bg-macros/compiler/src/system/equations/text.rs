@@ -123,6 +123,7 @@ fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, role: Role) -> Strin
                 .collect();
             let of = match element.kind {
                 ElementKind::Se | ElementKind::MSe | ElementKind::Sf | ElementKind::MSf => String::new(),
+                ElementKind::RSe if signals.is_stop(node) => " of what rests on it".to_owned(),
                 ElementKind::RSe => " kept by its reaction".to_owned(),
                 ElementKind::R | ElementKind::Mr if element.sticking.is_some() => {
                     format!(" of {}, or what keeps it at zero", variable(signals, role.other(), bond))

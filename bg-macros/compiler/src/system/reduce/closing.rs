@@ -10,16 +10,14 @@ use std::collections::BTreeSet;
 
 use super::friction;
 use crate::expr::{Id, Pool, partial};
+use crate::system::equations::impact::Moves;
 use crate::system::equations::{Kind, Origin, Reaction, State, StateEquations};
 
-/// Momenta whose rates depend on reactions, each with the dependence on every row.
-pub(super) type Moves = Vec<(usize, Vec<Id>)>;
-
-/// The reactions, those of loops after those of the tree, with what they move; dry friction, which comes last, is none that
-/// holds a joint, and what it moves is not asked for.
+/// The reactions, those of loops after those of the tree, with what they move; stops and dry friction, which come last, are none that
+/// hold a joint, and what it moves is not asked for.
 pub(super) fn arrange(equations: &mut StateEquations, mut reactions: Vec<Reaction>) -> (Vec<Reaction>, Moves) {
     let frictions = reactions.split_off(friction::rigid(&reactions));
-    let moves = moves(&mut equations.pool, &equations.states, &reactions);
+    let moves = moves(&mut equations.pool, &equations.states, &reactions, &is_moved);
     let (tree, closing) = split(equations, &reactions, &moves);
     for (&row, number) in closing.iter().zip(0..) {
         reactions[row].slip.kept = Some(number);
@@ -62,9 +60,18 @@ fn of_joints(reactions: &[Reaction]) -> Vec<Vec<usize>> {
     joints
 }
 
-/// The momenta whose rates depend on multipliers, and how.
-fn moves(pool: &mut Pool, states: &[State], reactions: &[Reaction]) -> Moves {
-    let is_moved = |kind| matches!(kind, Kind::Momentum | Kind::Displacement);
+/// Whether reactions may change states of this kind.
+pub(super) fn is_moved(kind: Kind) -> bool {
+    matches!(kind, Kind::Momentum | Kind::Displacement)
+}
+
+/// The states of some kinds whose rates depend on multipliers, and how.
+pub(super) fn moves(
+    pool: &mut Pool,
+    states: &[State],
+    reactions: &[Reaction],
+    is_moved: &dyn Fn(Kind) -> bool,
+) -> Moves {
     let momenta: Vec<usize> = (0..states.len()).filter(|&state| is_moved(states[state].origin.kind())).collect();
     let rates: Vec<Id> = momenta.iter().map(|&state| states[state].rate).collect();
     let columns: Vec<Vec<Id>> = reactions.iter().map(|reaction| partial(pool, &rates, reaction.multiplier)).collect();

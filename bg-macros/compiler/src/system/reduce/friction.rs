@@ -1,6 +1,7 @@
-//! Dry friction among the reactions: what sticks is a constraint, what slides is a known effort.
+//! Dry friction and stops among the reactions: what sticks or rests is a constraint, what slides is a known effort, what is clear
+//! of a stop is not there.
 //!
-//! In: reactions with dry friction, the equations A l + b = 0 of all of them. Out: equations that hold in every branch.
+//! In: reactions with dry friction and stops, the equations A l + b = 0 of all of them. Out: equations that hold in every branch.
 //! Method: the row and the column of what slides are multiplied by 0 but for the diagonal, so that it takes no part; what it
 //! gives is in b. Its own l is not used then.
 
@@ -9,6 +10,8 @@ use crate::system::equations::Reaction;
 
 /// Rate at which a flow that truncation leaves decays while it sticks, 1/s: slow, so that no explicit step is the shorter for it.
 pub(super) const DECAY: f64 = 1.0;
+/// The rate with which truncation of what rests decays, 1/s: as slow, and critically damped, since a stop knows its place.
+pub(super) const PLACE: f64 = 1.0;
 /// The part of its diagonal entry below which a pivot of dry friction counts as zero: others hold that motion already.
 const PART: f64 = 1e-10;
 
@@ -27,21 +30,21 @@ pub(super) fn residuals(pool: &mut Pool, multipliers: &[Symbol], efforts: &[Id],
 pub(super) fn efforts(pool: &mut Pool, reactions: &[Reaction]) -> Vec<Id> {
     let effort = |reaction: &Reaction| {
         let own = pool.symbol(reaction.multiplier);
-        reaction.friction.as_ref().map_or(own, |friction| friction.effort)
+        reaction.switched.as_ref().map_or(own, |switched| switched.effort)
     };
     reactions.iter().map(effort).collect()
 }
 
 /// How many of the reactions are those of residual sinks, which come first.
 pub(super) fn rigid(reactions: &[Reaction]) -> usize {
-    reactions.iter().take_while(|reaction| reaction.friction.is_none()).count()
+    reactions.iter().take_while(|reaction| reaction.switched.is_none()).count()
 }
 
 /// The lower triangle of A without the couplings of what slides.
 pub(super) fn decoupled(pool: &mut Pool, reactions: &[Reaction], matrix: &[Vec<Id>]) -> Vec<Vec<Id>> {
-    let sticks = |k: usize| reactions[k].friction.as_ref().map(|friction| friction.sticks);
+    let acts = |k: usize| reactions[k].switched.as_ref().map(|switched| switched.acts);
     let mut entry = |i: usize, j: usize| {
-        let couplings = [sticks(i), sticks(j)].into_iter().flatten().filter(|_| i != j);
+        let couplings = [acts(i), acts(j)].into_iter().flatten().filter(|_| i != j);
         let factors: Vec<Id> = couplings.chain([matrix[i][j]]).collect();
         pool.product(&factors)
     };

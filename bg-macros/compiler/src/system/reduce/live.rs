@@ -63,6 +63,7 @@ fn live(equations: &StateEquations, roots: &[Id]) -> (Vec<bool>, Vec<bool>) {
                     let switch = *switch as usize;
                     if !std::mem::replace(&mut switches[switch], true) {
                         open.push(equations.switches[switch].guard);
+                        open.extend(equations.impacts.of_switch(switch));
                     }
                 }
                 _ => {}
@@ -95,6 +96,7 @@ fn forget(equations: &mut StateEquations, known: &Known) {
     equations.fallible.retain(|law| known.has(pool, law.value));
     equations.iterations.retain(|iteration| iteration.residuals.iter().all(|&residual| known.has(pool, residual)));
     equations.shown.prune(pool, known);
+    equations.impacts.prune(pool, known);
     let (holding, solution) = (&mut equations.holding, &mut equations.solution);
     let (mut held, mut solved) = (holding.known(pool, known), solution.known(pool, known));
     if holding.is_shared() {
@@ -126,6 +128,7 @@ pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, k
         *state = numbers[*state];
     }
     equations.holding.renumber(&|state| is_kept(state).then(|| numbers[state]));
+    equations.impacts.renumber(&|state| is_kept(state).then(|| numbers[state]));
     let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::state(number))).collect();
     equations.replace(&|symbol| symbol.as_state().map(|state| symbols[state]));
     report.keep(kept);

@@ -12,8 +12,9 @@ use std::collections::BTreeMap;
 use super::{closing, friction};
 use crate::expr::{Id, Pool, Symbol, derivative, partial, substitute};
 use crate::system::equations::definite::Factors;
+use crate::system::equations::impact::{Impacts, Struck};
 use crate::system::equations::solution::Solution;
-use crate::system::equations::{Reaction, Slip, StateEquations};
+use crate::system::equations::{Kind, Reaction, Slip, State, StateEquations};
 
 /// Solves for all multipliers. They stay symbols in the equations until these are closed.
 pub fn solve(equations: &mut StateEquations) {
@@ -22,7 +23,8 @@ pub fn solve(equations: &mut StateEquations) {
         return;
     }
     let (reactions, moves) = closing::arrange(equations, reactions);
-    let accelerations = accelerations(equations, &reactions);
+    let rates = flow_rates(equations, &reactions);
+    let accelerations = accelerations(equations, &reactions, &rates);
     let pool = &mut equations.pool;
     let matrix = matrix(pool, &reactions, &accelerations);
     let decoupled = friction::decoupled(pool, &reactions, &matrix);
@@ -34,6 +36,7 @@ pub fn solve(equations: &mut StateEquations) {
     let solved = factors.solve(pool, &right);
     let values = (0..solved.len()).map(|row| with(pool, efforts[row], multipliers[row], solved[row])).collect();
     let rigid = friction::rigid(&reactions);
+    equations.impacts = impacts(pool, &equations.states, &reactions, (&matrix, &rates));
     let holding = &mut equations.holding;
     (holding.matrix, holding.moves) = (matrix.into_iter().take(rigid).collect(), moves);
     holding.rigid = reactions.into_iter().take(rigid).map(|reaction| reaction.slip).collect();
@@ -54,7 +57,7 @@ fn with(pool: &mut Pool, effort: Id, multiplier: Symbol, value: Id) -> Id {
 
 /// 1 / D of a row.
 fn inverse(pool: &mut Pool, reaction: &Reaction, pivot: Id, entry: Id) -> Id {
-    if reaction.friction.is_some() {
+    if reaction.switched.is_some() {
         friction::reciprocal(pool, pivot, entry)
     } else {
         kept(pool, &reaction.slip, pivot)
@@ -70,24 +73,54 @@ fn kept(pool: &mut Pool, slip: &Slip, pivot: Id) -> Id {
     pool.div(kept, divisor)
 }
 
-/// dv/dt of every flow v, with Baumgarte's terms 2 a v + a^2 q where they are asked for; zero where the reactions are right.
-/// Dry friction keeps no place.
-fn accelerations(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<Id> {
+/// What impacts are calculated from: nothing without a stop.
+fn impacts(pool: &mut Pool, states: &[State], reactions: &[Reaction], (matrix, rates): (&[Vec<Id>], &[Id])) -> Impacts {
+    // Stops come after what is rigid, then dry friction, whose efforts are bounded and so no impulses.
+    let rows = reactions.iter().take_while(|reaction| reaction.switched.is_none() || reaction.rebound.is_some());
+    let rows: Vec<Reaction> = rows.cloned().collect();
+    let stop = |(reaction, &acceleration): (&Reaction, &Id)| {
+        Some(Struck { slip: reaction.slip.clone(), rebound: reaction.rebound?, acceleration })
+    };
+    let stops: Vec<Struck> = rows.iter().zip(rates).filter_map(stop).collect();
+    if stops.is_empty() {
+        return Impacts::default();
+    }
+    let rigid = rows.iter().take(rows.len() - stops.len()).map(|reaction| reaction.slip.clone()).collect();
+    let moves = closing::moves(pool, states, &rows, &closing::is_moved);
+    let mut integrals = closing::moves(pool, states, &rows, &|kind| kind == Kind::Integral);
+    // What is not linear in the efforts has no impulse.
+    let is_known = |symbol: Symbol| !matches!(symbol, Symbol::Multiplier(_));
+    integrals.retain(|(_, by)| pool.symbols(by).into_iter().all(is_known));
+    Impacts { rigid, stops, matrix: matrix[..rows.len()].to_vec(), moves, integrals }
+}
+
+/// dv/dt of every flow v.
+fn flow_rates(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<Id> {
     let pool = &mut equations.pool;
     let mut seeds: BTreeMap<Symbol, Id> = BTreeMap::from([(Symbol::Time, pool.one())]);
     for (state, definition) in equations.states.iter().enumerate() {
         seeds.insert(Symbol::state(state), definition.rate);
     }
     let flows: Vec<Id> = reactions.iter().map(|reaction| reaction.slip.flow).collect();
-    let rates = derivative(pool, &flows, &seeds);
+    derivative(pool, &flows, &seeds)
+}
+
+/// dv/dt of every flow v, with Baumgarte's terms 2 a v + a^2 q where they are asked for; zero where the reactions are right.
+/// Dry friction keeps no place; what rests on a stop returns to it slowly.
+fn accelerations(equations: &mut StateEquations, reactions: &[Reaction], rates: &[Id]) -> Vec<Id> {
+    let pool = &mut equations.pool;
     let (zero, rate_of_decay) = (pool.zero(), equations.baumgarte.unwrap_or(0.0));
     reactions
         .iter()
         .zip(rates)
-        .map(|(Reaction { slip, friction, .. }, rate)| {
+        .map(|(Reaction { slip, switched, rebound, .. }, &rate)| {
             let gap = slip.gap.unwrap_or(zero);
-            let decay = if friction.is_some() { friction::DECAY } else { 2.0 * rate_of_decay };
-            pool.linear(0.0, &[(rate, 1.0), (slip.flow, decay), (gap, rate_of_decay * rate_of_decay)])
+            let (decay, back) = match (switched, rebound) {
+                (_, Some(_)) => (2.0 * friction::PLACE, friction::PLACE * friction::PLACE),
+                (Some(_), None) => (friction::DECAY, 0.0),
+                (None, None) => (2.0 * rate_of_decay, rate_of_decay * rate_of_decay),
+            };
+            pool.linear(0.0, &[(rate, 1.0), (slip.flow, decay), (gap, back)])
         })
         .collect()
 }

@@ -26,6 +26,9 @@ const MOMENT: f64 = 0.005;
 /// How much R^T R may differ from the unit matrix: entries of six digits come out so.
 const ORTHOGONALITY: f64 = 5e-6;
 
+/// How far beyond its end a stop may start, which is more than gaps are closed to, m or rad.
+const BEYOND: f64 = 1e-9;
+
 /// Nothing but a size above 0 where a matrix is all zero.
 const TINY: f64 = 1e-300;
 
@@ -52,6 +55,8 @@ pub(super) fn of(pool: &mut Pool, value: &Value, allowed: Allowed) -> Vec<Condit
         Allowed::Any => Vec::new(),
         Allowed::Determined => vec![determined(pool, value.0[0])],
         Allowed::Rotation => rotation(pool, value),
+        Allowed::Fraction => fraction(pool, value.0[0]),
+        Allowed::Clearance => vec![clearance(pool, value.0[0])],
         Allowed::Inertia if is_matrix => [symmetric_positive(pool, value), triangle(pool, value)].concat(),
         Allowed::Inertia => {
             let tensor = Value::diagonal(pool, &value.0);
@@ -103,6 +108,21 @@ fn numbers(value: &Value, allowed: Allowed) -> Vec<Condition> {
         fault: Kind::Number,
     })
     .collect()
+}
+
+/// Not below 0, not above 1.
+fn fraction(pool: &mut Pool, value: Id) -> Vec<Condition> {
+    let (wanted, help) = ("must be from 0 to 1", "give a value from 0, which is plastic, to 1, which takes no energy");
+    let rest = pool.linear(1.0, &[(value, -1.0)]);
+    let below = Condition { is_strict: false, is_shown: true, ..of_matrix(value, wanted, help) };
+    let above = Condition { value: rest, is_shown: false, ..below.clone() };
+    [below, above].map(|condition| Condition { fault: Kind::Stop, ..condition }).into()
+}
+
+fn clearance(pool: &mut Pool, value: Id) -> Condition {
+    let value = pool.linear(BEYOND, &[(value, 1.0)]);
+    let (wanted, help) = ("must not be beyond its end", "start between the ends of the stop");
+    Condition { is_strict: false, fault: Kind::Stop, ..of_matrix(value, wanted, help) }
 }
 
 fn of_matrix(value: Id, wanted: &'static str, help: &'static str) -> Condition {

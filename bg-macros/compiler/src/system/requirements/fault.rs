@@ -9,6 +9,7 @@ pub(super) enum Kind {
     Number,
     Matrix,
     Orientation,
+    Stop,
 }
 
 /// A value that does not hold what is asked of it.
@@ -25,6 +26,7 @@ impl Explain for RequirementFault<'_> {
             Kind::Number => "BG0701",
             Kind::Matrix => "BG0702",
             Kind::Orientation => "BG0703",
+            Kind::Stop => "BG0704",
         }
     }
 
