@@ -190,7 +190,10 @@ const MORE: [(&str, &str); 32] = [
     ("BG0203", "1 j: translation; I m = 2; j -> m; stop ▸end on j { restitution 0.5; }"),
     ("BG0204", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness 1; rest below ▸1; }"),
     ("BG0316", "param e: m = 1; 1 j: translation; I m = 2; j -> m; stop end on j { at most 2; restitution ▸e; }"),
-    ("BG0323", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; restitution ▸t; }"),
+    (
+        "BG0323",
+        "param T: s = 1; 1 j: translation; I m = 2; j -> m; stop end on j { at most 2; restitution 0.1 * ▸t / T; }",
+    ),
     ("BG0326", "Se f = 1; 1 j: translation; I m = 2; R ▸r = 2 restitution 0.5; f -> j -> m; j -> r;"),
     ("BG0704", "1 j: translation; I m = 2; j -> m; stop ▸end on j { at most 2; start 3; restitution 0.5; }"),
     ("BG0203", "Se p = 1; 1 j: hydraulic; p -> j; orifice ▸o on j { area 1; coefficient 1; density 1; }"),

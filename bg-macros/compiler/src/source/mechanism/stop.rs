@@ -19,6 +19,9 @@ impl Expansion<'_> {
         for (end, value) in ends {
             self.stop_clause(stop, end, axis.units.displacement, value.as_ref(), Allowed::Any);
         }
+        if stop.most.is_none() && stop.least.is_none() {
+            return;
+        }
         if let Some(restitution) = &stop.restitution {
             self.rebound(stop, &axis, restitution);
         } else if let Some(stiffness) = &stop.stiffness {
