@@ -19,6 +19,10 @@ const FASTER: f64 = 1e3;
 /// A pivot below this part of its entry is of a pose 1e-4 rad from a singular one. Two steps in a row that end there creep.
 const NEAR: f64 = 1e-8;
 
+/// A pivot below this part of its entry is of a pose in whose neighbourhood steps err much in what joints hold, some 6 degrees from
+/// a singular one.
+const AROUND: f64 = 1e-2;
+
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Broken {
@@ -59,6 +63,22 @@ impl LoopWatch {
     {
         self.hold.read(joints, t, x, negative);
         self.torn().map(Broken::Torn).or_else(|| self.singular().map(Broken::Singular))
+    }
+
+    /// Whether the pose at time `t` (s) and state `x` is in the neighbourhood of a singular one.
+    pub fn is_around<J, const N: usize, const G: usize>(
+        &mut self,
+        joints: &J,
+        (t, x): (f64, &SVector<f64, N>),
+        negative: &[bool; G],
+    ) -> bool
+    where
+        J: Joints<f64, N, G>,
+    {
+        let Self { hold, factors, dropped, .. } = self;
+        hold.read(joints, t, x, negative);
+        factors.factor_where(hold.matrix(), |row, pivot, entry| dropped[row] || pivot <= AROUND * entry);
+        (0..dropped.len()).any(|row| factors.follows(row) && !dropped[row])
     }
 
     /// The motion that has come apart most.

@@ -176,7 +176,7 @@ where
             error = self.stepper.attempt(h);
             self.pace.follow(self.stepper.method.control());
             self.stepper.end.t = t_new;
-            if error > 1.0 && self.loops.is_some() {
+            if error > 1.0 && self.is_around_singular() {
                 error = self.stepper.error_after_projection().unwrap_or(error);
             }
             if error <= 1.0 && is_finite(&self.stepper.end.x) {
@@ -198,13 +198,20 @@ where
         }
     }
 
+    /// Whether the step begins or ends in the neighbourhood of a singular pose.
+    fn is_around_singular(&mut self) -> bool {
+        let Stepper { system, start, end, negative, .. } = &self.stepper;
+        let (Some(loops), Some(joints)) = (&mut self.loops, system.joints()) else { return false };
+        [start, end].into_iter().any(|point| loops.is_around(joints, (point.t, &point.x), negative))
+    }
+
     /// Projects the end of the step; gives whether it is still on the branch of the motion on which the step began.
     ///
     /// Near a singular pose steps err much in what joints hold, which the projection takes away. It is Newton's step, so
     /// where the branches are far apart beside the error, another one moves by the error's square only, or by rounding.
     fn project(&mut self) -> bool {
         let moved = self.stepper.project();
-        if moved <= MOVED || self.loops.is_none() {
+        if moved <= MOVED || !self.is_around_singular() {
             return moved <= MOVED;
         }
         let [again, once_more] = [self.stepper.project(), self.stepper.project()];

@@ -117,13 +117,6 @@ fn combine<const N: usize>(row: Row, k: &Stages<N>, i: usize) -> f64 {
     row.iter().fold(-0.0, |sum, (stage, weight)| sum + weight * k[*stage].data.0[0][i])
 }
 
-/// The norm of two error estimates of different orders.
-fn joined(first: f64, second: f64) -> f64 {
-    let both = first * first + 0.01 * second * second;
-    // Both differences vanish exactly at a state of rest.
-    if both == 0.0 { 0.0 } else { first * first / both.sqrt() }
-}
-
 impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// Evaluates the stages from `first` up to `behind`. Their sums are written out, so that each finds its weights as
     /// constants; the rate stands there once, which is less to compile and takes no longer.
@@ -180,7 +173,10 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         if T::SECOND.is_empty() {
             return h.abs() * first;
         }
-        h.abs() * joined(first, largest(&second))
+        let second = largest(&second);
+        let both = first * first + 0.01 * second * second;
+        // Both differences vanish exactly at a state of rest.
+        if both == 0.0 { 0.0 } else { h.abs() * first * first / both.sqrt() }
     }
 }
 
@@ -245,7 +241,8 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         let first = left(&|i| combine(T::ERROR, &self.k, i));
         if !T::SECOND.is_empty() {
             let second = left(&|i| combine(T::B, &self.k, i) - combine(T::SECOND, &self.k, i));
-            return Some(joined(first, second));
+            let both = first * first + 0.01 * second * second;
+            return Some(if both == 0.0 { 0.0 } else { first * first / both.sqrt() });
         }
         if T::LATE.is_empty() || first > 1.0 {
             return Some(first);
