@@ -673,7 +673,7 @@ use proc_macro::TokenStream;
 /// # Scenes
 ///
 /// ```text
-/// scene  = "scene" NAME "{" { clause } "}"
+/// scene  = "scene" NAME "{" { clause } "}" | "scenes" "only" ";"
 /// clause = observe | "tune" ["all" "but"] NAMES | "without" NAMES | "rigid" ( "joints" ";" | "{" NAME { "," NAME } "}" )
 ///        | "angles" ";" | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
 /// NAMES  = "{" [NAME { "," NAME }] "}" | NAME { "," NAME } ";"
@@ -683,6 +683,11 @@ use proc_macro::TokenStream;
 /// own parameter struct, beside the literal model of the graph, from which the compiler leaves out what this use does
 /// not need. The outputs are those of the literal model to rounding, for all values of the parameters that it keeps;
 /// `without` and `rigid` make it another mechanism, whose own literal model is not generated.
+///
+/// With the statement **`scenes only;`** in the graph its scenes alone become code. The literal graph is checked, its name is no
+/// type, and a scene may have it; the first scene stands for the graph, in a program of the workbench too, and keeps all parameters
+/// that the others keep. A mechanism in the plane with rigid joints then compiles in a fraction of the time, since its literal model is
+/// one in space.
 ///
 /// | clause | |
 /// |---|---|
@@ -1177,6 +1182,8 @@ use proc_macro::TokenStream;
 /// | BG0605 | a scene with another number of states than expected |
 /// | BG0606 | no such joint to make rigid |
 /// | BG0608 | `start impulse` where no joint is rigid |
+/// | BG0609 | `scenes only` in a graph without a scene |
+/// | BG0610 | with `scenes only`: a scene that adjusts what the first one does not |
 /// | **values** | |
 /// | BG0701 | a number that no physics allows, such as a mass of 0 |
 /// | BG0702 | a matrix that no physics allows |

@@ -25,6 +25,7 @@ bond_graph! {
         joint tip: revolute z (left.rod.right -> right.rod.left) { rigid; }
         joint heel: revolute z (right.rod.right -> ground.B) { rigid; }
         observe { tip.force }
+        scene InThePlane { expect planar; }
     }
 
     /// A body that is welded to the ground at both ends, on a frame that one joint fixes.
@@ -37,6 +38,8 @@ bond_graph! {
         joint near: fixed (frame.rod.left -> shelf.rod.left) { rigid; }
         joint far: fixed (frame.rod.right -> shelf.rod.right) { rigid; }
         observe { base.force }
+        scenes only;
+        scene WeldedTwice { expect planar; }
     }
 
     /// A parallelogram with a rod across, from one corner to the other.
@@ -54,6 +57,8 @@ bond_graph! {
         joint across: revolute z (coupler.rod.left -> brace.rod.left) { rigid; }
         joint back: revolute z (ground.B -> brace.rod.right) { rigid; }
         observe { across.force }
+        scenes only;
+        scene Braced { expect planar; }
     }
 
     /// A rod on a ball joint and three stays without mass: each holds something of its own, and together everything.
@@ -79,6 +84,8 @@ bond_graph! {
         joint base: fixed (ground.O -> frame.rod) { rigid; }
         joint near: fixed (frame.rod.left -> shelf.rod.left) { rigid; }
         observe { base.force; x: m = shelf.rod.position.x }
+        scenes only;
+        scene Frame { expect planar; }
     }
 
     /// A rod on the frame.
@@ -90,6 +97,8 @@ bond_graph! {
         joint base: fixed (ground.O -> frame.rod) { rigid; }
         joint pin: revolute z (frame.rod.right -> rod.rod.left) { rigid; }
         observe { base.force; height: m = rod.rod.position.y }
+        scenes only;
+        scene OnFrame { expect planar; }
     }
 
     /// A rod on a pin about which it is turned at a speed that depends on time.
@@ -98,11 +107,13 @@ bond_graph! {
         param growth: rad/s^2 = 2;
         gravity [0, -9.81, 0];
         ground { point O = [0, 0, 0]; }
-        part rod: Rod { start rod.left at [0, 0, 0]; start rod velocity guess; start rod spin guess; }
+        part rod: Rod { start rod.left at [0, 0, 0]; start rod velocity [guess(0), guess(0), 0]; start rod spin [0, 0, guess(0)]; }
         joint pin: revolute z (ground.O -> rod.rod.left) { rigid; }
         rSe motor = speed + growth * t;
         pin.spin -> motor;
         observe { angle: rad = rod.rod.angle }
+        scenes only;
+        scene Turned { expect planar; }
     }
 
     /// The same at a constant speed.
@@ -110,11 +121,13 @@ bond_graph! {
         param speed: rad/s = 3;
         gravity [0, -9.81, 0];
         ground { point O = [0, 0, 0]; }
-        part rod: Rod { start rod.left at [0, 0, 0]; start rod velocity guess; start rod spin guess; }
+        part rod: Rod { start rod.left at [0, 0, 0]; start rod velocity [guess(0), guess(0), 0]; start rod spin [0, 0, guess(0)]; }
         joint pin: revolute z (ground.O -> rod.rod.left) { rigid; }
         rSe motor = speed;
         pin.spin -> motor;
         observe { angle: rad = rod.rod.angle }
+        scenes only;
+        scene Steady { expect planar; }
     }
 }
 
@@ -137,6 +150,7 @@ fn joints_that_leave_no_motion_are_named() {
         )
     };
     assert_eq!(refused!(Triangle, TriangleParameters), expected("`foot`, `tip`, `heel`"));
+    assert_eq!(refused!(InThePlane, InThePlaneParameters), expected("`foot`, `tip`, `heel`"));
     // Not the joint that fixes the frame.
     assert_eq!(refused!(WeldedTwice, WeldedTwiceParameters), expected("`near`, `far`"));
     assert_eq!(refused!(Braced, BracedParameters), expected("`a`, `b`, `c`, `across`, `d`, `back`"));

@@ -42,16 +42,18 @@ bond_graph! {
             slip: m/s = norm(elbow.slip.flow); stored: J = stored_energy; supplied: J = integral(supplied_power);
             lost: J = integral(bumper.power); impulse: N*m*s = integral(bumper.effort); pull: N*s = integral(elbow.force.x)
         }
-        /// In the plane, by its angles.
+        scenes only;
+        scene Chain { expect planar; }
+        /// By its angles.
         scene Flat { expect planar; angles; }
     }
     /// A slider and a crank, a closed loop; the slider hits both ends of its guide.
     graph Loop {
         param give: 1 = 0.7;
         ground { point O = [0, 0, 0]; }
-        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(1); start velocity guess; start spin [0, 0, -8]; }
-        body rod { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.3, 0, 0]; point c = [0.3, 0, 0]; start b at [0.2 * cos(1), 0.2 * sin(1), 0]; start turned rotation_z(guess(-0.3)); start velocity guess; start spin [0, 0, guess(0)]; }
-        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0]; start velocity guess; }
+        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(1); start velocity [guess(0), guess(0), 0]; start spin [0, 0, -8]; }
+        body rod { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.3, 0, 0]; point c = [0.3, 0, 0]; start b at [0.2 * cos(1), 0.2 * sin(1), 0]; start turned rotation_z(guess(-0.3)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
+        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0]; start velocity [guess(0), guess(0), 0]; }
         joint pin_o: revolute z (ground.O -> crank.a) { rigid; }
         joint pin_a: revolute z (crank.b -> rod.b) { rigid; }
         joint pin_b: revolute z (rod.c -> slider) { rigid; }
@@ -61,6 +63,8 @@ bond_graph! {
             x: m = guide.travel; v: m/s = slider.velocity.x; slip: m/s = norm(pin_a.slip.flow); stored: J = stored_energy;
             lost: J = integral(dissipated_power); impulse: N*s = integral(ends.effort)
         }
+        scenes only;
+        scene Loop { expect planar; }
     }
     /// A flywheel behind a gear, whose inertia is in derivative causality.
     graph Geared {

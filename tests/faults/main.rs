@@ -252,6 +252,11 @@ const SCENES: [(&str, &str); 7] = [
          scene A { rigid { ▸pon } }",
     ),
     ("BG0608", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; start ▸impulse;"),
+    ("BG0609", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; ▸scenes only;"),
+    (
+        "BG0610",
+        "param a: N = 1; Se f = a; 1 j: translation; I m = 2; f -> j -> m; scenes only; scene A { tune {} } scene ▸B {}",
+    ),
 ];
 
 /// Parts and graphs that use them.

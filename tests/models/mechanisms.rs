@@ -45,8 +45,8 @@ bond_graph! {
         joint left: revolute z (first.rod.head -> square[0].rod.left) { rigid; }
         joint middle: revolute z (square[0].post.rod.head -> square[1].rod.left) { rigid; }
         observe { B0: m = first.rod.head.position; v0: m/s = first.rod.head.velocity; all of first; all of square }
-        /// In the plane.
-        scene PlanarDoubleFourBar { expect planar; }
+        scenes only;
+        scene DoubleFourBar { expect planar; }
     }
 
     /// A rod of the governor, 1 m and 0.3 kg, with 5 kg at its end, a point of mass.

@@ -2,7 +2,7 @@
 
 use bond_graph_tests::hardcases::pendulums::{RigidPendulum, RigidPendulumParameters};
 use bond_graph_tests::models::mechanisms::{
-    FlyballGovernor, FlyballGovernorParameters, PlanarDoubleFourBar, PlanarDoubleFourBarParameters,
+    DoubleFourBar, DoubleFourBarParameters, FlyballGovernor, FlyballGovernorParameters,
 };
 use bond_graph_tests::models::slider_crank::{RigidSliderCrank, RigidSliderCrankParameters};
 use bond_graph_tests::support::record::{Record, instants, record};
@@ -24,7 +24,7 @@ fn drift(energies: &[f64]) -> f64 {
 }
 
 fn double_four_bar(end: f64, samples: u32) -> Record {
-    let model = PlanarDoubleFourBar::new(PlanarDoubleFourBarParameters::default()).unwrap();
+    let model = DoubleFourBar::new(DoubleFourBarParameters::default()).unwrap();
     record(&model, &instants(end, samples), 1e-10)
 }
 

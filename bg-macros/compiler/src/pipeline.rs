@@ -10,7 +10,7 @@ use crate::graph;
 use crate::graph::causality::{self, CausalGraph};
 use crate::program::elimination::{self, Elimination};
 use crate::program::{self, Programs};
-use crate::source::ast::{Graph, Source};
+use crate::source::ast::{Graph, Name, Source};
 use crate::source::part::{self, Flattened};
 use crate::source::scene::{self, Variant};
 use crate::source::{mechanism, names};
@@ -36,7 +36,9 @@ pub struct Derived {
 pub struct Compiled {
     /// The graph as written, with what its scene changes.
     pub source: Graph,
-    /// The scenes of the graph; none of a scene.
+    /// Whether it is a scene.
+    pub is_scene: bool,
+    /// The other models of the graph, where this one stands for the graph.
     pub scenes: Vec<String>,
     /// Its results as far as the state equations of the whole graph.
     pub derived: Derived,
@@ -54,7 +56,7 @@ pub struct Compiled {
     pub programs: Programs,
 }
 
-/// All models of a macro call. A fault of a literal graph is not repeated for its scenes, one of a part not for its uses.
+/// All models of a macro call. With `scenes only;` the literal graph is none: its stages end with the state equations. A fault of a literal graph is not repeated for its scenes, one of a part not for its uses.
 ///
 /// # Errors
 /// The faults of all parts and graphs.
@@ -63,13 +65,21 @@ pub fn models(source: &Source) -> Staged<Vec<Compiled>> {
     of_graphs(&flattened).map_err(|faults| flattened.told(faults))
 }
 
+impl Compiled {
+    /// The model's name and the names of the parameters that it keeps adjustable.
+    fn adjustable(&self) -> (&Name, Vec<&str>) {
+        let parameters = self.equations.parameters.iter().map(|parameter| parameter.name.text.as_str());
+        (&self.source.name, parameters.collect())
+    }
+}
+
 fn of_graphs(flattened: &Flattened) -> Staged<Vec<Compiled>> {
     let mut models = Vec::new();
     let mut faults = names::check(&flattened.source).err().unwrap_or_default();
     flattened.unused.iter().for_each(|part| faults.extend(of_part(part)));
     for graph in &flattened.source.graphs {
         match scene::variants(graph) {
-            Ok(variants) => each_variant(&variants, &mut models, &mut faults),
+            Ok(variants) => each_variant(&variants, scene::scenes_only(graph), &mut models, &mut faults),
             Err(found) => faults.extend(found),
         }
     }
@@ -85,10 +95,15 @@ fn of_part(part: &Graph) -> Faults {
     faults
 }
 
-fn each_variant(variants: &[Variant], models: &mut Vec<Compiled>, faults: &mut Faults) {
+fn each_variant(variants: &[Variant], scenes_only: bool, models: &mut Vec<Compiled>, faults: &mut Faults) {
+    let before = models.len();
     for variant in variants {
-        match compile(variant) {
-            Ok(model) => models.push(model),
+        let compiled = match variant.scene {
+            None if scenes_only => derive(&variant.graph).map(|_| None),
+            _ => compile(variant).map(Some),
+        };
+        match compiled {
+            Ok(model) => models.extend(model),
             Err(found) => {
                 faults.extend(found);
                 if variant.scene.is_none() {
@@ -96,6 +111,9 @@ fn each_variant(variants: &[Variant], models: &mut Vec<Compiled>, faults: &mut F
                 }
             }
         }
+    }
+    if scenes_only && let [first, others @ ..] = &models[before..] {
+        faults.extend(others.iter().filter_map(|other| scene::adjusts_more(other.adjustable(), first.adjustable())));
     }
 }
 
@@ -115,7 +133,7 @@ pub fn derive(graph: &Graph) -> Staged<Derived> {
 /// # Errors
 /// The faults of the first stage that has any.
 pub fn compile(variant: &Variant) -> Staged<Compiled> {
-    let (source, scenes) = (variant.graph.clone(), variant.scenes.clone());
+    let (source, is_scene, scenes) = (variant.graph.clone(), variant.scene.is_some(), variant.scenes.clone());
     let derived = derive(&source)?;
     let (mut equations, reduction) = reduced(variant, derived.equations.clone())?;
     projection::complete(&mut equations);
@@ -125,7 +143,18 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let mut second_order = second_order::differentiate(&equations);
     let elimination = elimination::plan(equations.states.len(), jacobian.unknowns.len(), &jacobian.places());
     let programs = program::programs(&mut equations, &mut jacobian, &mut second_order);
-    Ok(Compiled { source, scenes, derived, reduction, equations, jacobian, second_order, elimination, programs })
+    Ok(Compiled {
+        source,
+        is_scene,
+        scenes,
+        derived,
+        reduction,
+        equations,
+        jacobian,
+        second_order,
+        elimination,
+        programs,
+    })
 }
 
 /// The equations that the variant's model integrates: those of a scene reduced, with the report of it.

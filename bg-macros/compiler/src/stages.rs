@@ -42,8 +42,18 @@ pub fn stages(tokens: TokenStream) -> Staged<Vec<Stage>> {
 }
 
 fn of_model(model: &Compiled) -> Vec<Stage> {
-    let Compiled { source, scenes: _, derived, reduction, equations, jacobian, second_order, elimination, programs } =
-        model;
+    let Compiled {
+        source,
+        is_scene: _,
+        scenes: _,
+        derived,
+        reduction,
+        equations,
+        jacobian,
+        second_order,
+        elimination,
+        programs,
+    } = model;
     let mut stages = Vec::new();
     let mut push = |name, text| stages.push(Stage { graph: source.name.text.clone(), name, text });
     push("source", source.to_string());

@@ -34,10 +34,14 @@ pub trait Mechanism: Clone {
     fn visit<S: Scalar, V: ModelVisitor<S>>(&self, visitor: V) -> V::Output;
 }
 
-/// A mechanism with the models of its graph.
+/// A mechanism with the models of its graph: of the literal model with all scenes, of a scene with itself alone. In a graph
+/// with `scenes only;` the first scene has the others.
 pub trait Scenes: Mechanism + 'static {
-    /// How many models there are: the mechanism itself and its scenes. A scene has none but itself.
+    /// How many models there are: the mechanism itself and its scenes.
     const MODELS: usize;
+
+    /// Whether the mechanism itself is the graph as it stands, not a scene of it.
+    const LITERAL: bool;
 
     /// Hands the type of model `index` to `visitor`: 0 is the mechanism itself; then come its scenes, in the order of the text.
     ///

@@ -39,17 +39,17 @@ impl<Me: Scenes> Default for Program<Me> {
 }
 
 impl<Me: Scenes> Program<Me> {
-    /// The program of any mechanism: it runs the graph as it stands.
+    /// The program of any mechanism: it runs the graph as it stands, or where it has scenes only, the first one.
     #[must_use]
     pub fn new() -> Self {
         let scenes = scenes::<Me>();
-        let literal = scenes.last().expect("there is the literal model");
+        let own = scenes.iter().find(|scene| scene.index == 0).expect("the mechanism is one of its models");
         let texts = Texts {
-            name: crate::scenes::in_small_letters(literal.description.name),
+            name: crate::scenes::in_small_letters(own.description.name),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            about: literal.description.doc.split_whitespace().collect::<Vec<_>>().join(" "),
+            about: own.description.doc.split_whitespace().collect::<Vec<_>>().join(" "),
         };
-        let (scene, cases) = (literal.name.clone(), Case::of_scenes(&scenes, 1.0));
+        let (scene, cases) = (own.name.clone(), Case::of_scenes(&scenes, 1.0));
         let measured = vec![scene.clone()];
         Self { texts, scene, scenes, cases, measured, extras: Box::new(Plain), mechanism: PhantomData }
     }

@@ -21,14 +21,17 @@ pub struct Scene {
     pub description: &'static Description,
 }
 
-/// The scenes in the order of the text, then the literal model.
+/// The scenes in the order of the text, then the literal model, where there is one.
 #[must_use]
 pub fn scenes<Me: Scenes>() -> Vec<Scene> {
     let scene = |index| {
         let description = Me::model(index, Describe);
         Scene { index, name: in_small_letters(description.name), description }
     };
-    let mut scenes: Vec<Scene> = (1..Me::MODELS).map(scene).collect();
+    let mut scenes: Vec<Scene> = (usize::from(Me::LITERAL)..Me::MODELS).map(scene).collect();
+    if !Me::LITERAL {
+        return scenes;
+    }
     let is_taken = scenes.iter().any(|scene| scene.name == LITERAL);
     let literal = scene(0);
     let name = if is_taken { literal.name.clone() } else { LITERAL.to_owned() };

@@ -43,6 +43,23 @@ mod later {
     }
 }
 
+/// Without a literal model.
+mod scenes {
+    bg_model::bond_graph! {
+        pub graph Slide {
+            param mass: kg = 2, above 0;
+            1 slide: translation; I body = mass; param k: N/m = 50; C spring = k start 0.1;
+            slide -> body; slide -> spring;
+            observe { x: m = spring.q }
+            scenes only;
+            /// All of it.
+            scene Slide {}
+            /// Without the place.
+            scene Fast { observe { v: m/s = slide.flow } tune {} }
+        }
+    }
+}
+
 /// Another mechanism.
 mod other {
     bg_model::bond_graph! {
@@ -118,6 +135,18 @@ fn field(text: &str, line: usize, column: usize) -> &str {
 
 const RENEWAL: &str = "literal: if that is meant, record it anew: slide golden record --scene literal \
                        --t-end 1 --step 0.1 --method auto --rtol 1e-8 --out DIR";
+
+#[test]
+fn with_scenes_only_the_first_scene_is_the_program_s_own() {
+    let bench = Bench::new();
+    let record =
+        |more: &[&str]| bench.golden::<scenes::Slide>(&[&["record", "--t-end", "1", "--step", "0.1"], more].concat());
+    assert_eq!(record(&[]), ExitCode::SUCCESS);
+    assert_eq!(record(&["--scene", "fast"]), ExitCode::SUCCESS);
+    assert_eq!(record(&["--scene", "literal"]), ExitCode::from(2));
+    assert!(bench.path("slide.csv").exists() && bench.path("fast.csv").exists());
+    check::<scenes::Slide>(bench.folder()).unwrap();
+}
 
 #[test]
 fn what_is_recorded_comes_out_again() {

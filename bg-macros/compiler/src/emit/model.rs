@@ -70,7 +70,8 @@ impl Emission<'_> {
         let tables = self.tables(&given.scalar());
         let definition = self.definition(&given, &costs, &tables);
         let items = given.items(&definition, &self.code(&costs, &tables));
-        let scenes = given.scenes(&self.model.scenes.iter().map(String::as_str).collect::<Vec<_>>());
+        let scenes =
+            given.scenes(!self.model.is_scene, &self.model.scenes.iter().map(String::as_str).collect::<Vec<_>>());
         quote!(#items #scenes)
     }
 

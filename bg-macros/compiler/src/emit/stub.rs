@@ -114,6 +114,6 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
         }
         #mechanism
     };
-    let (items, scenes) = (given.items(&definition, &code), given.scenes(&[]));
+    let (items, scenes) = (given.items(&definition, &code), given.scenes(true, &[]));
     quote!(#items #scenes)
 }

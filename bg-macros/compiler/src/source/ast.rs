@@ -70,6 +70,8 @@ pub enum Item {
     Observe(Vec<Watch>),
     /// `scene NAME { ... }`
     Scene(Scene),
+    /// `scenes only;` with the words' span: the literal graph is checked, and no code is made of it.
+    ScenesOnly(Span),
     /// `ground { point P = E; ... }`
     Ground(Ground),
     /// `gravity E;`

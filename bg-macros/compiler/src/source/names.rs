@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use crate::fault::{Explain, Fault, Faults, Staged};
 use crate::source::ast::{Graph, Item, Name, Scene, Source};
+use crate::source::scene;
 
 /// What the names of a model's structs have after the model's own.
 pub(crate) const PARAMETERS: &str = "Parameters";
@@ -129,13 +130,14 @@ pub(crate) fn models(source: &Source) -> (Vec<Promised<'_>>, Faults) {
     (models, faults)
 }
 
-/// The graph and its scenes.
+/// The graph, where it is a model itself, and its scenes.
 fn of_graph(graph: &Graph) -> impl Iterator<Item = Promised<'_>> {
     let scenes = graph.items.iter().filter_map(move |item| match item {
         Item::Scene(scene) => Some(Promised { graph, scene: Some(scene) }),
         _ => None,
     });
-    std::iter::once(Promised { graph, scene: None }).chain(scenes)
+    let literal = (!scene::scenes_only(graph)).then_some(Promised { graph, scene: None });
+    literal.into_iter().chain(scenes)
 }
 
 /// Two structs of one name: one of them is a model, or both are structs of models of one name.

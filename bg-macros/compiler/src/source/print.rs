@@ -140,6 +140,7 @@ impl Display for Item {
             Self::Close(close) => close.fmt(f),
             Self::Observe(watched) => observe(f, watched),
             Self::Scene(scene) => scene.fmt(f),
+            Self::ScenesOnly(_) => f.write_str("scenes only;"),
             Self::Ground(ground) => ground.fmt(f),
             Self::Gravity(Gravity { acceleration, .. }) => write!(f, "gravity {acceleration};"),
             Self::Impulse(_) => f.write_str("start impulse;"),

@@ -1,7 +1,7 @@
 //! Scenes: the uses of one mechanism, each a graph of its own.
 //!
 //! In: one `ast::Graph` with scenes. Out: the literal graph, and for each scene the graph without what it leaves out and
-//! with what it watches. No longer occurs: `Item::Scene`.
+//! with what it watches. No longer occurs: `Item::Scene`, `Item::ScenesOnly`.
 
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::source::ast::{ElementKind, Expectation, Graph, Item, Name, Rigid, Scene};
@@ -14,6 +14,8 @@ pub enum SceneFault {
     NothingToLeaveOut { name: String, near: Option<String> },
     UnknownJoint { name: String, near: Option<String> },
     NothingRigid,
+    NoScene,
+    AdjustsMore { scene: String, name: String, first: String },
 }
 
 use SceneFault as F;
@@ -24,6 +26,8 @@ impl Explain for SceneFault {
             F::NothingToLeaveOut { .. } => "BG0602",
             F::UnknownJoint { .. } => "BG0606",
             F::NothingRigid => "BG0608",
+            F::NoScene => "BG0609",
+            F::AdjustsMore { .. } => "BG0610",
         }
     }
 
@@ -32,6 +36,10 @@ impl Explain for SceneFault {
             F::NothingToLeaveOut { name, .. } => format!("there is no `{name}` to leave out"),
             F::UnknownJoint { name, .. } => format!("there is no joint `{name}` to make rigid"),
             F::NothingRigid => "`start impulse` has nothing to act through: no joint is rigid, in no scene".to_owned(),
+            F::NoScene => "`scenes only;` leaves nothing to compile: the graph has no scene".to_owned(),
+            F::AdjustsMore { scene, name, first } => {
+                format!("scene `{scene}` keeps the parameter `{name}` adjustable, the first scene, `{first}`, does not")
+            }
         }
     }
 
@@ -43,6 +51,11 @@ impl Explain for SceneFault {
             F::NothingToLeaveOut { .. } => "name a joint, contact, spring, drive, friction, stop or element".to_owned(),
             F::UnknownJoint { .. } => "name a joint of the graph, or write `rigid joints;`".to_owned(),
             F::NothingRigid => "remove it, or make a joint rigid".to_owned(),
+            F::NoScene => "remove it, or add a scene: `scene NAME { }`".to_owned(),
+            F::AdjustsMore { name, first, .. } => format!(
+                "with `scenes only;` the first scene stands for the graph: add `{name}` to `tune` of `{first}`, or put a scene \
+                 first that keeps them all"
+            ),
         }
     }
 }
@@ -54,8 +67,15 @@ pub struct Variant {
     pub graph: Graph,
     /// The scene; none for the literal graph.
     pub scene: Option<Scene>,
-    /// The names of the literal graph's scenes; none for a scene.
+    /// The names of the other models of the graph, where this one stands for the graph: the literal one does, or with
+    /// `scenes only;` the first scene.
     pub scenes: Vec<String>,
+}
+
+/// Whether the graph has the statement `scenes only;`: no model is made of the literal graph.
+#[must_use]
+pub fn scenes_only(source: &Graph) -> bool {
+    source.items.iter().any(|item| matches!(item, Item::ScenesOnly(_)))
 }
 
 /// The literal graph and one variant for each scene.
@@ -64,13 +84,15 @@ pub struct Variant {
 /// Things to leave out that there are not.
 pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     let mut faults = Vec::new();
-    let items: Vec<Item> = source.items.iter().filter(|item| !matches!(item, Item::Scene(_))).cloned().collect();
+    let is_of_scenes = |item: &Item| matches!(item, Item::Scene(_) | Item::ScenesOnly(_));
+    let items: Vec<Item> = source.items.iter().filter(|item| !is_of_scenes(item)).cloned().collect();
     let literal = Graph { items, ..source.clone() };
     let named =
         source.items.iter().filter_map(|item| if let Item::Scene(scene) = item { Some(&scene.name) } else { None });
     let scenes = named.map(|name| name.text.clone()).collect();
     let mut variants = vec![Variant { graph: literal.clone(), scene: None, scenes }];
     faults.extend(idle_impulse(source));
+    faults.extend(no_scene(source));
     for item in &source.items {
         let Item::Scene(scene) = item else { continue };
         let mut items = left(&literal.items, &scene.without, &mut faults);
@@ -78,7 +100,27 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
         let graph = watched(&literal, items, scene);
         variants.push(Variant { graph, scene: Some(scene.clone()), scenes: Vec::new() });
     }
+    if scenes_only(source)
+        && let [_, first, others @ ..] = variants.as_mut_slice()
+    {
+        first.scenes = others.iter().map(|other| other.graph.name.text.clone()).collect();
+    }
     if faults.is_empty() { Ok(variants) } else { Err(faults) }
+}
+
+/// The fault of a `scenes only` in a graph without scenes.
+fn no_scene(source: &Graph) -> Option<Fault> {
+    let span =
+        source.items.iter().find_map(|item| if let Item::ScenesOnly(span) = item { Some(*span) } else { None })?;
+    (!source.items.iter().any(|item| matches!(item, Item::Scene(_)))).then(|| Fault::new(span, &F::NoScene))
+}
+
+/// The fault of a model that keeps a parameter adjustable which the first one does not: each with its name and parameters.
+#[must_use]
+pub fn adjusts_more((scene, own): (&Name, Vec<&str>), (first, of_first): (&Name, Vec<&str>)) -> Option<Fault> {
+    let name = own.into_iter().find(|name| !of_first.contains(name))?.to_owned();
+    let (own, first) = (scene.text.clone(), first.text.clone());
+    Some(Fault::new(scene.span, &F::AdjustsMore { scene: own, name, first }))
 }
 
 /// The fault of a `start impulse` in a graph that has no rigid joint, neither itself nor in a scene.
@@ -199,6 +241,16 @@ mod tests {
         assert_eq!(docs, ["The whole.", "The whole.", "Another."]);
         assert_eq!(variants.iter().map(|variant| outputs(&variant.graph)).collect::<Vec<_>>(), [1, 1, 2]);
         assert!(variants.iter().all(|variant| matches!(variant.graph.visibility, syn::Visibility::Public(_))));
+    }
+
+    #[test]
+    fn with_scenes_only_the_first_scene_has_the_others() {
+        let variants = of("scene A {} scenes only; scene B {} scene G {}").unwrap();
+        let scenes: Vec<_> = variants.iter().map(|variant| variant.scenes.join(" ")).collect();
+        assert_eq!(scenes, ["A B G", "B G", "", ""]);
+        assert!(variants.iter().all(|v| v.graph.items.iter().all(|item| !matches!(item, Item::ScenesOnly(_)))));
+        let faults = of("scenes only;").unwrap_err();
+        assert_eq!(faults.iter().map(|fault| fault.code).collect::<Vec<_>>(), ["BG0609"]);
     }
 
     #[test]

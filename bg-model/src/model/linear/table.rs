@@ -62,8 +62,13 @@ pub fn eliminate<S: Scalar, F: Field<S>>(
 /// Replaces `b` by the solution. A step (row, factor, column) subtracts factor times `b[column]` from `b[row]`, or, where row
 /// and column are equal, multiplies `b[row]` by the factor.
 pub fn substitute<S: Scalar, F: Field<S>>(steps: &[(u32, u32, u32)], factors: &[F], b: &mut [F]) {
-    for &(row, slot, column) in steps {
-        let (row, column, factor) = (row as usize, column as usize, factors[slot as usize]);
-        b[row] = if row == column { b[row] * factor } else { b[row] - factor * b[column] };
+    for steps in steps.chunk_by(|(one, ..), (next, ..)| one == next) {
+        let (row, ..) = steps[0];
+        let mut value = b[row as usize];
+        for &(_, slot, column) in steps {
+            let factor = factors[slot as usize];
+            value = if column == row { value * factor } else { value - factor * b[column as usize] };
+        }
+        b[row as usize] = value;
     }
 }

@@ -48,8 +48,8 @@ pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
 }
 
 impl Given<'_> {
-    /// The types of the graph's scenes. Stands where these are: no module inside sees items of a function's body.
-    pub(in super::super) fn scenes(&self, names: &[&str]) -> TokenStream {
+    /// The types of the graph's other models. Stands where these are: no module inside sees items of a function's body.
+    pub(in super::super) fn scenes(&self, is_literal: bool, names: &[&str]) -> TokenStream {
         let name = identifier(self.name);
         let count = Literal::usize_unsuffixed(names.len() + 1);
         let places = (1..=names.len()).map(Literal::usize_unsuffixed);
@@ -63,6 +63,7 @@ impl Given<'_> {
             #[allow(clippy::all, clippy::pedantic)]
             impl ::bg_model::mechanism::Scenes for #name {
                 const MODELS: ::core::primitive::usize = #count;
+                const LITERAL: ::core::primitive::bool = #is_literal;
                 fn model<__Visitor: ::bg_model::mechanism::MechanismVisitor>(
                     index: ::core::primitive::usize, visitor: __Visitor,
                 ) -> __Visitor::Output {

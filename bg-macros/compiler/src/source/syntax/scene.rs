@@ -2,7 +2,7 @@
 //!
 //! In: `observe { ... }` and `scene NAME { ... }`. Out: [`Observation`]s and a [`Scene`].
 
-use proc_macro2::Delimiter;
+use proc_macro2::{Delimiter, Span};
 
 use super::{
     SyntaxFault,
@@ -79,6 +79,14 @@ impl Cursor<'_> {
         });
         items.push(Item::Scene(scene));
         read
+    }
+
+    /// `scenes only;`
+    pub fn scenes_only(&mut self) -> Parsed<Span> {
+        let span = self.advance();
+        self.expect_word("only")?;
+        self.end_statement("");
+        Ok(span)
     }
 
     /// One statement of a scene.

@@ -20,17 +20,20 @@ use crate::source::words::{ELEMENTS, ROLES, TRACKS, value_of};
 pub(super) const GRAPH: Place = Place { name: "a graph", words: &WORDS, list: false };
 
 /// The block of a part: without scenes, with ports.
-pub(super) const PART: Place = Place { name: "a part", words: &WORDS_OF_PART, list: false };
+pub(super) const PART: Place = Place { name: "a part", words: WORDS_OF_PART, list: false };
 
-/// The words of a part: those of a graph but the scene's, in whose place stands the port's.
-const WORDS_OF_PART: [&str; WORDS.len()] = {
-    let mut words = WORDS;
-    words[4] = "port";
-    words
+/// The words of a part: those of a graph without the last one, with the port's in place of the scene's.
+const WORDS_OF_PART: &[&str] = {
+    const WORDS_OF_PART: [&str; WORDS.len()] = {
+        let mut words = WORDS;
+        words[4] = "port";
+        words
+    };
+    WORDS_OF_PART.split_last().expect("there are words").1
 };
 
 /// The words of a graph.
-const WORDS: [&str; 38] = [
+const WORDS: [&str; 39] = [
     "param",
     "1",
     "R",
@@ -69,6 +72,7 @@ const WORDS: [&str; 38] = [
     "orifice",
     "part",
     "for",
+    "scenes",
 ];
 
 /// Inside of `[3]` and `(effort u)`.
@@ -110,6 +114,10 @@ fn item(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
         Some("param") => parameter(cursor, docs.text, items),
         Some("input") => input(cursor, docs.text, items),
         Some("scene") if cursor.place().words.contains(&"scene") => cursor.scene(docs.text, items),
+        Some("scenes") if cursor.place().words.contains(&"scenes") => {
+            items.push(Item::ScenesOnly(cursor.scenes_only()?));
+            Ok(())
+        }
         Some(word) if is_broken_chain(cursor, word) => chain(cursor, items),
         Some(word) => {
             let word = word.to_owned();

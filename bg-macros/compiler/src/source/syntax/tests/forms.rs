@@ -50,6 +50,7 @@ fn canonical_statements_print_as_they_are_written() {
         "observe { a.h; b: m/s = c; d = 1 }",
         "gravity [0, -9.81, 0];",
         "start impulse;",
+        "scenes only;",
         "expect integral causality;",
         "joint cross: universal x y (ground.O -> rod.B);",
         "drive push on frame.B force = [1, 0, 0];",
