@@ -233,7 +233,7 @@ const MORE: [(&str, &str); 32] = [
 ];
 
 /// A mass on a spring, with a place for scenes.
-const SCENES: [(&str, &str); 7] = [
+const SCENES: [(&str, &str); 9] = [
     (
         "BG0601",
         "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene A { observe { m.p } } scene ▸A { observe { j.flow } }",

@@ -2,6 +2,7 @@
 //!
 //! In: a [`crate::pipeline::Compiled`]. Out: tokens. Only this module quotes.
 
+mod blocks;
 mod description;
 mod documentation;
 mod drawing;

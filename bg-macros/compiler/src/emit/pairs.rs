@@ -14,9 +14,7 @@ use crate::program::pairs::{Half, Paired, Step, Value};
 pub(super) fn statements(paired: &Paired, names: &Names) -> TokenStream {
     let steps = paired.steps.iter().map(|step| match step {
         Step::Single(assignment) => routine::assignments(std::slice::from_ref(assignment), names),
-        Step::Half { target, pair, half: at } => {
-            routine::definition(*target, &half(&Half::In(*pair, *at), names), names)
-        }
+        Step::Half { target, pair, half: at } => routine::definition(*target, &half(&Half::In(*pair, *at), names)),
         Step::Pair(index, value) => {
             let (name, value) = (pair(*index), self::value(value, names));
             quote!(let #name = #value;)

@@ -1,12 +1,12 @@
 //! Straight-line code as tokens.
 //!
-//! In: a [`Routine`] and the tokens of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`;
-//! in a long routine one array of all temporaries. In debug information each `let` is a scope inside the one before, and
-//! LLVM's stack overflows over some thousands of them; the array's places become registers like the `let`s.
+//! In: a [`Routine`] and the tokens of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`; a long
+//! routine is cut into [`blocks`](super::blocks).
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
+use super::blocks::{BLOCK, Blocks};
 use super::items::number;
 use crate::expr::{Function, Symbol};
 use crate::program::{Assignment, Operand, Operation, Routine};
@@ -20,33 +20,32 @@ pub struct Names<'a> {
     pub constant: &'a dyn Fn(u32) -> TokenStream,
     /// The `bool` that says whether a switch's guard is negative.
     pub switch: &'a dyn Fn(u32) -> TokenStream,
-    /// Whether the temporaries are places of one array.
-    pub is_long: bool,
 }
 
-/// The assignments of the routine.
-pub fn statements(routine: &Routine, names: &Names) -> TokenStream {
-    let array = array(routine);
-    let assignments = assignments(&routine.assignments, names);
-    quote! { #array #assignments }
+/// The assignments of the routine, and its results behind them.
+pub fn statements(routine: &Routine, names: &Names) -> (TokenStream, Vec<TokenStream>) {
+    if !routine.is_long() {
+        let results = routine.results.iter().map(|result| operand(result, names)).collect();
+        return (assignments(&routine.assignments, names), results);
+    }
+    let groups = routine.assignments.chunks(BLOCK);
+    let blocks = Blocks::of(groups.clone(), &routine.results);
+    let array = blocks.array();
+    let statements = groups.map(|group| blocks.block(group, &assignments(group, names), names));
+    let results = routine.results.iter().map(|result| blocks.result(result, names)).collect();
+    (quote! { #array #({ #statements })* }, results)
 }
 
-/// The array of the temporaries of a long routine.
-pub fn array(routine: &Routine) -> Option<TokenStream> {
-    let count = routine.assignments.len();
-    routine.is_long().then(|| quote! { let mut v = [S::from_f64(0.0); #count]; })
-}
-
-/// These assignments; in a long routine `v` is there already.
+/// These assignments, one `let` for each.
 pub fn assignments(of: &[Assignment], names: &Names) -> TokenStream {
     let value = |of: &Assignment| operation(&of.operation, names, &|value| operand(value, names));
-    of.iter().map(|assignment| definition(assignment.target, &value(assignment), names)).collect()
+    of.iter().map(|assignment| definition(assignment.target, &value(assignment))).collect()
 }
 
 /// The definition of a temporary.
-pub fn definition(target: u32, value: &TokenStream, names: &Names) -> TokenStream {
-    let target = temporary(target, names);
-    if names.is_long { quote!(#target = #value;) } else { quote!(let #target = #value;) }
+pub fn definition(target: u32, value: &TokenStream) -> TokenStream {
+    let target = temporary(target);
+    quote!(let #target = #value;)
 }
 
 /// The tokens of an operand.
@@ -58,7 +57,10 @@ pub fn operand(operand: &Operand, names: &Names) -> TokenStream {
         }
         Operand::Symbol(symbol) => (names.symbol)(symbol),
         Operand::Constant(index) => (names.constant)(index),
-        Operand::Temporary(index) => temporary(index, names),
+        Operand::Temporary(index) => {
+            let name = temporary(index);
+            quote!(#name)
+        }
     }
 }
 
@@ -90,13 +92,8 @@ fn binary(left: TokenStream, operator: TokenStream, right: TokenStream) -> Token
     quote! { #left #operator #right }
 }
 
-fn temporary(index: u32, names: &Names) -> TokenStream {
-    if names.is_long {
-        let index = Literal::u32_unsuffixed(index);
-        return quote!(v[#index]);
-    }
-    let name = format_ident!("v{index}");
-    quote!(#name)
+fn temporary(index: u32) -> Ident {
+    format_ident!("v{index}")
 }
 
 /// The scalar's method for a function.
@@ -128,10 +125,9 @@ mod tests {
                 quote! { c[#index] }
             },
             switch: &|_| quote! { below },
-            is_long: routine.is_long(),
         };
-        let results = routine.results.iter().map(|result| operand(result, &names).to_string()).collect();
-        (statements(routine, &names).to_string(), results)
+        let (text, results) = statements(routine, &names);
+        (text.to_string(), results.iter().map(ToString::to_string).collect())
     }
 
     #[test]
@@ -157,16 +153,21 @@ mod tests {
     }
 
     #[test]
-    fn a_long_routine_has_one_array() {
+    fn a_long_routine_has_blocks_that_hand_on_what_later_ones_need() {
         let mut pool = Pool::new();
         let x = pool.symbol(Symbol::State(0));
         let last = (0..2001).fold(x, |value, _| pool.call(crate::expr::Function::Sin, &[value]));
         let program = schedule(&mut pool, [Request { name: "rate", roots: &[last] }]);
         let (text, results) = rendered(&program.routines[0]);
         assert!(text.starts_with(
-            "let mut v = [S :: from_f64 (0.0) ; 2001usize] ; v [0] = x0 . sin () ; v [1] = v [0] . sin () ;"
+            "let v = & mut [S :: from_f64 (0.0) ; 3usize] ; { let v0 = x0 . sin () ; let v1 = v0 . sin () ;"
         ));
-        assert_eq!(results, ["v [2000]"]);
+        let handed = "let v999 = v998 . sin () ; :: bg_model :: __private :: store (v , 0 , [v999]) ; } \
+                      { let v999 = v [0] ; let v1000 = v999 . sin () ;";
+        assert!(text.contains(handed), "{text}");
+        let last = "{ let v1999 = v [1] ; let v2000 = v1999 . sin () ; :: bg_model :: __private :: store (v , 2 , [v2000]) ; }";
+        assert!(text.ends_with(last));
+        assert_eq!(results, ["v [2]"]);
     }
 
     #[test]

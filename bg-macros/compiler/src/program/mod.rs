@@ -74,7 +74,7 @@ pub struct Routine {
 const LONG: usize = 2000;
 
 impl Routine {
-    /// Whether its temporaries are places of one array in generated code, as it has so many.
+    /// Whether generated code has it in blocks, as it has so many assignments.
     #[must_use]
     pub fn is_long(&self) -> bool {
         self.assignments.len() > LONG

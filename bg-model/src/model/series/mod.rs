@@ -20,6 +20,18 @@ pub fn constant<S: Scalar>(k: usize, value: S) -> S {
     if k == 0 { value } else { S::from_f64(0.0) }
 }
 
+/// `K` numbers side by side, from `at` on.
+#[inline(always)]
+pub fn load<S: Scalar, const K: usize>(from: &[S], at: usize) -> [S; K] {
+    *from[at..].first_chunk().expect("generated code has the places that it reads")
+}
+
+/// Writes numbers side by side, from `at` on.
+#[inline(always)]
+pub fn store<S: Scalar, const K: usize>(to: &mut [S], at: usize, values: [S; K]) {
+    *to[at..].first_chunk_mut().expect("generated code has the places that it writes") = values;
+}
+
 /// The product of `left` and `right`. Places: 2.
 #[inline(always)]
 pub fn product<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, left: S, right: S) -> S {

@@ -8,7 +8,6 @@ use quote::{format_ident, quote};
 use super::super::items::identifier;
 use super::super::series;
 use super::{Emission, Shape, names};
-use crate::expr::Symbol;
 use crate::program::Programs;
 
 /// The function that hands over a capability, as `value`.
@@ -107,10 +106,6 @@ impl Emission<'_> {
     fn series(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
         let routine = &self.model.programs.running.rate;
-        let reading = |is_state: bool| {
-            let reads = |symbol: Symbol| matches!(symbol, Symbol::State(_)) == is_state;
-            names::bindings(&[routine], &|symbol| if reads(symbol) { self.dynamic_binding(symbol) } else { None })
-        };
         let found = self.model.equations.found();
         let first = names::reads_found(routine).then(|| {
             quote! {
@@ -120,9 +115,9 @@ impl Emission<'_> {
                 };
             }
         });
-        let inputs = reading(false);
-        let reads = series::Reads { values: quote!(#inputs #first), states: reading(true), found };
-        let (width, expansion) = self.with_names(routine.is_long(), |names| series::expansion(routine, names, &reads));
+        let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
+        let reads = series::Reads { values: quote!(#inputs #first), states, found };
+        let (width, expansion) = self.with_names(|names| series::expansion(routine, names, &reads));
         quote! {
             impl<S: Scalar> ::bg_model::capability::Series<S, #n, #g> for Model<S> {
                 fn width(&self) -> usize {

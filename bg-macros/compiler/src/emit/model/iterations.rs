@@ -6,7 +6,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::{Emission, Shape, names};
+use super::{Emission, Shape};
 
 impl Emission<'_> {
     /// What iterations find for pictures, as `f64`, and what is handed over of it.
@@ -41,7 +41,7 @@ impl Emission<'_> {
             }
         });
         let groups: TokenStream = groups.collect();
-        let bindings = names::bindings(&[routine], &|symbol| self.dynamic_binding(symbol));
+        let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
         let (statements, results) = self.body(routine);
         let length = results.len();
         (count > 0).then(|| {
@@ -49,7 +49,8 @@ impl Emission<'_> {
                 impl<S: Scalar> Model<S> {
                     fn loops(&self, t: S, x: &[S; #n], negative: &[bool; #g], found: &[S; #count]) -> [S; #length] {
                         let c = &self.constants;
-                        #bindings
+                        #inputs
+                        #states
                         #statements
                         [#(#results),*]
                     }

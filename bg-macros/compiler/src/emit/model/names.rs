@@ -54,29 +54,38 @@ impl Emission<'_> {
     /// Inputs, their slopes and states that the routine uses, and what iterations find for it.
     pub(super) fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
         let found = reads_found(routine).then(|| quote!(let found = self.found(t, x, negative);));
-        let bindings = bindings(&[routine], &|symbol| self.dynamic_binding(symbol));
-        quote! { #found #bindings }
+        let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
+        quote! { #found #inputs #states }
     }
 
-    /// An input at time `t`, its slope there, or a state of `x`.
-    pub(super) fn dynamic_binding(&self, symbol: Symbol) -> Option<TokenStream> {
-        let name = self.symbol_name(symbol);
+    /// Inputs that the routine uses, and their slopes, at time `t`.
+    pub(super) fn input_bindings(&self, routine: &Routine) -> TokenStream {
         let input = |index: u32| identifier(&self.model.equations.inputs[index as usize].name.text);
-        match symbol {
-            Symbol::State(index) => {
-                let index = Literal::u32_unsuffixed(index);
-                Some(quote!(let #name = x[#index];))
+        bindings(&[routine], &|symbol| {
+            let name = self.symbol_name(symbol);
+            match symbol {
+                Symbol::Input(index) => {
+                    let field = input(index);
+                    Some(quote!(let #name = self.inputs.#field.value(t);))
+                }
+                Symbol::Slope(index) => {
+                    let field = input(index);
+                    Some(quote!(let #name = self.inputs.#field.slope(t);))
+                }
+                _ => None,
             }
-            Symbol::Input(index) => {
-                let field = input(index);
-                Some(quote!(let #name = self.inputs.#field.value(t);))
-            }
-            Symbol::Slope(index) => {
-                let field = input(index);
-                Some(quote!(let #name = self.inputs.#field.slope(t);))
-            }
-            _ => None,
-        }
+        })
+    }
+
+    /// States of the array `x` that the routine uses, in one pattern: rustc checks it faster than a place of `x` for each.
+    pub(super) fn state_bindings(&self, routine: &Routine) -> Option<TokenStream> {
+        let state = |symbol| if let Symbol::State(index) = symbol { Some(index) } else { None };
+        let used: BTreeSet<u32> = symbols(&[routine]).into_iter().filter_map(state).collect();
+        let behind = used.last()? + 1;
+        let names = (0..behind)
+            .map(|index| if used.contains(&index) { self.symbol_name(Symbol::State(index)) } else { quote!(_) });
+        let rest = ((behind as usize) < self.states.len()).then(|| quote!(, ..));
+        Some(quote!(let [#(#names),* #rest] = *x;))
     }
 
     fn symbol_name(&self, symbol: Symbol) -> TokenStream {
@@ -106,12 +115,11 @@ impl Emission<'_> {
     }
 
     /// Hands the tokens of what a routine refers to to `then`.
-    pub(super) fn with_names<T>(&self, is_long: bool, then: impl FnOnce(&Names) -> T) -> T {
+    pub(super) fn with_names<T>(&self, then: impl FnOnce(&Names) -> T) -> T {
         then(&Names {
             symbol: &|symbol| self.symbol_name(symbol),
             constant: &|index| entry("c", index),
             switch: &|index| entry("negative", index),
-            is_long,
         })
     }
 }
@@ -125,7 +133,7 @@ fn entry(array: &str, index: u32) -> TokenStream {
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
-    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner a b reactions kept found \
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner load store reactions kept found \
         DESCRIPTION Some None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {
@@ -135,7 +143,8 @@ pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
     for (index, state) in equations.states.iter().enumerate() {
         let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
         let mut name: String = state.name.chars().map(letter).collect();
-        let is_temporary = name.strip_prefix(['v', 'w']).is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()));
+        let is_temporary =
+            name.strip_prefix(['v', 'w', 'i', 'l', 'r']).is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()));
         if is_temporary || syn::parse_str::<Ident>(&name).is_err() || !used.insert(name.clone()) {
             name = format!("state_{index}_{name}");
             used.insert(name.clone());

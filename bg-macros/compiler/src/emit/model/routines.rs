@@ -2,19 +2,15 @@
 //!
 //! In: a routine and the table of constants that it reads. Out: its statements, and the tokens of its results.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
+use super::super::blocks::{BLOCK, Blocks};
 use super::super::pairs;
-use super::super::routine::{assignments, operand, statements};
+use super::super::routine::{assignments, statements};
 use super::{Emission, Shape};
 use crate::program::pairs::Paired;
 use crate::program::{Assignment, Operand, Program, Routine};
-
-/// Assignments of a function of its own, where there are more.
-const PART: usize = 1000;
 
 /// A long routine in parts: functions, the body that calls them, and the results.
 pub(super) struct Parts {
@@ -26,10 +22,7 @@ pub(super) struct Parts {
 impl Emission<'_> {
     /// The bare statements of a routine, and its results.
     pub(super) fn body(&self, routine: &Routine) -> (TokenStream, Vec<TokenStream>) {
-        self.with_names(routine.is_long(), |names| {
-            let results = routine.results.iter().map(|result| operand(result, names)).collect();
-            (statements(routine, names), results)
-        })
+        self.with_names(|names| statements(routine, names))
     }
 
     /// `let c`: the constants of a program that is evaluated by itself, from `parameters`; before it the parameters it reads.
@@ -72,7 +65,7 @@ impl Emission<'_> {
         let (constants, constant_pairs) = (format_ident!("{prefix}s"), format_ident!("{prefix}_pairs"));
         let Some(paired) = paired else { return self.running(routine, &constants) };
         let bindings = self.dynamic_bindings(routine);
-        self.with_names(false, |names| {
+        self.with_names(|names| {
             let statements = pairs::statements(paired, names);
             let body = quote! {
                 let (c, q) = (&self.#constants, &self.#constant_pairs);
@@ -84,90 +77,39 @@ impl Emission<'_> {
         })
     }
 
-    /// A long routine of the running model in parts, each a function of its own. What a part gives to later ones or as a result
-    /// is in the array `v`; all else are `let`s of the part: rustc checks these twice as fast as places of an array.
+    /// A long routine of the running model in parts: its blocks, each a function of its own.
     pub(super) fn in_parts(&self, routine: &Routine, constants: &Ident) -> Parts {
-        let kept = kept(routine);
-        let count = kept.len();
+        let Shape { n, g, .. } = &self.shape;
+        let groups = routine.assignments.chunks(BLOCK);
+        let blocks = Blocks::of(groups.clone(), &routine.results);
+        let (array, array_type) = (blocks.array(), blocks.array_type());
         let (mut functions, mut calls) = (TokenStream::new(), TokenStream::new());
-        for (index, part) in routine.assignments.chunks(PART).enumerate() {
+        for (index, group) in groups.enumerate() {
             let name = format_ident!("{}_part_{index}", routine.name);
-            functions.extend(self.part(&name, &alone(routine, part, &[]), &kept, constants));
-            calls.extend(quote!(self.#name(t, x, negative, &mut v);));
+            let bindings = self.dynamic_bindings(&alone(routine, group, &[]));
+            let block = self.with_names(|names| blocks.block(group, &assignments(group, names), names));
+            functions.extend(quote! {
+                #[inline(never)]
+                fn #name(&self, t: S, x: &[S; #n], negative: &[bool; #g], v: &mut #array_type) {
+                    let c = &self.#constants;
+                    #bindings
+                    #block
+                }
+            });
+            calls.extend(quote!(self.#name(t, x, negative, v);));
         }
         let bindings = self.dynamic_bindings(&alone(routine, &[], &routine.results));
         let body = quote! {
             let c = &self.#constants;
             let [x] = &x.data.0;
-            let mut v = [S::from_f64(0.0); #count];
+            #array
             #calls
             #bindings
         };
-        let result = |result: &Operand| match result {
-            Operand::Temporary(temporary) => place(kept[temporary]),
-            other => self.with_names(false, |names| operand(other, names)),
-        };
-        Parts { functions, body, results: routine.results.iter().map(result).collect() }
+        let results =
+            self.with_names(|names| routine.results.iter().map(|result| blocks.result(result, names)).collect());
+        Parts { functions, body, results }
     }
-
-    /// The function of a part of a long routine; `kept` are the places of what more than one part needs.
-    fn part(&self, name: &Ident, part: &Routine, kept: &BTreeMap<u32, usize>, constants: &Ident) -> TokenStream {
-        let Shape { n, g, .. } = &self.shape;
-        let count = kept.len();
-        let bindings = self.dynamic_bindings(part);
-        let own = |temporary: &u32| part.assignments.iter().any(|assignment| assignment.target == *temporary);
-        let read: BTreeSet<u32> = part.assignments.iter().flat_map(temporaries).filter(|read| !own(read)).collect();
-        let written: Vec<u32> =
-            part.assignments.iter().map(|a| a.target).filter(|target| kept.contains_key(target)).collect();
-        self.with_names(false, |names| {
-            let statements = assignments(&part.assignments, names);
-            let reads = read.iter().map(|&temporary| {
-                let (name, place) = (operand(&Operand::Temporary(temporary), names), place(kept[&temporary]));
-                quote!(let #name = #place;)
-            });
-            let writes = written.iter().map(|&temporary| {
-                let (name, place) = (operand(&Operand::Temporary(temporary), names), place(kept[&temporary]));
-                quote!(#place = #name;)
-            });
-            quote! {
-                #[inline(never)]
-                fn #name(&self, t: S, x: &[S; #n], negative: &[bool; #g], v: &mut [S; #count]) {
-                    let c = &self.#constants;
-                    #bindings
-                    #(#reads)*
-                    #statements
-                    #(#writes)*
-                }
-            }
-        })
-    }
-}
-
-/// The temporaries that more than one part of a long routine or its results need, each with its place.
-fn kept(routine: &Routine) -> BTreeMap<u32, usize> {
-    let part = |temporary: u32| temporary as usize / PART;
-    let results = routine.results.iter().filter_map(temporary);
-    let read = routine
-        .assignments
-        .iter()
-        .flat_map(|assignment| temporaries(assignment).filter(move |&read| part(read) != part(assignment.target)));
-    let kept: BTreeSet<u32> = results.chain(read).collect();
-    kept.into_iter().zip(0..).collect()
-}
-
-fn temporary(operand: &Operand) -> Option<u32> {
-    if let Operand::Temporary(temporary) = operand { Some(*temporary) } else { None }
-}
-
-/// The temporaries that an assignment reads.
-fn temporaries(assignment: &Assignment) -> impl Iterator<Item = u32> + use<> {
-    assignment.operation.operands().into_iter().filter_map(|operand| temporary(&operand))
-}
-
-/// A place of the array of what is kept.
-fn place(place: usize) -> TokenStream {
-    let place = Literal::usize_unsuffixed(place);
-    quote!(v[#place])
 }
 
 /// The routine with these assignments and results only.

@@ -86,7 +86,7 @@ impl Emission<'_> {
         let Table { prefix, constants, .. } = table;
         let (field, pair_field) = (format_ident!("{prefix}s"), format_ident!("{prefix}_pairs"));
         let (count, pairs) = (constants.results.len(), paired.constants.len());
-        let body = self.with_names(false, |names| pairs::constants(paired, names));
+        let body = self.with_names(|names| pairs::constants(paired, names));
         made.has_pairs = true;
         made.fields.extend(quote!(#pair_field: [#scalar::Pair; #pairs],));
         made.values.extend(quote!(#pair_field: Self::#pair_field(&#field),));
