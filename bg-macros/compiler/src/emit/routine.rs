@@ -1,7 +1,7 @@
 //! Straight-line code as tokens.
 //!
 //! In: a [`Routine`] and the tokens of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`; a long
-//! routine is cut into [`blocks`](super::blocks).
+//! routine is cut into `blocks`.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
