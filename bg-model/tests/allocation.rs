@@ -2,7 +2,7 @@
 
 mod problems;
 
-use bg_model::integrator::{Dop853, Gauss6, Method, Radau5, Radau9, Rk4};
+use bg_model::integrator::{Ark5, Dop853, Gauss6, Method, Radau5, Radau9, Rk4};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Ended, Samples, Settings, Span, integrate, integrate_until};
 use problems::*;
@@ -42,6 +42,8 @@ fn a_condition_allocates_nothing() {
 fn steps_samples_and_events_allocate_nothing() {
     assert_eq!(allocations(Dop853::new()), (0, 3001, 13));
     assert_eq!(allocations(Rk4::new(0.01)), (0, 3001, 13));
+    // Room for the Jacobian and its places, once.
+    assert_eq!(allocations(Ark5::new()), (5, 3001, 13));
     // Room for the Jacobian, the real and the complex factors, once.
     assert_eq!(allocations(Radau5::new()), (3, 3001, 13));
     assert_eq!(allocations(Radau9::new()), (4, 3001, 13));

@@ -6,8 +6,8 @@
 use nalgebra::SVector;
 
 use super::{
-    Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2, Scale,
-    StepControl, Taylor,
+    Ark5, Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2,
+    Scale, StepControl, Taylor,
 };
 
 macro_rules! any {
@@ -27,12 +27,13 @@ macro_rules! any {
     };
 }
 
-any!(Auto Bs5 Cfmr7 Dop853 Gauss6 Nystrom Radau5 Radau9 Rk4 Rodas5p Ros2 Taylor);
+any!(Ark5 Auto Bs5 Cfmr7 Dop853 Gauss6 Nystrom Radau5 Radau9 Rk4 Rodas5p Ros2 Taylor);
 
 /// Hands on to the method inside.
 macro_rules! inside {
     ($any:expr, $method:ident => $then:expr) => {
         match $any {
+            AnyMethod::Ark5($method) => $then,
             AnyMethod::Auto($method) => $then,
             AnyMethod::Bs5($method) => $then,
             AnyMethod::Cfmr7($method) => $then,

@@ -1,14 +1,15 @@
-//! Choice between an explicit and an implicit method while a run is under way.
+//! Choice between explicit, partly implicit and implicit steps while a run is under way.
 //!
-//! In: a method of each kind. Out: their steps. Now and then, more seldom the longer the answer stays the same, the other method is
-//! tried from the same start. The implicit one takes over where one step meets the tolerances that is so much longer that it is worth
-//! its cost, where the explicit steps then arrive at the same state, and where it is not rounding that keeps those short; or where it
-//! goes on and explicit steps do not. It hands back where several explicit steps in succession meet the tolerances. Stiffness is thus measured by what it does to the steps, not
-//! guessed from eigenvalues, and oscillations that have to be followed anyway do not count as such.
+//! In: a method of each kind. Out: their steps. Now and then, more seldom the longer the answer stays the same, another method is
+//! tried from the same start. A more implicit one takes over where one step meets the tolerances that is so much longer that it is worth
+//! its cost, where the steps of the present one then arrive at the same state, and where it is not rounding that keeps those short; or
+//! where it goes on and the present one does not. A less implicit one takes over where several of its steps in succession meet the
+//! tolerances. Stiffness is thus measured by what it does to the steps, not guessed from eigenvalues, and oscillations that have to be
+//! followed anyway do not count as such.
 
 use nalgebra::SVector;
 
-use super::{Dop853, Flow, Method, Point, Radau9, Scale, StepControl, is_finite, rounding};
+use super::{Ark5, Dop853, Flow, Method, Point, Radau9, Scale, StepControl, is_finite, rounding};
 
 /// Steps before the first trial, and the most between two trials.
 const WAIT: [u32; 2] = [16, 4096];
@@ -19,7 +20,7 @@ const RECENT: usize = 16;
 /// A step below this part of their median is no measure: it only looks for a guard's sign, or an event or the end of the run has cut
 /// it.
 const CUT: f64 = 0.5;
-/// The largest difference between the implicit step and the explicit ones, in parts of the tolerances. On stiff joints it is 0.1 to 0.5,
+/// The largest difference between the long step and the short ones, in parts of the tolerances. On stiff joints it is 0.1 to 0.5,
 /// where a ring is passed over 2 to 70.
 const AGREEMENT: f64 = 1.0;
 /// What rounding may make of an explicit step's error, in parts of the tolerances. Stiff joints cause 3e-3 at most at 1e-11; steps that
@@ -33,48 +34,110 @@ const LAST: f64 = 1e-9;
 /// The explicit steps in succession that are tried: as long together as the implicit step in sight. A single one may meet the
 /// tolerances by luck.
 const SUCCESSION: u32 = 8;
+/// So few accepted steps between two events are a hurry, and so many of those in succession show that a switch follows errors far below
+/// the tolerances: of what is damped stiffly only an implicit method keeps these small.
+const HURRY: u32 = 2;
+const HURRIED: u32 = 4;
+/// How often a step is doubled at most to find the longest one.
+const DOUBLINGS: usize = 16;
 /// A method that hands back within so many steps took over by mistake: the next trial waits four times as long as before.
 const STINT: u32 = 256;
 
-/// An explicit and an implicit method, one of which makes the steps.
+/// The smallest relative tolerance at which steps are worth their cost that are implicit in some states only: below it order 9 takes
+/// far longer ones.
+const LOOSE: f64 = 1e-7;
+
+/// The methods, the more implicit ones later.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Explicit,
+    Partitioned,
+    Implicit,
+}
+
+/// Calls the method of a kind.
+macro_rules! of {
+    ($auto:expr, $kind:expr, $method:ident => $then:expr) => {
+        match $kind {
+            Kind::Explicit => {
+                let $method = &mut $auto.explicit;
+                $then
+            }
+            Kind::Partitioned => {
+                let $method = &mut $auto.partitioned;
+                $then
+            }
+            Kind::Implicit => {
+                let $method = &mut $auto.implicit;
+                $then
+            }
+        }
+    };
+}
+
+impl Kind {
+    const ALL: [Self; 3] = [Self::Explicit, Self::Partitioned, Self::Implicit];
+
+    /// The other kinds that are worth trying, those first that are implicit in fewer states.
+    fn others(self, relative: f64) -> impl Iterator<Item = Self> {
+        let is_worth = move |kind: &Self| *kind != self && (*kind != Self::Partitioned || relative >= LOOSE);
+        Self::ALL.into_iter().filter(is_worth)
+    }
+
+    /// How many steps of a less implicit kind cost as much as one of this kind, of `n` states: as measured on the hacksaw, where a step of
+    /// Radau IIA 9 takes as long as 11 of DOP853 in the plane, 23 in three dimensions, and half a step of ARK5(4)8L[2]SAb as long as one
+    /// of DOP853. Of few states a factorisation costs little beside the rates.
+    fn worth(self, less: Self, n: usize) -> f64 {
+        match (less, self) {
+            (Self::Explicit, Self::Partitioned) => 2.0,
+            (Self::Partitioned, _) => (0.5 * n as f64).clamp(3.0, 40.0),
+            _ => 16.0,
+        }
+    }
+}
+
+/// Three methods, one of which makes the steps.
 #[derive(Clone, Debug)]
-pub struct Auto<const N: usize, E = Dop853<N>, I = Radau9<N>> {
-    explicit: E,
-    implicit: I,
-    is_implicit: bool,
-    /// How much longer an implicit step has to be to be worth its cost.
-    worth: f64,
+pub struct Auto<const N: usize> {
+    explicit: Dop853<N>,
+    partitioned: Ark5<N>,
+    implicit: Radau9<N>,
+    kind: Kind,
     /// Whether the next attempt is the first from the end of an accepted step: after a restart, short steps are tried that
     /// only look for a guard's sign.
     is_fresh: bool,
     /// Accepted steps since the last trial, and those after which the next one is due.
     since: u32,
     wait: u32,
-    /// Accepted steps since the last change, and the waits for the first trial of the explicit and the implicit method.
+    /// Accepted steps since the last change, and the waits for the first trial of each method.
     stint: u32,
-    doubt: [u32; 2],
+    doubt: [u32; 3],
     /// The step at the last trial, s.
     tried: f64,
     /// The last accepted steps since the change, s; 0 where there are fewer.
     recent: [f64; RECENT],
     /// The step under way, s.
     step: f64,
-    /// Where the implicit step led that is still to be confirmed.
+    /// Where the longer step led that is still to be confirmed.
     claim: Option<Claim<N>>,
     /// The claims in succession that events have cut off.
     cut_off: u32,
-    /// The longest explicit step tried since the last change, s.
+    /// Accepted steps since the last restart, and the restarts in succession that came after few of them.
+    since_event: u32,
+    hurried: u32,
+    /// The longest step tried since the last change, s.
     longest: f64,
     changes: Vec<Change>,
 }
 
-/// An implicit step that satisfies the tolerances, with the explicit steps under way to its end.
+/// A step of a more implicit method that satisfies the tolerances, with the steps of the present one under way to its end.
 #[derive(Clone, Debug)]
 struct Claim<const N: usize> {
+    kind: Kind,
     /// Its end.
     t: f64,
     x: SVector<f64, N>,
-    /// The start of the explicit step under way.
+    /// The start of the step under way.
     start: Point<N>,
 }
 
@@ -91,42 +154,26 @@ pub struct Change {
 const REMEMBERED: usize = 256;
 
 impl<const N: usize> Auto<N> {
-    /// DOP853 and Radau IIA 9.
+    /// DOP853, ARK5(4)8L[2]SAb and Radau IIA 9; the explicit one begins.
     #[must_use]
     pub fn new() -> Self {
-        Self::between(Dop853::new(), Radau9::new())
-    }
-}
-
-impl<const N: usize> Default for Auto<N> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
-    /// A step of the implicit method costs as much as about this many of the explicit one: measured, 11 on the hacksaw in the
-    /// plane, 23 in three dimensions.
-    const WORTH: f64 = 16.0;
-
-    /// A choice between these two; the explicit one begins.
-    #[must_use]
-    pub fn between(explicit: E, implicit: I) -> Self {
         Self {
-            explicit,
-            implicit,
-            is_implicit: false,
-            worth: Self::WORTH,
+            explicit: Dop853::new(),
+            partitioned: Ark5::new(),
+            implicit: Radau9::new(),
+            kind: Kind::Explicit,
             is_fresh: false,
             since: 0,
             wait: WAIT[0],
             stint: 0,
-            doubt: [WAIT[0]; 2],
+            doubt: [WAIT[0]; 3],
             tried: f64::NAN,
             recent: [0.0; RECENT],
             step: 0.0,
             claim: None,
             cut_off: 0,
+            since_event: 0,
+            hurried: 0,
             longest: 0.0,
             changes: Vec::with_capacity(REMEMBERED),
         }
@@ -139,7 +186,7 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
         recent[RECENT / 2]
     }
 
-    /// Whether the other method is to be tried from the present start with the step `h` (s) in sight.
+    /// Whether other methods are to be tried from the present start with the step `h` (s) in sight.
     fn is_due(&self, h: f64) -> bool {
         if self.claim.is_some() || (self.stint as usize) < RECENT {
             return false;
@@ -148,62 +195,95 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
         h >= CUT * typical && (self.since >= self.wait || typical < FALL * self.tried)
     }
 
-    /// Tries the other method.
-    fn try_other(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+    /// Tries the other methods.
+    fn try_others(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
         self.since = 0;
         self.tried = self.typical();
-        if !self.is_implicit {
-            let (h, mut x) = (self.worth * h, start.x);
-            let is_met = self.implicit.attempt(flow, start, h, scale, &mut x) <= 1.0;
-            if is_met && self.cut_off >= CUT_OFF {
-                self.change(start.t);
-            } else if is_met {
-                self.claim = Some(Claim { t: start.t + h, x, start: *start });
-            } else {
-                self.stay();
+        let is_cut_off = self.cut_off >= CUT_OFF;
+        for kind in self.kind.others(scale.relative) {
+            if is_cut_off && kind == Kind::Partitioned {
+                continue;
             }
-        } else if self.succeeds_explicitly(flow, start, h, scale) {
-            self.change(start.t);
-        } else {
-            self.stay();
+            if kind < self.kind && self.succeeds(kind, flow, start, h, scale) {
+                return self.change(kind, start.t);
+            }
+            if kind > self.kind && self.reaches(kind, flow, start, h, scale) {
+                return;
+            }
         }
+        self.stay();
     }
 
-    /// Whether explicit steps meet the tolerances from `start` over the implicit step `h` (s). Each of them is twice as long as it
-    /// has to be to be worth a change, so that the choice does not swing.
-    fn succeeds_explicitly(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
-        let h = 2.0 * h / self.worth;
+    /// Whether a step of a more implicit method meets the tolerances that is worth its cost. It takes over, or has to be confirmed.
+    fn reaches(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+        // Twice as long as it has to be where what it costs varies as much as what the present one does.
+        let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
+        let (h, mut x) = (gain * kind.worth(self.kind, N) * h, start.x);
+        let is_met = of!(self, kind, method => method.attempt(flow, start, h, scale, &mut x)) <= 1.0 && is_finite(&x);
+        if is_met && self.cut_off >= CUT_OFF {
+            self.change(kind, start.t);
+        } else if is_met {
+            self.claim = Some(Claim { kind, t: start.t + h, x, start: *start });
+        }
+        is_met
+    }
+
+    /// Whether steps of a less implicit method meet the tolerances from `start` over the step `h` (s) of the present one. Each of them is
+    /// twice as long as it has to be to be worth a change, so that the choice does not swing.
+    fn succeeds(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+        let h = 2.0 * h / self.kind.worth(kind, N);
         let (mut point, mut end) = (*start, start.x);
         let succeeds = (0..SUCCESSION).all(|_| {
-            let is_met = self.explicit.attempt(flow, &point, h, scale, &mut end) <= 1.0 && is_finite(&end);
+            let error = of!(self, kind, method => method.attempt(flow, &point, h, scale, &mut end));
+            let is_met = error <= 1.0 && is_finite(&end);
             if is_met {
-                self.explicit.advance();
+                of!(self, kind, method => method.advance());
                 (point.t, point.x) = (point.t + h, end);
                 flow.rate(point.t, &end, &mut point.rate);
             }
             is_met
         });
-        self.explicit.restart();
+        of!(self, kind, method => method.restart());
         succeeds
     }
 
-    /// Holds the implicit step against the explicit ones, once these have come to its end.
+    /// Holds the longer step against the present method's, once these have come to its end.
     fn confirm(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
         let Some(claim) = self.claim.take_if(|claim| claim.t <= start.t) else { return };
-        let before = claim.start;
+        let (before, step) = (claim.start, self.step);
         self.cut_off = 0;
-        self.explicit.prepare_dense(flow, &before, self.step, start);
         let mut x = start.x;
-        self.explicit.dense(&before, self.step, start, (claim.t - before.t) / self.step, &mut x);
+        of!(self, self.kind, method => {
+            method.prepare_dense(flow, &before, step, start);
+            method.dense(&before, step, start, (claim.t - before.t) / step, &mut x);
+        });
         let agrees = scale.norm(&(claim.x - x), &x) <= AGREEMENT;
         if agrees && scale.norm(&(rounding(flow, start) * self.typical()), &start.x) < NOISE {
-            self.change(start.t);
+            let kind = if claim.kind == Kind::Partitioned
+                && self.is_stiff_throughout(flow, start, claim.t - before.t, scale)
+            {
+                Kind::Implicit
+            } else {
+                claim.kind
+            };
+            self.change(kind, start.t);
         } else {
             self.stay();
         }
     }
 
-    /// Whether an implicit step goes on where explicit ones fail.
+    /// Whether from `start` a step meets the tolerances that is implicit in all states and worth more than the longest one that is
+    /// implicit in some, from `h` (s) on.
+    fn is_stiff_throughout(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+        let mut end = start.x;
+        let longer = std::iter::successors(Some(h), |h| Some(2.0 * h)).take(DOUBLINGS);
+        let is_met = |h: &f64| self.partitioned.attempt(flow, start, *h, scale, &mut end) <= 1.0 && is_finite(&end);
+        let longest = longer.take_while(is_met).last().unwrap_or(h);
+        let h = Kind::Implicit.worth(Kind::Partitioned, N) * longest;
+        self.implicit.attempt(flow, start, h, scale, &mut end) <= 1.0 && is_finite(&end)
+    }
+
+    /// Whether an implicit step goes on where those of the present method fail.
     fn goes_on(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         // Where it has just handed back it does not go on either.
         let has_gone_on = !self.changes.is_empty() && self.stint < STINT;
@@ -216,19 +296,16 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
         self.wait = (2 * self.wait).min(WAIT[1]);
     }
 
-    /// The other method takes over at time `t` (s).
-    fn change(&mut self, t: f64) {
-        let doubt = &mut self.doubt[usize::from(self.is_implicit)];
+    /// Another method takes over at time `t` (s).
+    fn change(&mut self, kind: Kind, t: f64) {
+        let doubt = &mut self.doubt[self.kind as usize];
         *doubt = if self.stint < STINT { (4 * *doubt).min(WAIT[1]) } else { WAIT[0] };
         self.wait = *doubt;
-        self.is_implicit = !self.is_implicit;
-        if self.is_implicit {
-            self.implicit.restart()
-        } else {
-            self.explicit.restart()
-        }
+        self.kind = kind;
+        of!(self, kind, method => method.restart());
         self.stint = 0;
         self.cut_off = 0;
+        self.hurried = 0;
         self.longest = 0.0;
         self.recent = [0.0; RECENT];
         if self.changes.len() < REMEMBERED {
@@ -237,13 +314,33 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Auto<N, E, I> {
     }
 }
 
-impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
+/// Calls the method that makes the steps.
+macro_rules! present {
+    ($auto:expr, $method:ident => $then:expr) => {
+        match $auto.kind {
+            Kind::Explicit => {
+                let $method = &$auto.explicit;
+                $then
+            }
+            Kind::Partitioned => {
+                let $method = &$auto.partitioned;
+                $then
+            }
+            Kind::Implicit => {
+                let $method = &$auto.implicit;
+                $then
+            }
+        }
+    };
+}
+
+impl<const N: usize> Method<N> for Auto<N> {
     fn name(&self) -> &'static str {
-        if self.is_implicit { self.implicit.name() } else { self.explicit.name() }
+        present!(self, method => method.name())
     }
 
     fn control(&self) -> StepControl {
-        if self.is_implicit { self.implicit.control() } else { self.explicit.control() }
+        present!(self, method => method.control())
     }
 
     fn attempt(
@@ -257,23 +354,27 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
         if self.is_fresh {
             self.confirm(flow, start, scale);
         }
+        if self.kind == Kind::Partitioned && self.hurried >= HURRIED {
+            self.change(Kind::Implicit, start.t);
+        }
         if self.is_due(h) {
-            self.try_other(flow, start, h, scale);
+            self.try_others(flow, start, h, scale);
         }
         self.is_fresh = false;
         self.step = h;
         if let Some(claim) = &mut self.claim {
             claim.start = *start;
         }
-        if !self.is_implicit {
-            let error = self.explicit.attempt(flow, start, h, scale, end);
-            self.longest = self.longest.max(h);
-            let is_met = error <= 1.0 && is_finite(end);
-            if is_met || h > LAST * self.longest || !self.goes_on(flow, start, h, scale) {
-                return error;
-            }
-            self.change(start.t);
+        let error = of!(self, self.kind, method => method.attempt(flow, start, h, scale, end));
+        if self.kind == Kind::Implicit {
+            return error;
         }
+        self.longest = self.longest.max(h);
+        let is_met = error <= 1.0 && is_finite(end);
+        if is_met || h > LAST * self.longest || !self.goes_on(flow, start, h, scale) {
+            return error;
+        }
+        self.change(Kind::Implicit, start.t);
         self.implicit.attempt(flow, start, h, scale, end)
     }
 
@@ -281,22 +382,22 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
         self.is_fresh = true;
         self.recent[self.stint as usize % RECENT] = self.step;
         self.since += 1;
+        self.since_event += 1;
         self.stint += 1;
         // Only the method that makes the steps has seen the last one.
-        if self.is_implicit {
-            self.implicit.advance();
-            self.explicit.restart();
-        } else {
-            self.explicit.advance();
-            self.implicit.restart();
+        for kind in Kind::ALL {
+            of!(self, kind, method => if kind == self.kind { method.advance() } else { method.restart() });
         }
     }
 
     fn restart(&mut self) {
         self.is_fresh = false;
         self.cut_off += u32::from(self.claim.take().is_some());
-        self.explicit.restart();
-        self.implicit.restart();
+        self.hurried = if self.since_event <= HURRY { self.hurried + 1 } else { 0 };
+        self.since_event = 0;
+        for kind in Kind::ALL {
+            of!(self, kind, method => method.restart());
+        }
     }
 
     /// The explicit method begins. The first 256 changes are remembered.
@@ -313,34 +414,22 @@ impl<const N: usize, E: Method<N>, I: Method<N>> Method<N> for Auto<N, E, I> {
         end: &SVector<f64, N>,
         project: impl Fn(&mut SVector<f64, N>),
     ) -> Option<f64> {
-        if self.is_implicit { None } else { self.explicit.error_after(flow, start, h, scale, end, project) }
+        of!(self, self.kind, method => method.error_after(flow, start, h, scale, end, project))
     }
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        if self.is_implicit {
-            self.implicit.largest_error(start, scale, end)
-        } else {
-            self.explicit.largest_error(start, scale, end)
-        }
+        present!(self, method => method.largest_error(start, scale, end))
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
-        if self.is_implicit { self.implicit.faulty_rate() } else { self.explicit.faulty_rate() }
+        present!(self, method => method.faulty_rate())
     }
 
     fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        if self.is_implicit {
-            self.implicit.prepare_dense(flow, start, h, end);
-        } else {
-            self.explicit.prepare_dense(flow, start, h, end);
-        }
+        of!(self, self.kind, method => method.prepare_dense(flow, start, h, end));
     }
 
     fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        if self.is_implicit {
-            self.implicit.dense(start, h, end, theta, x);
-        } else {
-            self.explicit.dense(start, h, end, theta, x);
-        }
+        present!(self, method => method.dense(start, h, end, theta, x));
     }
 }

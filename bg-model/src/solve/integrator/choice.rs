@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use super::{AnyMethod, Auto, Bs5, Cfmr7, Dop853, Gauss6, Nystrom, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor};
+use super::{AnyMethod, Ark5, Auto, Bs5, Cfmr7, Dop853, Gauss6, Nystrom, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor};
 
 /// An integrator of this crate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,6 +21,7 @@ pub enum Integrator {
     Nystrom,
     Dop853,
     Taylor,
+    Ark5,
     Rodas5p,
     Radau5,
     Radau9,
@@ -41,13 +42,14 @@ debug_is_display!(UnknownIntegrator);
 
 impl Integrator {
     /// All of them: those that choose their steps, then those with fixed steps.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Auto,
         Self::Bs5,
         Self::Cfmr7,
         Self::Nystrom,
         Self::Dop853,
         Self::Taylor,
+        Self::Ark5,
         Self::Rodas5p,
         Self::Radau5,
         Self::Radau9,
@@ -70,12 +72,15 @@ impl Integrator {
 
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
-            Self::Auto => ("auto", "DOP853 or Radau IIA 9, whichever the measured stiffness calls for"),
+            Self::Auto => {
+                ("auto", "DOP853, ARK5(4)8L[2]SAb or Radau IIA 9, whichever the measured stiffness calls for")
+            }
             Self::Bs5 => ("bs5", "Explicit, order 5(4)"),
             Self::Cfmr7 => ("cfmr7", "Explicit, order 7(5), for oscillations"),
             Self::Nystrom => ("nystrom", "Explicit, for mechanisms with stiff, lightly damped joints"),
             Self::Dop853 => ("dop853", "Explicit, order 8(5,3)"),
             Self::Taylor => ("taylor", "Explicit, Taylor series, order by the tolerance, for high precision"),
+            Self::Ark5 => ("ark5", "Implicit where states are damped stiffly, else explicit, order 5(4)"),
             Self::Rodas5p => ("rodas5p", "Rosenbrock, order 5(4), for stiff systems"),
             Self::Radau5 => ("radau5", "Implicit, order 5, for stiff systems"),
             Self::Radau9 => ("radau9", "Implicit, order 9, for stiff systems"),
@@ -95,6 +100,7 @@ impl Integrator {
             Self::Nystrom => Nystrom::new().into(),
             Self::Dop853 => Dop853::new().into(),
             Self::Taylor => Taylor::new().into(),
+            Self::Ark5 => Ark5::new().into(),
             Self::Rodas5p => Rodas5p::new().into(),
             Self::Radau5 => Radau5::new().into(),
             Self::Radau9 => Radau9::new().into(),

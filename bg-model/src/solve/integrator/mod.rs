@@ -18,6 +18,7 @@ mod gauss;
 mod hermite;
 mod linear;
 mod nystrom;
+mod partitioned;
 mod radau;
 mod rk4;
 mod rosenbrock;
@@ -38,6 +39,7 @@ pub use explicit::{
 pub use gauss::Gauss6;
 pub(crate) use hermite::hermite;
 pub use nystrom::Nystrom;
+pub use partitioned::Ark5;
 pub use radau::{Radau, Radau5, Radau9};
 pub use rk4::Rk4;
 pub use rosenbrock::{Rodas5p, Ros2};

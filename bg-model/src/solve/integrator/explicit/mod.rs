@@ -15,6 +15,7 @@ mod order;
 mod vectors;
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use nalgebra::SVector;
 use pulp::Arch;
@@ -72,6 +73,30 @@ pub trait Tableau {
     const IS_COMPENSATED: bool = false;
     /// The coefficients of the dense output from the fourth on: see `super::dense`.
     const DENSE: &'static [Row];
+    /// What the coefficients of a diagonally implicit companion have more than [`Tableau::A`] below the diagonal, without those of
+    /// the first stage; empty if there is none. It has the same state at the end of the step.
+    const MORE: &'static [Row] = &[];
+    /// The diagonal coefficient of the companion, from the second stage on.
+    const GAMMA: f64 = 0.0;
+}
+
+/// What a method adds to the states of an explicit one.
+pub(super) trait Complete<const N: usize> {
+    /// Completes the state `x` of stage `stage`, at the part `c` of the step.
+    fn complete(&mut self, stage: usize, c: f64, x: &mut SVector<f64, N>);
+
+    /// Corrects the magnitudes of the errors in parts of what is allowed, `errors`. `error` gives the error of a state, `allowed`
+    /// what is allowed of it.
+    fn correct(&mut self, errors: &mut [f64; N], error: impl Fn(usize) -> f64, allowed: impl Fn(usize) -> f64);
+}
+
+/// Nothing.
+impl<const N: usize> Complete<N> for () {
+    #[inline(always)]
+    fn complete(&mut self, _stage: usize, _c: f64, _x: &mut SVector<f64, N>) {}
+
+    #[inline(always)]
+    fn correct(&mut self, _errors: &mut [f64; N], _error: impl Fn(usize) -> f64, _allowed: impl Fn(usize) -> f64) {}
 }
 
 /// The most stages of a method, and the most coefficients of its dense output.
@@ -118,11 +143,18 @@ fn combine<const N: usize>(row: Row, k: &Stages<N>, i: usize) -> f64 {
 }
 
 impl<T: Tableau, const N: usize> Explicit<T, N> {
-    /// Evaluates the stages from `first` up to `behind`. Their sums are written out, so that each finds its weights as
-    /// constants; the rate stands there once, which is less to compile and takes no longer.
+    /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its weights
+    /// as constants; the rate stands there once, which is less to compile and takes no longer.
     #[inline(always)]
-    fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, first: usize, behind: usize) {
-        for stage in first..behind {
+    fn evaluate(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        stages: Range<usize>,
+        completed: &mut impl Complete<N>,
+    ) {
+        for stage in stages {
             let mut x = start.x;
             macro_rules! written_out {
                 ($($stage:literal)*) => {
@@ -133,6 +165,7 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
                 };
             }
             written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
+            completed.complete(stage, T::C[stage], &mut x);
             flow.rate(start.t + T::C[stage] * h, &x, &mut self.k[stage]);
         }
     }
@@ -145,6 +178,22 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         }
     }
 
+    /// A step whose stages' states `completed` completes: see [`Method::attempt`].
+    #[inline(always)]
+    pub(super) fn step(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+        completed: &mut impl Complete<N>,
+    ) -> f64 {
+        self.k[0] = start.rate;
+        self.evaluate(flow, start, h, 1..T::END, completed);
+        self.finish_step(start, h, scale, end, completed)
+    }
+
     /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
     fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
         std::array::from_fn(|i| (combine(row, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs())
@@ -155,7 +204,14 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// The norm: h e1, with the largest e1 of the scaled differences to the embedded method. With a second one, whose
     /// largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer, Norsett, Wanner, section II.10).
     #[inline(always)]
-    fn finish_step(&mut self, start: &Point<N>, h: f64, scale: &Scale<N>, end: &mut SVector<f64, N>) -> f64 {
+    fn finish_step(
+        &mut self,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+        completed: &mut impl Complete<N>,
+    ) -> f64 {
         let (mut first, mut second) = ([0.0; N], [0.0; N]);
         for i in 0..N {
             let from = start.x.data.0[0][i];
@@ -169,6 +225,8 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
                 second[i] = ((slope - combine(T::SECOND, &self.k, i)) / allowed).abs();
             }
         }
+        let allowed = |i: usize| scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i]);
+        completed.correct(&mut first, |i| combine(T::ERROR, &self.k, i), allowed);
         let first = largest(&first);
         if T::SECOND.is_empty() {
             return h.abs() * first;
@@ -190,9 +248,7 @@ impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        self.k[0] = start.rate;
-        self.evaluate(flow, start, h, 1, T::END);
-        self.finish_step(start, h, scale, end)
+        self.step(flow, start, h, scale, end, &mut ())
     }
 }
 
@@ -270,7 +326,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
 
     fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         self.k[T::END] = end.rate;
-        self.evaluate(flow, start, h, T::END + 1, T::A.len());
+        self.evaluate(flow, start, h, T::END + 1..T::A.len(), &mut ());
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
         self.polynomial.set(start, h, end, |m, i, _| h * combine(row(m), &self.k, i));
     }

@@ -1,15 +1,17 @@
 //! Checks of the tableaus against the order conditions of Runge-Kutta methods.
 //!
 //! Source: Hairer, Norsett, Wanner, section II.2: a method has order p if for every rooted tree t of up to p nodes the
-//! elementary weight is 1 / density(t).
+//! elementary weight is 1 / density(t). With an implicit companion each branch takes the coefficients of one of the two methods,
+//! in all ways (C. A. Kennedy, M. H. Carpenter, Applied Numerical Mathematics 44 (2003), 139-181, section 2).
 
 use super::{BogackiShampine, CalvoFrancoMontijanoRandez, DormandPrince, FROM_ENDS, Row, STAGES, Tableau};
+use crate::solve::integrator::partitioned::KennedyCarpenter;
 
 type Stages = [f64; STAGES];
 
-/// A rooted tree: the trees that hang at its root, by their indices in the list of all trees.
+/// A rooted tree: the trees that hang at its root, each by its index in the list of all trees and the method that it hangs by.
 struct Tree {
-    branches: Vec<usize>,
+    branches: Vec<(usize, usize)>,
     nodes: usize,
     density: f64,
     /// The stages' elementary weights.
@@ -24,39 +26,59 @@ fn full(row: Row) -> Stages {
     full
 }
 
-fn matrix<T: Tableau>() -> Vec<Stages> {
-    (0..STAGES).map(|stage| T::A.get(stage).map_or([0.0; STAGES], |row| full(row))).collect()
+/// The coefficients of the method, then those of its implicit companion, if it has one.
+fn matrices<T: Tableau>() -> Vec<Vec<Stages>> {
+    let explicit: Vec<Stages> =
+        (0..STAGES).map(|stage| T::A.get(stage).map_or([0.0; STAGES], |row| full(row))).collect();
+    let mut implicit = explicit.clone();
+    for (stage, more) in T::MORE.iter().enumerate().skip(1) {
+        implicit[stage][stage] = T::GAMMA;
+        more.iter().for_each(|(before, weight)| implicit[stage][*before] += weight);
+        // The first column is not in the table: each row sums to its instant.
+        implicit[stage][0] = T::C[stage] - implicit[stage][1..].iter().sum::<f64>();
+    }
+    if T::MORE.is_empty() { vec![explicit] } else { vec![explicit, implicit] }
 }
 
 fn dot(a: &Stages, b: &Stages) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// All rooted trees of up to `largest` nodes; each has its branches in ascending order of their indices.
+/// All rooted trees of up to `largest` nodes; each has its branches in ascending order.
 fn trees<T: Tableau>(largest: usize) -> Vec<Tree> {
-    let a = matrix::<T>();
+    let a = matrices::<T>();
     let mut trees = vec![Tree { branches: vec![], nodes: 1, density: 1.0, weight: [1.0; STAGES] }];
     for nodes in 2..=largest {
         let mut found = Vec::new();
-        collect(&trees, nodes - 1, 0, &mut Vec::new(), &mut found);
+        collect(&trees, a.len(), nodes - 1, (0, 0), &mut Vec::new(), &mut found);
         for branches in found {
-            let density = branches.iter().map(|b: &usize| trees[*b].density).product::<f64>() * nodes as f64;
-            let weight = std::array::from_fn(|i| branches.iter().map(|b| dot(&a[i], &trees[*b].weight)).product());
+            let density = branches.iter().map(|(tree, _)| trees[*tree].density).product::<f64>() * nodes as f64;
+            let of = |i: usize, &(tree, method): &(usize, usize)| dot(&a[method][i], &trees[tree].weight);
+            let weight = std::array::from_fn(|i| branches.iter().map(|branch| of(i, branch)).product());
             trees.push(Tree { branches, nodes, density, weight });
         }
     }
     trees
 }
 
-/// All ascending lists of trees from index `from` with `nodes` nodes altogether.
-fn collect(trees: &[Tree], nodes: usize, from: usize, chosen: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
+/// All ascending lists of trees with `nodes` nodes altogether, each hanging by one of `methods`, from the branch `from` on.
+fn collect(
+    trees: &[Tree],
+    methods: usize,
+    nodes: usize,
+    from: (usize, usize),
+    chosen: &mut Vec<(usize, usize)>,
+    found: &mut Vec<Vec<(usize, usize)>>,
+) {
     if nodes == 0 {
         found.push(chosen.clone());
     }
-    for (index, tree) in trees.iter().enumerate().skip(from).filter(|(_, tree)| tree.nodes <= nodes) {
-        chosen.push(index);
-        collect(trees, nodes - tree.nodes, index, chosen, found);
-        chosen.pop();
+    for (index, tree) in trees.iter().enumerate().skip(from.0).filter(|(_, tree)| tree.nodes <= nodes) {
+        for branch in (0..methods).map(|method| (index, method)).filter(|branch| *branch >= from) {
+            chosen.push(branch);
+            collect(trees, methods, nodes - tree.nodes, branch, chosen, found);
+            chosen.pop();
+        }
     }
 }
 
@@ -70,8 +92,10 @@ fn violation(trees: &[Tree], b: &Stages, nodes: usize, theta: f64) -> f64 {
 fn order<T: Tableau>(b: &Stages, theta: f64) -> usize {
     // Weights up to 50 are rounded to 16 digits, and products of several of them enter.
     const ROUNDING: f64 = 1e-13;
-    let trees = trees::<T>(9);
-    (1..=9).take_while(|nodes| violation(&trees, b, *nodes, theta) < ROUNDING).count()
+    // Each branch by either method: far more trees.
+    let largest = if T::MORE.is_empty() { 9 } else { 6 };
+    let trees = trees::<T>(largest);
+    (1..=largest).take_while(|nodes| violation(&trees, b, *nodes, theta) < ROUNDING).count()
 }
 
 /// The orders of the step and of its embedded methods.
@@ -100,10 +124,13 @@ fn dense_order<T: Tableau>() -> usize {
 
 #[test]
 fn all_trees_are_there() {
-    let trees = trees::<DormandPrince>(9);
-    let count = |nodes| trees.iter().filter(|tree| tree.nodes == nodes).count();
-    assert_eq!((1..=9).map(count).collect::<Vec<_>>(), [1, 1, 2, 4, 9, 20, 48, 115, 286]);
-    assert!(trees.iter().all(|tree| tree.branches.is_sorted()));
+    fn counts<T: Tableau>(largest: usize) -> Vec<usize> {
+        let trees = trees::<T>(largest);
+        assert!(trees.iter().all(|tree| tree.branches.is_sorted()));
+        (1..=largest).map(|nodes| trees.iter().filter(|tree| tree.nodes == nodes).count()).collect()
+    }
+    assert_eq!(counts::<DormandPrince>(9), [1, 1, 2, 4, 9, 20, 48, 115, 286]);
+    assert_eq!(counts::<KennedyCarpenter>(6), [1, 2, 7, 26, 107, 458]);
 }
 
 fn check_rows<T: Tableau>() {
@@ -124,6 +151,7 @@ fn the_rows_sum_to_the_instants() {
     check_rows::<DormandPrince>();
     check_rows::<CalvoFrancoMontijanoRandez>();
     check_rows::<BogackiShampine>();
+    check_rows::<KennedyCarpenter>();
 }
 
 #[test]
@@ -131,6 +159,7 @@ fn the_steps_and_their_companions_have_their_orders() {
     assert_eq!(orders::<DormandPrince>(), [8, 5, 3]);
     assert_eq!(orders::<CalvoFrancoMontijanoRandez>(), [7, 5, 0]);
     assert_eq!(orders::<BogackiShampine>(), [5, 4, 0]);
+    assert_eq!(orders::<KennedyCarpenter>(), [5, 4, 0]);
 }
 
 #[test]
@@ -145,4 +174,5 @@ fn the_dense_outputs_have_their_orders_inside_the_step() {
     assert_eq!(dense_order::<DormandPrince>(), 7);
     assert_eq!(dense_order::<CalvoFrancoMontijanoRandez>(), 5);
     assert_eq!(dense_order::<BogackiShampine>(), 5);
+    assert_eq!(dense_order::<KennedyCarpenter>(), 4);
 }

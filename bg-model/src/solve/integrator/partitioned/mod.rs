@@ -1,0 +1,174 @@
+//! A method that is implicit in the states alone whose own damping is stiff, and explicit in all others.
+//!
+//! In: a step. Out: the state after it with an error estimate, and on request the states in between. The rate f is split into
+//! B (x - r) of the damped states, with a matrix B and a straight line r(t), and the rest; the implicit method of the pair in
+//! `tableau` takes the former, the explicit one the latter. B is the block of the Jacobian, renewed now and then: any other one
+//! keeps the order. So one rate a stage and a product with a small matrix make a step, where an implicit method solves
+//! systems of all states. The line leads through the ends of the last two steps: with the last end alone the order falls to 2, as
+//! what damping has brought to equilibrium drifts.
+
+mod block;
+mod pattern;
+mod tableau;
+
+use nalgebra::SVector;
+use pulp::Arch;
+
+use self::block::Block;
+pub(super) use self::tableau::KennedyCarpenter;
+use super::explicit::{Explicit, Tableau};
+use super::vectors::{Vectorised, attempt_in};
+use super::{Flow, Method, Point, Scale, StepControl};
+
+/// The pair ARK5(4)8L[2]SAb of Kennedy and Carpenter, implicit in the states alone whose own damping is stiff: eight rates a step.
+///
+/// For mechanisms with strong dampers between few of many states, and tolerances from 1e-3 to 1e-8: looser ones count as 1e-3.
+#[derive(Clone, Debug)]
+pub struct Ark5<const N: usize> {
+    explicit: Explicit<KennedyCarpenter, N>,
+    block: Block<N>,
+    arch: Arch,
+}
+
+impl<const N: usize> Ark5<N> {
+    /// The loosest relative tolerance: with steps for looser ones a switch changes without need.
+    const LOOSEST: f64 = 1e-3;
+
+    /// The method, its work space empty.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { explicit: Explicit::new(), block: Block::new(), arch: Arch::new() }
+    }
+}
+
+impl<const N: usize> Default for Ark5<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize> Vectorised<N> for Ark5<N> {
+    #[inline(always)]
+    fn attempt_inlined(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        let Self { explicit, block, .. } = self;
+        if block.invert() { explicit.step(flow, start, h, scale, end, block) } else { f64::INFINITY }
+    }
+}
+
+impl<const N: usize> Method<N> for Ark5<N> {
+    fn name(&self) -> &'static str {
+        KennedyCarpenter::NAME
+    }
+
+    fn control(&self) -> StepControl {
+        self.explicit.control()
+    }
+
+    fn attempt(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        if !self.block.prepare(flow, start, h, scale) {
+            return f64::INFINITY;
+        }
+        let tight;
+        let scale = if scale.relative > Self::LOOSEST {
+            tight = Scale { relative: Self::LOOSEST, ..scale.clone() };
+            &tight
+        } else {
+            scale
+        };
+        attempt_in(self.arch, self, flow, start, h, scale, end)
+    }
+
+    fn error_after(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &SVector<f64, N>,
+        project: impl Fn(&mut SVector<f64, N>),
+    ) -> Option<f64> {
+        self.explicit.error_after(flow, start, h, scale, end, project)
+    }
+
+    fn advance(&mut self) {
+        self.block.advance();
+        self.explicit.advance();
+    }
+
+    fn restart(&mut self) {
+        self.block.restart();
+        self.explicit.restart();
+    }
+
+    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+        self.explicit.largest_error(start, scale, end)
+    }
+
+    fn faulty_rate(&self) -> Option<(usize, f64)> {
+        self.explicit.faulty_rate()
+    }
+
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+        self.explicit.prepare_dense(flow, start, h, end);
+    }
+
+    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        self.explicit.dense(start, h, end, theta, x);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::system::System;
+    use crate::solve::integrator::Tolerances;
+    use crate::solve::simulation::{Settings, Span, integrate};
+
+    /// A row of five masses on springs with strong dampers between the first three.
+    struct Row;
+
+    impl System<f64, 10, 0> for Row {
+        #[inline(always)]
+        fn rate(&self, t: f64, x: &SVector<f64, 10>, _negative: &[bool; 0], dx: &mut SVector<f64, 10>) {
+            let force = |i: usize| {
+                let r = if i < 2 { 3e5 } else { 0.1 };
+                r * (x[i + 1] - x[i]) + 20.0 * (x[6 + i] - x[5 + i])
+            };
+            for i in 0..5 {
+                let (right, left) =
+                    (if i < 4 { force(i) } else { t.sin() }, if i > 0 { force(i - 1) } else { 40.0 * x[5] });
+                dx[i] = right - left;
+                dx[5 + i] = x[i];
+            }
+        }
+    }
+
+    #[test]
+    fn every_machine_gives_the_same_bytes() {
+        let of = |arch: Arch| {
+            let mut method = Ark5::<10> { arch, ..Ark5::new() };
+            let start = SVector::from_fn(|i, _| 0.3 - 0.07 * i as f64);
+            let settings = Settings { tolerances: Tolerances::new(1e-7, 1e-8), ..Settings::default() };
+            let finish = integrate(&Row, &mut method, &start, Span { t0: 0.0, t_end: 10.0 }, &settings, &mut ());
+            let finish = finish.expect("a smooth system");
+            (finish.x.data.0[0].map(f64::to_bits), finish.statistics.steps)
+        };
+        let (everywhere, here) = (of(Arch::Scalar), of(Arch::new()));
+        assert!((100..10_000).contains(&everywhere.1), "{}", everywhere.1);
+        assert_eq!(everywhere, here);
+    }
+}

@@ -1,0 +1,94 @@
+//! Which states are damped stiffly.
+//!
+//! In: a Jacobian and a step. Out: the states, and where their block of the Jacobian is.
+
+use std::borrow::Cow;
+
+use crate::model::capability::SecondOrder;
+use crate::model::linear::Sparsity;
+use crate::solve::integrator::Flow;
+use crate::solve::integrator::linear::Jacobian;
+
+/// States are damped stiffly where dampers would take away this part of them in a step. Explicit steps bear about ten times as
+/// much.
+const STIFF: f64 = 0.25;
+
+/// This part of the square of it keeps states that are chosen already, so that the choice does not swing.
+const KEPT: f64 = 0.1;
+/// States that such weaker dampers connect to chosen ones are chosen with them.
+const WEAK: f64 = 0.025;
+
+/// The places of a Jacobian.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pattern {
+    /// Row and column of each entry.
+    places: Vec<(usize, usize)>,
+    /// The entries in places that mirror each other, those of displacements and orientations left out; one on the diagonal mirrors
+    /// itself.
+    mirrored: Vec<(usize, usize)>,
+    /// Of each state whether it is chosen; to be written by each choice.
+    damped: Vec<bool>,
+}
+
+impl Pattern {
+    /// The entries of a Jacobian whose places are known from here on; with unknowns beside the states those of the states alone.
+    pub fn entries<'a, const N: usize>(&mut self, flow: &impl Flow<N>, jacobian: &'a Jacobian<N>) -> Cow<'a, [f64]> {
+        let sparsity = jacobian.sparsity(flow);
+        let (sparsity, entries) = match sparsity {
+            Sparsity::Bordered { .. } => {
+                (Sparsity::Full, Cow::Owned(sparsity.matrix(N, &jacobian.entries).as_slice().to_vec()))
+            }
+            _ => (sparsity, Cow::Borrowed(jacobian.entries.as_slice())),
+        };
+        if self.places.is_empty() {
+            self.places = (0..entries.len()).map(|k| sparsity.place(k, N)).collect();
+            let is_of_pose = |state: &usize| flow.second_order().is_some_and(|states| states.states().contains(state));
+            let mut numbers = vec![None; N * N];
+            self.places.iter().enumerate().for_each(|(k, (row, column))| numbers[row * N + column] = Some(k));
+            let upper = self.places.iter().enumerate().filter(|(_, (row, column))| row <= column);
+            let upper = upper.filter(|(_, (row, column))| !is_of_pose(row) && !is_of_pose(column));
+            self.mirrored = upper.filter_map(|(k, (row, column))| Some((k, numbers[column * N + row]?))).collect();
+        }
+        entries
+    }
+
+    /// Chooses among `n` states those that are damped stiffly in a step of size `h` (s). Gives whether they are others than before.
+    ///
+    /// A damper between two states changes the rate of each with the other in the same sense; a spring, a mass and what turns do
+    /// so in opposite senses. The root of the product of both changes, 1/s, does not depend on the units of the states.
+    pub fn choose(&mut self, entries: &[f64], h: f64, n: usize, states: &mut Vec<usize>) -> bool {
+        let Self { places, mirrored, damped } = self;
+        damped.clear();
+        damped.resize(n, false);
+        let before = |state: usize| states.binary_search(&state).is_ok();
+        let (strong, weak) = ((STIFF / h).powi(2), (WEAK / h).powi(2));
+        let dampers = || mirrored.iter().map(|&(one, other)| (places[one], entries[one] * entries[other]));
+        for ((row, column), product) in dampers() {
+            if product > strong || (product > KEPT * strong && before(row) && before(column)) {
+                (damped[row], damped[column]) = (true, true);
+            }
+        }
+        // On along weaker dampers: a part of what one damper holds together would err more than all of it.
+        let is_at_edge = |damped: &[bool], (row, column): (usize, usize)| damped[row] != damped[column];
+        while let Some(((row, column), _)) =
+            dampers().find(|&(place, product)| product > weak && is_at_edge(damped, place))
+        {
+            (damped[row], damped[column]) = (true, true);
+        }
+        let chosen = || (0..n).filter(|&state| damped[state]);
+        let has_changed = !chosen().eq(states.iter().copied());
+        if has_changed {
+            states.clear();
+            states.extend(chosen());
+        }
+        has_changed
+    }
+
+    /// The entries between these states, each with its place in a matrix whose columns have `length` numbers.
+    pub fn sources(&self, states: &[usize], length: usize, sources: &mut Vec<(usize, usize)>) {
+        let place = |state: usize| states.binary_search(&state).ok();
+        let within = self.places.iter().enumerate();
+        sources.clear();
+        sources.extend(within.filter_map(|(k, &(row, column))| Some((k, place(column)? * length + place(row)?))));
+    }
+}
