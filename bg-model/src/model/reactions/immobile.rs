@@ -32,8 +32,6 @@ pub(super) fn immobile<S: Scalar>(hold: &Hold<S>, factors: &Factors<S>) -> Optio
     if !clashing.is_empty() {
         return Some(clashing);
     }
-    // Each joint holds what no other one does. A joint with fewer rows than another one has a free axis.
-    let most = joints.iter().map(|(_, rows, _)| *rows).max();
-    let has_free_axes = joints.iter().any(|(_, rows, _)| Some(*rows) < most);
-    has_free_axes.then(|| joints.iter().map(|(joint, ..)| *joint).collect())
+    // Each joint holds what no other one does. Without a loop they are joints without a free axis, of a frame.
+    (!held.closing.is_empty()).then(|| joints.iter().map(|(joint, ..)| *joint).collect())
 }
