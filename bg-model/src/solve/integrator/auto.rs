@@ -47,6 +47,9 @@ const STINT: u32 = 256;
 /// far longer ones.
 const LOOSE: f64 = 1e-7;
 
+/// The least number of states, for the same reason: of few states a factorisation costs little beside the rates.
+const MANY: usize = 24;
+
 /// The methods, the more implicit ones later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
@@ -79,18 +82,19 @@ impl Kind {
     const ALL: [Self; 3] = [Self::Explicit, Self::Partitioned, Self::Implicit];
 
     /// The other kinds that are worth trying, those first that are implicit in fewer states.
-    fn others(self, relative: f64) -> impl Iterator<Item = Self> {
-        let is_worth = move |kind: &Self| *kind != self && (*kind != Self::Partitioned || relative >= LOOSE);
+    fn others(self, relative: f64, n: usize) -> impl Iterator<Item = Self> {
+        let has_partitioned = relative >= LOOSE && n >= MANY;
+        let is_worth = move |kind: &Self| *kind != self && (*kind != Self::Partitioned || has_partitioned);
         Self::ALL.into_iter().filter(is_worth)
     }
 
     /// How many steps of a less implicit kind cost as much as one of this kind, of `n` states: as measured on the hacksaw, where a step of
     /// Radau IIA 9 takes as long as 11 of DOP853 in the plane, 23 in three dimensions, and half a step of ARK5(4)8L[2]SAb as long as one
-    /// of DOP853. Of few states a factorisation costs little beside the rates.
+    /// of DOP853.
     fn worth(self, less: Self, n: usize) -> f64 {
         match (less, self) {
             (Self::Explicit, Self::Partitioned) => 2.0,
-            (Self::Partitioned, _) => (0.5 * n as f64).clamp(3.0, 40.0),
+            (Self::Partitioned, _) => (0.5 * n as f64).min(40.0),
             _ => 16.0,
         }
     }
@@ -200,7 +204,7 @@ impl<const N: usize> Auto<N> {
         self.since = 0;
         self.tried = self.typical();
         let is_cut_off = self.cut_off >= CUT_OFF;
-        for kind in self.kind.others(scale.relative) {
+        for kind in self.kind.others(scale.relative, N) {
             if is_cut_off && kind == Kind::Partitioned {
                 continue;
             }

@@ -66,6 +66,9 @@ pub trait Tableau {
     const ERROR: Row;
     /// A second embedded method of lower order; empty if there is none.
     const SECOND: Row = &[];
+    /// A difference to an embedded method of lower order with the rate at the start of the step, of which a part counts; empty if
+    /// there is none.
+    const START: Row = &[];
     /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one is
     /// small; empty if there is none.
     const LATE: Row = &[];
@@ -79,6 +82,9 @@ pub trait Tableau {
     /// The diagonal coefficient of the companion, from the second stage on.
     const GAMMA: f64 = 0.0;
 }
+
+/// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
+const AT_START: f64 = 0.02;
 
 /// What a method adds to the states of an explicit one.
 pub(super) trait Complete<const N: usize> {
@@ -228,6 +234,12 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         let allowed = |i: usize| scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i]);
         completed.correct(&mut first, |i| combine(T::ERROR, &self.k, i), allowed);
         let first = largest(&first);
+        if !T::START.is_empty() {
+            let mut start: [f64; N] = std::array::from_fn(|i| (combine(T::START, &self.k, i) / allowed(i)).abs());
+            completed.correct(&mut start, |i| combine(T::START, &self.k, i), allowed);
+            let start = AT_START * largest(&start);
+            return h.abs() * if start > first { start } else { first };
+        }
         if T::SECOND.is_empty() {
             return h.abs() * first;
         }

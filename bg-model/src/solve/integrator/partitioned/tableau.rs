@@ -4,7 +4,8 @@
 //! Source: C. A. Kennedy, M. H. Carpenter, Higher-order additive Runge-Kutta schemes for ordinary differential equations, Applied
 //! Numerical Mathematics 136 (2019), 183-205; fractions as in SUNDIALS 7, `ARKODE_ARK548L2SAb_ERK_8_4_5` and
 //! `ARKODE_ARK548L2SAb_DIRK_8_4_5`, rounded to the nearest `f64`. The dense output of order 4 is our own: the combination of the
-//! stages and the rate at the end with the least squares of weights that satisfies the conditions of both methods.
+//! stages and the rate at the end with the least squares of weights that satisfies the conditions of both methods. So is the estimate
+//! of order 3 with the rate at the start, which has no weight in the others: a jump in the first ninth of a step shows nowhere else.
 
 use crate::solve::integrator::explicit::{Row, Tableau};
 
@@ -70,6 +71,16 @@ impl Tableau for KennedyCarpenter {
         (5, -0.09167466377312979),
         (6, -0.056825796060827855),
         (7, 0.03512941629857352),
+    ];
+
+    const START: Row = &[
+        (0, 1.0),
+        (2, 0.382265143567961),
+        (3, -1.3090735672650673),
+        (4, -0.07413777913932196),
+        (5, 0.42525625522883453),
+        (6, -0.12090968470347964),
+        (7, -0.30340036768892664),
     ];
 
     const DENSE: &'static [Row] = &[&[
