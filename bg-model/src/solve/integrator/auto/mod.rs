@@ -7,9 +7,12 @@
 //! tolerances. Stiffness is thus measured by what it does to the steps, not guessed from eigenvalues, and oscillations that have to be
 //! followed anyway do not count as such.
 
+mod race;
+
 use nalgebra::SVector;
 
-use super::{Ark5, Dop853, Flow, Method, Point, Radau9, Scale, StepControl, is_finite, rounding};
+use self::race::Race;
+use super::{Ark5, Flow, Method, Point, Radau9, Scale, StepControl, is_finite, rounding};
 
 /// Steps before the first trial, and the most between two trials.
 const WAIT: [u32; 2] = [16, 4096];
@@ -103,7 +106,7 @@ impl Kind {
 /// Three methods, one of which makes the steps.
 #[derive(Clone, Debug)]
 pub struct Auto<const N: usize> {
-    explicit: Dop853<N>,
+    explicit: Race<N>,
     partitioned: Ark5<N>,
     implicit: Radau9<N>,
     kind: Kind,
@@ -132,6 +135,8 @@ pub struct Auto<const N: usize> {
     /// The longest step tried since the last change, s.
     longest: f64,
     changes: Vec<Change>,
+    /// The explicit method that was told last.
+    told: &'static str,
 }
 
 /// A step of a more implicit method that satisfies the tolerances, with the steps of the present one under way to its end.
@@ -158,11 +163,11 @@ pub struct Change {
 const REMEMBERED: usize = 256;
 
 impl<const N: usize> Auto<N> {
-    /// DOP853, ARK5(4)8L[2]SAb and Radau IIA 9; the explicit one begins.
+    /// DOP853, CFMR7osc and Nystrom, ARK5(4)8L[2]SAb, Radau IIA 9; DOP853 begins.
     #[must_use]
     pub fn new() -> Self {
         Self {
-            explicit: Dop853::new(),
+            explicit: Race::new(),
             partitioned: Ark5::new(),
             implicit: Radau9::new(),
             kind: Kind::Explicit,
@@ -180,6 +185,7 @@ impl<const N: usize> Auto<N> {
             hurried: 0,
             longest: 0.0,
             changes: Vec::with_capacity(REMEMBERED),
+            told: "DOP853",
         }
     }
 
@@ -312,8 +318,17 @@ impl<const N: usize> Auto<N> {
         self.hurried = 0;
         self.longest = 0.0;
         self.recent = [0.0; RECENT];
+        self.tell(t);
+    }
+
+    /// Remembers that the present method makes the steps from time `t` (s) on.
+    fn tell(&mut self, t: f64) {
+        let method = self.name();
+        if self.kind == Kind::Explicit {
+            self.told = method;
+        }
         if self.changes.len() < REMEMBERED {
-            self.changes.push(Change { t, method: self.name() });
+            self.changes.push(Change { t, method });
         }
     }
 }
@@ -372,6 +387,9 @@ impl<const N: usize> Method<N> for Auto<N> {
         let error = of!(self, self.kind, method => method.attempt(flow, start, h, scale, end));
         if self.kind == Kind::Implicit {
             return error;
+        }
+        if self.kind == Kind::Explicit && self.explicit.ahead().is_some_and(|ahead| ahead != self.told) {
+            self.tell(start.t);
         }
         self.longest = self.longest.max(h);
         let is_met = error <= 1.0 && is_finite(end);

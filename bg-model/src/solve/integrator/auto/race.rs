@@ -1,0 +1,250 @@
+//! A race of explicit methods: which of them gets furthest with its rates.
+//!
+//! In: the steps of a run. Out: the steps of the method that was ahead in the last race. In a race each method makes some steps of the run,
+//! one after the other; none of these is lost. Races come more seldom the longer the run is. What limits a step, stability or accuracy,
+//! does not matter, and nothing is estimated: the time a method gets on for each of its rates is what it costs.
+
+use nalgebra::SVector;
+
+use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, Point, Scale, StepControl};
+
+/// Accepted steps before the first race, and the most between two races.
+const REST: [u32; 2] = [128, 8192];
+/// Accepted steps of a lap, and those at its beginning that do not count: steps find their size.
+const LAP: u32 = 48;
+const BEGINNING: u32 = 16;
+/// A race with more restarts than this is given up.
+const RESTARTS: u32 = 8;
+/// Another method has to be ahead by this factor, so that the choice does not swing.
+const AHEAD: f64 = 1.05;
+
+/// The methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Runner {
+    Dop853,
+    Cfmr7,
+    Nystrom,
+}
+
+impl Runner {
+    const ALL: [Self; 3] = [Self::Dop853, Self::Cfmr7, Self::Nystrom];
+
+    /// The rates of a step.
+    const fn rates(self) -> f64 {
+        match self {
+            Self::Dop853 => 12.0,
+            Self::Cfmr7 | Self::Nystrom => 9.0,
+        }
+    }
+}
+
+/// Calls the method that makes the steps.
+macro_rules! present {
+    ($race:expr, $method:ident => $then:expr) => {
+        match $race.runner {
+            Runner::Dop853 => {
+                let $method = &$race.dop853;
+                $then
+            }
+            Runner::Cfmr7 => {
+                let $method = &$race.cfmr7;
+                $then
+            }
+            Runner::Nystrom => {
+                let $method = &$race.nystrom;
+                $then
+            }
+        }
+    };
+    (mut $race:expr, $method:ident => $then:expr) => {
+        match $race.runner {
+            Runner::Dop853 => {
+                let $method = &mut $race.dop853;
+                $then
+            }
+            Runner::Cfmr7 => {
+                let $method = &mut $race.cfmr7;
+                $then
+            }
+            Runner::Nystrom => {
+                let $method = &mut $race.nystrom;
+                $then
+            }
+        }
+    };
+}
+
+/// The explicit methods, one of which makes the steps.
+#[derive(Clone, Debug)]
+pub(super) struct Race<const N: usize> {
+    dop853: Dop853<N>,
+    cfmr7: Cfmr7<N>,
+    nystrom: Nystrom<N>,
+    /// The method that makes the steps, and the one that was ahead.
+    runner: Runner,
+    ahead: Runner,
+    /// Whether a race is on, the methods that have run in it, how far each came, s a rate, and the restarts during it.
+    is_on: bool,
+    run: usize,
+    speeds: [f64; 3],
+    restarts: u32,
+    /// Whether the next attempt is the first after an accepted step.
+    is_fresh: bool,
+    /// Accepted steps of this lap or rest; how far they came since its beginning, s, and their rates.
+    steps: u32,
+    way: f64,
+    rates: f64,
+    /// The accepted steps until the next race.
+    rest: u32,
+    /// The step under way, s.
+    h: f64,
+}
+
+impl<const N: usize> Race<N> {
+    /// DOP853 begins.
+    pub fn new() -> Self {
+        Self {
+            dop853: Dop853::new(),
+            cfmr7: Cfmr7::new(),
+            nystrom: Nystrom::new(),
+            runner: Runner::Dop853,
+            ahead: Runner::Dop853,
+            is_on: false,
+            run: 0,
+            speeds: [0.0; 3],
+            restarts: 0,
+            is_fresh: false,
+            steps: 0,
+            way: 0.0,
+            rates: 0.0,
+            rest: REST[0],
+            h: 0.0,
+        }
+    }
+
+    /// The method that was ahead, where no race is on.
+    pub fn ahead(&self) -> Option<&'static str> {
+        (!self.is_on).then(|| self.name())
+    }
+
+    /// Passes on where a lap or a rest is over. A method for states of second order takes part where there are some.
+    fn turn(&mut self, has_second_order: bool) {
+        if !self.is_on {
+            if self.steps >= self.rest {
+                (self.is_on, self.run, self.restarts, self.speeds) = (true, 0, 0, [0.0; 3]);
+                self.begin(self.ahead);
+            }
+            return;
+        }
+        if self.steps == BEGINNING {
+            (self.way, self.rates) = (0.0, 0.0);
+        }
+        if self.steps < LAP {
+            return;
+        }
+        self.speeds[self.runner as usize] = self.way / self.rates;
+        self.run += 1;
+        let takes_part = |runner: &Runner| *runner != self.ahead && (*runner != Runner::Nystrom || has_second_order);
+        match Runner::ALL.into_iter().filter(takes_part).nth(self.run - 1) {
+            Some(next) => self.begin(next),
+            None => self.end(),
+        }
+    }
+
+    /// A lap or a rest of this method begins.
+    fn begin(&mut self, runner: Runner) {
+        if runner != self.runner {
+            self.runner = runner;
+            present!(mut self, method => method.restart());
+        }
+        (self.steps, self.way, self.rates) = (0, 0.0, 0.0);
+    }
+
+    /// The race is over.
+    fn end(&mut self) {
+        let speed = |runner: Runner| self.speeds[runner as usize];
+        let best =
+            Runner::ALL.into_iter().fold(self.ahead, |best, next| if speed(next) > speed(best) { next } else { best });
+        if speed(best) > AHEAD * speed(self.ahead) {
+            self.ahead = best;
+        }
+        self.is_on = false;
+        self.rest = (2 * self.rest).min(REST[1]);
+        self.begin(self.ahead);
+    }
+}
+
+impl<const N: usize> Method<N> for Race<N> {
+    fn name(&self) -> &'static str {
+        present!(self, method => method.name())
+    }
+
+    fn control(&self) -> StepControl {
+        present!(self, method => method.control())
+    }
+
+    fn attempt(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        if std::mem::take(&mut self.is_fresh) {
+            self.turn(flow.second_order().is_some());
+        }
+        self.h = h;
+        self.rates += self.runner.rates();
+        present!(mut self, method => method.attempt(flow, start, h, scale, end))
+    }
+
+    fn error_after(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &SVector<f64, N>,
+        project: impl Fn(&mut SVector<f64, N>),
+    ) -> Option<f64> {
+        present!(mut self, method => method.error_after(flow, start, h, scale, end, project))
+    }
+
+    fn advance(&mut self) {
+        self.is_fresh = true;
+        self.steps += 1;
+        self.way += self.h;
+        present!(mut self, method => method.advance());
+    }
+
+    /// A lap begins anew: steps find their size. Where that happens too often for a race, there is none.
+    fn restart(&mut self) {
+        present!(mut self, method => method.restart());
+        if self.is_on {
+            self.restarts += 1;
+            if self.restarts > RESTARTS {
+                self.speeds = [0.0; 3];
+                self.end();
+            } else {
+                self.begin(self.runner);
+            }
+        }
+    }
+
+    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+        present!(self, method => method.largest_error(start, scale, end))
+    }
+
+    fn faulty_rate(&self) -> Option<(usize, f64)> {
+        present!(self, method => method.faulty_rate())
+    }
+
+    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+        present!(mut self, method => method.prepare_dense(flow, start, h, end));
+    }
+
+    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        present!(self, method => method.dense(start, h, end, theta, x));
+    }
+}
