@@ -198,7 +198,9 @@ impl<const N: usize> Auto<N> {
 
     /// Whether other methods are to be tried from the present start with the step `h` (s) in sight.
     fn is_due(&self, h: f64) -> bool {
-        if self.claim.is_some() || (self.stint as usize) < RECENT {
+        // Steps near what they were at the last trial call for none, and need no median.
+        let is_near = self.since < self.wait && h > 2.0 * FALL * self.tried;
+        if self.claim.is_some() || (self.stint as usize) < RECENT || is_near {
             return false;
         }
         let typical = self.typical();
@@ -229,7 +231,12 @@ impl<const N: usize> Auto<N> {
         // Twice as long as it has to be where what it costs varies as much as what the present one does.
         let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
         let (h, mut x) = (gain * kind.worth(self.kind, N) * h, start.x);
-        let is_met = of!(self, kind, method => method.attempt(flow, start, h, scale, &mut x)) <= 1.0 && is_finite(&x);
+        let error = of!(self, kind, method => {
+            // Only the method that makes the steps has seen the last ones.
+            method.restart();
+            method.attempt(flow, start, h, scale, &mut x)
+        });
+        let is_met = error <= 1.0 && is_finite(&x);
         if is_met && self.cut_off >= CUT_OFF {
             self.change(kind, start.t);
         } else if is_met {
@@ -243,7 +250,8 @@ impl<const N: usize> Auto<N> {
     fn succeeds(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         let h = 2.0 * h / self.kind.worth(kind, N);
         let (mut point, mut end) = (*start, start.x);
-        let succeeds = (0..SUCCESSION).all(|_| {
+        of!(self, kind, method => method.restart());
+        (0..SUCCESSION).all(|_| {
             let error = of!(self, kind, method => method.attempt(flow, &point, h, scale, &mut end));
             let is_met = error <= 1.0 && is_finite(&end);
             if is_met {
@@ -252,9 +260,7 @@ impl<const N: usize> Auto<N> {
                 flow.rate(point.t, &end, &mut point.rate);
             }
             is_met
-        });
-        of!(self, kind, method => method.restart());
-        succeeds
+        })
     }
 
     /// Holds the longer step against the present method's, once these have come to its end.
@@ -286,6 +292,8 @@ impl<const N: usize> Auto<N> {
     /// implicit in some, from `h` (s) on.
     fn is_stiff_throughout(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         let mut end = start.x;
+        self.partitioned.restart();
+        self.implicit.restart();
         let longer = std::iter::successors(Some(h), |h| Some(2.0 * h)).take(DOUBLINGS);
         let is_met = |h: &f64| self.partitioned.attempt(flow, start, *h, scale, &mut end) <= 1.0 && is_finite(&end);
         let longest = longer.take_while(is_met).last().unwrap_or(h);
@@ -298,6 +306,7 @@ impl<const N: usize> Auto<N> {
         // Where it has just handed back it does not go on either.
         let has_gone_on = !self.changes.is_empty() && self.stint < STINT;
         let mut end = start.x;
+        self.implicit.restart();
         !has_gone_on && self.implicit.attempt(flow, start, h, scale, &mut end) <= 1.0 && is_finite(&end)
     }
 
@@ -330,6 +339,12 @@ impl<const N: usize> Auto<N> {
         if self.changes.len() < REMEMBERED {
             self.changes.push(Change { t, method });
         }
+    }
+}
+
+impl<const N: usize> Default for Auto<N> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
@@ -406,10 +421,7 @@ impl<const N: usize> Method<N> for Auto<N> {
         self.since += 1;
         self.since_event += 1;
         self.stint += 1;
-        // Only the method that makes the steps has seen the last one.
-        for kind in Kind::ALL {
-            of!(self, kind, method => if kind == self.kind { method.advance() } else { method.restart() });
-        }
+        of!(self, self.kind, method => method.advance());
     }
 
     fn restart(&mut self) {

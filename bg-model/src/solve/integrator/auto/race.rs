@@ -1,8 +1,9 @@
 //! A race of explicit methods: which of them gets furthest with its rates.
 //!
-//! In: the steps of a run. Out: the steps of the method that was ahead in the last race. In a race each method makes some steps of the run,
-//! one after the other; none of these is lost. Races come more seldom the longer the run is. What limits a step, stability or accuracy,
-//! does not matter, and nothing is estimated: the time a method gets on for each of its rates is what it costs.
+//! In: the steps of a run. Out: the steps of the method that was ahead in the last race. In a race the methods take turns at making steps of
+//! the run; none of these is lost. Races come more seldom the longer the run is. What limits a step, stability or accuracy, does not
+//! matter, and nothing is estimated: how far a method gets with its rates is what counts. Steps may become longer or shorter while others
+//! run, so there are several rounds, and who takes over has to be ahead in each.
 
 use nalgebra::SVector;
 
@@ -11,8 +12,10 @@ use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, Point, Scal
 /// Accepted steps before the first race, and the most between two races.
 const REST: [u32; 2] = [128, 8192];
 /// Accepted steps of a lap, and those at its beginning that do not count: steps find their size.
-const LAP: u32 = 48;
-const BEGINNING: u32 = 16;
+const LAP: u32 = 24;
+const BEGINNING: u32 = 8;
+/// The rounds of a race.
+const ROUNDS: usize = 3;
 /// A race with more restarts than this is given up.
 const RESTARTS: u32 = 8;
 /// Another method has to be ahead by this factor, so that the choice does not swing.
@@ -83,10 +86,10 @@ pub(super) struct Race<const N: usize> {
     /// The method that makes the steps, and the one that was ahead.
     runner: Runner,
     ahead: Runner,
-    /// Whether a race is on, the methods that have run in it, how far each came, s a rate, and the restarts during it.
+    /// Whether a race is on, the laps that have been run in it, how far each method came in each round, s a rate, and the restarts.
     is_on: bool,
-    run: usize,
-    speeds: [f64; 3],
+    laps: usize,
+    speeds: [[f64; ROUNDS]; 3],
     restarts: u32,
     /// Whether the next attempt is the first after an accepted step.
     is_fresh: bool,
@@ -110,8 +113,8 @@ impl<const N: usize> Race<N> {
             runner: Runner::Dop853,
             ahead: Runner::Dop853,
             is_on: false,
-            run: 0,
-            speeds: [0.0; 3],
+            laps: 0,
+            speeds: [[0.0; ROUNDS]; 3],
             restarts: 0,
             is_fresh: false,
             steps: 0,
@@ -131,7 +134,7 @@ impl<const N: usize> Race<N> {
     fn turn(&mut self, has_second_order: bool) {
         if !self.is_on {
             if self.steps >= self.rest {
-                (self.is_on, self.run, self.restarts, self.speeds) = (true, 0, 0, [0.0; 3]);
+                (self.is_on, self.laps, self.restarts, self.speeds) = (true, 0, 0, [[0.0; ROUNDS]; 3]);
                 self.begin(self.ahead);
             }
             return;
@@ -142,12 +145,14 @@ impl<const N: usize> Race<N> {
         if self.steps < LAP {
             return;
         }
-        self.speeds[self.runner as usize] = self.way / self.rates;
-        self.run += 1;
         let takes_part = |runner: &Runner| *runner != self.ahead && (*runner != Runner::Nystrom || has_second_order);
-        match Runner::ALL.into_iter().filter(takes_part).nth(self.run - 1) {
-            Some(next) => self.begin(next),
-            None => self.end(),
+        let others = Runner::ALL.into_iter().filter(takes_part);
+        let runners = 1 + others.clone().count();
+        self.speeds[self.runner as usize][self.laps / runners] = self.way / self.rates;
+        self.laps += 1;
+        match std::iter::once(self.ahead).chain(others).nth(self.laps % runners) {
+            Some(next) if self.laps < ROUNDS * runners => self.begin(next),
+            _ => self.end(),
         }
     }
 
@@ -162,11 +167,14 @@ impl<const N: usize> Race<N> {
 
     /// The race is over.
     fn end(&mut self) {
-        let speed = |runner: Runner| self.speeds[runner as usize];
-        let best =
-            Runner::ALL.into_iter().fold(self.ahead, |best, next| if speed(next) > speed(best) { next } else { best });
-        if speed(best) > AHEAD * speed(self.ahead) {
-            self.ahead = best;
+        let [of_ahead, mut best] = [self.speeds[self.ahead as usize]; 2];
+        let mean = |speeds: [f64; ROUNDS]| speeds.iter().sum::<f64>();
+        for runner in Runner::ALL {
+            let speeds = self.speeds[runner as usize];
+            let is_always_ahead = speeds.iter().zip(&of_ahead).all(|(speed, of_ahead)| speed > of_ahead);
+            if is_always_ahead && mean(speeds) > mean(best) && mean(speeds) > AHEAD * mean(of_ahead) {
+                (self.ahead, best) = (runner, speeds);
+            }
         }
         self.is_on = false;
         self.rest = (2 * self.rest).min(REST[1]);
@@ -224,7 +232,7 @@ impl<const N: usize> Method<N> for Race<N> {
         if self.is_on {
             self.restarts += 1;
             if self.restarts > RESTARTS {
-                self.speeds = [0.0; 3];
+                self.speeds = [[0.0; ROUNDS]; 3];
                 self.end();
             } else {
                 self.begin(self.runner);
