@@ -72,9 +72,7 @@ impl Integrator {
 
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
-            Self::Auto => {
-                ("auto", "DOP853, ARK5(4)8L[2]SAb or Radau IIA 9, whichever the measured stiffness calls for")
-            }
+            Self::Auto => ("auto", "An explicit, partly implicit or implicit method, whichever the run calls for"),
             Self::Bs5 => ("bs5", "Explicit, order 5(4)"),
             Self::Cfmr7 => ("cfmr7", "Explicit, order 7(5), for oscillations"),
             Self::Nystrom => ("nystrom", "Explicit, for mechanisms with stiff, lightly damped joints"),

@@ -3,7 +3,7 @@
 //! In: the steps of a run. Out: the steps of the method that was ahead in the last race. In a race the methods take turns at making steps of
 //! the run; none of these is lost. Races come more seldom the longer the run is. What limits a step, stability or accuracy, does not
 //! matter, and nothing is estimated: how far a method gets with its rates is what counts. Steps may become longer or shorter while others
-//! run, so there are several rounds, and who takes over has to be ahead in each.
+//! run, so there are several rounds, and who takes over has to be ahead in each: who is behind once is out.
 
 use nalgebra::SVector;
 
@@ -86,10 +86,10 @@ pub(super) struct Race<const N: usize> {
     /// The method that makes the steps, and the one that was ahead.
     runner: Runner,
     ahead: Runner,
-    /// Whether a race is on, the laps that have been run in it, how far each method came in each round, s a rate, and the restarts.
-    is_on: bool,
-    laps: usize,
+    /// The round of a race, if one is on, how far each method came in each, s a rate, who is still in it, and the restarts during it.
+    round: Option<usize>,
     speeds: [[f64; ROUNDS]; 3],
+    is_in: [bool; 3],
     restarts: u32,
     /// Whether the next attempt is the first after an accepted step.
     is_fresh: bool,
@@ -112,9 +112,9 @@ impl<const N: usize> Race<N> {
             nystrom: Nystrom::new(),
             runner: Runner::Dop853,
             ahead: Runner::Dop853,
-            is_on: false,
-            laps: 0,
+            round: None,
             speeds: [[0.0; ROUNDS]; 3],
+            is_in: [false; 3],
             restarts: 0,
             is_fresh: false,
             steps: 0,
@@ -127,32 +127,38 @@ impl<const N: usize> Race<N> {
 
     /// The method that was ahead, where no race is on.
     pub fn ahead(&self) -> Option<&'static str> {
-        (!self.is_on).then(|| self.name())
+        self.round.is_none().then(|| self.name())
     }
 
     /// Passes on where a lap or a rest is over. A method for states of second order takes part where there are some.
     fn turn(&mut self, has_second_order: bool) {
-        if !self.is_on {
+        let Some(round) = self.round else {
             if self.steps >= self.rest {
-                (self.is_on, self.laps, self.restarts, self.speeds) = (true, 0, 0, [[0.0; ROUNDS]; 3]);
+                (self.round, self.restarts) = (Some(0), 0);
+                self.is_in = Runner::ALL.map(|runner| runner != Runner::Nystrom || has_second_order);
                 self.begin(self.ahead);
             }
             return;
-        }
+        };
         if self.steps == BEGINNING {
             (self.way, self.rates) = (0.0, 0.0);
         }
         if self.steps < LAP {
             return;
         }
-        let takes_part = |runner: &Runner| *runner != self.ahead && (*runner != Runner::Nystrom || has_second_order);
-        let others = Runner::ALL.into_iter().filter(takes_part);
-        let runners = 1 + others.clone().count();
-        self.speeds[self.runner as usize][self.laps / runners] = self.way / self.rates;
-        self.laps += 1;
-        match std::iter::once(self.ahead).chain(others).nth(self.laps % runners) {
-            Some(next) if self.laps < ROUNDS * runners => self.begin(next),
-            _ => self.end(),
+        let (runner, ahead) = (self.runner as usize, self.ahead as usize);
+        self.speeds[runner][round] = self.way / self.rates;
+        self.is_in[runner] &= runner == ahead || self.speeds[runner][round] > self.speeds[ahead][round];
+        // The one that was ahead begins each round.
+        let is_next = |next: &Runner| *next != self.ahead && (runner == ahead || *next as usize > runner);
+        let is_another = |next: &Runner| *next != self.ahead && self.is_in[*next as usize];
+        match Runner::ALL.into_iter().find(|next| is_next(next) && is_another(next)) {
+            Some(next) => self.begin(next),
+            None if round + 1 < ROUNDS && Runner::ALL.iter().any(is_another) => {
+                self.round = Some(round + 1);
+                self.begin(self.ahead);
+            }
+            None => self.end(),
         }
     }
 
@@ -167,16 +173,13 @@ impl<const N: usize> Race<N> {
 
     /// The race is over.
     fn end(&mut self) {
-        let [of_ahead, mut best] = [self.speeds[self.ahead as usize]; 2];
-        let mean = |speeds: [f64; ROUNDS]| speeds.iter().sum::<f64>();
-        for runner in Runner::ALL {
-            let speeds = self.speeds[runner as usize];
-            let is_always_ahead = speeds.iter().zip(&of_ahead).all(|(speed, of_ahead)| speed > of_ahead);
-            if is_always_ahead && mean(speeds) > mean(best) && mean(speeds) > AHEAD * mean(of_ahead) {
-                (self.ahead, best) = (runner, speeds);
-            }
+        let sum = |runner: Runner| self.speeds[runner as usize].iter().sum::<f64>();
+        let others = Runner::ALL.into_iter().filter(|runner| *runner != self.ahead && self.is_in[*runner as usize]);
+        let best = others.reduce(|best, next| if sum(next) > sum(best) { next } else { best });
+        if let Some(best) = best.filter(|best| sum(*best) > AHEAD * sum(self.ahead)) {
+            self.ahead = best;
         }
-        self.is_on = false;
+        self.round = None;
         self.rest = (2 * self.rest).min(REST[1]);
         self.begin(self.ahead);
     }
@@ -229,10 +232,10 @@ impl<const N: usize> Method<N> for Race<N> {
     /// A lap begins anew: steps find their size. Where that happens too often for a race, there is none.
     fn restart(&mut self) {
         present!(mut self, method => method.restart());
-        if self.is_on {
+        if self.round.is_some() {
             self.restarts += 1;
             if self.restarts > RESTARTS {
-                self.speeds = [[0.0; ROUNDS]; 3];
+                self.is_in = [false; 3];
                 self.end();
             } else {
                 self.begin(self.runner);
