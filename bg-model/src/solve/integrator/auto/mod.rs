@@ -92,7 +92,7 @@ impl Kind {
     }
 
     /// How many steps of a less implicit kind cost as much as one of this kind, of `n` states: as measured on the hacksaw, where a step of
-    /// Radau IIA 9 takes as long as 11 of DOP853 in the plane, 23 in three dimensions, and half a step of ARK5(4)8L[2]SAb as long as one
+    /// Radau IIA 9 takes as long as 11 of DOP853 in the plane, 23 in three dimensions, and half a step of `ARK5(4)8L[2]SAb` as long as one
     /// of DOP853.
     fn worth(self, less: Self, n: usize) -> f64 {
         match (less, self) {
@@ -163,7 +163,7 @@ pub struct Change {
 const REMEMBERED: usize = 256;
 
 impl<const N: usize> Auto<N> {
-    /// DOP853, CFMR7osc and Nystrom, ARK5(4)8L[2]SAb, Radau IIA 9; DOP853 begins.
+    /// DOP853, CFMR7osc and Nystrom, `ARK5(4)8L[2]SAb`, Radau IIA 9; DOP853 begins.
     #[must_use]
     pub fn new() -> Self {
         Self {

@@ -20,7 +20,7 @@ use super::explicit::{Explicit, Tableau};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl};
 
-/// The pair ARK5(4)8L[2]SAb of Kennedy and Carpenter, implicit in the states alone whose own damping is stiff: eight rates a step.
+/// The pair `ARK5(4)8L[2]SAb` of Kennedy and Carpenter, implicit in the states alone whose own damping is stiff: eight rates a step.
 ///
 /// For mechanisms with strong dampers between few of many states, and tolerances from 1e-3 to 1e-8: looser ones count as 1e-3.
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! The coefficients of ARK5(4)8L[2]SAb, a pair of Runge-Kutta methods of order 5 with an error estimate of order 4: an explicit
+//! The coefficients of `ARK5(4)8L[2]SAb`, a pair of Runge-Kutta methods of order 5 with an error estimate of order 4: an explicit
 //! one, and a diagonally implicit, L-stable one with the same weights at the end of the step.
 //!
 //! Source: C. A. Kennedy, M. H. Carpenter, Higher-order additive Runge-Kutta schemes for ordinary differential equations, Applied
