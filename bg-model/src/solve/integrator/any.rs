@@ -5,6 +5,7 @@
 
 use nalgebra::SVector;
 
+use super::hand_on::hand_on;
 use super::{
     Ark5, Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2,
     Scale, StepControl, Taylor,
@@ -31,7 +32,7 @@ any!(Ark5 Auto Bs5 Cfmr7 Dop853 Gauss6 Nystrom Radau5 Radau9 Rk4 Rodas5p Ros2 Ta
 
 /// Hands on to the method inside.
 macro_rules! inside {
-    ($any:expr, $method:ident => $then:expr) => {
+    (($($_borrow:tt)+) $any:expr, $method:ident => $then:expr) => {
         match $any {
             AnyMethod::Ark5($method) => $then,
             AnyMethod::Auto($method) => $then,
@@ -51,16 +52,10 @@ macro_rules! inside {
 }
 
 impl<const N: usize> Method<N> for AnyMethod<N> {
-    fn name(&self) -> &'static str {
-        inside!(self, method => method.name())
-    }
-
-    fn control(&self) -> StepControl {
-        inside!(self, method => method.control())
-    }
+    hand_on!(inside);
 
     fn needs_series(&self) -> bool {
-        inside!(self, method => method.needs_series())
+        inside!((&) self, method => method.needs_series())
     }
 
     fn attempt(
@@ -71,46 +66,18 @@ impl<const N: usize> Method<N> for AnyMethod<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        inside!(self, method => method.attempt(flow, start, h, scale, end))
-    }
-
-    fn error_after(
-        &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
-        h: f64,
-        scale: &Scale<N>,
-        end: &SVector<f64, N>,
-        project: impl Fn(&mut SVector<f64, N>),
-    ) -> Option<f64> {
-        inside!(self, method => method.error_after(flow, start, h, scale, end, project))
+        inside!((&mut) self, method => method.attempt(flow, start, h, scale, end))
     }
 
     fn advance(&mut self) {
-        inside!(self, method => method.advance());
+        inside!((&mut) self, method => method.advance());
     }
 
     fn restart(&mut self) {
-        inside!(self, method => method.restart());
+        inside!((&mut) self, method => method.restart());
     }
 
     fn changes(&self) -> &[Change] {
-        inside!(self, method => method.changes())
-    }
-
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        inside!(self, method => method.largest_error(start, scale, end))
-    }
-
-    fn faulty_rate(&self) -> Option<(usize, f64)> {
-        inside!(self, method => method.faulty_rate())
-    }
-
-    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        inside!(self, method => method.prepare_dense(flow, start, h, end));
-    }
-
-    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        inside!(self, method => method.dense(start, h, end, theta, x));
+        inside!((&) self, method => method.changes())
     }
 }

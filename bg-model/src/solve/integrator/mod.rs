@@ -15,6 +15,7 @@ mod collocation;
 mod dense;
 mod explicit;
 mod gauss;
+mod hand_on;
 mod hermite;
 mod linear;
 mod nystrom;

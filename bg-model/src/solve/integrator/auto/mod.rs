@@ -12,6 +12,7 @@ mod race;
 use nalgebra::SVector;
 
 use self::race::Race;
+use super::hand_on::hand_on;
 use super::{Ark5, Flow, Method, Point, Radau9, Scale, StepControl, is_finite, rounding};
 
 /// Steps before the first trial, and the most between two trials.
@@ -61,23 +62,30 @@ enum Kind {
     Implicit,
 }
 
-/// Calls the method of a kind.
+/// Calls the method of a kind, borrowed as `$borrow`.
 macro_rules! of {
-    ($auto:expr, $kind:expr, $method:ident => $then:expr) => {
+    (($($borrow:tt)+) $auto:expr, $kind:expr, $method:ident => $then:expr) => {
         match $kind {
             Kind::Explicit => {
-                let $method = &mut $auto.explicit;
+                let $method = $($borrow)+ $auto.explicit;
                 $then
             }
             Kind::Partitioned => {
-                let $method = &mut $auto.partitioned;
+                let $method = $($borrow)+ $auto.partitioned;
                 $then
             }
             Kind::Implicit => {
-                let $method = &mut $auto.implicit;
+                let $method = $($borrow)+ $auto.implicit;
                 $then
             }
         }
+    };
+}
+
+/// Calls the method that makes the steps.
+macro_rules! present {
+    (($($borrow:tt)+) $auto:expr, $method:ident => $then:expr) => {
+        of!(($($borrow)+) $auto, $auto.kind, $method => $then)
     };
 }
 
@@ -231,7 +239,7 @@ impl<const N: usize> Auto<N> {
         // Twice as long as it has to be where what it costs varies as much as what the present one does.
         let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
         let (h, mut x) = (gain * kind.worth(self.kind, N) * h, start.x);
-        let error = of!(self, kind, method => {
+        let error = of!((&mut) self, kind, method => {
             // Only the method that makes the steps has seen the last ones.
             method.restart();
             method.attempt(flow, start, h, scale, &mut x)
@@ -250,12 +258,12 @@ impl<const N: usize> Auto<N> {
     fn succeeds(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         let h = 2.0 * h / self.kind.worth(kind, N);
         let (mut point, mut end) = (*start, start.x);
-        of!(self, kind, method => method.restart());
+        of!((&mut) self, kind, method => method.restart());
         (0..SUCCESSION).all(|_| {
-            let error = of!(self, kind, method => method.attempt(flow, &point, h, scale, &mut end));
+            let error = of!((&mut) self, kind, method => method.attempt(flow, &point, h, scale, &mut end));
             let is_met = error <= 1.0 && is_finite(&end);
             if is_met {
-                of!(self, kind, method => method.advance());
+                of!((&mut) self, kind, method => method.advance());
                 (point.t, point.x) = (point.t + h, end);
                 flow.rate(point.t, &end, &mut point.rate);
             }
@@ -269,7 +277,7 @@ impl<const N: usize> Auto<N> {
         let (before, step) = (claim.start, self.step);
         self.cut_off = 0;
         let mut x = start.x;
-        of!(self, self.kind, method => {
+        present!((&mut) self, method => {
             method.prepare_dense(flow, &before, step, start);
             method.dense(&before, step, start, (claim.t - before.t) / step, &mut x);
         });
@@ -321,7 +329,7 @@ impl<const N: usize> Auto<N> {
         *doubt = if self.stint < STINT { (4 * *doubt).min(WAIT[1]) } else { WAIT[0] };
         self.wait = *doubt;
         self.kind = kind;
-        of!(self, kind, method => method.restart());
+        of!((&mut) self, kind, method => method.restart());
         self.stint = 0;
         self.cut_off = 0;
         self.hurried = 0;
@@ -348,34 +356,8 @@ impl<const N: usize> Default for Auto<N> {
     }
 }
 
-/// Calls the method that makes the steps.
-macro_rules! present {
-    ($auto:expr, $method:ident => $then:expr) => {
-        match $auto.kind {
-            Kind::Explicit => {
-                let $method = &$auto.explicit;
-                $then
-            }
-            Kind::Partitioned => {
-                let $method = &$auto.partitioned;
-                $then
-            }
-            Kind::Implicit => {
-                let $method = &$auto.implicit;
-                $then
-            }
-        }
-    };
-}
-
 impl<const N: usize> Method<N> for Auto<N> {
-    fn name(&self) -> &'static str {
-        present!(self, method => method.name())
-    }
-
-    fn control(&self) -> StepControl {
-        present!(self, method => method.control())
-    }
+    hand_on!(present);
 
     fn attempt(
         &mut self,
@@ -399,7 +381,7 @@ impl<const N: usize> Method<N> for Auto<N> {
         if let Some(claim) = &mut self.claim {
             claim.start = *start;
         }
-        let error = of!(self, self.kind, method => method.attempt(flow, start, h, scale, end));
+        let error = present!((&mut) self, method => method.attempt(flow, start, h, scale, end));
         if self.kind == Kind::Implicit {
             return error;
         }
@@ -421,7 +403,7 @@ impl<const N: usize> Method<N> for Auto<N> {
         self.since += 1;
         self.since_event += 1;
         self.stint += 1;
-        of!(self, self.kind, method => method.advance());
+        present!((&mut) self, method => method.advance());
     }
 
     fn restart(&mut self) {
@@ -430,40 +412,12 @@ impl<const N: usize> Method<N> for Auto<N> {
         self.hurried = if self.since_event <= HURRY { self.hurried + 1 } else { 0 };
         self.since_event = 0;
         for kind in Kind::ALL {
-            of!(self, kind, method => method.restart());
+            of!((&mut) self, kind, method => method.restart());
         }
     }
 
     /// The explicit method begins. The first 256 changes are remembered.
     fn changes(&self) -> &[Change] {
         &self.changes
-    }
-
-    fn error_after(
-        &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
-        h: f64,
-        scale: &Scale<N>,
-        end: &SVector<f64, N>,
-        project: impl Fn(&mut SVector<f64, N>),
-    ) -> Option<f64> {
-        of!(self, self.kind, method => method.error_after(flow, start, h, scale, end, project))
-    }
-
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        present!(self, method => method.largest_error(start, scale, end))
-    }
-
-    fn faulty_rate(&self) -> Option<(usize, f64)> {
-        present!(self, method => method.faulty_rate())
-    }
-
-    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        of!(self, self.kind, method => method.prepare_dense(flow, start, h, end));
-    }
-
-    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        present!(self, method => method.dense(start, h, end, theta, x));
     }
 }

@@ -7,6 +7,7 @@
 
 use nalgebra::SVector;
 
+use crate::solve::integrator::hand_on::hand_on;
 use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, Point, Scale, StepControl};
 
 /// Accepted steps before the first race, and the most between two races.
@@ -41,36 +42,20 @@ impl Runner {
     }
 }
 
-/// Calls the method that makes the steps.
+/// Calls the method that makes the steps, borrowed as `$borrow`.
 macro_rules! present {
-    ($race:expr, $method:ident => $then:expr) => {
+    (($($borrow:tt)+) $race:expr, $method:ident => $then:expr) => {
         match $race.runner {
             Runner::Dop853 => {
-                let $method = &$race.dop853;
+                let $method = $($borrow)+ $race.dop853;
                 $then
             }
             Runner::Cfmr7 => {
-                let $method = &$race.cfmr7;
+                let $method = $($borrow)+ $race.cfmr7;
                 $then
             }
             Runner::Nystrom => {
-                let $method = &$race.nystrom;
-                $then
-            }
-        }
-    };
-    (mut $race:expr, $method:ident => $then:expr) => {
-        match $race.runner {
-            Runner::Dop853 => {
-                let $method = &mut $race.dop853;
-                $then
-            }
-            Runner::Cfmr7 => {
-                let $method = &mut $race.cfmr7;
-                $then
-            }
-            Runner::Nystrom => {
-                let $method = &mut $race.nystrom;
+                let $method = $($borrow)+ $race.nystrom;
                 $then
             }
         }
@@ -166,7 +151,7 @@ impl<const N: usize> Race<N> {
     fn begin(&mut self, runner: Runner) {
         if runner != self.runner {
             self.runner = runner;
-            present!(mut self, method => method.restart());
+            present!((&mut) self, method => method.restart());
         }
         (self.steps, self.way, self.rates) = (0, 0.0, 0.0);
     }
@@ -186,13 +171,7 @@ impl<const N: usize> Race<N> {
 }
 
 impl<const N: usize> Method<N> for Race<N> {
-    fn name(&self) -> &'static str {
-        present!(self, method => method.name())
-    }
-
-    fn control(&self) -> StepControl {
-        present!(self, method => method.control())
-    }
+    hand_on!(present);
 
     fn attempt(
         &mut self,
@@ -207,31 +186,19 @@ impl<const N: usize> Method<N> for Race<N> {
         }
         self.h = h;
         self.rates += self.runner.rates();
-        present!(mut self, method => method.attempt(flow, start, h, scale, end))
-    }
-
-    fn error_after(
-        &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
-        h: f64,
-        scale: &Scale<N>,
-        end: &SVector<f64, N>,
-        project: impl Fn(&mut SVector<f64, N>),
-    ) -> Option<f64> {
-        present!(mut self, method => method.error_after(flow, start, h, scale, end, project))
+        present!((&mut) self, method => method.attempt(flow, start, h, scale, end))
     }
 
     fn advance(&mut self) {
         self.is_fresh = true;
         self.steps += 1;
         self.way += self.h;
-        present!(mut self, method => method.advance());
+        present!((&mut) self, method => method.advance());
     }
 
     /// A lap begins anew: steps find their size. Where that happens too often for a race, there is none.
     fn restart(&mut self) {
-        present!(mut self, method => method.restart());
+        present!((&mut) self, method => method.restart());
         if self.round.is_some() {
             self.restarts += 1;
             if self.restarts > RESTARTS {
@@ -241,21 +208,5 @@ impl<const N: usize> Method<N> for Race<N> {
                 self.begin(self.runner);
             }
         }
-    }
-
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        present!(self, method => method.largest_error(start, scale, end))
-    }
-
-    fn faulty_rate(&self) -> Option<(usize, f64)> {
-        present!(self, method => method.faulty_rate())
-    }
-
-    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        present!(mut self, method => method.prepare_dense(flow, start, h, end));
-    }
-
-    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        present!(self, method => method.dense(start, h, end, theta, x));
     }
 }

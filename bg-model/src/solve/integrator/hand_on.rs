@@ -1,0 +1,45 @@
+//! What a choice between methods leaves to the one that makes the steps.
+
+/// Methods of [`Method`](super::Method) that hand on to the method that makes the steps: `present!((BORROW) self, method => ..)` calls it,
+/// borrowed as `BORROW`.
+macro_rules! hand_on {
+    ($present:ident) => {
+        fn name(&self) -> &'static str {
+            $present!((&) self, method => method.name())
+        }
+
+        fn control(&self) -> StepControl {
+            $present!((&) self, method => method.control())
+        }
+
+        fn error_after(
+            &mut self,
+            flow: &impl Flow<N>,
+            start: &Point<N>,
+            h: f64,
+            scale: &Scale<N>,
+            end: &SVector<f64, N>,
+            project: impl Fn(&mut SVector<f64, N>),
+        ) -> Option<f64> {
+            $present!((&mut) self, method => method.error_after(flow, start, h, scale, end, project))
+        }
+
+        fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+            $present!((&) self, method => method.largest_error(start, scale, end))
+        }
+
+        fn faulty_rate(&self) -> Option<(usize, f64)> {
+            $present!((&) self, method => method.faulty_rate())
+        }
+
+        fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+            $present!((&mut) self, method => method.prepare_dense(flow, start, h, end));
+        }
+
+        fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+            $present!((&) self, method => method.dense(start, h, end, theta, x));
+        }
+    };
+}
+
+pub(super) use hand_on;
