@@ -1,6 +1,6 @@
-//! What a choice between methods leaves to the one that makes the steps.
+//! What a choice between methods, or a method built on another one, leaves to the one inside.
 
-/// Methods of [`Method`](super::Method) that hand on to the method that makes the steps: `present!((BORROW) self, method => ..)` calls it,
+/// Methods of [`Method`](super::Method) that hand on to the method inside: `present!((BORROW) self, method => ..)` calls it,
 /// borrowed as `BORROW`.
 macro_rules! hand_on {
     ($present:ident) => {

@@ -174,8 +174,10 @@ impl<const N: usize> Auto<N> {
     /// DOP853, CFMR7osc and Nystrom, `ARK5(4)8L[2]SAb`, Radau IIA 9; DOP853 begins.
     #[must_use]
     pub fn new() -> Self {
+        let explicit = Race::new();
+        let told = explicit.name();
         Self {
-            explicit: Race::new(),
+            explicit,
             partitioned: Ark5::new(),
             implicit: Radau9::new(),
             kind: Kind::Explicit,
@@ -193,7 +195,7 @@ impl<const N: usize> Auto<N> {
             hurried: 0,
             longest: 0.0,
             changes: Vec::with_capacity(REMEMBERED),
-            told: "DOP853",
+            told,
         }
     }
 

@@ -177,6 +177,14 @@ impl<const N: usize> Block<N> {
     }
 }
 
+/// Rows of group `group` of the product of `matrix`, column by column, with `vector`.
+#[inline(always)]
+fn rows_of_product(matrix: &[Lanes], vector: &[Lanes], group: usize) -> Lanes {
+    let columns = matrix.chunks_exact(vector.len()).zip(vector.as_flattened());
+    columns
+        .fold([0.0; LANES], |sum, (column, entry)| std::array::from_fn(|lane| sum[lane] + column[group][lane] * entry))
+}
+
 /// Solves for the implicit part of a stage.
 impl<const N: usize> Complete<N> for Block<N> {
     #[inline(always)]
@@ -195,10 +203,7 @@ impl<const N: usize> Complete<N> for Block<N> {
             (0..LANES).for_each(|lane| off[lane] += *h * more[lane] - (from[group][lane] + c * change[group][lane]));
         }
         for (group, states) in states.chunks(LANES).enumerate() {
-            let mut solved = [0.0; LANES];
-            for (column, off) in inverse.chunks_exact(groups).zip(off.as_flattened()) {
-                solved = std::array::from_fn(|lane| solved[lane] + column[group][lane] * off);
-            }
+            let solved = rows_of_product(inverse, off, group);
             behind[group] = std::array::from_fn(|lane| (solved[lane] - off[group][lane]) * reciprocal);
             let line: Lanes = std::array::from_fn(|lane| from[group][lane] + c * change[group][lane]);
             states.iter().enumerate().for_each(|(lane, &state)| x[state] = line[lane] + solved[lane]);
@@ -208,14 +213,9 @@ impl<const N: usize> Complete<N> for Block<N> {
     /// What an error of a damped state leaves of itself: its implicit part takes away most of it.
     #[inline(always)]
     fn correct(&mut self, errors: &mut [f64; N], error: impl Fn(usize) -> f64, allowed: impl Fn(usize) -> f64) {
-        let groups = self.from.len();
-        let off = self.off.as_flattened_mut();
-        off.iter_mut().zip(&self.states).for_each(|(off, &state)| *off = error(state));
+        self.off.as_flattened_mut().iter_mut().zip(&self.states).for_each(|(off, &state)| *off = error(state));
         for (group, states) in self.states.chunks(LANES).enumerate() {
-            let mut left = [0.0; LANES];
-            for (column, off) in self.inverse.chunks_exact(groups).zip(&*off) {
-                left = std::array::from_fn(|lane| left[lane] + column[group][lane] * off);
-            }
+            let left = rows_of_product(&self.inverse, &self.off, group);
             states.iter().enumerate().for_each(|(lane, &state)| errors[state] = (left[lane] / allowed(state)).abs());
         }
     }

@@ -16,7 +16,8 @@ use pulp::Arch;
 
 use self::block::Block;
 pub(super) use self::tableau::KennedyCarpenter;
-use super::explicit::{Explicit, Tableau};
+use super::explicit::Explicit;
+use super::hand_on::hand_on;
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl};
 
@@ -62,14 +63,16 @@ impl<const N: usize> Vectorised<N> for Ark5<N> {
     }
 }
 
-impl<const N: usize> Method<N> for Ark5<N> {
-    fn name(&self) -> &'static str {
-        KennedyCarpenter::NAME
-    }
+/// Calls the explicit method.
+macro_rules! explicit {
+    (($($borrow:tt)+) $ark:expr, $method:ident => $then:expr) => {{
+        let $method = $($borrow)+ $ark.explicit;
+        $then
+    }};
+}
 
-    fn control(&self) -> StepControl {
-        self.explicit.control()
-    }
+impl<const N: usize> Method<N> for Ark5<N> {
+    hand_on!(explicit);
 
     fn attempt(
         &mut self,
@@ -92,18 +95,6 @@ impl<const N: usize> Method<N> for Ark5<N> {
         attempt_in(self.arch, self, flow, start, h, scale, end)
     }
 
-    fn error_after(
-        &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
-        h: f64,
-        scale: &Scale<N>,
-        end: &SVector<f64, N>,
-        project: impl Fn(&mut SVector<f64, N>),
-    ) -> Option<f64> {
-        self.explicit.error_after(flow, start, h, scale, end, project)
-    }
-
     fn advance(&mut self) {
         self.block.advance();
         self.explicit.advance();
@@ -112,22 +103,6 @@ impl<const N: usize> Method<N> for Ark5<N> {
     fn restart(&mut self) {
         self.block.restart();
         self.explicit.restart();
-    }
-
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        self.explicit.largest_error(start, scale, end)
-    }
-
-    fn faulty_rate(&self) -> Option<(usize, f64)> {
-        self.explicit.faulty_rate()
-    }
-
-    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        self.explicit.prepare_dense(flow, start, h, end);
-    }
-
-    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        self.explicit.dense(start, h, end, theta, x);
     }
 }
 
