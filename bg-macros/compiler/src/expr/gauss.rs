@@ -4,9 +4,10 @@
 //! has none.
 //! Method: Gaussian elimination on sparse rows. Of the entries that cannot vanish, numbers before others, the pivot is the one with
 //! the least product of other entries in its row and column (Markowitz 1957, The Elimination Form of the Inverse, Management Science
-//! 3); none is taken that is much smaller than another in its column. The first in order decides what is left open. An entry is
-//! zero where it is within rounding at arbitrary values of its symbols, by running error analysis: so a system that has no solution
-//! whatever its parameters is known as such, although its coefficients are rounded.
+//! 3); none is taken that is much smaller than another in its column, each as a share of the largest that its row had: an equation
+//! may be written in any unit. The first in order decides what is left open. An entry is zero where it is within rounding at
+//! arbitrary values of its symbols, by running error analysis: so a system that has no solution whatever its parameters is known as
+//! such, although its coefficients are rounded.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +17,8 @@ use crate::random::Random;
 /// What rounding leaves of parts that cancel, relative to the sum of their sizes.
 const RESIDUE: f64 = 64.0 * f64::EPSILON;
 
-/// An entry is no pivot beside one in its column that is larger by more than this factor, at arbitrary values of the symbols.
+/// An entry is no pivot beside one in its column with a share of its row larger by more than this factor, at arbitrary values of the
+/// symbols.
 const GROWTH: f64 = 10.0;
 
 /// A linear system; a row has its entries by their columns.
@@ -64,6 +66,8 @@ struct Step {
 struct Elimination<'a> {
     pool: &'a mut Pool,
     matrix: Vec<BTreeMap<usize, Entry>>,
+    /// The largest value in each row before the first step.
+    scales: Vec<f64>,
     right: Vec<Id>,
     is_proved: &'a dyn Fn(&Pool, Id) -> bool,
     rows: BTreeSet<usize>,
@@ -80,10 +84,7 @@ pub fn solve_linear(
     system: Linear,
     is_proved: &dyn Fn(&Pool, Id) -> bool,
 ) -> Result<Solution, Vec<usize>> {
-    let Linear { rows, right } = system;
-    let matrix = sampled(pool, &rows);
-    let rows = (0..rows.len()).collect();
-    let mut elimination = Elimination { pool, matrix, right, is_proved, rows, steps: Vec::new(), doubtful: Vec::new() };
+    let mut elimination = Elimination::new(pool, system, is_proved);
     while !elimination.rows.is_empty() {
         elimination.step()?;
     }
@@ -114,7 +115,16 @@ fn vanishes(pool: &mut Pool, entry: Entry) -> bool {
     !entry.at.value.is_finite() && same_polynomial(pool, entry.id, zero)
 }
 
-impl Elimination<'_> {
+impl<'a> Elimination<'a> {
+    fn new(pool: &'a mut Pool, system: Linear, is_proved: &'a dyn Fn(&Pool, Id) -> bool) -> Self {
+        let Linear { rows, right } = system;
+        let matrix = sampled(pool, &rows);
+        let largest = |row: &BTreeMap<usize, Entry>| row.values().map(|entry| entry.at.value.abs()).fold(0.0, f64::max);
+        let scales = matrix.iter().map(largest).collect();
+        let rows = (0..rows.len()).collect();
+        Self { pool, matrix, scales, right, is_proved, rows, steps: Vec::new(), doubtful: Vec::new() }
+    }
+
     fn step(&mut self) -> Result<(), Vec<usize>> {
         let Some((surety, step)) = self.pivot() else { return Err(self.rows.iter().copied().collect()) };
         if surety == Surety::Open {
@@ -133,16 +143,18 @@ impl Elimination<'_> {
     fn pivot(&self) -> Option<(Surety, Step)> {
         let mut in_column: BTreeMap<usize, usize> = BTreeMap::new();
         let mut largest: BTreeMap<usize, f64> = BTreeMap::new();
-        for (&column, entry) in self.rows.iter().flat_map(|&row| &self.matrix[row]) {
-            *in_column.entry(column).or_default() += 1;
-            let size = entry.at.value.abs();
-            largest.entry(column).and_modify(|known| *known = known.max(size)).or_insert(size);
+        for &row in &self.rows {
+            for (&column, &entry) in &self.matrix[row] {
+                *in_column.entry(column).or_default() += 1;
+                let share = self.share(row, entry);
+                largest.entry(column).and_modify(|known| *known = known.max(share)).or_insert(share);
+            }
         }
         let mut candidates = Vec::new();
         for &row in &self.rows {
             for (&column, &pivot) in &self.matrix[row] {
                 // What is not finite at arbitrary values cannot be compared.
-                let is_small = GROWTH * pivot.at.value.abs() < largest[&column];
+                let is_small = GROWTH * self.share(row, pivot) < largest[&column];
                 if !is_small {
                     let surety = self.surety(pivot.id);
                     let others = (self.matrix[row].len() - 1) * (in_column[&column] - 1);
@@ -152,6 +164,11 @@ impl Elimination<'_> {
         }
         let ((_, _, surety, row, column), pivot) = candidates.into_iter().min_by_key(|(order, _)| *order)?;
         Some((surety, Step { row, column, pivot }))
+    }
+
+    /// The value of an entry as a share of the largest that its row had.
+    fn share(&self, row: usize, entry: Entry) -> f64 {
+        entry.at.value.abs() / self.scales[row]
     }
 
     /// What is known of an entry as a pivot.
@@ -232,6 +249,20 @@ mod tests {
         let values = evaluate(&pool, &solution.values, &Environment::default());
         assert!(values.iter().zip([1.0, 2.0, 3.0]).all(|(a, b)| (a - b).abs() < 1e-8), "{values:?}");
         assert!(solution.doubtful.is_empty());
+    }
+
+    #[test]
+    fn a_row_in_another_unit_does_not_change_the_pivots() {
+        let mut pool = Pool::new();
+        // An inertia and a resistor that a transformer of 3.5 has between them: 1 + 613 and 2.2 * 3.5 * 175 / 2.2 nearly cancel.
+        for unit in [1.0, 1e-3, 1e3] {
+            let rows = [[2.2, 7.7], [175.2674, 1.0 + 613.4359]].map(|row| row.map(|entry| unit * entry));
+            let numbers = system(&mut pool, &[&[2.2, 7.7], &rows[1]], &[0.0; 2]);
+            let mut elimination = Elimination::new(&mut pool, numbers, &never);
+            assert!(elimination.step().is_ok());
+            let pivot = elimination.steps[0];
+            assert_eq!((pivot.row, pivot.column), (0, 0), "{unit}");
+        }
     }
 
     #[test]
