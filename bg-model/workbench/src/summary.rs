@@ -5,7 +5,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use bg_model::integrator::Change;
+use bg_model::integrator::{Change, Integrator};
 use bg_model::run::{Request, Trajectory};
 use serde::{Serialize, Serializer};
 
@@ -139,7 +139,7 @@ impl Summary {
             t_end_s: t_end,
             from_s: (from != 0.0).then_some(from),
             reached_s: reached,
-            integrators: integrators(&run.methods),
+            integrators: integrators(method, &run.methods),
             fixed_step_s: method.has_fixed_step().then_some(fixed_step),
             rtol,
             atol: run.request.atol(),
@@ -259,23 +259,43 @@ fn tolerance(value: f64) -> String {
     format!("{rounded:e}")
 }
 
-/// The methods in the order of their turns, the first three of them.
-fn integrators(methods: &[Change]) -> Vec<String> {
+/// The methods in the order of their turns, the first three of them, and why each was taken where `auto` chose.
+fn integrators(asked: Integrator, methods: &[Change]) -> Vec<String> {
     const SHOWN: usize = 3;
-    let name = |(index, change): (usize, &Change)| match index {
-        0 => change.method.to_owned(),
-        _ => format!("{} from {:.4} s", change.method, change.t),
+    let text = |(index, Change { t, method, reason }): (usize, &Change)| match (index, asked) {
+        (0, Integrator::Auto) if methods.len() == 1 => format!("{method} (auto found none better)"),
+        (0, _) => (*method).to_owned(),
+        _ => format!("from {t:.4} s {method} ({reason})"),
     };
-    let mut names: Vec<String> = methods.iter().enumerate().take(SHOWN).map(name).collect();
+    let mut texts: Vec<String> = methods.iter().enumerate().take(SHOWN).map(text).collect();
     if methods.len() > SHOWN {
-        names.push(format!("{} more changes", methods.len() - SHOWN));
+        let more = methods.len() - SHOWN;
+        texts.push(format!("{more} more {}", if more == 1 { "change" } else { "changes" }));
     }
-    names
+    texts
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bg_model::integrator::Reason;
+
+    #[test]
+    fn the_summary_says_which_methods_made_the_steps_and_why() {
+        let first = Change { t: 0.0, method: "DOP853", reason: Reason::First };
+        assert_eq!(integrators(Integrator::Dop853, &[first]), ["DOP853"]);
+        assert_eq!(integrators(Integrator::Auto, &[first]), ["DOP853 (auto found none better)"]);
+        let later = |reason| Change { t: 0.25, method: "Radau IIA 9", reason };
+        let all = [first, later(Reason::Longer(16.0)), later(Reason::Further(1.123)), later(Reason::Cheaper)];
+        let texts = integrators(Integrator::Auto, &all);
+        let expected = [
+            "DOP853",
+            "from 0.2500 s Radau IIA 9 (steps 16 times as long)",
+            "from 0.2500 s Radau IIA 9 (12 % further with the same work)",
+            "1 more change",
+        ];
+        assert_eq!(texts, expected);
+    }
 
     #[test]
     fn a_tolerance_reads_as_it_was_meant() {

@@ -32,7 +32,7 @@ use nalgebra::SVector;
 use crate::model::capability::{Absent, Elimination, SecondOrder, Series};
 use crate::model::linear::{Sparsity, differences};
 pub use any::AnyMethod;
-pub use auto::{Auto, Change};
+pub use auto::{Auto, Change, Reason};
 pub use choice::{Integrator, UnknownIntegrator};
 pub use explicit::{
     BogackiShampine, Bs5, CalvoFrancoMontijanoRandez, Cfmr7, Dop853, DormandPrince, Explicit, Row, Tableau,

@@ -29,7 +29,7 @@ use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::mechanism::{Mechanism, ModelVisitor};
 use crate::model::system::Model;
-use crate::solve::integrator::{AnyMethod, Change, Integrator, Method};
+use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Reason};
 use crate::solve::simulation::{Observer, Part, Recorder, Samples, Span};
 use crate::solve::statistics::Statistics;
 
@@ -239,7 +239,7 @@ impl<E: Ending> ModelVisitor<f64> for Integration<'_, E> {
         let Description { name, states, .. } = model.description();
         let (t0, start) = Start { start: start.as_ref() }.vector(model)?;
         let mut method: AnyMethod<N> = request.method.method(request.fixed_step);
-        let first = Change { t: t0, method: method.name() };
+        let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
         let mut observer = (Recorder::new(model, &request.parts), Told { each_step, is_done: false });
         let span = Span { t0, t_end: request.t_end };

@@ -7,10 +7,12 @@
 //! tolerances. Stiffness is thus measured by what it does to the steps, not guessed from eigenvalues, and oscillations that have to be
 //! followed anyway do not count as such.
 
+mod change;
 mod race;
 
 use nalgebra::SVector;
 
+pub use self::change::{Change, Reason};
 use self::race::Race;
 use super::hand_on::hand_on;
 use super::{Ark5, Flow, Method, Point, Radau9, Scale, StepControl, is_finite, rounding};
@@ -151,20 +153,13 @@ pub struct Auto<const N: usize> {
 #[derive(Clone, Debug)]
 struct Claim<const N: usize> {
     kind: Kind,
+    /// How many times as long it is as the step that was in sight.
+    longer: f64,
     /// Its end.
     t: f64,
     x: SVector<f64, N>,
     /// The start of the step under way.
     start: Point<N>,
-}
-
-/// A change of method.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change {
-    /// When, s.
-    pub t: f64,
-    /// The method that makes the steps from there on.
-    pub method: &'static str,
 }
 
 /// The most changes that are remembered.
@@ -227,7 +222,7 @@ impl<const N: usize> Auto<N> {
                 continue;
             }
             if kind < self.kind && self.succeeds(kind, flow, start, h, scale) {
-                return self.change(kind, start.t);
+                return self.change(kind, start.t, Reason::Cheaper);
             }
             if kind > self.kind && self.reaches(kind, flow, start, h, scale) {
                 return;
@@ -240,7 +235,8 @@ impl<const N: usize> Auto<N> {
     fn reaches(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         // Twice as long as it has to be where what it costs varies as much as what the present one does.
         let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
-        let (h, mut x) = (gain * kind.worth(self.kind, N) * h, start.x);
+        let longer = gain * kind.worth(self.kind, N);
+        let (h, mut x) = (longer * h, start.x);
         let error = of!((&mut) self, kind, method => {
             // Only the method that makes the steps has seen the last ones.
             method.restart();
@@ -248,9 +244,9 @@ impl<const N: usize> Auto<N> {
         });
         let is_met = error <= 1.0 && is_finite(&x);
         if is_met && self.cut_off >= CUT_OFF {
-            self.change(kind, start.t);
+            self.change(kind, start.t, Reason::Longer(longer));
         } else if is_met {
-            self.claim = Some(Claim { kind, t: start.t + h, x, start: *start });
+            self.claim = Some(Claim { kind, longer, t: start.t + h, x, start: *start });
         }
         is_met
     }
@@ -292,7 +288,7 @@ impl<const N: usize> Auto<N> {
             } else {
                 claim.kind
             };
-            self.change(kind, start.t);
+            self.change(kind, start.t, Reason::Longer(claim.longer));
         } else {
             self.stay();
         }
@@ -326,7 +322,7 @@ impl<const N: usize> Auto<N> {
     }
 
     /// Another method takes over at time `t` (s).
-    fn change(&mut self, kind: Kind, t: f64) {
+    fn change(&mut self, kind: Kind, t: f64, reason: Reason) {
         let doubt = &mut self.doubt[self.kind as usize];
         *doubt = if self.stint < STINT { (4 * *doubt).min(WAIT[1]) } else { WAIT[0] };
         self.wait = *doubt;
@@ -337,17 +333,17 @@ impl<const N: usize> Auto<N> {
         self.hurried = 0;
         self.longest = 0.0;
         self.recent = [0.0; RECENT];
-        self.tell(t);
+        self.tell(t, reason);
     }
 
-    /// Remembers that the present method makes the steps from time `t` (s) on.
-    fn tell(&mut self, t: f64) {
+    /// Remembers that the present method makes the steps from time `t` (s) on, and why.
+    fn tell(&mut self, t: f64, reason: Reason) {
         let method = self.name();
         if self.kind == Kind::Explicit {
             self.told = method;
         }
         if self.changes.len() < REMEMBERED {
-            self.changes.push(Change { t, method });
+            self.changes.push(Change { t, method, reason });
         }
     }
 }
@@ -373,7 +369,7 @@ impl<const N: usize> Method<N> for Auto<N> {
             self.confirm(flow, start, scale);
         }
         if self.kind == Kind::Partitioned && self.hurried >= HURRIED {
-            self.change(Kind::Implicit, start.t);
+            self.change(Kind::Implicit, start.t, Reason::Switches);
         }
         if self.is_due(h) {
             self.try_others(flow, start, h, scale);
@@ -388,14 +384,14 @@ impl<const N: usize> Method<N> for Auto<N> {
             return error;
         }
         if self.kind == Kind::Explicit && self.explicit.ahead().is_some_and(|ahead| ahead != self.told) {
-            self.tell(start.t);
+            self.tell(start.t, Reason::Further(self.explicit.lead()));
         }
         self.longest = self.longest.max(h);
         let is_met = error <= 1.0 && is_finite(end);
         if is_met || h > LAST * self.longest || !self.goes_on(flow, start, h, scale) {
             return error;
         }
-        self.change(Kind::Implicit, start.t);
+        self.change(Kind::Implicit, start.t, Reason::GoesOn);
         self.implicit.attempt(flow, start, h, scale, end)
     }
 

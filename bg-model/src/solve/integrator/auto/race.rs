@@ -71,6 +71,8 @@ pub(super) struct Race<const N: usize> {
     /// The method that makes the steps, and the one that was ahead.
     runner: Runner,
     ahead: Runner,
+    /// By which factor it came further than the one before it.
+    lead: f64,
     /// The round of a race, if one is on, how far each method came in each, s a rate, who is still in it, and the restarts during it.
     round: Option<usize>,
     speeds: [[f64; ROUNDS]; 3],
@@ -97,6 +99,7 @@ impl<const N: usize> Race<N> {
             nystrom: Nystrom::new(),
             runner: Runner::Dop853,
             ahead: Runner::Dop853,
+            lead: 1.0,
             round: None,
             speeds: [[0.0; ROUNDS]; 3],
             is_in: [false; 3],
@@ -113,6 +116,11 @@ impl<const N: usize> Race<N> {
     /// The method that was ahead, where no race is on.
     pub fn ahead(&self) -> Option<&'static str> {
         self.round.is_none().then(|| self.name())
+    }
+
+    /// By which factor the method that was ahead came further with its rates than the one before it; above 1.
+    pub const fn lead(&self) -> f64 {
+        self.lead
     }
 
     /// Passes on where a lap or a rest is over. A method for states of second order takes part where there are some.
@@ -162,6 +170,7 @@ impl<const N: usize> Race<N> {
         let others = Runner::ALL.into_iter().filter(|runner| *runner != self.ahead && self.is_in[*runner as usize]);
         let best = others.reduce(|best, next| if sum(next) > sum(best) { next } else { best });
         if let Some(best) = best.filter(|best| sum(*best) > AHEAD * sum(self.ahead)) {
+            self.lead = sum(best) / sum(self.ahead);
             self.ahead = best;
         }
         self.round = None;
