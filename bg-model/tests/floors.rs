@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// Rooms from the ground up; those of one floor do not know each other.
 const FLOORS: [&[&str]; 14] = [
-    &["model::scalar", "model::requirement", "model::holding", "model::nearest"],
-    &["model::drawing"],
+    &["model::scalar", "model::requirement", "model::holding"],
+    &["model::drawing", "model::nearest"],
     &["model::description"],
     &[
         "model::iteration",
