@@ -1,91 +1,116 @@
 //! Numbers with their derivatives along several directions at once. Exact first derivatives by many parameters in one pass.
 //!
-//! As [`Dual`](super::Dual) with `W` slopes: the value is calculated once, the slopes side by side in the machine's vectors. The
-//! values are those of `f64`, to the bit.
+//! As [`Dual`](super::Dual) with [`Gradient::WIDTH`] slopes: the value is calculated once, the slopes side by side in vectors that
+//! every machine of its kind has. The values are those of `f64`, to the bit.
 
-use std::array::from_fn;
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use wide::f64x2;
+
 use super::{Both, Scalar};
 
-/// A value and its derivatives along `W` directions.
+/// A value and its derivatives along some directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gradient<const W: usize> {
+pub struct Gradient {
     /// The value.
     pub value: f64,
-    /// The derivative along each direction.
-    pub slopes: [f64; W],
+    slopes: [f64x2; 2],
 }
 
-impl<const W: usize> Gradient<W> {
+impl Gradient {
+    /// The number of directions.
+    pub const WIDTH: usize = 4;
+
     /// `value` that changes by `slopes` along the directions.
     #[must_use]
-    pub const fn new(value: f64, slopes: [f64; W]) -> Self {
-        Self { value, slopes }
+    #[inline(always)]
+    pub fn new(value: f64, [a, b, c, d]: [f64; Self::WIDTH]) -> Self {
+        Self { value, slopes: [f64x2::new([a, b]), f64x2::new([c, d])] }
+    }
+
+    /// The derivative along each direction.
+    #[must_use]
+    #[inline(always)]
+    pub fn slopes(self) -> [f64; Self::WIDTH] {
+        let [[a, b], [c, d]] = self.slopes.map(f64x2::to_array);
+        [a, b, c, d]
+    }
+
+    /// The number plus `weight` times another one: what sums of stages consist of.
+    #[must_use]
+    #[inline(always)]
+    pub fn plus(self, weight: f64, other: &Self) -> Self {
+        let ([a, b], [c, d], w) = (self.slopes, other.slopes, f64x2::splat(weight));
+        Self { value: self.value + weight * other.value, slopes: [a + w * c, b + w * d] }
     }
 
     /// A function of this number from its value and its derivative here.
     #[inline(always)]
     fn of(self, value: f64, derivative: f64) -> Self {
-        Self { value, slopes: from_fn(|k| derivative * self.slopes[k]) }
+        let ([a, b], d) = (self.slopes, f64x2::splat(derivative));
+        Self { value, slopes: [d * a, d * b] }
+    }
+
+    /// A function of two numbers from its value and its derivatives here.
+    #[inline(always)]
+    fn of_both(value: f64, (of_a, a): (f64, Self), (of_b, b): (f64, Self)) -> Self {
+        let ([a, b], [c, d]) = (a.slopes, b.slopes);
+        let (of_a, of_b) = (f64x2::splat(of_a), f64x2::splat(of_b));
+        Self { value, slopes: [a * of_a + of_b * c, b * of_a + of_b * d] }
     }
 }
 
-/// The slopes of `a` and of `b`, each with its weight.
-#[inline(always)]
-fn weighted<const W: usize>(a: &Gradient<W>, of_a: f64, b: &Gradient<W>, of_b: f64) -> [f64; W] {
-    from_fn(|k| a.slopes[k] * of_a + of_b * b.slopes[k])
-}
-
-impl<const W: usize> PartialOrd for Gradient<W> {
+impl PartialOrd for Gradient {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         self.value.partial_cmp(&other.value)
     }
 }
-impl<const W: usize> Add for Gradient<W> {
+impl Add for Gradient {
     type Output = Self;
     #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self { value: self.value + b.value, slopes: from_fn(|k| self.slopes[k] + b.slopes[k]) }
+    fn add(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.slopes, other.slopes);
+        Self { value: self.value + other.value, slopes: [a + c, b + d] }
     }
 }
-impl<const W: usize> Sub for Gradient<W> {
+impl Sub for Gradient {
     type Output = Self;
     #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self { value: self.value - b.value, slopes: from_fn(|k| self.slopes[k] - b.slopes[k]) }
+    fn sub(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.slopes, other.slopes);
+        Self { value: self.value - other.value, slopes: [a - c, b - d] }
     }
 }
-impl<const W: usize> Mul for Gradient<W> {
+impl Mul for Gradient {
     type Output = Self;
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
-        Self { value: self.value * b.value, slopes: weighted(&self, b.value, &b, self.value) }
+        Self::of_both(self.value * b.value, (b.value, self), (self.value, b))
     }
 }
-impl<const W: usize> Div for Gradient<W> {
+impl Div for Gradient {
     type Output = Self;
     #[inline(always)]
     fn div(self, b: Self) -> Self {
         let (value, part) = (self.value / b.value, 1.0 / b.value);
-        Self { value, slopes: weighted(&self, part, &b, -value * part) }
+        Self::of_both(value, (part, self), (-value * part, b))
     }
 }
-impl<const W: usize> Neg for Gradient<W> {
+impl Neg for Gradient {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: -self.value, slopes: from_fn(|k| -self.slopes[k]) }
+        self.of(-self.value, -1.0)
     }
 }
 
-impl<const W: usize> Scalar for Gradient<W> {
+impl Scalar for Gradient {
     type Pair = Both<Self>;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
-        Self { value, slopes: [0.0; W] }
+        Self { value, slopes: [f64x2::splat(0.0); 2] }
     }
     #[inline(always)]
     fn to_f64(self) -> f64 {
@@ -113,8 +138,8 @@ impl<const W: usize> Scalar for Gradient<W> {
     }
     fn atan2(self, x: Self) -> Self {
         let square = self.value * self.value + x.value * x.value;
-        let slopes = from_fn(|k| (x.value * self.slopes[k] - self.value * x.slopes[k]) / square);
-        Self { value: Scalar::atan2(self.value, x.value), slopes }
+        let value = Scalar::atan2(self.value, x.value);
+        Self::of_both(value, (x.value / square, self), (-self.value / square, x))
     }
     fn exp(self) -> Self {
         let exp = Scalar::exp(self.value);
@@ -133,13 +158,12 @@ impl<const W: usize> Scalar for Gradient<W> {
     }
     fn powf(self, exponent: Self) -> Self {
         let value = Scalar::powf(self.value, exponent.value);
-        let base = self.of(value, exponent.value * Scalar::powf(self.value, exponent.value - 1.0));
+        let by_base = exponent.value * Scalar::powf(self.value, exponent.value - 1.0);
         // A logarithm only where it counts: of a base below zero there is none.
-        if exponent.slopes == [0.0; W] {
-            return base;
+        if exponent.slopes() == [0.0; Self::WIDTH] {
+            return self.of(value, by_base);
         }
-        let by_exponent = value * Scalar::ln(self.value);
-        Self { value, slopes: from_fn(|k| base.slopes[k] + by_exponent * exponent.slopes[k]) }
+        Self::of_both(value, (by_base, self), (value * Scalar::ln(self.value), exponent))
     }
 }
 
@@ -159,10 +183,10 @@ mod tests {
     #[test]
     fn each_slope_is_that_of_a_dual_number_along_its_direction() {
         for (x, y) in [(0.3, 0.9), (1.1, 0.4), (0.7, 1.3)] {
-            let along = [[1.0, 0.0], [0.0, 1.0], [0.6, -0.8]];
+            let along = [[1.0, 0.0], [0.0, 1.0], [0.6, -0.8], [0.0, 0.0]];
             let gradient = everything(Gradient::new(x, along.map(|d| d[0])), Gradient::new(y, along.map(|d| d[1])));
             assert_eq!(gradient.value.to_bits(), everything(x, y).to_bits());
-            for (slope, [by_x, by_y]) in gradient.slopes.into_iter().zip(along) {
+            for (slope, [by_x, by_y]) in gradient.slopes().into_iter().zip(along) {
                 let dual = everything(Dual::new(x, by_x), Dual::new(y, by_y)).slope;
                 assert!((slope - dual).abs() < 1e-14 * (1.0 + dual.abs()), "{slope} {dual}");
             }

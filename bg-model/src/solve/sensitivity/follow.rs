@@ -5,50 +5,52 @@
 use nalgebra::SVector;
 
 use super::jump::jumped;
-use super::step::{Sloped, Stepper};
+use super::step::{Sloped, Stepper, WIDTH};
 use super::{Direction, SensitivityError};
-use crate::model::scalar::Gradient;
+use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
 /// Some of the directions with the system in numbers that have slopes along them.
-pub(super) struct Follower<Li, const W: usize, const N: usize, const G: usize, const M: usize> {
+pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
     system: Li,
     /// The same with slopes of nothing.
     plain: Li,
     directions: Vec<Direction>,
-    stepper: Stepper<W, N>,
+    stepper: Stepper<N>,
     /// The last step: its start, its branches, the state there.
     start: f64,
     negative: [bool; G],
-    from: Sloped<W, N>,
+    from: Sloped<N>,
     /// Where the run has come to.
     t: f64,
-    now: Sloped<W, N>,
+    now: Sloped<N>,
     has_begun: bool,
     error: Option<SensitivityError>,
     /// For each direction and output the derivatives at the samples.
     pub outputs: Vec<Vec<Vec<f64>>>,
 }
 
-impl<Li, const W: usize, const N: usize, const G: usize, const M: usize> Follower<Li, W, N, G, M>
+impl<Li, const N: usize, const G: usize, const M: usize> Follower<Li, N, G, M>
 where
-    Li: Model<Gradient<W>, N, G, M>,
+    Li: Model<Gradient, N, G, M>,
 {
     /// From the start of a run at `t0` (s) and the state `x`; `sizes` are those of the directions.
     pub fn new(
         [system, plain]: [Li; 2],
         directions: &[Direction],
-        sizes: [f64; W],
+        sizes: [f64; WIDTH],
         scale: Scale<N>,
         t0: f64,
-        x: Sloped<W, N>,
+        x: Sloped<N>,
     ) -> Self {
         let mut now = x;
         for (l, direction) in directions.iter().enumerate() {
             if let Direction::Start(state) = direction {
-                now[*state].slopes[l] += 1.0;
+                let mut slopes = now[*state].slopes();
+                slopes[l] += 1.0;
+                now[*state] = Gradient::new(now[*state].value, slopes);
             }
         }
         Self {
@@ -69,7 +71,7 @@ where
 
     /// The derivatives of the states where the run has come to, for each direction.
     pub fn states(&self) -> Vec<Vec<f64>> {
-        let of = |l: usize| self.now.iter().map(|state| state.slopes[l]).collect();
+        let of = |l: usize| self.now.iter().map(|state| state.slopes()[l]).collect();
         (0..self.directions.len()).map(of).collect()
     }
 
@@ -77,27 +79,27 @@ where
     ///
     /// # Errors
     /// What has gone wrong first.
-    pub fn check(&self) -> Result<(), SensitivityError> {
-        self.error.clone().map_or(Ok(()), Err)
+    pub fn check(&mut self) -> Result<(), SensitivityError> {
+        self.error.take().map_or(Ok(()), Err)
     }
 
     /// The state at the time `t` (s) in the last step, projected.
-    fn cross(&mut self, t: f64) -> Option<Sloped<W, N>> {
+    fn cross(&mut self, t: f64) -> Option<Sloped<N>> {
         let Self { system, stepper, start, negative, from, .. } = self;
         let mut x = stepper.cross(system, negative, *start, t, from)?;
-        system.project(Gradient::new(t, [0.0; W]), negative, &mut x);
+        system.project(Gradient::from_f64(t), negative, &mut x);
         Some(x)
     }
 }
 
 /// The slopes of `of` at the values `x`.
-fn at<const W: usize, const N: usize>(x: &SVector<f64, N>, of: &Sloped<W, N>) -> Sloped<W, N> {
-    SVector::from_fn(|i, _| Gradient::new(x[i], of[i].slopes))
+fn at<const N: usize>(x: &SVector<f64, N>, of: &Sloped<N>) -> Sloped<N> {
+    SVector::from_fn(|i, _| Gradient::new(x[i], of[i].slopes()))
 }
 
-impl<Li, const W: usize, const N: usize, const G: usize, const M: usize> Observer<N, G> for Follower<Li, W, N, G, M>
+impl<Li, const N: usize, const G: usize, const M: usize> Observer<N, G> for Follower<Li, N, G, M>
 where
-    Li: Model<Gradient<W>, N, G, M>,
+    Li: Model<Gradient, N, G, M>,
 {
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
         if self.error.is_some() {
@@ -108,7 +110,7 @@ where
                 self.error = Some(SensitivityError::ImpactAtStart);
                 return;
             }
-            self.system.project(Gradient::new(t, [0.0; W]), negative, &mut self.now);
+            self.system.project(Gradient::from_f64(t), negative, &mut self.now);
             self.now = at(x, &self.now);
         }
         let reached = if t == self.t { Some(self.now) } else { self.cross(t) };
@@ -116,10 +118,10 @@ where
             self.error = Some(SensitivityError::Inexact { t });
             return;
         };
-        let mut outputs = SVector::repeat(Gradient::new(0.0, [0.0; W]));
-        self.system.outputs(Gradient::new(t, [0.0; W]), &at(x, &reached), negative, &mut outputs);
+        let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
+        self.system.outputs(Gradient::from_f64(t), &at(x, &reached), negative, &mut outputs);
         for (l, columns) in self.outputs.iter_mut().enumerate() {
-            columns.iter_mut().zip(&outputs).for_each(|(column, output)| column.push(output.slopes[l]));
+            columns.iter_mut().zip(&outputs).for_each(|(column, output)| column.push(output.slopes()[l]));
         }
     }
 

@@ -44,15 +44,17 @@ use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::Gradient;
 use crate::model::system::Model;
-use crate::solve::failure::Cause;
-use crate::solve::integrator::{AnyMethod, Point, Scale};
-use crate::solve::run::Request;
-use crate::solve::simulation::{Observer, Part, Recorder, Recording, Span, Switching, integrate};
-use crate::solve::statistics::Statistics;
+use crate::solve::integrator::{Point, Scale};
+use crate::solve::run::{Request, RunError, Trajectory, observed};
+use crate::solve::simulation::{Observer, Switching};
 use follow::Follower;
 
 /// How many directions are followed in one pass.
-const WIDTH: usize = 4;
+const WIDTH: usize = Gradient::WIDTH;
+
+/// The part of a parameter's value by which it is thought to change. Of more the error estimates would ask for shorter steps than
+/// the run's where stability limits these, and the errors of the slopes would be those of the run's steps all the same.
+const PART: f64 = 1.0 / 32.0;
 
 /// What a run is differentiated by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,12 +79,10 @@ impl Direction {
 /// A run with its derivatives.
 #[derive(Clone, Debug)]
 pub struct Sensitivities {
-    /// The samples of the outputs.
-    pub recording: Recording,
+    /// The run; its time is that of both.
+    pub trajectory: Trajectory,
     /// The directions, as they were asked for.
     pub directions: Vec<Direction>,
-    /// What the run cost, without its derivatives.
-    pub statistics: Statistics,
     /// The derivatives of the states at the end, for each direction; in the state's unit per the direction's.
     pub states: Vec<Vec<f64>>,
     slopes: Vec<Vec<Vec<f64>>>,
@@ -100,7 +100,7 @@ impl Sensitivities {
 }
 
 /// Derivatives that could not be had.
-#[derive(Clone, PartialEq, Error)]
+#[derive(Debug, Error)]
 pub enum SensitivityError {
     /// The model cannot be made.
     #[error(transparent)]
@@ -108,9 +108,9 @@ pub enum SensitivityError {
     /// It cannot be assembled.
     #[error(transparent)]
     Start(#[from] AssemblyError),
-    /// The run stopped before its end.
-    #[error("{0}")]
-    Stopped(Cause),
+    /// The run cannot start, or stopped before its end.
+    #[error(transparent)]
+    Run(#[from] RunError),
     /// Something lies on a stop at the start.
     #[error(
         "something hits a stop at the start of the run, where its derivatives do not exist; start a little beside the stop"
@@ -134,10 +134,7 @@ pub enum SensitivityError {
     },
 }
 
-debug_is_display!(SensitivityError);
-
-/// Makes a run of `model` from its own start, as it is asked for, with the derivatives of its outputs along `directions`. The parts
-/// that the request records are the outputs, whatever it says.
+/// Makes a run of `model` from its own start, as it is asked for, with the derivatives of its outputs along `directions`.
 ///
 /// # Errors
 /// [`SensitivityError`].
@@ -148,7 +145,7 @@ pub fn sensitivities<Me: Mechanism>(
 ) -> Result<Sensitivities, SensitivityError> {
     let parameters = model.parameters();
     let values = (0..Me::Parameters::table().len()).map(|index| parameters.value(index)).collect();
-    model.visit_lifted::<Gradient<WIDTH>, _>(Following { request, directions, values })
+    model.visit_lifted::<Gradient, _>(Following { request, directions, values })
 }
 
 /// What is done with the model.
@@ -159,17 +156,17 @@ struct Following<'a> {
 }
 
 impl Following<'_> {
-    /// The size of a direction: what it is for which the errors of a slope are as those of a state.
+    /// The size of a direction: the change of it by which a slope may move a state as far from the truth as a step may.
     fn size(&self, direction: Direction, start: &[f64]) -> f64 {
         let value = match direction {
             Direction::Parameter(index) => self.values[index],
             Direction::Start(state) => start[state],
         };
-        if value == 0.0 { 1.0 } else { value.abs() }
+        if value == 0.0 { PART } else { PART * value.abs() }
     }
 
     /// The parameters with their slopes along these directions.
-    fn sloped(&self, directions: &[Direction]) -> Vec<Gradient<WIDTH>> {
+    fn sloped(&self, directions: &[Direction]) -> Vec<Gradient> {
         let slope = |index: usize| {
             std::array::from_fn(|l| f64::from(u8::from(directions.get(l) == Some(&Direction::Parameter(index)))))
         };
@@ -177,46 +174,38 @@ impl Following<'_> {
     }
 }
 
-impl LiftedVisitor<Gradient<WIDTH>> for Following<'_> {
+impl LiftedVisitor<Gradient> for Following<'_> {
     type Output = Result<Sensitivities, SensitivityError>;
 
     fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
-        lifted: impl Fn(&[Gradient<WIDTH>]) -> Result<Li, ParameterError>,
+        lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
-        Li: Model<Gradient<WIDTH>, N, G, M>,
+        Li: Model<Gradient, N, G, M>,
     {
         let Description { outputs, .. } = model.description();
         let start = model.start()?;
         let settings = self.request.settings(0.0);
         let scale = Scale::<N>::from(&settings.tolerances);
-        let follower = |chunk: &[Direction]| -> Result<Follower<Li, WIDTH, N, G, M>, SensitivityError> {
+        let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
             let both = [lifted(&self.sloped(chunk))?, lifted(&self.sloped(&[]))?];
             let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
             let x = both[0].start()?;
             Ok(Follower::new(both, chunk, sizes, scale.clone(), 0.0, x))
         };
         let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
-        let mut observer = (Recorder::new(model, &[Part::Outputs]), Followers(followers));
-        let mut method: AnyMethod<N> = self.request.method.method(self.request.fixed_step);
-        let span = Span { t0: 0.0, t_end: self.request.t_end };
-        let outcome = integrate(model, &mut method, &start, span, &settings, &mut observer);
-        let (recorder, Followers(followers)) = observer;
-        followers.iter().try_for_each(Follower::check)?;
-        let statistics = outcome.map_err(|failure| SensitivityError::Stopped(failure.cause))?.statistics;
+        let mut followers = Followers(followers);
+        let outcome = observed(model, self.request, &mut followers);
+        let Followers(mut followers) = followers;
+        followers.iter_mut().try_for_each(Follower::check)?;
+        let trajectory = outcome?;
         let states = followers.iter().flat_map(Follower::states).collect();
         let slopes: Vec<Vec<Vec<f64>>> = followers.into_iter().flat_map(|follower| follower.outputs).collect();
         debug_assert!(slopes.iter().all(|columns| columns.len() == outputs.len()));
-        Ok(Sensitivities {
-            recording: recorder.recording,
-            directions: self.directions.to_vec(),
-            statistics,
-            states,
-            slopes,
-        })
+        Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
     }
 }
 
