@@ -21,6 +21,7 @@
 //! | know why it failed | [`failure::Failure`], with the last good state |
 //! | know what it cost | [`statistics::Statistics`] |
 //! | calculate in another number type | [`scalar::Scalar`] and the model's `in_scalar` |
+//! | get exact derivatives by parameters and start values | [`sensitivity::sensitivities`] |
 //! | get a reference solution beyond double precision | [`extended::integrate`] with [`scalar::DoubleDouble`] |
 //!
 //! A system that no macro has made can be run as well: implement [`system::System`].
@@ -96,7 +97,7 @@ pub use model::{
     assembly, capability, description, drawing, holding, input, linear, mechanism, parameters, requirement, scalar,
     series, system,
 };
-pub use solve::{extended, failure, integrator, run, simulation, statistics};
+pub use solve::{extended, failure, integrator, run, sensitivity, simulation, statistics};
 
 pub use bg_macros::bond_graph;
 pub use nalgebra;

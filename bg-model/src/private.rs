@@ -7,6 +7,7 @@ pub use bg_macros::picture;
 
 pub use crate::model::iteration::{Equations, newton};
 pub use crate::model::linear::pivot::Pivot;
+pub use crate::model::nearest::lifted;
 pub use crate::model::parameters::serialized::{deserialize, serialize};
 pub use crate::model::reactions::{Started, fit, kept, redundant, share};
 pub use crate::model::requirement::{Requirement, require};

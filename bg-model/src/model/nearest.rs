@@ -7,6 +7,8 @@
 
 use nalgebra::{DMatrix, DVector, SVector};
 
+use crate::model::scalar::Scalar;
+
 /// The coordinates nearest to `guess`, to first order, at which the norm of the `rows` residuals falls no further, and
 /// the residuals there. `longest` limits a step; `check` sees the residuals and their derivatives.
 ///
@@ -40,6 +42,53 @@ pub(crate) fn nearest<E, const U: usize>(
     Ok((coordinates.data.0[0], sizes))
 }
 
+/// The coordinates `found`, nearest to `guess`, in another scalar: with the derivatives that follow from those of the guess and of
+/// the residuals, by the implicit function theorem. The same numbers where there are none.
+///
+/// Exact where the residuals determine all coordinates, or the guess is not moved; else to first order in how far it is.
+pub fn lifted<S: Scalar, const U: usize>(
+    guess: [S; U],
+    found: [f64; U],
+    residual: impl Fn(&[S; U]) -> Vec<S>,
+) -> [S; U] {
+    // The first solves for derivatives in `f64`; the second takes away what rounding leaves where these have more digits.
+    const SOLUTIONS: usize = 2;
+    let zero = S::from_f64(0.0);
+    let beyond = |value: S| value - S::from_f64(value.to_f64());
+    let plain = found.map(S::from_f64);
+    if U == 0 {
+        return plain;
+    }
+    let moved = guess.map(beyond);
+    let mut lifted: [S; U] = std::array::from_fn(|k| plain[k] + moved[k]);
+    let mut left: Vec<S> = residual(&lifted).into_iter().map(beyond).collect();
+    if moved.iter().chain(&left).all(|&value| value == zero) {
+        return plain;
+    }
+    let sizes_at = |coordinates: &SVector<f64, U>| {
+        let sizes = residual(&coordinates.data.0[0].map(S::from_f64));
+        DVector::from_iterator(sizes.len(), sizes.into_iter().map(S::to_f64))
+    };
+    let jacobian = jacobian(&SVector::from(found), left.len(), sizes_at);
+    if jacobian.is_empty() {
+        return lifted;
+    }
+    let smallest = RANK * jacobian.norm();
+    let Ok(inverse) = jacobian.pseudo_inverse(smallest) else { return lifted };
+    for _ in 0..SOLUTIONS {
+        for (k, lifted) in lifted.iter_mut().enumerate() {
+            for (row, &left) in left.iter().enumerate() {
+                *lifted = *lifted - S::from_f64(inverse[(k, row)]) * left;
+            }
+        }
+        left = residual(&lifted).into_iter().map(beyond).collect();
+    }
+    lifted
+}
+
+/// Singular values below this part of the largest one are rounding errors of the differences.
+const RANK: f64 = 1e-10;
+
 /// The derivatives of the gaps by five-point central differences; their error is of the order 1e-13 for mechanisms of
 /// the size of 1 m.
 fn jacobian<const U: usize>(
@@ -72,8 +121,6 @@ fn shrink<const U: usize>(
     longest: impl Fn(&SVector<f64, U>) -> f64,
     gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
 ) -> Option<(SVector<f64, U>, DVector<f64>)> {
-    // Singular values below this part of the largest one are rounding errors of the differences.
-    const RANK: f64 = 1e-10;
     const DAMPINGS: [f64; 8] = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
     let norm = sizes.norm();
     if jacobian.is_empty() || norm == 0.0 {

@@ -6,6 +6,7 @@ pub mod failure;
 pub(crate) mod finish;
 pub mod integrator;
 pub mod run;
+pub mod sensitivity;
 pub mod simulation;
 pub mod statistics;
 pub(crate) mod stepper;

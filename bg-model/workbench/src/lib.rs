@@ -55,6 +55,8 @@
 //! | [`precision`] | how exact a run is and what that costs |
 //! | [`figures`] | what the outputs look like |
 //! | [`linear`] | where the mechanism is in equilibrium, and how it moves near a state |
+//! | [`sensitivity`] | which parameter moves which output |
+//! | [`identify`] | which parameters come nearest to what was measured |
 //! | [`summary`] | what a run comes to in numbers |
 //! | [`overview`] | all of it on one page |
 //! | [`page`] | the same in motion, in one file that needs nothing else |
@@ -82,6 +84,8 @@ pub mod files;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod golden;
 #[cfg(not(target_arch = "wasm32"))]
+pub mod identify;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod markup;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod output;
@@ -91,6 +95,8 @@ pub mod overview;
 pub mod picture;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod samples;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod sensitivity;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod shown;
 #[cfg(not(target_arch = "wasm32"))]

@@ -144,10 +144,21 @@ impl Given<'_> {
         let defaults = self.parameters.iter().map(|parameter| number(parameter.default));
         let table = self.parameters.iter().map(parameter_info);
         let index: Vec<Literal> = (0..names.len()).map(Literal::usize_unsuffixed).collect();
+        let count = Literal::usize_unsuffixed(names.len());
         quote! {
             impl Default for Parameters {
                 fn default() -> Self {
                     Self { #(#names: #defaults,)* }
+                }
+            }
+
+            impl Parameters {
+                /// Their values in the order of the table.
+                fn numbers(&self) -> [f64; #count] {
+                    [#(self.#names),*]
+                }
+                fn of_numbers(numbers: [f64; #count]) -> Self {
+                    Self { #(#names: numbers[#index]),* }
                 }
             }
 

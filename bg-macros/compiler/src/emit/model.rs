@@ -40,20 +40,23 @@ struct Emission<'a> {
     shape: Shape,
 }
 
-/// The numbers of states, switches and outputs, as they stand in types: a name there shows in documentation as the whole
+/// The numbers of states, switches, outputs and parameters, as they stand in types: a name there shows in documentation as the whole
 /// text of the macro's call.
 struct Shape {
     n: Literal,
     g: Literal,
     m: Literal,
+    /// The number of parameters.
+    p: Literal,
 }
 
 impl Shape {
     fn of(model: &Compiled) -> Self {
         let equations = &model.equations;
-        let counts = [equations.states.len(), equations.switches.len(), equations.outputs.len()];
-        let [n, g, m] = counts.map(Literal::usize_unsuffixed);
-        Self { n, g, m }
+        let counts =
+            [equations.states.len(), equations.switches.len(), equations.outputs.len(), equations.parameters.len()];
+        let [n, g, m, p] = counts.map(Literal::usize_unsuffixed);
+        Self { n, g, m, p }
     }
 }
 
@@ -81,7 +84,7 @@ impl Emission<'_> {
         let doc = &self.model.derived.causal.graph.docs;
         let picture = picture::text(self.model);
         let tables = documentation::tables(self.model, costs);
-        let (table_fields, kept) = (&constants.fields, self.shared().field());
+        let (table_fields, kept, p) = (&constants.fields, self.shared().field(), &self.shape.p);
         // The empty lines end a paragraph and HTML; rustdoc drops those inside a text at its ends.
         quote! {
             #[doc = #doc]
@@ -92,6 +95,7 @@ impl Emission<'_> {
             #[derive(Clone, Debug)]
             pub struct #name<#scalar: ::bg_model::scalar::Scalar = ::core::primitive::f64> {
                 #fields
+                values: [#scalar; #p],
                 #kept
                 #table_fields
             }
@@ -140,7 +144,7 @@ impl Emission<'_> {
         let construction = self.construction(has_inputs);
         let (pose, reactions) = (self.pose(), self.reactions());
         let Tables { values, functions, lets, .. } = tables;
-        let Shape { n, g, m } = &self.shape;
+        let Shape { n, g, m, p } = &self.shape;
         quote! {
             impl Model {
                 /// Number of states.
@@ -169,14 +173,32 @@ impl Emission<'_> {
                 pub fn in_scalar(parameters: Parameters #input_argument)
                     -> Result<Self, ::bg_model::parameters::ParameterError>
                 {
+                    let values = parameters.numbers().map(S::from_f64);
+                    Self::constructed(parameters, values #input_pass)
+                }
+
+                /// The model with parameters of `S` in the order of their table, such as dual numbers.
+                ///
+                /// # Errors
+                /// As [`Self::in_scalar`].
+                pub fn lifted(values: [S; #p] #input_argument)
+                    -> Result<Self, ::bg_model::parameters::ParameterError>
+                {
+                    let parameters = Parameters::of_numbers(values.map(S::to_f64));
+                    Self::constructed(parameters, values #input_pass)
+                }
+
+                fn constructed(parameters: Parameters, values: [S; #p] #input_argument)
+                    -> Result<Self, ::bg_model::parameters::ParameterError>
+                {
                     ::bg_model::parameters::Parameters::validate(&parameters)?;
                     #required
                     #construction
                 }
 
-                fn made(parameters: Parameters #input_argument #kept_argument) -> Self {
+                fn made(parameters: Parameters, values: [S; #p] #input_argument #kept_argument) -> Self {
                     #lets
-                    Self { parameters, #input_value #kept_value #values }
+                    Self { parameters, values, #input_value #kept_value #values }
                 }
 
                 /// The parameters.

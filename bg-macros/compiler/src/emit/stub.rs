@@ -62,7 +62,7 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
         pub struct #name<#scalar = ::core::primitive::f64> { #fields scalar: ::core::marker::PhantomData<#scalar> }
     };
     let fields: Vec<_> = inputs.iter().map(|input| identifier(&input.name.text)).collect();
-    let mechanism = mechanism::of(&fields);
+    let (mechanism, count) = (mechanism::of(&fields), parameters.len());
     let code = quote! {
         use ::bg_model::scalar::Scalar;
         use ::bg_model::nalgebra::SVector;
@@ -85,6 +85,11 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
                 -> Result<Self, ::bg_model::parameters::ParameterError>
             {
                 Ok(Self { parameters, #value scalar: ::core::marker::PhantomData })
+            }
+            pub fn lifted(_: [S; #count] #argument)
+                -> Result<Self, ::bg_model::parameters::ParameterError>
+            {
+                ::core::unreachable!("{WHY}")
             }
             pub fn parameters(&self) -> &Parameters {
                 &self.parameters

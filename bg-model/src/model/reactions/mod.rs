@@ -19,7 +19,7 @@ use nalgebra::{DVector, SVector};
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::Joints;
 use crate::model::holding::{FITTING, Held, Redundancy, Slip, Slipping};
-use crate::model::nearest::nearest;
+use crate::model::nearest::{lifted, nearest};
 use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign};
 use factors::Factors;
@@ -85,17 +85,17 @@ impl<S: Scalar> Hold<S> {
 }
 
 /// The start state of a system with joints: guessed velocities such that the joints fit, then, with `impulse`, the
-/// impulses of the rigid joints. `start` gives the state for unknowns, of which those at `speeds` are velocities.
-/// Allocates.
+/// impulses of the rigid joints. `start` gives the state for unknowns, of which those at `speeds` are velocities. Derivatives
+/// that the unknowns have go into the state: those of the velocities are such that the joints fit. Allocates.
 ///
 /// # Errors
 /// [`AssemblyError::Torn`] where velocities do not fit, [`AssemblyError::Redundant`] where reactions are not unique,
 /// [`AssemblyError::Immobile`] where nothing can move.
 pub fn fit<Sys, S, const N: usize, const G: usize, const U: usize, const K: usize>(
     system: &Sys,
-    unknowns: [f64; U],
+    unknowns: [S; U],
     speeds: [usize; K],
-    start: impl Fn(&[f64; U]) -> SVector<S, N>,
+    start: impl Fn(&[S; U]) -> SVector<S, N>,
     impulse: bool,
 ) -> Result<Started<S, N>, AssemblyError>
 where
@@ -103,7 +103,7 @@ where
     S: Scalar,
 {
     let held = system.held();
-    let state = |values: &[f64; K]| {
+    let state = |values: &[S; K]| {
         let mut all = unknowns;
         speeds.iter().zip(values).for_each(|(&place, &value)| all[place] = value);
         start(&all)
@@ -116,7 +116,7 @@ where
     let mut values = speeds.map(|place| unknowns[place]);
     if K > 0 {
         let residual = |values: &[f64; K], flows: &mut [f64]| {
-            let hold = read(&state(values));
+            let hold = read(&state(&values.map(S::from_f64)));
             flows.iter_mut().zip(hold.flows()).for_each(|(to, flow)| *to = flow.to_f64());
         };
         let rows = held.rigid.len() + held.compliant.len();
@@ -125,7 +125,8 @@ where
             None => Ok(()),
         };
         // The flows are linear in the velocities, so the first step is the last but for rounding.
-        values = nearest(values, rows, |_| f64::INFINITY, residual, check)?.0;
+        let found = nearest(values.map(S::to_f64), rows, |_| f64::INFINITY, residual, check)?.0;
+        values = lifted(values, found, |values| read(&state(values)).flows().to_vec());
     }
     let x = state(&values);
     let hold = read(&x);

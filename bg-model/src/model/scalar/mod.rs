@@ -5,9 +5,11 @@
 //! | `f64` | runs |
 //! | [`DoubleDouble`] | reference solutions, about 31 digits |
 //! | [`Dual`] | exact first derivatives along one direction |
+//! | [`Gradient`] | the same along several at once |
 
 mod double_double;
 mod dual;
+mod gradient;
 mod pair;
 
 use std::fmt::Debug;
@@ -15,6 +17,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
+pub use gradient::Gradient;
 pub use pair::{Both, Pair, PairOfDoubles};
 
 /// A real number that generated code can calculate with.

@@ -29,8 +29,8 @@ use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::mechanism::{Mechanism, ModelVisitor};
 use crate::model::system::Model;
-use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Reason};
-use crate::solve::simulation::{Observer, Part, Recorder, Samples, Span};
+use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason};
+use crate::solve::simulation::{Observer, Part, Recorder, Samples, Span, Switching};
 use crate::solve::statistics::Statistics;
 
 /// A run to be made.
@@ -234,6 +234,33 @@ impl<E: Ending> ModelVisitor<f64> for Integration<'_, E> {
     where
         Mo: Model<f64, N, G, M>,
     {
+        self.recorded(model, None)
+    }
+}
+
+/// Makes a run of `model` from its start as it is asked for, of which another observer is told.
+pub(crate) fn observed<Mo, const N: usize, const G: usize, const M: usize>(
+    model: &Mo,
+    request: &Request,
+    observer: &mut dyn Observer<N, G>,
+) -> Result<Trajectory, RunError>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    let each_step = Box::new(|_| ControlFlow::Continue(()));
+    let request = request.clone();
+    Integration { request, start: None, each_step, ending: Unconditional }.recorded(model, Some(observer))
+}
+
+impl<E: Ending> Integration<'_, E> {
+    fn recorded<Mo, const N: usize, const G: usize, const M: usize>(
+        self,
+        model: &Mo,
+        another: Option<&mut dyn Observer<N, G>>,
+    ) -> Result<Trajectory, RunError>
+    where
+        Mo: Model<f64, N, G, M>,
+    {
         let Self { request, start, each_step, ending } = self;
         let clock = Clock::started();
         let Description { name, states, .. } = model.description();
@@ -241,7 +268,8 @@ impl<E: Ending> ModelVisitor<f64> for Integration<'_, E> {
         let mut method: AnyMethod<N> = request.method.method(request.fixed_step);
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
-        let mut observer = (Recorder::new(model, &request.parts), Told { each_step, is_done: false });
+        let told = Told { each_step, is_done: false };
+        let mut observer = (Recorder::new(model, &request.parts), (told, Another(another)));
         let span = Span { t0, t_end: request.t_end };
         let (finish, cause) = match ending.integrate(model, &mut method, &start, span, &settings, &mut observer) {
             Ok(finish) => (finish, None),
@@ -268,6 +296,33 @@ impl<E: Ending> ModelVisitor<f64> for Integration<'_, E> {
             None => Ok(trajectory),
             Some(cause) => Err(RunError::Stopped(Box::new(Stopped { cause, trajectory }))),
         }
+    }
+}
+
+/// Another observer, which runs without one need not be compiled for.
+struct Another<'a, const N: usize, const G: usize>(Option<&'a mut dyn Observer<N, G>>);
+
+impl<const N: usize, const G: usize> Observer<N, G> for Another<'_, N, G> {
+    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+        if let Some(another) = &mut self.0 {
+            another.sample(t, x, negative);
+        }
+    }
+
+    fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {
+        if let Some(another) = &mut self.0 {
+            another.passed(start, end, negative);
+        }
+    }
+
+    fn switched(&mut self, switching: &Switching<N, G>) {
+        if let Some(another) = &mut self.0 {
+            another.switched(switching);
+        }
+    }
+
+    fn is_done(&self) -> bool {
+        self.0.as_ref().is_some_and(|another| another.is_done())
     }
 }
 

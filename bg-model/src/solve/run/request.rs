@@ -52,7 +52,7 @@ impl Request {
     }
 
     /// The same for the driver, of a run from `t0` (s) on.
-    pub(super) fn settings<const N: usize>(&self, t0: f64) -> Settings<N> {
+    pub(crate) fn settings<const N: usize>(&self, t0: f64) -> Settings<N> {
         let samples = match &self.samples {
             // The driver says what is wrong with an interval that cannot be.
             Samples::Every(interval) if interval.is_finite() && self.is_countable(t0, *interval) => {

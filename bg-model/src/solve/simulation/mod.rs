@@ -15,7 +15,7 @@ mod settings;
 
 use nalgebra::SVector;
 
-pub use observer::{EachSample, EachStep, Observer};
+pub use observer::{EachSample, EachStep, Observer, Switching};
 pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 

@@ -2,13 +2,40 @@
 
 use nalgebra::SVector;
 
+use crate::solve::integrator::Point;
 use crate::solve::statistics::Statistics;
+
+/// What happens at one instant: switches change their branches, something hits a stop.
+#[derive(Clone, Copy, Debug)]
+pub struct Switching<const N: usize, const G: usize> {
+    /// The end of the step that leads there, with the rate in the branches of that step.
+    pub before: Point<N>,
+    /// The start of the next step, after an impact, with the rate in its branches.
+    pub after: Point<N>,
+    /// The branches before.
+    pub negative_before: [bool; G],
+    /// The branches after.
+    pub negative_after: [bool; G],
+    /// The switches whose guards have come to zero.
+    pub reached: [bool; G],
+    /// The switches of stops that something has hit and left again.
+    pub left: [bool; G],
+    /// Whether the state has jumped.
+    pub jumps: bool,
+}
 
 /// Is told what a run gives, in the order of time. Every method does nothing by default.
 pub trait Observer<const N: usize, const G: usize> {
     /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there. At the instant of an impact it is
     /// the state before it; at the start of a run the state after it.
     fn sample(&mut self, _t: f64, _x: &SVector<f64, N>, _negative: &[bool; G]) {}
+
+    /// A step was accepted, from `start` to `end` in the branches `negative`: told before the samples in it and before what happens
+    /// at its end. The rates at both ends are those of these branches.
+    fn passed(&mut self, _start: &Point<N>, _end: &Point<N>, _negative: &[bool; G]) {}
+
+    /// Branches have changed, or the state has jumped, at the end of the last step: told before the events of the switches.
+    fn switched(&mut self, _switching: &Switching<N, G>) {}
 
     /// Switch `switch` has changed its branch at `t` (s) and state `x`, or its stop was hit and is left again; `negative` are the
     /// branches after that, `x` the state after the impact.
@@ -34,6 +61,16 @@ where
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
         self.0.sample(t, x, negative);
         self.1.sample(t, x, negative);
+    }
+
+    fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {
+        self.0.passed(start, end, negative);
+        self.1.passed(start, end, negative);
+    }
+
+    fn switched(&mut self, switching: &Switching<N, G>) {
+        self.0.switched(switching);
+        self.1.switched(switching);
     }
 
     fn event(&mut self, t: f64, x: &SVector<f64, N>, switch: usize, negative: &[bool; G]) {

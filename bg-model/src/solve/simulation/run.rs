@@ -3,12 +3,12 @@
 //! In: a system, a method, a condition that may end the run. Out: the point where the run ends and why it does, with
 //! samples and events told to the observer on the way; or why it cannot go on (`cause`).
 
-use super::observer::Observer;
+use super::observer::{Observer, Switching};
 use super::pace::{self, Pace};
 use super::rounding::RoundingWatch;
 use super::sampling::Sampling;
 use super::settings::{Settings, Span};
-use crate::model::reactions::{Broken, Collision, LoopWatch};
+use crate::model::reactions::{After, Broken, Collision, LoopWatch};
 use crate::model::system::System;
 use crate::solve::event::{Condition, Crossing, Stop, Struck, Watch};
 use crate::solve::failure::Cause;
@@ -257,6 +257,7 @@ where
         self.stepper.statistics.record(self.stepper.h);
         self.sampling.next_step();
         let t = self.stepper.end.t;
+        observer.passed(&self.stepper.start, &self.stepper.end, &self.stepper.negative);
         self.sample(observer, t);
         self.stepper.advance();
         observer.step(t, self.span.t_end, &self.stepper.statistics);
@@ -336,11 +337,25 @@ where
     /// something has hit a stop. Gives whether it does.
     fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<bool, Cause> {
         let t = self.stepper.start.t;
-        let before = self.stepper.negative;
+        let (before, point, reached) = (self.stepper.negative, self.stepper.start, switches);
         let struck = self.watch.strike(&mut self.stepper, switches, self.collision.as_mut());
         let Struck { switches, rebounds, jumps } = struck;
         self.watch.settle(&mut self.stepper, switches, self.pace.reach());
         self.check_start()?;
+        if jumps || self.stepper.negative != before {
+            let mut left = [false; G];
+            let outcomes = self.collision.as_ref().filter(|_| jumps).into_iter().flat_map(Collision::outcomes);
+            outcomes.for_each(|(k, after)| left[k] = after == After::Clear);
+            observer.switched(&Switching {
+                before: point,
+                after: self.stepper.start,
+                negative_before: before,
+                negative_after: self.stepper.negative,
+                reached,
+                left,
+                jumps,
+            });
+        }
         for (switch, before) in before.into_iter().enumerate() {
             if self.stepper.negative[switch] != before || rebounds[switch] {
                 self.stepper.statistics.events += 1;

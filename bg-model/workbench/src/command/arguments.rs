@@ -6,7 +6,9 @@ use bg_model::integrator::Integrator;
 use bg_model::run::Request;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::identify::IdentifyArguments;
 use super::methods::integrator;
+use super::sensitivity::SensitivityArguments;
 use crate::golden::FOLDER;
 use crate::picture::Level;
 use crate::request::Integration;
@@ -51,6 +53,10 @@ pub enum Command {
     Precision(PrecisionArguments),
     /// Linearise at an equilibrium or at some time: modes, frequency responses, A, B, C and D
     Linearize(LinearizeArguments),
+    /// Differentiate a run by parameters, exactly and through events: which parameter moves which output
+    Sensitivity(SensitivityArguments),
+    /// Fit parameters to measured columns: values with confidence, correlations, what cannot be identified
+    Identify(IdentifyArguments),
     /// Record a run as a golden output, or check that what was recorded still comes out
     #[command(subcommand)]
     Golden(GoldenCommand),

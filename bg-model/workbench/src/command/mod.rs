@@ -7,12 +7,14 @@ mod arguments;
 mod compare;
 mod golden;
 mod graph;
+mod identify;
 mod linearize;
 mod methods;
 mod precision;
 mod progress;
 mod report;
 mod run;
+mod sensitivity;
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -22,6 +24,7 @@ use std::process::ExitCode;
 use bg_model::mechanism::{Mechanism, Scenes};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::run::RunError;
+use bg_model::sensitivity::SensitivityError;
 use bg_model::simulation::MissingColumn;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, CommandFactory, FromArgMatches};
@@ -30,6 +33,8 @@ use thiserror::Error;
 use crate::Program;
 use crate::files::{FileError, console};
 use crate::golden::GoldenError;
+use crate::identify::IdentifyError;
+use crate::identify::data::Unusable;
 use crate::inputs::InputSettingError;
 use crate::linear::LinearError;
 use crate::live::ModuleError;
@@ -82,6 +87,14 @@ enum InputError {
     Measure(#[from] MeasureError),
     #[error(transparent)]
     Golden(#[from] GoldenError),
+    #[error("{option}: {fault}")]
+    Unknown { option: &'static str, fault: String },
+    #[error(transparent)]
+    Sensitivity(#[from] SensitivityError),
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
+    #[error(transparent)]
+    Data(#[from] Unusable),
     #[error("--live: {0}")]
     Live(#[from] ModuleError),
 }
@@ -124,6 +137,8 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
         Command::Golden(GoldenCommand::Check(arguments)) => golden::check(program, &arguments),
         Command::Compare(arguments) => compare::compare(program, &arguments),
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
+        Command::Identify(arguments) => identify::identify(program, &arguments),
+        Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.scenes))),
         Command::Scene { scene: Some(name) } => {
             Ok(say(&tables::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))

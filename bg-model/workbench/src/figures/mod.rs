@@ -6,6 +6,8 @@
 pub mod bode;
 pub mod canvas;
 pub mod compact;
+pub mod fit;
+pub mod influence;
 pub mod outputs;
 pub mod palette;
 pub mod panel;

@@ -43,6 +43,12 @@ pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
                 let model = Model::<S>::in_scalar(self.parameters.clone() #own);
                 visitor.visit(&model.expect("a model was made with these parameters before"))
             }
+            fn visit_lifted<S: Scalar, V: ::bg_model::mechanism::LiftedVisitor<S>>(&self, visitor: V) -> V::Output {
+                visitor.visit(self, |values: &[S]| {
+                    let values = values.try_into().expect("a value for each parameter");
+                    Model::<S>::lifted(values #own)
+                })
+            }
         }
     }
 }

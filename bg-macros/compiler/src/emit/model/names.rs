@@ -39,9 +39,8 @@ impl Emission<'_> {
     pub(super) fn parameter_bindings(&self, routines: &[&Routine]) -> TokenStream {
         bindings(routines, &|symbol| match symbol {
             Symbol::Parameter(index) => {
-                let field = identifier(&self.model.equations.parameters[index as usize].name.text);
-                let name = self.symbol_name(symbol);
-                Some(quote!(let #name = S::from_f64(parameters.#field);))
+                let (name, index) = (self.symbol_name(symbol), Literal::u32_unsuffixed(index));
+                Some(quote!(let #name = parameters[#index];))
             }
             Symbol::Kept(index) => {
                 let (name, index) = (self.symbol_name(symbol), Literal::u32_unsuffixed(index));

@@ -10,7 +10,7 @@ use super::{Emission, Shape};
 
 impl Emission<'_> {
     pub(super) fn model(&self) -> TokenStream {
-        let Shape { n, g, m } = &self.shape;
+        let Shape { n, g, m, .. } = &self.shape;
         let (start, started) = self.start();
         let (outputs, stored_energy, powers) = (self.outputs(), self.stored_energy(), self.powers());
         let (shown, redundant) = (self.shown(), self.redundant());
@@ -31,7 +31,7 @@ impl Emission<'_> {
     }
 
     fn outputs(&self) -> TokenStream {
-        let Shape { n, g, m } = &self.shape;
+        let Shape { n, g, m, .. } = &self.shape;
         let (body, outputs) = self.function(&self.model.programs.running.outputs);
         let reactions = self.with_reactions();
         quote! {

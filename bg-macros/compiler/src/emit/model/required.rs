@@ -14,12 +14,12 @@ impl Emission<'_> {
     /// The check in `new`, where there is anything to check.
     pub(super) fn required(&self) -> Option<TokenStream> {
         let unknowns = self.model.equations.guesses.len();
-        self.check(false, &quote!(&parameters), &quote!(&[0.0; #unknowns]))
+        self.check(false, &quote!(&parameters.numbers()), &quote!(&[0.0; #unknowns]))
     }
 
     /// The check in `start`, behind the assembly.
     pub(super) fn required_at_start(&self) -> Option<TokenStream> {
-        self.check(true, &quote!(&self.parameters), &quote!(&unknowns))
+        self.check(true, &quote!(&numbers), &quote!(&unknowns))
     }
 
     fn check(&self, is_of_start: bool, parameters: &TokenStream, unknowns: &TokenStream) -> Option<TokenStream> {

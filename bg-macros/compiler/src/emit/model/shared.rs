@@ -6,6 +6,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
+use super::start::lifted;
 use super::{Emission, Shape};
 use crate::system::equations::Slip;
 
@@ -73,22 +74,23 @@ impl Emission<'_> {
         let (inputs, cloned) = (has_inputs.then(|| quote!(, inputs)), has_inputs.then(|| quote!(, inputs.clone())));
         let kept = self.shared().where_any(|rows| {
             quote! {
-                let all = Model::<f64>::made(parameters.clone() #cloned, [1.0; #rows]);
+                let all = Model::<f64>::made(parameters.clone(), parameters.numbers() #cloned, [1.0; #rows]);
                 let kept = ::bg_model::__private::kept(&all, all.pose().ok());
             }
         });
         let pass = self.shared().where_any(|_| quote!(, kept));
-        quote!(#kept Ok(Self::made(parameters #inputs #pass)))
+        quote!(#kept Ok(Self::made(parameters, values #inputs #pass)))
     }
 
     /// `pose`: the state at the closed start pose, guessed velocities as they are.
     pub(super) fn pose(&self) -> Option<TokenStream> {
-        let (n, closed) = (&self.shape.n, self.closed_pose());
+        let (n, closed, lifted) = (&self.shape.n, self.closed_pose(), lifted());
         self.shared().where_any(|_| {
             quote! {
                 fn pose(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
                     #closed
-                    Ok(SVector::from(Self::start_state(&self.parameters, &unknowns.map(S::from_f64))))
+                    #lifted
+                    Ok(SVector::from(Self::start_state(&self.values, &unknowns)))
                 }
             }
         })

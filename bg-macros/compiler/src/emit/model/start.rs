@@ -16,7 +16,7 @@ use crate::system::equations::{Kind, Slip};
 impl Emission<'_> {
     /// Guesses, gaps, start state and what is asked of values, each with its constants inside.
     pub(super) fn starting(&self) -> TokenStream {
-        let unknowns = self.model.equations.guesses.len();
+        let (unknowns, parameters) = (self.model.equations.guesses.len(), &self.shape.p);
         let Programs { starting, required, .. } = &self.model.programs;
         let functions = starting.programs().into_iter().chain(required.iter().flatten()).map(|program| {
             let [routine] = &program.routines;
@@ -25,7 +25,7 @@ impl Emission<'_> {
             let (statements, results) = self.body(routine);
             let length = results.len();
             quote! {
-                fn #function(parameters: &Parameters, u: &[S; #unknowns]) -> [S; #length] {
+                fn #function(parameters: &[S; #parameters], u: &[S; #unknowns]) -> [S; #length] {
                     #constants
                     #statements
                     [#(#results),*]
@@ -38,13 +38,13 @@ impl Emission<'_> {
     /// The functions of the trait that give the start, and before them what they share.
     pub(super) fn start(&self) -> (TokenStream, TokenStream) {
         let n = &self.shape.n;
-        let closed = self.closed_pose();
+        let (closed, lifted) = (self.closed_pose(), lifted());
         if self.model.programs.holding.is_none() {
             let start = quote! {
                 fn start(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
                     #closed
-                    let unknowns = unknowns.map(S::from_f64);
-                    Ok(SVector::from(Self::start_state(&self.parameters, &unknowns)))
+                    #lifted
+                    Ok(SVector::from(Self::start_state(&self.values, &unknowns)))
                 }
             };
             return (start, TokenStream::new());
@@ -58,10 +58,8 @@ impl Emission<'_> {
                     -> Result<::bg_model::__private::Started<S, #n>, ::bg_model::assembly::AssemblyError>
                 {
                     #closed
-                    let state = |unknowns: &[f64; #count]| {
-                        let unknowns = unknowns.map(S::from_f64);
-                        SVector::from(Self::start_state(&self.parameters, &unknowns))
-                    };
+                    #lifted
+                    let state = |unknowns: &[S; #count]| SVector::from(Self::start_state(&self.values, unknowns));
                     ::bg_model::__private::fit(self, unknowns, [#(#speeds),*], state, #impulse)
                 }
             }
@@ -85,14 +83,15 @@ impl Emission<'_> {
         });
         let guess = quote! {
             static GAPS: &[::bg_model::assembly::Gap] = &[#(#gaps),*];
-            let guess = Model::<f64>::guesses(&self.parameters, &::core::array::from_fn(|_| 0.0));
+            let numbers = self.parameters.numbers();
+            let guess = Model::<f64>::guesses(&numbers, &::core::array::from_fn(|_| 0.0));
         };
         let (speeds, required) = (&self.model.equations.speeds, self.required_at_start());
         if speeds.is_empty() {
             return quote! {
                 #guess
                 let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
-                    gaps.copy_from_slice(&Model::<f64>::gaps(&self.parameters, unknowns));
+                    gaps.copy_from_slice(&Model::<f64>::gaps(&numbers, unknowns));
                 })?;
                 #required
             };
@@ -108,7 +107,7 @@ impl Emission<'_> {
                 unknowns
             };
             let poses = ::bg_model::assembly::close([#(guess[#poses]),*], GAPS, |poses, gaps| {
-                gaps.copy_from_slice(&Model::<f64>::gaps(&self.parameters, &whole(poses)));
+                gaps.copy_from_slice(&Model::<f64>::gaps(&numbers, &whole(poses)));
             })?;
             let unknowns = whole(&poses);
             #required
@@ -162,6 +161,16 @@ impl Emission<'_> {
                 }
             }
         }
+    }
+}
+
+/// `let unknowns` in the scalar: with what they are more than numbers, as derivatives.
+pub(super) fn lifted() -> TokenStream {
+    quote! {
+        let guess = Self::guesses(&self.values, &::core::array::from_fn(|_| S::from_f64(0.0)));
+        let unknowns = ::bg_model::__private::lifted(guess, unknowns, |unknowns| {
+            ::std::vec::Vec::from(Self::gaps(&self.values, unknowns))
+        });
     }
 }
 

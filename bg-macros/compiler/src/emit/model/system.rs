@@ -160,7 +160,7 @@ impl Emission<'_> {
             fn not_finite(
                 &self, t: S, x: &SVector<S, #n>, negative: &[bool; #g],
             ) -> Option<::bg_model::failure::Origin> {
-                let parameters = &self.parameters;
+                let parameters = &self.values;
                 #kept
                 #constants
                 let [x] = &x.data.0;

@@ -65,13 +65,14 @@ impl Emission<'_> {
         let &Table { prefix, doc, constants, paired } = table;
         let (field, function) = (format_ident!("{prefix}s"), format_ident!("{prefix}_table"));
         let (count, body) = (constants.results.len(), self.constant_table(constants));
+        let parameters = &self.shape.p;
         made.fields.extend(quote!(#field: [#scalar; #count],));
         let shared = self.shared();
         let (pass, argument) = (shared.pass(), shared.argument());
-        made.lets.extend(quote!(let #field = Self::#function(&parameters #pass);));
+        made.lets.extend(quote!(let #field = Self::#function(&values #pass);));
         made.functions.extend(quote! {
             #[doc = #doc]
-            fn #function(parameters: &Parameters #argument) -> [S; #count] {
+            fn #function(parameters: &[S; #parameters] #argument) -> [S; #count] {
                 #body
             }
         });

@@ -1,0 +1,231 @@
+//! Derivatives of a run by parameters and start values, exact to the accuracy of the run, through events.
+//!
+//! In: a [`Mechanism`], what is asked of a run, directions. Out: the run, with the derivative of each output at each sample along
+//! each direction. Method: the model calculates with numbers that have slopes ([`Gradient`]), beside the run itself, whose steps,
+//! events and bytes are those without derivatives. The start pose, the rates, projections, guards, impacts and outputs are all
+//! differentiated; at events the slopes jump (`jump`).
+//!
+//! ```
+//! use bg_model::bond_graph;
+//! use bg_model::run::Request;
+//! use bg_model::sensitivity::{Direction, sensitivities};
+//! use bg_model::simulation::Samples;
+//!
+//! bond_graph! {
+//!     pub graph Oscillator {
+//!         param mass: kg = 2, above 0;
+//!         param stiffness: N/m = 50, at least 0;
+//!         1 slide: translation;
+//!         I body = mass; C spring = stiffness start 0.1;
+//!         slide -> body; slide -> spring;
+//!         observe { x: m = spring.q }
+//!     }
+//! }
+//!
+//! let model = Oscillator::new(OscillatorParameters::default())?;
+//! let request = Request { t_end: 1.0, samples: Samples::Every(0.5), rtol: 1e-10, ..Request::default() };
+//! let found = sensitivities(&model, &request, &[Direction::parameter::<Oscillator>("stiffness")?])?;
+//! // x = 0.1 cos(w t) with w = sqrt(k / m): dx/dk = -0.1 sin(w t) t / (2 m w).
+//! let expected = -0.1 * 5.0_f64.sin() / (2.0 * 2.0 * 5.0);
+//! assert!((found.of(0, 0)[2] - expected).abs() < 1e-10);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod follow;
+mod jump;
+mod step;
+
+use nalgebra::SVector;
+use thiserror::Error;
+
+use crate::model::assembly::AssemblyError;
+use crate::model::description::Description;
+use crate::model::mechanism::{LiftedVisitor, Mechanism};
+use crate::model::parameters::{ParameterError, Parameters};
+use crate::model::scalar::Gradient;
+use crate::model::system::Model;
+use crate::solve::integrator::{Point, Scale};
+use crate::solve::run::{Request, RunError, Trajectory, observed};
+use crate::solve::simulation::{Observer, Switching};
+use follow::Follower;
+
+/// How many directions are followed in one pass.
+const WIDTH: usize = Gradient::WIDTH;
+
+/// The part of a parameter's value by which it is thought to change. Of more the error estimates would ask for shorter steps than
+/// the run's where stability limits these, and the errors of the slopes would be those of the run's steps all the same.
+const PART: f64 = 1.0 / 32.0;
+
+/// What a run is differentiated by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// The parameter of this index in the table, per its unit.
+    Parameter(usize),
+    /// The start of the state of this index, per its unit; what joints hold then follows by their projection.
+    Start(usize),
+}
+
+impl Direction {
+    /// The parameter called `name`.
+    ///
+    /// # Errors
+    /// There is none of that name.
+    pub fn parameter<Me: Mechanism>(name: &str) -> Result<Self, ParameterError> {
+        let index = Me::Parameters::table().iter().position(|parameter| parameter.name == name);
+        index.map(Self::Parameter).ok_or_else(|| ParameterError::Unknown { name: name.to_owned() })
+    }
+}
+
+/// A run with its derivatives.
+#[derive(Clone, Debug)]
+pub struct Sensitivities {
+    /// The run; its time is that of both.
+    pub trajectory: Trajectory,
+    /// The directions, as they were asked for.
+    pub directions: Vec<Direction>,
+    /// The derivatives of the states at the end, for each direction; in the state's unit per the direction's.
+    pub states: Vec<Vec<f64>>,
+    slopes: Vec<Vec<Vec<f64>>>,
+}
+
+impl Sensitivities {
+    /// The derivative of an output along a direction at each sample, in the output's unit per the direction's.
+    ///
+    /// # Panics
+    /// There is no such direction or output.
+    #[must_use]
+    pub fn of(&self, direction: usize, output: usize) -> &[f64] {
+        &self.slopes[direction][output]
+    }
+}
+
+/// Derivatives that could not be had.
+#[derive(Debug, Error)]
+pub enum SensitivityError {
+    /// The model cannot be made.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// It cannot be assembled.
+    #[error(transparent)]
+    Start(#[from] AssemblyError),
+    /// The run cannot start, or stopped before its end.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Something lies on a stop at the start.
+    #[error(
+        "something hits a stop at the start of the run, where its derivatives do not exist; start a little beside the stop"
+    )]
+    ImpactAtStart,
+    /// A guard touches zero and turns back: how the instant depends on parameters is not defined.
+    #[error("{switch} touches zero at t = {t:?} s without passing it: the run has no derivatives from there on")]
+    Grazes {
+        /// The switch.
+        switch: &'static str,
+        /// Time, s.
+        t: f64,
+    },
+    /// The derivatives change so fast that too many steps would be needed.
+    #[error(
+        "the derivatives change too fast from t = {t:?} s on: the model is too stiff for them, or they are not finite"
+    )]
+    Inexact {
+        /// Time, s.
+        t: f64,
+    },
+}
+
+/// Makes a run of `model` from its own start, as it is asked for, with the derivatives of its outputs along `directions`.
+///
+/// # Errors
+/// [`SensitivityError`].
+pub fn sensitivities<Me: Mechanism>(
+    model: &Me,
+    request: &Request,
+    directions: &[Direction],
+) -> Result<Sensitivities, SensitivityError> {
+    let parameters = model.parameters();
+    let values = (0..Me::Parameters::table().len()).map(|index| parameters.value(index)).collect();
+    model.visit_lifted::<Gradient, _>(Following { request, directions, values })
+}
+
+/// What is done with the model.
+struct Following<'a> {
+    request: &'a Request,
+    directions: &'a [Direction],
+    values: Vec<f64>,
+}
+
+impl Following<'_> {
+    /// The size of a direction: the change of it by which a slope may move a state as far from the truth as a step may.
+    fn size(&self, direction: Direction, start: &[f64]) -> f64 {
+        let value = match direction {
+            Direction::Parameter(index) => self.values[index],
+            Direction::Start(state) => start[state],
+        };
+        if value == 0.0 { PART } else { PART * value.abs() }
+    }
+
+    /// The parameters with their slopes along these directions.
+    fn sloped(&self, directions: &[Direction]) -> Vec<Gradient> {
+        let slope = |index: usize| {
+            std::array::from_fn(|l| f64::from(u8::from(directions.get(l) == Some(&Direction::Parameter(index)))))
+        };
+        self.values.iter().enumerate().map(|(index, &value)| Gradient::new(value, slope(index))).collect()
+    }
+}
+
+impl LiftedVisitor<Gradient> for Following<'_> {
+    type Output = Result<Sensitivities, SensitivityError>;
+
+    fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
+        self,
+        model: &Mo,
+        lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
+    ) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M>,
+        Li: Model<Gradient, N, G, M>,
+    {
+        let Description { outputs, .. } = model.description();
+        let start = model.start()?;
+        let settings = self.request.settings(0.0);
+        let scale = Scale::<N>::from(&settings.tolerances);
+        let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
+            let both = [lifted(&self.sloped(chunk))?, lifted(&self.sloped(&[]))?];
+            let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
+            let x = both[0].start()?;
+            Ok(Follower::new(both, chunk, sizes, scale.clone(), 0.0, x))
+        };
+        let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
+        let mut followers = Followers(followers);
+        let outcome = observed(model, self.request, &mut followers);
+        let Followers(mut followers) = followers;
+        followers.iter_mut().try_for_each(Follower::check)?;
+        let trajectory = outcome?;
+        let states = followers.iter().flat_map(Follower::states).collect();
+        let slopes: Vec<Vec<Vec<f64>>> = followers.into_iter().flat_map(|follower| follower.outputs).collect();
+        debug_assert!(slopes.iter().all(|columns| columns.len() == outputs.len()));
+        Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
+    }
+}
+
+/// Several observers of one kind.
+struct Followers<O>(Vec<O>);
+
+impl<O: Observer<N, G>, const N: usize, const G: usize> Observer<N, G> for Followers<O> {
+    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+        self.0.iter_mut().for_each(|each| each.sample(t, x, negative));
+    }
+
+    fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {
+        self.0.iter_mut().for_each(|each| each.passed(start, end, negative));
+    }
+
+    fn switched(&mut self, switching: &Switching<N, G>) {
+        self.0.iter_mut().for_each(|each| each.switched(switching));
+    }
+
+    fn is_done(&self) -> bool {
+        self.0.iter().any(Observer::is_done)
+    }
+}

@@ -1,0 +1,222 @@
+//! The command `sensitivity`: which parameter moves which output, as table, CSV and figure.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use bg_model::description::{OutputInfo, ParameterInfo};
+use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::parameters::Parameters;
+use bg_model::run::Request;
+use bg_model::sensitivity::{Direction, Sensitivities, sensitivities};
+use bg_model::simulation::Samples;
+use clap::Args;
+
+use super::arguments::{IntegrationArguments, ModelArguments};
+use super::run::{model, request};
+use super::{InputError, ended};
+use crate::Program;
+use crate::figures::FigureError;
+use crate::figures::influence::influence;
+use crate::files::{FileError, RunFolder, console};
+use crate::inputs;
+use crate::output::OutputError;
+use crate::parameters::{self, Chosen, nearest};
+use crate::scenes::Scene;
+use crate::sensitivity::{Influence, Measure, Question, courses, csv, influences, text, without_influence};
+
+const TABLE: &str = "sensitivity.txt";
+const CSV: &str = "sensitivity.csv";
+const COURSES: &str = "sensitivity_over_time.csv";
+const FIGURE: &str = "sensitivity.svg";
+
+/// What is differentiated, and by what.
+#[derive(Debug, Args)]
+pub struct SensitivityArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+
+    #[command(flatten)]
+    pub integration: IntegrationArguments,
+
+    /// The parameters; several with commas [default: all that the scene leaves adjustable]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub by: Vec<String>,
+
+    /// The outputs; several with commas [default: all]
+    #[arg(long = "output", value_name = "NAME", value_delimiter = ',')]
+    pub outputs: Vec<String>,
+
+    /// Also the outputs at these times, s
+    #[arg(long, value_name = "SECONDS", value_delimiter = ',', allow_negative_numbers = true)]
+    pub at: Vec<f64>,
+
+    /// How many parameters the printed table has for each measure of an output; the files have all
+    #[arg(long, value_name = "COUNT", default_value_t = 5)]
+    pub most: usize,
+
+    /// Folder for sensitivity.txt, sensitivity.csv, sensitivity_over_time.csv and sensitivity.svg
+    #[arg(long, value_name = "DIR", default_value = "out/sensitivity")]
+    pub out: PathBuf,
+}
+
+pub fn sensitivity<Me: Scenes>(
+    program: &Program<Me>,
+    arguments: &SensitivityArguments,
+) -> Result<ExitCode, InputError> {
+    let values = &arguments.model;
+    let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
+    chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
+    let scene = program.scene_called(&values.scene);
+    let parameters = adjustable(scene, &chosen, &arguments.by, "--by")?;
+    let outputs = observed(scene, &arguments.outputs, "--output")?;
+    let end = arguments.integration.t_end;
+    if let Some(&value) = arguments.at.iter().find(|at| !(0.0..=end).contains(*at)) {
+        return Err(InputError::Range { name: "--at", value, range: format!("a time in the run, 0 to {end} s") });
+    }
+    let request = with_times(request(&arguments.integration, 0.0, None)?, &arguments.at);
+    let names = [TABLE, CSV, COURSES, FIGURE].map(str::to_owned);
+    let folder = RunFolder::claim(&arguments.out, &names)?;
+    let by: Vec<&str> = parameters.iter().map(|(info, _)| info.name).collect();
+    let found =
+        Me::model(scene.index, Differentiated { scene, scenes: &program.scenes, chosen: &chosen, request, by })?;
+    let mut measures = Measure::ALL.to_vec();
+    measures.extend(arguments.at.iter().map(|&t| Measure::At(t)));
+    let question = Question { outputs: &outputs, parameters: &parameters, measures: &measures };
+    let all = influences(&found, &question);
+    let told = told(&found, &all, &question, arguments.most);
+    let (written, faults) = write(folder, &scene.name, &found, &all, &question);
+    let written =
+        written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
+    let printed = console::print(&format!("{told}\nwritten: {written}\n"));
+    Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
+}
+
+/// The parameters of these names with their values, of a scene; without names all that it leaves adjustable.
+pub fn adjustable<P: Parameters>(
+    scene: &Scene,
+    chosen: &Chosen<P>,
+    names: &[String],
+    option: &'static str,
+) -> Result<Vec<(&'static ParameterInfo, f64)>, InputError> {
+    let own = scene.description.parameters;
+    let value = |info: &'static ParameterInfo| (info, chosen.values.get(info.name).unwrap_or(info.default));
+    if names.is_empty() {
+        return Ok(own.iter().map(value).collect());
+    }
+    let find = |name: &String| {
+        let found = own.iter().find(|info| info.name == name).map(value);
+        found.ok_or_else(|| unknown(option, "parameter", name, &scene.name, own.iter().map(|info| info.name)))
+    };
+    names.iter().map(find).collect()
+}
+
+/// The outputs of these names with their places; a name without components stands for all of them. Without names all.
+pub fn observed(
+    scene: &Scene,
+    names: &[String],
+    option: &'static str,
+) -> Result<Vec<(usize, &'static OutputInfo)>, InputError> {
+    let all = scene.description.outputs;
+    if names.is_empty() {
+        return Ok(all.iter().enumerate().collect());
+    }
+    let mut found = Vec::new();
+    for name in names {
+        let before = found.len();
+        found.extend(all.iter().enumerate().filter(|(_, output)| output.name == name || output.of == name));
+        if found.len() == before {
+            return Err(unknown(option, "output", name, &scene.name, all.iter().map(|output| output.name)));
+        }
+    }
+    Ok(found)
+}
+
+/// A name that a scene does not have.
+pub fn unknown(
+    option: &'static str,
+    kind: &'static str,
+    name: &str,
+    scene: &str,
+    names: impl Iterator<Item = &'static str>,
+) -> InputError {
+    let near = nearest(name, names).map_or_else(
+        || format!("; the command `scene {scene}` lists them"),
+        |near| format!("; did you mean `{near}`?"),
+    );
+    InputError::Unknown { option, fault: format!("scene `{scene}` has no {kind} `{name}` to be asked for{near}") }
+}
+
+/// With samples at these times as well.
+fn with_times(mut request: Request, at: &[f64]) -> Request {
+    if let Samples::At(times) = &mut request.samples {
+        times.extend(at);
+        times.sort_unstable_by(f64::total_cmp);
+        times.dedup();
+    }
+    request
+}
+
+/// A scene's model with its run and derivatives.
+struct Differentiated<'a, P> {
+    scene: &'a Scene,
+    scenes: &'a [Scene],
+    chosen: &'a Chosen<P>,
+    request: Request,
+    by: Vec<&'a str>,
+}
+
+impl<P: Parameters> MechanismVisitor for Differentiated<'_, P> {
+    type Output = Result<Sensitivities, InputError>;
+
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        let model: Sc = model(self.scene, self.scenes, self.chosen)?;
+        let directions = self.by.iter().map(|name| Direction::parameter::<Sc>(name)).collect::<Result<Vec<_>, _>>()?;
+        Ok(sensitivities(&model, &self.request, &directions)?)
+    }
+}
+
+/// What is printed.
+fn told(found: &Sensitivities, all: &[Influence], question: &Question, most: usize) -> String {
+    let still = without_influence(all, question);
+    let still = if still.is_empty() {
+        String::new()
+    } else {
+        format!("\nno influence on these outputs: {}\n", still.join(", "))
+    };
+    let (t, events) = (found.trajectory.last.t, found.trajectory.statistics.events);
+    format!(
+        "derivatives of {} outputs by {} parameters over {t} s, {events} events\n\n{}{still}",
+        question.outputs.len(),
+        question.parameters.len(),
+        text(all, most)
+    )
+}
+
+/// Writes the files; gives their number, where they are there, and what failed.
+fn write(
+    mut folder: RunFolder,
+    scene: &str,
+    found: &Sensitivities,
+    all: &[Influence],
+    question: &Question,
+) -> (Option<usize>, Vec<OutputError>) {
+    let mut faults = Vec::new();
+    let mut fill = || -> Result<(), FileError> {
+        folder.write_text(TABLE, &text(all, question.parameters.len()))?;
+        folder.write_text(CSV, &csv(all))?;
+        folder.write_text(COURSES, &courses(found, question))?;
+        match influence(&format!("{scene}: change of each course for a change of the parameter by its size"), all) {
+            Ok(svg) => folder.write_text(FIGURE, &svg)?,
+            Err(FigureError::Empty) => {}
+            Err(source) => faults.push(OutputError::Figure { file: FIGURE.to_owned(), source }),
+        }
+        Ok(())
+    };
+    match fill().and_then(|()| folder.publish()) {
+        Ok(files) => (Some(files.len()), faults),
+        Err(fault) => {
+            faults.push(fault.into());
+            (None, faults)
+        }
+    }
+}

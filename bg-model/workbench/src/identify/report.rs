@@ -1,0 +1,150 @@
+//! What an identification found, as text for the terminal and as parameters for the next run.
+//!
+//! In: an [`Identified`] and the data. Out: tables of parameters, correlations and columns; what the data do not determine, by name.
+
+use bg_model::description::OutputInfo;
+
+use super::Identified;
+use super::data::Data;
+use crate::tables::table;
+
+/// Correlations above this are pointed out.
+const STRONG: f64 = 0.95;
+
+/// The report.
+#[must_use]
+pub fn text(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> String {
+    let end = if found.has_converged { "converged" } else { "did not converge" };
+    let mut text = format!(
+        "{} parameters from {} values in {} columns: {end} after {} runs with derivatives\n\n{}",
+        found.estimates.len(),
+        data.count(),
+        data.columns.len(),
+        found.evaluations,
+        parameters(found)
+    );
+    for estimate in found.estimates.iter().filter(|estimate| estimate.is_held) {
+        text += &format!(
+            "`{}` is at its bound: the data want it beyond; give other bounds with --bounds\n",
+            estimate.variable.info.name
+        );
+    }
+    for parts in &found.undetermined {
+        text += &undetermined(parts);
+    }
+    if found.estimates.len() > 1 {
+        text += &format!("\ncorrelations of the errors\n{}", correlations(found));
+        text += &strong(found);
+    }
+    text += &format!("\n{}", columns(found, data, outputs));
+    if !data.ignored.is_empty() {
+        text += &format!("columns that measure no output asked for: {}\n", data.ignored.join(", "));
+    }
+    text
+}
+
+fn parameters(found: &Identified) -> String {
+    let head = ["parameter", "unit", "found", "95 % from", "to", "+-, %", "started at"].map(str::to_owned);
+    let rows = found.estimates.iter().map(|estimate| {
+        let ends = estimate.interval.map_or_else(
+            || ["-", "-", "-"].map(str::to_owned),
+            |[lower, upper]| {
+                let half = 50.0 * (upper - lower) / estimate.value.abs();
+                [format!("{lower:.6e}"), format!("{upper:.6e}"), format!("{half:.2e}")]
+            },
+        );
+        let [lower, upper, half] = ends;
+        let info = estimate.variable.info;
+        let value = format!("{:.6e}", estimate.value);
+        [
+            info.name.to_owned(),
+            info.unit.to_owned(),
+            value,
+            lower,
+            upper,
+            half,
+            format!("{:.6e}", estimate.variable.start),
+        ]
+    });
+    table(&std::iter::once(head).chain(rows).collect::<Vec<_>>())
+}
+
+/// A sentence on what the data leave open.
+fn undetermined(parts: &[(&str, f64)]) -> String {
+    match parts {
+        [(name, _)] => format!(
+            "`{name}` cannot be identified: it does not move what was measured; fix it, or measure another output\n"
+        ),
+        several => {
+            let names: Vec<String> = several.iter().map(|(name, part)| format!("{part:+.2} of `{name}`")).collect();
+            format!(
+                "these cannot be told apart: a change by {} together moves nothing that was measured; fix one of them\n",
+                names.join(", ")
+            )
+        }
+    }
+}
+
+fn correlations(found: &Identified) -> String {
+    let names: Vec<String> = found.estimates.iter().map(|estimate| estimate.variable.info.name.to_owned()).collect();
+    let head = std::iter::once(String::new()).chain(names.iter().cloned()).collect::<Vec<_>>();
+    let row = |(i, name): (usize, &String)| {
+        let cell = |j: usize| {
+            let value = found.correlations[(i, j)];
+            if value.is_nan() { "-".to_owned() } else { format!("{value:.3}") }
+        };
+        std::iter::once(name.clone()).chain((0..names.len()).map(cell)).collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(names.iter().enumerate().map(row)).collect();
+    aligned(&rows)
+}
+
+/// Rows of cells of equal width, for a number of columns that is not known.
+fn aligned(rows: &[Vec<String>]) -> String {
+    let widths: Vec<usize> =
+        (0..rows[0].len()).map(|k| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0)).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}"));
+        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}
+
+/// What is nearly one parameter.
+fn strong(found: &Identified) -> String {
+    let count = found.estimates.len();
+    let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+    let is_strong = |&(i, j): &(usize, usize)| found.correlations[(i, j)].abs() > STRONG;
+    let name = |k: usize| found.estimates[k].variable.info.name;
+    pairs
+        .filter(is_strong)
+        .map(|(i, j)| {
+            format!("`{}` and `{}` can hardly be told apart: what one loses the other gains\n", name(i), name(j))
+        })
+        .collect()
+}
+
+fn columns(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> String {
+    let head = ["column", "output", "values", "noise found", "unit"].map(str::to_owned);
+    let rows = found.columns.iter().zip(&data.columns).map(|(column, measured)| {
+        let output = &outputs[column.output];
+        let count = measured.values.iter().flatten().count().to_string();
+        [measured.name.clone(), output.name.to_owned(), count, format!("{:.3e}", column.noise), output.unit.to_owned()]
+    });
+    table(&std::iter::once(head).chain(rows).collect::<Vec<_>>())
+}
+
+/// The parameters found, as a file for `--params`.
+#[must_use]
+pub fn toml(found: &Identified) -> String {
+    let line = |estimate: &super::Estimate| {
+        let info = estimate.variable.info;
+        let unit = if info.unit.is_empty() { "1" } else { info.unit };
+        let interval = estimate.interval.map_or_else(
+            || "not determined by the data".to_owned(),
+            |[lower, upper]| format!("95 %: {lower:.6e} to {upper:.6e}"),
+        );
+        format!("# [{unit}] {interval}\n{} = {:?}\n", info.name, estimate.value)
+    };
+    found.estimates.iter().map(line).collect()
+}
