@@ -61,6 +61,7 @@
 //! | [`live`] | the same with the model inside, so that the page can run it again |
 //! | [`markup`] | texts as HTML |
 //! | [`shown`] | which page shows a run, and with which files |
+//! | [`sweep`] | what comes of many runs with many values |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
 //! | [`cookbook`] | short programs for what comes up after the first run |
@@ -93,6 +94,8 @@ pub mod picture;
 pub mod samples;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod shown;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod sweep;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod tables;
 

@@ -7,6 +7,7 @@ use bg_model::run::Request;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::methods::integrator;
+use super::sweep::SweepArguments;
 use crate::golden::FOLDER;
 use crate::picture::Level;
 use crate::request::Integration;
@@ -51,6 +52,8 @@ pub enum Command {
     Precision(PrecisionArguments),
     /// Linearise at an equilibrium or at some time: modes, frequency responses, A, B, C and D
     Linearize(LinearizeArguments),
+    /// Run for many values of parameters by a plan, into Parquet files; on all cores, or on many machines
+    Sweep(SweepArguments),
     /// Record a run as a golden output, or check that what was recorded still comes out
     #[command(subcommand)]
     Golden(GoldenCommand),
@@ -349,4 +352,15 @@ pub struct PrecisionArguments {
 /// A number on the command line.
 fn real(text: &str) -> Result<f64, &'static str> {
     text.parse().map_err(|_| "not a number")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_given_is_as_elsewhere() {
+        let run = Cli::parse_from(["program", "--scene", "any"]).run;
+        assert_eq!(run.integration.integration(), Integration::default());
+    }
 }

@@ -13,6 +13,7 @@ mod precision;
 mod progress;
 mod report;
 mod run;
+mod sweep;
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -40,6 +41,7 @@ use crate::request::RequestError;
 use crate::running::BeginError;
 use crate::samples::Unreadable;
 use crate::scenes::Fixed;
+use crate::sweep::SweepError;
 use crate::tables::{self, Part};
 use arguments::{Cli, Command, GoldenCommand};
 
@@ -82,6 +84,8 @@ enum InputError {
     Measure(#[from] MeasureError),
     #[error(transparent)]
     Golden(#[from] GoldenError),
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     #[error("--live: {0}")]
     Live(#[from] ModuleError),
 }
@@ -123,6 +127,7 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
         Command::Golden(GoldenCommand::Record(arguments)) => golden::record(program, &arguments),
         Command::Golden(GoldenCommand::Check(arguments)) => golden::check(program, &arguments),
         Command::Compare(arguments) => compare::compare(program, &arguments),
+        Command::Sweep(arguments) => sweep::obey(program, &arguments),
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.scenes))),
         Command::Scene { scene: Some(name) } => {
