@@ -44,6 +44,7 @@
 //! |---|---|
 //! | [`program`] | how a program is made of a mechanism, and what it adds |
 //! | [`command`] | what the user asks for |
+//! | [`calls`] | the same for another program: runs and linear models as values |
 //! | [`scenes`] | which models there are, by name |
 //! | [`parameters`] | which values the parameters have in this run |
 //! | [`inputs`] | which inputs: numbers, or tables from files |
@@ -72,6 +73,8 @@
     allow(dead_code, reason = "what is shared is also for reports, which a page does not write")
 )]
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod calls;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod command;
 #[cfg(not(target_arch = "wasm32"))]

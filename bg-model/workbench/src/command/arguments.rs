@@ -243,6 +243,13 @@ pub struct LinearizeArguments {
 }
 
 impl LinearizeArguments {
+    /// Those of a scene, told nothing else.
+    pub fn of_scene(scene: &str) -> Self {
+        let model = ModelArguments { scene: scene.to_owned(), set: Vec::new(), params: None, input: Vec::new() };
+        let Request { method, rtol, .. } = Request::default();
+        Self { model, at: None, equilibrium: false, method, rtol, out: PathBuf::new() }
+    }
+
     /// How the run to `t` (s) is made.
     pub fn integration(&self, t: f64) -> IntegrationArguments {
         let Self { method, rtol, .. } = *self;

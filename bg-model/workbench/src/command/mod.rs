@@ -44,6 +44,7 @@ use crate::scenes::Fixed;
 use crate::sweep::SweepError;
 use crate::tables::{self, Part};
 use arguments::{Cli, Command, GoldenCommand};
+pub(crate) use linearize::space as linearised;
 
 /// Input that cannot be used.
 #[derive(Debug, Error)]

@@ -194,12 +194,20 @@ impl Table {
         Ok(Self { columns, texts: texts(metadata) })
     }
 
-    /// The texts about the table in a file that is whole; its values are not looked at.
-    ///
-    /// # Errors
-    /// [`ParquetError`].
-    pub fn read_texts(file: &[u8]) -> Result<Vec<(String, String)>, ParquetError> {
-        metadata(file).map(texts)
+    /// Appends the rows of a table with the same columns; a table without columns becomes that one.
+    pub fn append(&mut self, more: Self) {
+        if self.columns.is_empty() {
+            *self = more;
+            return;
+        }
+        for (column, more) in self.columns.iter_mut().zip(more.columns) {
+            match (&mut column.values, more.values) {
+                (Values::Whole(values), Values::Whole(more)) => values.extend(more),
+                (Values::Real(values), Values::Real(more)) => values.extend(more),
+                (Values::Text(values), Values::Text(more)) => values.extend(more),
+                _ => {}
+            }
+        }
     }
 }
 
@@ -306,7 +314,10 @@ mod tests {
     fn a_table_reads_back() {
         let bytes = table().bytes();
         assert_eq!(Table::read(&bytes).unwrap(), table());
-        assert_eq!(Table::read_texts(&bytes).unwrap(), table().texts);
+        let mut twice = Table::default();
+        twice.append(table());
+        twice.append(table());
+        assert_eq!(twice.columns[0].values, Values::Whole([0, -1, i64::MAX].repeat(2)));
         let empty =
             Table { columns: vec![Column { name: "x".to_owned(), values: Values::Real(vec![]) }], texts: vec![] };
         assert_eq!(Table::read(&empty.bytes()).unwrap(), empty);
@@ -316,7 +327,7 @@ mod tests {
     fn a_file_that_is_cut_anywhere_or_has_a_flipped_bit_is_no_table() {
         let bytes = table().bytes();
         for length in 0..bytes.len() {
-            assert!(Table::read(&bytes[..length]).is_err() && Table::read_texts(&bytes[..length]).is_err(), "{length}");
+            assert!(Table::read(&bytes[..length]).is_err(), "{length}");
         }
         let mut flipped = bytes;
         flipped[40] ^= 1;

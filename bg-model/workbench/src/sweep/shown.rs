@@ -80,6 +80,18 @@ pub fn write_csv(folder: &Folder, kind: Kind, writer: impl Write) -> io::Result<
     csv.flush()
 }
 
+/// All rows of the shards that are there as one table, for who has the memory.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn joined(folder: &Folder, kind: Kind) -> Result<Table, FolderError> {
+    let mut all = Table::default();
+    for table in tables(folder, kind)? {
+        all.append(table?);
+    }
+    Ok(all)
+}
+
 fn whole(recipe: &toml::Table, name: &str) -> usize {
     recipe.get(name).and_then(toml::Value::as_integer).and_then(|value| usize::try_from(value).ok()).unwrap_or(0)
 }
