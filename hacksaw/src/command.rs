@@ -19,8 +19,9 @@ use crate::mechanism::Hacksaw;
 use crate::precision::case;
 use crate::{checks, sources, summary};
 
-/// Does what the arguments ask for and gives the exit code.
-pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+/// The program.
+#[must_use]
+pub fn program() -> Program<Hacksaw> {
     let program = Program::<Hacksaw>::new()
         .version(env!("CARGO_PKG_VERSION"))
         .about(
@@ -30,7 +31,12 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         .extras(Paper);
     #[cfg(not(target_arch = "wasm32"))]
     let program = program.cases(case::cases(), &["paper", "full-offset", "rigid"]);
-    program.main(arguments)
+    program
+}
+
+/// Does what the arguments ask for and gives the exit code.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    program().main(arguments)
 }
 
 /// What the program adds.

@@ -123,7 +123,7 @@ impl Setting {
 }
 
 /// What stands before the name of a file whose rows a cubic spline joins.
-const CUBIC: &str = "cubic:";
+pub(crate) const CUBIC: &str = "cubic:";
 
 /// The inputs of a model that declares `infos`, as `settings` say.
 ///

@@ -44,6 +44,7 @@
 //! |---|---|
 //! | [`program`] | how a program is made of a mechanism, and what it adds |
 //! | [`command`] | what the user asks for |
+//! | [`calls`] | the same for another program: runs and linear models as values |
 //! | [`scenes`] | which models there are, by name |
 //! | [`parameters`] | which values the parameters have in this run |
 //! | [`inputs`] | which inputs: numbers, or tables from files |
@@ -63,6 +64,7 @@
 //! | [`live`] | the same with the model inside, so that the page can run it again |
 //! | [`markup`] | texts as HTML |
 //! | [`shown`] | which page shows a run, and with which files |
+//! | [`sweep`] | what comes of many runs with many values |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
 //! | [`cookbook`] | short programs for what comes up after the first run |
@@ -73,6 +75,8 @@
     allow(dead_code, reason = "what is shared is also for reports, which a page does not write")
 )]
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod calls;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod command;
 #[cfg(not(target_arch = "wasm32"))]
@@ -99,6 +103,8 @@ pub mod samples;
 pub mod sensitivity;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod shown;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod sweep;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod tables;
 

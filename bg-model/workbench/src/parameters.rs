@@ -168,19 +168,27 @@ fn set_from_toml<P: Parameters>(parameters: &mut Chosen<P>, path: &Path, text: &
         let [line, column] = place_of(&fault, text);
         SettingError::Toml { path: path.to_owned(), line, column, message: one_line(fault.message()) }
     })?;
-    let place = path.display().to_string();
-    for (name, value) in &entries {
+    set_from_table(parameters, &path.display().to_string(), &entries)
+}
+
+/// Sets the parameters that a TOML table has; a fault names `place`.
+pub(crate) fn set_from_table<P: Parameters>(
+    parameters: &mut Chosen<P>,
+    place: &str,
+    entries: &toml::Table,
+) -> Result<(), SettingError> {
+    for (name, value) in entries {
         let number = match value {
             toml::Value::Float(number) => *number,
             // Every whole number that a parameter can sensibly have is exact in f64.
             toml::Value::Integer(number) => *number as f64,
             _ if parameters.values.get(name).is_none() => 0.0,
             other => {
-                let (place, name) = (place.clone(), name.clone());
+                let (place, name) = (place.to_owned(), name.clone());
                 return Err(SettingError::NotANumber { place, name, value: one_line(&other.to_string()) });
             }
         };
-        set(parameters, &place, name, number)?;
+        set(parameters, place, name, number)?;
     }
     Ok(())
 }

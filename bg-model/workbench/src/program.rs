@@ -109,6 +109,16 @@ impl<Me: Scenes> Program<Me> {
         }
     }
 
+    /// The scene called `name`, or without a name that of the program; else a sentence.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn find_scene(&self, name: Option<&str>) -> Result<&Scene, String> {
+        let name = name.unwrap_or(&self.scene);
+        self.scenes.iter().find(|scene| scene.name == name).ok_or_else(|| {
+            let known: Vec<&str> = self.scenes.iter().map(|scene| scene.name.as_str()).collect();
+            format!("there is no scene `{name}`; there are {}", known.join(", "))
+        })
+    }
+
     /// The scene called `name`.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn scene_called(&self, name: &str) -> &Scene {

@@ -10,6 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use thiserror::Error;
 
 use crate::parameters::number;
+use crate::program::T_END;
 
 /// The most rows of a CSV file: some hundred MB.
 const MOST_ROWS: f64 = 500_000.0;
@@ -36,6 +37,14 @@ pub struct Integration {
     pub atol: Option<f64>,
     /// The step of an integrator with a fixed step, s.
     pub fixed_step: f64,
+}
+
+impl Default for Integration {
+    /// As a run is that is told nothing.
+    fn default() -> Self {
+        let Request { method, fixed_step, rtol, .. } = Request::default();
+        Self { t_end: T_END, step: 0.01, method, rtol, atol: None, fixed_step }
+    }
 }
 
 fn from_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Integrator, D::Error> {

@@ -97,28 +97,42 @@ pub struct Fixed {
     pub adjusting: String,
 }
 
+/// Whether `scene`, one of `scenes`, can have these values of the whole table.
+///
+/// # Errors
+/// The first value that differs from the one that the scene keeps the parameter at.
+pub fn check_fixed<P: Parameters>(scene: &Scene, scenes: &[Scene], values: &P) -> Result<(), Fixed> {
+    let table = P::table().iter().enumerate();
+    let fixed = table.filter(|(index, info)| values.value(*index) != info.default && !scene.adjusts(info.name));
+    match fixed.into_iter().next() {
+        None => Ok(()),
+        Some((index, info)) => Err(Fixed {
+            scene: scene.name.clone(),
+            name: info.name,
+            index,
+            value: format!("{} {}", number(info.default), info.unit).trim_end().to_owned(),
+            adjusting: scenes
+                .iter()
+                .find(|scene| scene.adjusts(info.name))
+                .map_or_else(String::new, |scene| scene.name.clone()),
+        }),
+    }
+}
+
 /// The own parameters of `scene`, one of `scenes`, by name from `values` of the whole table.
 ///
 /// # Errors
-/// A value differs from the one that the scene keeps the parameter at.
-pub fn own_parameters<P: Parameters>(scene: &Scene, scenes: &[Scene], values: &impl Parameters) -> Result<P, Fixed> {
-    fn table<P: Parameters>(_: &P) -> &'static [bg_model::description::ParameterInfo] {
-        P::table()
-    }
+/// As [`check_fixed`].
+pub fn own_parameters<P: Parameters, All: Parameters>(
+    scene: &Scene,
+    scenes: &[Scene],
+    values: &All,
+) -> Result<P, Fixed> {
+    check_fixed(scene, scenes, values)?;
     let mut own = P::default();
-    for (index, info) in table(values).iter().enumerate() {
-        let value = values.value(index);
+    for (index, info) in All::table().iter().enumerate() {
         if let Some(place) = P::table().iter().position(|kept| kept.name == info.name) {
-            own.set_value(place, value);
-        } else if value != info.default {
-            let adjusting = scenes.iter().find(|scene| scene.adjusts(info.name));
-            return Err(Fixed {
-                scene: scene.name.clone(),
-                name: info.name,
-                index,
-                value: format!("{} {}", number(info.default), info.unit).trim_end().to_owned(),
-                adjusting: adjusting.map_or_else(String::new, |scene| scene.name.clone()),
-            });
+            own.set_value(place, values.value(index));
         }
     }
     Ok(own)

@@ -9,6 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::identify::IdentifyArguments;
 use super::methods::integrator;
 use super::sensitivity::SensitivityArguments;
+use super::sweep::SweepArguments;
 use crate::golden::FOLDER;
 use crate::picture::Level;
 use crate::request::Integration;
@@ -57,6 +58,8 @@ pub enum Command {
     Sensitivity(SensitivityArguments),
     /// Fit parameters to measured columns: values with confidence, correlations, what cannot be identified
     Identify(IdentifyArguments),
+    /// Run for many values of parameters by a plan, into Parquet files; on all cores, or on many machines
+    Sweep(SweepArguments),
     /// Record a run as a golden output, or check that what was recorded still comes out
     #[command(subcommand)]
     Golden(GoldenCommand),
@@ -246,6 +249,13 @@ pub struct LinearizeArguments {
 }
 
 impl LinearizeArguments {
+    /// Those of a scene, told nothing else.
+    pub fn of_scene(scene: &str) -> Self {
+        let model = ModelArguments { scene: scene.to_owned(), set: Vec::new(), params: None, input: Vec::new() };
+        let Request { method, rtol, .. } = Request::default();
+        Self { model, at: None, equilibrium: false, method, rtol, out: PathBuf::new() }
+    }
+
     /// How the run to `t` (s) is made.
     pub fn integration(&self, t: f64) -> IntegrationArguments {
         let Self { method, rtol, .. } = *self;
@@ -355,4 +365,15 @@ pub struct PrecisionArguments {
 /// A number on the command line.
 fn real(text: &str) -> Result<f64, &'static str> {
     text.parse().map_err(|_| "not a number")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_given_is_as_elsewhere() {
+        let run = Cli::parse_from(["program", "--scene", "any"]).run;
+        assert_eq!(run.integration.integration(), Integration::default());
+    }
 }

@@ -46,6 +46,19 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArgumen
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
 }
 
+/// The linear model of a scene at `at`, s, or without it at the equilibrium near the start; or the sentence why there is none.
+pub fn space<Me: Scenes>(
+    program: &Program<Me>,
+    scene: &Scene,
+    chosen: &Chosen<Me::Parameters>,
+    at: Option<f64>,
+) -> Result<StateSpace, String> {
+    let arguments = LinearizeArguments { at, ..LinearizeArguments::of_scene(&scene.name) };
+    let here = Here { scene, scenes: &program.scenes, chosen, arguments: &arguments };
+    let space = check_time("at", at).and_then(|()| Me::model(scene.index, here));
+    space.map(|(space, _)| space).map_err(|fault| fault.to_string())
+}
+
 /// Refuses a time that no run reaches.
 pub fn check_time(name: &'static str, at: Option<f64>) -> Result<(), InputError> {
     match at.filter(|at| !(at.is_finite() && *at >= 0.0)) {

@@ -15,6 +15,7 @@ mod progress;
 mod report;
 mod run;
 mod sensitivity;
+mod sweep;
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -45,8 +46,10 @@ use crate::request::RequestError;
 use crate::running::BeginError;
 use crate::samples::Unreadable;
 use crate::scenes::Fixed;
+use crate::sweep::SweepError;
 use crate::tables::{self, Part};
 use arguments::{Cli, Command, GoldenCommand};
+pub(crate) use linearize::space as linearised;
 
 /// Input that cannot be used.
 #[derive(Debug, Error)]
@@ -95,6 +98,8 @@ enum InputError {
     Identify(#[from] IdentifyError),
     #[error(transparent)]
     Data(#[from] Unusable),
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     #[error("--live: {0}")]
     Live(#[from] ModuleError),
 }
@@ -136,6 +141,7 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
         Command::Golden(GoldenCommand::Record(arguments)) => golden::record(program, &arguments),
         Command::Golden(GoldenCommand::Check(arguments)) => golden::check(program, &arguments),
         Command::Compare(arguments) => compare::compare(program, &arguments),
+        Command::Sweep(arguments) => sweep::obey(program, &arguments),
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Identify(arguments) => identify::identify(program, &arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),

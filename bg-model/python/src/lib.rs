@@ -1,0 +1,54 @@
+//! A Python module of any mechanism: runs, linear models and sweeps, with columns as NumPy arrays.
+//!
+//! In a crate of the type `cdylib` one line makes the module `_pendulum`, which maturin puts into a package `pendulum`
+//! ([`hacksaw/python`](../../../hacksaw/python) is an example):
+//!
+//! ```ignore
+//! bg_python::python_module!(_pendulum, bg_workbench::Program::<Pendulum>::new);
+//! ```
+//!
+//! | module | question |
+//! |---|---|
+//! | [`model`] | what the module's functions are |
+//! | [`table`] | what they give: columns by name |
+//! | [`waiting`] | how Ctrl-C reaches what runs without Python |
+//!
+//! Numbers are moved into NumPy arrays, not copied. While a model runs, other Python threads do.
+
+pub mod model;
+pub mod table;
+pub mod waiting;
+
+use bg_model::mechanism::Scenes;
+use bg_workbench::Program;
+use pyo3::prelude::*;
+
+#[doc(hidden)]
+pub use pyo3;
+
+/// Makes the Python module `$name` of the program that the function `$program` gives.
+#[macro_export]
+macro_rules! python_module {
+    ($name:ident, $program:expr) => {
+        /// The module.
+        #[$crate::pyo3::pymodule(crate = "bg_python::pyo3")]
+        fn $name(module: &$crate::pyo3::Bound<'_, $crate::pyo3::types::PyModule>) -> $crate::pyo3::PyResult<()> {
+            $crate::fill(module, $program)
+        }
+    };
+}
+
+/// Puts the functions of a model into `module`; `program` makes the program of its mechanism.
+///
+/// # Errors
+/// Python's.
+pub fn fill<Me: Scenes>(module: &Bound<'_, PyModule>, program: fn() -> Program<Me>) -> PyResult<()> {
+    let model = Bound::new(module.py(), model::Model::new(program))?;
+    for name in model::FUNCTIONS {
+        module.add(name, model.getattr(name)?)?;
+    }
+    module.add_class::<table::Table>()?;
+    module.add("RunFailed", module.py().get_type::<model::RunFailed>())?;
+    module.add("__doc__", model.getattr("about")?)?;
+    module.add("__version__", model.getattr("version")?)
+}

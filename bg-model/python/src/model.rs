@@ -1,0 +1,355 @@
+//! The functions of a model's module.
+//!
+//! In: keyword arguments. Out: tables; or `ValueError` with the sentence that the command line would say.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use bg_model::description::ParameterInfo;
+use bg_model::mechanism::Scenes;
+use bg_model::nalgebra::DMatrix;
+use bg_model::run::Trajectory;
+use bg_workbench::Program;
+use bg_workbench::calls::{self, Asked, Started};
+use bg_workbench::linear::StateSpace;
+use bg_workbench::sweep::folder::{Folder, Kind};
+use bg_workbench::sweep::plan::Plan;
+use bg_workbench::sweep::{Outcome, Share, parquet, recipe, shown, sweep};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::table::{Table, Values};
+use crate::waiting::interruptible;
+
+pyo3::create_exception!(
+    bg_python,
+    RunFailed,
+    PyValueError,
+    "A run that stopped before its end; `run` has what was reached."
+);
+
+/// The functions that a module has.
+pub const FUNCTIONS: [&str; 8] =
+    ["run", "linearize", "parameters", "scenes", "outputs", "sweep", "sweep_shards", "read_sweep"];
+
+/// What a module does, whatever its mechanism.
+trait Workbench: Send + Sync {
+    fn about(&self) -> [String; 2];
+    fn scenes(&self) -> Vec<(String, String)>;
+    fn parameters(&self, scene: Option<&str>) -> Result<Vec<ParameterInfo>, String>;
+    fn outputs(&self, scene: Option<&str>) -> Result<Vec<(String, String)>, String>;
+    fn run(&self, asked: &Asked) -> Result<(Trajectory, Option<String>), String>;
+    fn linearize(&self, asked: &Asked, at: Option<f64>) -> Result<StateSpace, String>;
+    fn shards(&self, plan: &Source) -> Result<usize, String>;
+    fn sweep(&self, work: &Work, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, String>;
+}
+
+/// A plan, as a file or as text.
+enum Source {
+    File(PathBuf),
+    Text(String),
+}
+
+/// What is to be done of a sweep.
+struct Work {
+    plan: Source,
+    out: PathBuf,
+    share: Share,
+    threads: usize,
+}
+
+/// The workbench of a mechanism.
+struct Of<Me: Scenes>(fn() -> Program<Me>);
+
+impl Source {
+    fn read<'a, Me: Scenes>(&self, program: &'a Program<Me>) -> Result<Plan<'a, Me::Parameters>, String> {
+        let plan = match self {
+            Self::File(path) => Plan::read(program, path),
+            Self::Text(text) => Plan::parse(program, "the plan", Path::new(""), text.clone()),
+        };
+        plan.map_err(|fault| fault.to_string())
+    }
+}
+
+impl<Me: Scenes> Workbench for Of<Me> {
+    fn about(&self) -> [String; 2] {
+        calls::about(&(self.0)())
+    }
+
+    fn scenes(&self) -> Vec<(String, String)> {
+        calls::scenes(&(self.0)())
+    }
+
+    fn parameters(&self, scene: Option<&str>) -> Result<Vec<ParameterInfo>, String> {
+        calls::parameters(&(self.0)(), scene).map_err(|fault| fault.to_string())
+    }
+
+    fn outputs(&self, scene: Option<&str>) -> Result<Vec<(String, String)>, String> {
+        calls::outputs(&(self.0)(), scene).map_err(|fault| fault.to_string())
+    }
+
+    fn run(&self, asked: &Asked) -> Result<(Trajectory, Option<String>), String> {
+        calls::run(&(self.0)(), asked).map_err(|fault| fault.to_string())
+    }
+
+    fn linearize(&self, asked: &Asked, at: Option<f64>) -> Result<StateSpace, String> {
+        calls::linearize(&(self.0)(), asked, at).map_err(|fault| fault.to_string())
+    }
+
+    fn shards(&self, plan: &Source) -> Result<usize, String> {
+        let program = (self.0)();
+        let plan = plan.read(&program)?;
+        Ok(plan.design.runs.div_ceil(plan.shard))
+    }
+
+    fn sweep(&self, work: &Work, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, String> {
+        let program = (self.0)();
+        let plan = work.plan.read(&program)?;
+        let folder = Folder::claim(&work.out, &recipe::of(&program, &plan)).map_err(|fault| fault.to_string())?;
+        sweep(&program, &plan, &folder, work.share, work.threads, &|_, _| goes_on()).map_err(|fault| fault.to_string())
+    }
+}
+
+/// A model, whose methods are the functions of its module.
+#[pyclass(frozen)]
+pub struct Model {
+    workbench: Box<dyn Workbench>,
+}
+
+impl Model {
+    /// Of the mechanism of a program.
+    pub fn new<Me: Scenes>(program: fn() -> Program<Me>) -> Self {
+        Self { workbench: Box::new(Of(program)) }
+    }
+}
+
+/// How a run is asked for in Python; what is not given is as on the command line.
+fn asked(
+    scene: Option<String>,
+    set: Option<BTreeMap<String, f64>>,
+    inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+    start: &str,
+    parameters: Option<BTreeMap<String, f64>>,
+) -> PyResult<Asked> {
+    let inputs = inputs.unwrap_or_default().into_iter();
+    let inputs =
+        inputs.map(|(name, value)| Ok(format!("{name}={}", value.str()?))).collect::<PyResult<Vec<String>>>()?;
+    let mut set = set.unwrap_or_default();
+    set.extend(parameters.unwrap_or_default());
+    let start = match start {
+        "model" => Started::Model,
+        "equilibrium" => Started::Equilibrium,
+        other => return Err(PyValueError::new_err(format!("start {other:?}: give \"model\" or \"equilibrium\""))),
+    };
+    Ok(Asked { scene, set, inputs, start, ..Asked::default() })
+}
+
+#[pymethods]
+impl Model {
+    /// What the model is.
+    #[getter]
+    fn about(&self) -> String {
+        let [_, about] = self.workbench.about();
+        about
+    }
+
+    /// The program's version.
+    #[getter]
+    fn version(&self) -> String {
+        let [version, _] = self.workbench.about();
+        version
+    }
+
+    /// Run the model; parameters are keyword arguments, inputs numbers or names of CSV files.
+    ///
+    /// Gives a table with the time `t` in s every `step` s until `t_end` s, and all outputs of the scene. `set` takes
+    /// parameters whose names are no Python names. Raises ValueError where something cannot be, RunFailed where the run stops
+    /// before its end.
+    #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, rtol=None, atol=None, fixed_step=None, start="model", inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn run(
+        &self,
+        py: Python<'_>,
+        scene: Option<String>,
+        t_end: Option<f64>,
+        step: Option<f64>,
+        method: Option<&str>,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        fixed_step: Option<f64>,
+        start: &str,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<Table> {
+        let mut asked = asked(scene, set, inputs, start, parameters)?;
+        let integration = &mut asked.integration;
+        integration.t_end = t_end.unwrap_or(integration.t_end);
+        integration.step = step.unwrap_or(integration.step);
+        integration.rtol = rtol.unwrap_or(integration.rtol);
+        integration.atol = atol;
+        integration.fixed_step = fixed_step.unwrap_or(integration.fixed_step);
+        if let Some(method) = method {
+            integration.method = method.parse().map_err(|fault| PyValueError::new_err(format!("method: {fault}")))?;
+        }
+        let (run, failure) = interruptible(py, |_| self.workbench.run(&asked))?.map_err(PyValueError::new_err)?;
+        let table = table(py, run)?;
+        match failure {
+            None => Ok(table),
+            Some(failure) => {
+                let failed = RunFailed::new_err(format!("the run failed: {failure}"));
+                failed.value(py).setattr("run", table)?;
+                Err(failed)
+            }
+        }
+    }
+
+    /// Linearise where the run is at `at` s, or at the equilibrium near the start.
+    ///
+    /// Gives a dict: the matrices `a`, `b`, `c`, `d`, names with units of `states`, `inputs`, `outputs`, the `modes` and the `point`.
+    #[pyo3(signature = (scene=None, *, at=None, inputs=None, set=None, **parameters))]
+    fn linearize<'py>(
+        &self,
+        py: Python<'py>,
+        scene: Option<String>,
+        at: Option<f64>,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let asked = asked(scene, set, inputs, "model", parameters)?;
+        let space = interruptible(py, |_| self.workbench.linearize(&asked, at))?.map_err(PyValueError::new_err)?;
+        let linear = py.import("json")?.call_method1("loads", (space.json(),))?;
+        for (name, matrix) in [("a", &space.a), ("b", &space.b), ("c", &space.c), ("d", &space.d)] {
+            linear.set_item(name, array(py, matrix)?)?;
+        }
+        Ok(linear)
+    }
+
+    /// The parameters by name, each a dict of default, unit, lower and upper end of its range, doc; those of a scene, or all.
+    #[pyo3(signature = (scene=None))]
+    fn parameters<'py>(&self, py: Python<'py>, scene: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for info in self.workbench.parameters(scene).map_err(PyValueError::new_err)? {
+            let one = PyDict::new(py);
+            one.set_item("default", info.default)?;
+            one.set_item("unit", info.unit)?;
+            one.set_item("lower", info.range.lower)?;
+            one.set_item("upper", info.range.upper)?;
+            one.set_item("range", info.range.to_string())?;
+            one.set_item("doc", info.doc.split_whitespace().collect::<Vec<_>>().join(" "))?;
+            all.set_item(info.name, one)?;
+        }
+        Ok(all)
+    }
+
+    /// The scenes by name, with what they are.
+    fn scenes(&self) -> BTreeMap<String, String> {
+        self.workbench.scenes().into_iter().collect()
+    }
+
+    /// The outputs of a scene by name, with their units.
+    #[pyo3(signature = (scene=None))]
+    fn outputs<'py>(&self, py: Python<'py>, scene: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        let outputs = self.workbench.outputs(scene).map_err(PyValueError::new_err)?;
+        outputs.into_iter().try_for_each(|(name, unit)| all.set_item(name, unit))?;
+        Ok(all)
+    }
+
+    /// Make the runs of a plan into the folder `out`: a path of a TOML file, or the same as a dict.
+    ///
+    /// What is there is not made again; `shard=(i, n)` makes the i-th of n parts, counted from 1. Gives a dict of counts:
+    /// `runs` of the whole sweep, `made` and `failed` ones now, `files` made now and `found` before. `read_sweep` gives the rows.
+    #[pyo3(signature = (plan, out, *, shard=(1, 1), threads=0))]
+    fn sweep<'py>(
+        &self,
+        py: Python<'py>,
+        plan: &Bound<'py, PyAny>,
+        out: PathBuf,
+        shard: (usize, usize),
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let none =
+            || PyValueError::new_err(format!("shard {shard:?}: give (i, n), the i-th of n parts, counted from 1"));
+        let share = Share::new(shard.0, shard.1).ok_or_else(none)?;
+        let work = Work { plan: source(plan)?, out, share, threads };
+        let outcome =
+            interruptible(py, |goes_on| self.workbench.sweep(&work, goes_on))?.map_err(PyValueError::new_err)?;
+        let counts = PyDict::new(py);
+        counts.set_item("runs", outcome.runs)?;
+        counts.set_item("made", outcome.made_runs)?;
+        counts.set_item("failed", outcome.failed)?;
+        counts.set_item("files", outcome.made)?;
+        counts.set_item("found", outcome.found)?;
+        Ok(counts)
+    }
+
+    /// How many shards, each some hundred runs, the sweep of a plan has.
+    fn sweep_shards(&self, plan: &Bound<'_, PyAny>) -> PyResult<usize> {
+        self.workbench.shards(&source(plan)?).map_err(PyValueError::new_err)
+    }
+
+    /// The rows of a sweep's folder as far as it is done: one for each run, or with `trajectories` for each sample.
+    #[pyo3(signature = (folder, *, trajectories=false))]
+    fn read_sweep(&self, py: Python<'_>, folder: PathBuf, trajectories: bool) -> PyResult<Table> {
+        let kind = if trajectories { Kind::Trajectories } else { Kind::Runs };
+        let read = || -> Result<_, String> {
+            let folder = Folder::open(&folder).map_err(|fault| fault.to_string())?;
+            let table = shown::joined(&folder, kind).map_err(|fault| fault.to_string())?;
+            Ok((table, folder.recipe().to_owned()))
+        };
+        let (table, recipe) = py.detach(read).map_err(PyValueError::new_err)?;
+        let units = table.texts.iter().find(|(name, _)| name == "units").map(|(_, text)| text.as_str());
+        let units: BTreeMap<String, String> = serde_json::from_str(units.unwrap_or("{}")).unwrap_or_default();
+        let columns = table.columns.into_iter().map(|parquet::Column { name, values }| {
+            let unit = units.get(&name).cloned().unwrap_or_default();
+            let values = match values {
+                parquet::Values::Real(values) => Values::Real(values),
+                parquet::Values::Whole(values) => Values::Whole(values),
+                parquet::Values::Text(values) => Values::Text(values),
+            };
+            (name, unit, values)
+        });
+        let info = PyDict::new(py);
+        info.set_item("sweep", recipe)?;
+        Table::new(py, columns, info)
+    }
+}
+
+/// A plan from a path or a dict.
+fn source(plan: &Bound<'_, PyAny>) -> PyResult<Source> {
+    if !plan.is_instance_of::<PyDict>() {
+        return Ok(Source::File(plan.extract()?));
+    }
+    let text: String = plan.py().import("json")?.call_method1("dumps", (plan,))?.extract()?;
+    calls::toml_of_json(&text).map(Source::Text).map_err(|fault| PyValueError::new_err(fault.to_string()))
+}
+
+/// A run as columns.
+fn table(py: Python<'_>, run: Trajectory) -> PyResult<Table> {
+    let info = PyDict::new(py);
+    let statistics = &run.statistics;
+    info.set_item("methods", PyList::new(py, run.methods.iter().map(|change| (change.t, change.method)))?)?;
+    info.set_item("rtol", run.request.rtol)?;
+    info.set_item("atol", run.request.atol())?;
+    info.set_item("steps", statistics.steps)?;
+    info.set_item("rejected", statistics.rejected)?;
+    info.set_item("rate_evaluations", statistics.rate_evaluations)?;
+    info.set_item("wall_time", run.wall.as_secs_f64())?;
+    info.set_item("state", run.last.to_json().map_err(|fault| PyValueError::new_err(fault.to_string()))?)?;
+    let recording = run.recording;
+    info.set_item("events", PyArray1::from_vec(py, recording.events))?;
+    let columns = recording.columns.into_iter().map(|column| (column.name, column.unit, Values::Real(column.values)));
+    let t = ("t".to_owned(), "s".to_owned(), Values::Real(recording.times));
+    Table::new(py, std::iter::once(t).chain(columns), info)
+}
+
+/// A matrix as an array; its columns stand one after the other, as they do here.
+fn array<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Bound<'py, PyAny>> {
+    let flat = PyArray1::from_slice(py, matrix.as_slice());
+    let shape = [matrix.nrows(), matrix.ncols()];
+    Ok(flat.reshape_with_order(shape, numpy::npyffi::NPY_ORDER::NPY_FORTRANORDER)?.into_any())
+}

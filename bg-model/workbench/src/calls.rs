@@ -1,0 +1,155 @@
+//! What a program does for another program: runs and linear models as values, without files and terminal.
+//!
+//! In: parameters, inputs and settings by name. Out: what the commands `run` and `linearize` make, or the sentence that they
+//! would refuse it with.
+
+use std::collections::BTreeMap;
+
+use bg_model::description::ParameterInfo;
+use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::parameters::Parameters;
+use bg_model::run::{Request, Trajectory};
+use thiserror::Error;
+
+use crate::Program;
+use crate::command::linearised;
+use crate::inputs;
+use crate::linear::StateSpace;
+use crate::parameters::{self, Chosen};
+use crate::request::Integration;
+use crate::running::{Begin, follow};
+use crate::scenes::{Scene, own_parameters};
+
+/// What cannot be done, in a sentence.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Refused(String);
+
+/// Where a run begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Started {
+    /// At the model's own start.
+    #[default]
+    Model,
+    /// At the equilibrium near it.
+    Equilibrium,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// The scene; else that of the program.
+    pub scene: Option<String>,
+    /// Parameters that are not at their defaults.
+    pub set: BTreeMap<String, f64>,
+    /// Inputs as `NAME=VALUE` or `NAME=FILE.csv`.
+    pub inputs: Vec<String>,
+    /// How it is integrated.
+    pub integration: Integration,
+    /// Where it begins.
+    pub start: Started,
+}
+
+fn refused(fault: impl std::fmt::Display) -> Refused {
+    Refused(fault.to_string())
+}
+
+/// The program's version, and what its mechanism is.
+#[must_use]
+pub fn about<Me>(program: &Program<Me>) -> [String; 2] {
+    [program.texts.version.clone(), program.texts.about.clone()]
+}
+
+/// The scenes with what they are.
+#[must_use]
+pub fn scenes<Me>(program: &Program<Me>) -> Vec<(String, String)> {
+    program.scenes.iter().map(|scene| (scene.name.clone(), scene.summary())).collect()
+}
+
+/// The parameters of a scene, or without one of all.
+///
+/// # Errors
+/// No such scene.
+pub fn parameters<Me: Scenes>(program: &Program<Me>, scene: Option<&str>) -> Result<Vec<ParameterInfo>, Refused> {
+    let table = <Me::Parameters as Parameters>::table();
+    match scene {
+        None => Ok(table.to_vec()),
+        Some(_) => {
+            let scene = program.find_scene(scene).map_err(Refused)?;
+            Ok(table.iter().filter(|info| scene.adjusts(info.name)).cloned().collect())
+        }
+    }
+}
+
+/// The outputs of a scene with their units.
+///
+/// # Errors
+/// No such scene.
+pub fn outputs<Me: Scenes>(program: &Program<Me>, scene: Option<&str>) -> Result<Vec<(String, String)>, Refused> {
+    let scene = program.find_scene(scene).map_err(Refused)?;
+    Ok(scene.description.outputs.iter().map(|output| (output.name.to_owned(), output.unit.to_owned())).collect())
+}
+
+/// Makes the run; with it comes why it stopped before its end, if it did.
+///
+/// # Errors
+/// It cannot be made.
+pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<(Trajectory, Option<String>), Refused> {
+    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let (scene, chosen) = chosen(program, asked)?;
+    let begin = match asked.start {
+        Started::Model => Begin::Model,
+        Started::Equilibrium => Begin::Equilibrium,
+    };
+    Me::model(scene.index, Running { scene, scenes: &program.scenes, chosen: &chosen, request, begin })
+}
+
+/// The linear model where the run is at `at`, s, or at the equilibrium near the start.
+///
+/// # Errors
+/// There is none.
+pub fn linearize<Me: Scenes>(program: &Program<Me>, asked: &Asked, at: Option<f64>) -> Result<StateSpace, Refused> {
+    let (scene, chosen) = chosen(program, asked)?;
+    linearised(program, scene, &chosen, at).map_err(Refused)
+}
+
+/// What is written in JSON, as TOML.
+///
+/// # Errors
+/// It is no JSON, or has what TOML has not.
+pub fn toml_of_json(text: &str) -> Result<String, Refused> {
+    let value: serde_json::Value = serde_json::from_str(text).map_err(refused)?;
+    toml::to_string(&value).map_err(refused)
+}
+
+fn chosen<'a, Me: Scenes>(
+    program: &'a Program<Me>,
+    asked: &Asked,
+) -> Result<(&'a Scene, Chosen<Me::Parameters>), Refused> {
+    let scene = program.find_scene(asked.scene.as_deref()).map_err(Refused)?;
+    let settings: Vec<String> = asked.set.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
+    let mut chosen = parameters::merge(None, &settings).map_err(refused)?;
+    chosen.inputs = inputs::chosen(&asked.inputs, Me::describe().inputs).map_err(refused)?;
+    Ok((scene, chosen))
+}
+
+struct Running<'a, P> {
+    scene: &'a Scene,
+    scenes: &'a [Scene],
+    chosen: &'a Chosen<P>,
+    request: Request,
+    begin: Begin,
+}
+
+impl<P: Parameters> MechanismVisitor for Running<'_, P> {
+    type Output = Result<(Trajectory, Option<String>), Refused>;
+
+    fn visit<Sc: Mechanism>(self) -> Self::Output {
+        let Self { scene, scenes, chosen, request, begin } = self;
+        let own = own_parameters(scene, scenes, &chosen.values).map_err(refused)?;
+        let model = Sc::make(own, &chosen.inputs).map_err(refused)?;
+        let simulation = begin.simulation(&model, request).map_err(refused)?;
+        let outcome = follow(simulation, |_| ()).map_err(refused)?;
+        Ok((outcome.run, outcome.failure))
+    }
+}

@@ -1,0 +1,102 @@
+//! The command `sweep`: runs for many values of parameters, into a folder of Parquet files.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use bg_model::mechanism::Scenes;
+use clap::{Args, Subcommand};
+
+use super::progress::bar;
+use super::{InputError, ended, say};
+use crate::Program;
+use crate::files::whole;
+use crate::sweep::folder::{Folder, Kind};
+use crate::sweep::plan::Plan;
+use crate::sweep::{Outcome, Share, SweepError, recipe, shown, sweep};
+
+#[derive(Debug, Args)]
+#[command(subcommand_negates_reqs = true, args_conflicts_with_subcommands = true)]
+pub struct SweepArguments {
+    #[command(subcommand)]
+    command: Option<SweepCommand>,
+
+    /// What is run: a TOML file with the values, docs/sweeps.md says how
+    #[arg(long, value_name = "FILE.toml", required = true)]
+    plan: Option<PathBuf>,
+
+    /// Folder for the Parquet files; made if it is not there. A sweep that was stopped goes on there
+    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
+    out: PathBuf,
+
+    /// Threads; 0 are as many as there are cores. Files do not depend on it
+    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    threads: usize,
+
+    /// Only every n-th file from the i-th on, for one of n processes that share the folder
+    #[arg(long, value_name = "I/N")]
+    shard: Option<String>,
+}
+
+#[derive(Debug, Subcommand)]
+enum SweepCommand {
+    /// Say how much of a sweep is there and what failed; write its tables as CSV
+    Show {
+        /// The folder of the sweep
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+
+        /// Write a row for each run here. Replaces a file that is there
+        #[arg(long, value_name = "FILE.csv")]
+        csv: Option<PathBuf>,
+
+        /// Write a row for each sample here, of a sweep that keeps trajectories
+        #[arg(long, value_name = "FILE.csv")]
+        trajectories: Option<PathBuf>,
+    },
+}
+
+pub fn obey<Me: Scenes>(program: &Program<Me>, arguments: &SweepArguments) -> Result<ExitCode, InputError> {
+    let SweepArguments { command, plan, out, threads, shard } = arguments;
+    if let Some(SweepCommand::Show { folder, csv, trajectories }) = command {
+        let folder = Folder::open(folder).map_err(SweepError::from)?;
+        let lines = shown::lines(&folder).map_err(SweepError::from)?;
+        for (kind, path) in [(Kind::Runs, csv), (Kind::Trajectories, trajectories)] {
+            path.iter().try_for_each(|path| whole::write(path, |file| shown::write_csv(&folder, kind, file)))?;
+        }
+        return Ok(say(&lines));
+    }
+    let share = shard.as_deref().map_or(Ok(Share::ALL), Share::parse)?;
+    let plan = Plan::read(program, plan.as_deref().expect("clap asks for it")).map_err(SweepError::from)?;
+    let folder = Folder::claim(out, &recipe::of(program, &plan)).map_err(SweepError::from)?;
+    let bar = bar(1, "sweeping {bar:40} {pos} of {len} runs, {eta} to go");
+    let first = std::sync::Once::new();
+    let outcome = sweep(program, &plan, &folder, share, *threads, &|done, runs| {
+        first.call_once(|| {
+            bar.set_length(runs as u64);
+            bar.set_position(done as u64);
+            // The time left is that of runs made now, not of those that were found.
+            bar.reset_eta();
+        });
+        bar.set_position(done as u64);
+        true
+    });
+    bar.finish_and_clear();
+    match outcome {
+        Ok(outcome) => Ok(say(&sentence(&outcome, &folder))),
+        // What could be made is there.
+        Err(fault @ SweepError::File(_)) => Ok(ended([fault])),
+        Err(fault) => Err(fault.into()),
+    }
+}
+
+/// What was done, and how to look at it.
+fn sentence(outcome: &Outcome, folder: &Folder) -> String {
+    let Outcome { runs, shards, own, found, made, made_runs, failed } = *outcome;
+    let part = if own == shards { String::new() } else { format!("{own} of its {shards} files are of this part; ") };
+    let before = if found == 0 { String::new() } else { format!(", {found} were there") };
+    let place = folder.path().display();
+    format!(
+        "sweep of {runs} runs: {part}{made} files made{before}; {made_runs} runs, {failed} of them failed\n\
+         written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table\n"
+    )
+}

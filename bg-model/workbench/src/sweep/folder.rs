@@ -1,0 +1,194 @@
+//! The folder of a sweep: its recipe, its shards.
+//!
+//! In: a folder, a recipe. Out: the folder with `sweep.toml`, and in it `runs-000000.parquet` and so on; with trajectories
+//! `trajectories-000000.parquet` as well, which is there before. Each file is written aside and renamed, so a file of such a
+//! name is whole. Several processes may work in one folder, even on the same shard: they write the same bytes.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+use toml::Table as Recipe;
+
+use super::parquet::{ParquetError, Table};
+use super::recipe::difference;
+use crate::files::{FileError, check_is_no_file, whole};
+
+const RECIPE: &str = "sweep.toml";
+const HEAD: &str =
+    "# What the files in this folder were made with. A sweep by another plan goes into another folder.\n";
+/// The entry of a file's metadata that has the recipe.
+const SAID: &str = "sweep";
+
+/// A folder that is not this sweep's.
+#[derive(Debug, Error)]
+pub enum FolderError {
+    /// It has another sweep.
+    #[error("{} has another sweep: {difference}; choose another folder with --out", folder.display())]
+    Other {
+        /// The folder.
+        folder: PathBuf,
+        /// What differs.
+        difference: String,
+    },
+    /// It has no sweep.
+    #[error("{} has no sweep: {source}", folder.display())]
+    None {
+        /// The folder.
+        folder: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// Its recipe is none.
+    #[error("{}: not a file that a sweep wrote; choose another folder with --out", .0.display())]
+    Recipe(PathBuf),
+    /// A shard cannot be read.
+    #[error("cannot read {}: {fault}; remove it, and the sweep makes it again", path.display())]
+    Shard {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        fault: ParquetError,
+    },
+    /// Something cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+/// What a file of a shard has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A row for each run.
+    Runs,
+    /// A row for each sample.
+    Trajectories,
+}
+
+impl Kind {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Runs => "runs",
+            Self::Trajectories => "trajectories",
+        }
+    }
+
+    fn file(self, shard: usize) -> String {
+        format!("{}-{shard:06}.parquet", self.name())
+    }
+}
+
+/// A sweep's folder.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    path: PathBuf,
+    /// The text of its recipe.
+    recipe: String,
+}
+
+impl Folder {
+    /// The folder at `path`, made if it is not there, for a sweep by `recipe`.
+    ///
+    /// # Errors
+    /// It cannot be written, or has another sweep.
+    pub fn claim(path: &Path, recipe: &Recipe) -> Result<Self, FolderError> {
+        check_is_no_file(path)?;
+        let file = path.join(RECIPE);
+        let failed = |source| FileError::Write { path: path.to_owned(), source };
+        fs::create_dir_all(path).map_err(failed)?;
+        if !file.exists() {
+            // The first of several processes wins; what it wrote is compared below by all of them.
+            let mut aside =
+                tempfile::Builder::new().prefix(".sweep").suffix(".unfinished").tempfile_in(path).map_err(failed)?;
+            aside.write_all(format!("{HEAD}{recipe}").as_bytes()).map_err(failed)?;
+            match aside.persist_noclobber(&file) {
+                Err(fault) if fault.error.kind() != io::ErrorKind::AlreadyExists => {
+                    return Err(failed(fault.error).into());
+                }
+                _ => {}
+            }
+        }
+        let folder = Self::open(path)?;
+        match difference(&folder.entries()?, recipe) {
+            None => Ok(folder),
+            Some(difference) => Err(FolderError::Other { folder: path.to_owned(), difference }),
+        }
+    }
+
+    /// The folder at `path`, which has a sweep.
+    ///
+    /// # Errors
+    /// It has none.
+    pub fn open(path: &Path) -> Result<Self, FolderError> {
+        let recipe = fs::read_to_string(path.join(RECIPE));
+        let recipe = recipe.map_err(|source| FolderError::None { folder: path.to_owned(), source })?;
+        Ok(Self { path: path.to_owned(), recipe })
+    }
+
+    /// The text of its recipe.
+    #[must_use]
+    pub fn recipe(&self) -> &str {
+        &self.recipe
+    }
+
+    /// The entries of its recipe.
+    ///
+    /// # Errors
+    /// It is none.
+    pub fn entries(&self) -> Result<Recipe, FolderError> {
+        self.recipe.parse().map_err(|_| FolderError::Recipe(self.path.join(RECIPE)))
+    }
+
+    /// Whether a shard is there, whole and of this recipe.
+    #[must_use]
+    pub fn has(&self, shard: usize, with_trajectories: bool) -> bool {
+        let is_ours = |table: Table| table.texts.iter().any(|(name, text)| name == SAID && *text == self.recipe);
+        let trajectories = self.path.join(Kind::Trajectories.file(shard));
+        let is_there = !with_trajectories || trajectories.exists();
+        is_there && self.read(Kind::Runs, shard).is_ok_and(|table| table.is_some_and(is_ours))
+    }
+
+    /// A file of a shard; none where it is not there.
+    ///
+    /// # Errors
+    /// It is there and cannot be read.
+    pub fn read(&self, kind: Kind, shard: usize) -> Result<Option<Table>, FolderError> {
+        let path = self.path.join(kind.file(shard));
+        match fs::read(&path) {
+            Ok(bytes) => Table::read(&bytes).map(Some).map_err(|fault| FolderError::Shard { path, fault }),
+            Err(fault) if fault.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(_) => Err(FolderError::Shard { path, fault: ParquetError::Cut }),
+        }
+    }
+
+    /// Writes a file of a shard.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(&self, kind: Kind, shard: usize, table: &Table) -> Result<(), FileError> {
+        whole::write(&self.path.join(kind.file(shard)), |file| file.write_all(&table.bytes()))
+    }
+
+    /// Removes what earlier processes left on their way to the files of these shards, which are there now.
+    pub fn clear(&self, shards: &[usize]) {
+        let names: Vec<String> = [Kind::Runs, Kind::Trajectories]
+            .iter()
+            .flat_map(|kind| shards.iter().map(|&shard| format!(".{}", kind.file(shard))))
+            .collect();
+        let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
+        for entry in entries.filter(|entry| entry.path().extension().is_some_and(|end| end == "unfinished")) {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            // The name of the file comes first, then what makes it a new one.
+            if names.iter().any(|own| name.starts_with(own.as_str())) {
+                // What cannot be removed is in nobody's way.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}

@@ -1,0 +1,121 @@
+//! Whether two sweeps are the same: all that the bytes of a shard depend on, as a small TOML file.
+//!
+//! In: a program, a plan. Out: the text of `sweep.toml`, which every shard has in its metadata as well, and where it differs from
+//! another one. The model is known by the CRC-32 of its equations, the values of the parameters by that of all their bytes:
+//! they guard against mistakes, not against forgery.
+
+use bg_model::description::Description;
+use bg_model::parameters::Parameters;
+use toml::{Table, Value};
+
+use super::plan::Plan;
+use crate::Program;
+use crate::inputs::Setting;
+use crate::running::Begin;
+
+/// The entry that may differ: the plan as it was written, for people.
+const PLAN: &str = "plan";
+
+/// The recipe of a sweep by `plan`.
+#[must_use]
+pub fn of<Me, P: Parameters>(program: &Program<Me>, plan: &Plan<'_, P>) -> Table {
+    let Plan { scene, integration, request, begin, chosen, settings, design, wanted, shard, text } = plan;
+    let model = scene.description;
+    let of_strings = |names: &mut dyn Iterator<Item = String>| Value::Array(names.map(Value::String).collect());
+    let values = (0..design.runs).flat_map(|run| design.values(run)).flat_map(f64::to_le_bytes);
+    let base = P::table().iter().enumerate().filter(|(_, info)| !design.names.iter().any(|name| name == info.name));
+    let base = base.map(|(index, info)| (info.name.to_owned(), Value::Float(chosen.values.value(index))));
+    let inputs = model.inputs.iter().zip(settings).map(|(info, setting)| (info.name.to_owned(), input(setting)));
+    let columns = wanted.columns(model).into_iter().map(|(name, _)| name);
+    let trajectories = wanted.trajectories.iter().map(|&output| model.outputs[output].name.to_owned());
+    let entries = [
+        ("program", Value::String(program.texts.name.clone())),
+        ("version", Value::String(program.texts.version.clone())),
+        ("scene", Value::String(scene.name.clone())),
+        ("model", Value::String(fingerprint(model))),
+        ("start", Value::String(if *begin == Begin::Equilibrium { "equilibrium" } else { "model" }.to_owned())),
+        ("t_end", Value::Float(integration.t_end)),
+        ("step", Value::Float(integration.step)),
+        ("method", Value::String(integration.method.name().to_owned())),
+        ("rtol", Value::Float(request.rtol)),
+        ("atol", Value::Float(request.atol())),
+        ("fixed_step", Value::Float(request.fixed_step)),
+        ("step_limit", whole(usize::try_from(request.step_limit).unwrap_or(usize::MAX))),
+        ("runs", whole(design.runs)),
+        ("shard", whole(*shard)),
+        ("swept", of_strings(&mut design.names.iter().cloned())),
+        ("values", Value::String(crc(&values.collect::<Vec<_>>()))),
+        ("columns", of_strings(&mut columns.into_iter())),
+        ("trajectories", of_strings(&mut trajectories.into_iter())),
+        ("parameters", Value::Table(base.collect())),
+        ("inputs", Value::Table(inputs.collect())),
+        (PLAN, Value::String(text.clone())),
+    ];
+    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+fn whole(value: usize) -> Value {
+    Value::Integer(i64::try_from(value).unwrap_or(i64::MAX))
+}
+
+fn crc(bytes: &[u8]) -> String {
+    format!("{:08x}", rawzip::crc32(bytes))
+}
+
+/// Of a model its equations, and what is observed.
+fn fingerprint(model: &Description) -> String {
+    let outputs = model.outputs.iter().map(|output| output.name);
+    crc(model.equations.iter().copied().chain(outputs).collect::<Vec<_>>().join("\n").as_bytes())
+}
+
+fn input(setting: &Setting) -> Value {
+    match setting {
+        Setting::Constant(value) => Value::Float(*value),
+        Setting::Table { times, values, cubic } => {
+            let bytes: Vec<u8> = times.iter().chain(values).flat_map(|value| value.to_le_bytes()).collect();
+            Value::String(format!("{} rows, cubic {cubic}, {}", times.len(), crc(&bytes)))
+        }
+    }
+}
+
+/// The first entry in which a recipe differs from the one that is there, with both values; none if the bytes would be the same.
+#[must_use]
+pub fn difference(there: &Table, here: &Table) -> Option<String> {
+    let names = there.keys().chain(here.keys().filter(|name| !there.contains_key(*name)));
+    for name in names.filter(|name| *name != PLAN) {
+        match (there.get(name), here.get(name)) {
+            (there, here) if there == here => {}
+            (Some(Value::Table(there)), Some(Value::Table(here))) => {
+                return difference(there, here).map(|inner| format!("{name}: {inner}"));
+            }
+            (there, here) => {
+                let [there, here] = [there, here].map(|value| value.map_or_else(|| "absent".to_owned(), short));
+                return Some(format!("`{name}` is {there} there and {here} here"));
+            }
+        }
+    }
+    None
+}
+
+/// A value in a line.
+fn short(value: &Value) -> String {
+    const MOST: usize = 80;
+    let text = value.to_string();
+    if text.chars().count() > MOST { text.chars().take(MOST).chain("..".chars()).collect() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_is_named_and_the_words_of_the_plan_are_none() {
+        let table = |text: &str| text.parse::<Table>().unwrap();
+        let there = table("rtol = 1e-8\nplan = 'a'\n[parameters]\nmass = 2.0\nlength = 1.0");
+        assert_eq!(difference(&there, &table("rtol = 1e-8\nplan = 'b'\n[parameters]\nmass = 2.0\nlength = 1.0")), None);
+        let mass = table("rtol = 1e-8\n[parameters]\nmass = 3.0\nlength = 1.0");
+        assert_eq!(difference(&there, &mass).unwrap(), "parameters: `mass` is 2.0 there and 3.0 here");
+        let less = table("rtol = 1e-8\nplan = 'a'");
+        assert!(difference(&there, &less).unwrap().ends_with("there and absent here"));
+    }
+}

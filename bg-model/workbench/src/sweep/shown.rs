@@ -1,0 +1,108 @@
+//! What the folder of a sweep has: how much of it is done, what failed and why; its tables as CSV.
+//!
+//! In: a folder. Out: lines for the terminal, rows for programs that read no Parquet. One shard is in memory at a time.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use super::folder::{Folder, FolderError, Kind};
+use super::parquet::{Table, Values};
+
+/// The most reasons that are listed.
+const MOST: usize = 10;
+
+/// A line for each thing to know.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn lines(folder: &Folder) -> Result<String, FolderError> {
+    let recipe = folder.entries()?;
+    let text = |name: &str| recipe.get(name).map_or_else(String::new, |value| value.to_string().replace('"', ""));
+    let mut reasons: Vec<(String, usize, i64)> = Vec::new();
+    let (mut shards, mut runs, mut failed) = (0, 0, 0);
+    for table in tables(folder, Kind::Runs)? {
+        let table = table?;
+        shards += 1;
+        let (Some(Values::Whole(numbers)), Some(Values::Text(failures))) =
+            (values(&table, "run"), values(&table, "failure"))
+        else {
+            continue;
+        };
+        runs += numbers.len();
+        for (number, failure) in numbers.iter().zip(failures).filter(|(_, failure)| !failure.is_empty()) {
+            failed += 1;
+            match reasons.iter().position(|(known, ..)| known == failure) {
+                Some(place) => reasons[place].1 += 1,
+                None if reasons.len() < MOST => reasons.push((failure.clone(), 1, *number)),
+                None => {}
+            }
+        }
+    }
+    let all = whole(&recipe, "runs").div_ceil(whole(&recipe, "shard").max(1));
+    let mut said = format!(
+        "sweep    {} {}, scene {}\nswept    {}\nruns     {runs} of {} in {shards} of {all} shards\nfailed   {failed}\n",
+        text("program"),
+        text("version"),
+        text("scene"),
+        text("swept").trim_matches(['[', ']']),
+        text("runs"),
+    );
+    for (reason, count, first) in reasons {
+        let runs = if count == 1 { format!("run {first}") } else { format!("{count} runs, the first is {first}") };
+        writeln!(said, "         {runs}: {reason}").expect("memory takes all text");
+    }
+    Ok(said)
+}
+
+/// Writes the rows of all shards that are there as CSV; every number in the shortest form that reads back to the same bits.
+///
+/// # Errors
+/// A file cannot be read, or `writer` fails.
+pub fn write_csv(folder: &Folder, kind: Kind, writer: impl Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    let mut has_header = false;
+    for table in tables(folder, kind).map_err(io::Error::other)? {
+        let table = table.map_err(io::Error::other)?;
+        if !has_header {
+            csv.write_record(table.columns.iter().map(|column| column.name.as_str()))?;
+            has_header = true;
+        }
+        let rows = table.columns.first().map_or(0, |column| column.values.len());
+        for row in 0..rows {
+            let field = |values: &Values| match values {
+                Values::Whole(values) => values[row].to_string(),
+                Values::Real(values) => format!("{:?}", values[row]),
+                Values::Text(values) => values[row].clone(),
+            };
+            csv.write_record(table.columns.iter().map(|column| field(&column.values)))?;
+        }
+    }
+    csv.flush()
+}
+
+/// All rows of the shards that are there as one table, for who has the memory.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn joined(folder: &Folder, kind: Kind) -> Result<Table, FolderError> {
+    let mut all = Table::default();
+    for table in tables(folder, kind)? {
+        all.append(table?);
+    }
+    Ok(all)
+}
+
+fn whole(recipe: &toml::Table, name: &str) -> usize {
+    recipe.get(name).and_then(toml::Value::as_integer).and_then(|value| usize::try_from(value).ok()).unwrap_or(0)
+}
+
+/// The tables that are there, in the order of the shards.
+fn tables(folder: &Folder, kind: Kind) -> Result<impl Iterator<Item = Result<Table, FolderError>>, FolderError> {
+    let recipe = folder.entries()?;
+    let shards = whole(&recipe, "runs").div_ceil(whole(&recipe, "shard").max(1));
+    Ok((0..shards).filter_map(move |shard| folder.read(kind, shard).transpose()))
+}
+
+fn values<'a>(table: &'a Table, name: &str) -> Option<&'a Values> {
+    table.columns.iter().find(|column| column.name == name).map(|column| &column.values)
+}

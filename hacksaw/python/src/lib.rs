@@ -1,0 +1,3 @@
+//! The paper's power hacksaw as a Python module.
+
+bg_python::python_module!(_hacksaw, hacksaw::command::program);

@@ -1,0 +1,157 @@
+"""The module ``hacksaw`` as a user meets it."""
+
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hacksaw
+
+SHORT = {"t_end": 0.05, "step": 0.01}
+
+
+def test_a_run_gives_columns_as_arrays():
+    r = hacksaw.run("motion", torque=12, **SHORT)
+    assert isinstance(r["t"], np.ndarray) and r["t"].dtype == np.float64
+    assert np.allclose(r["t"], np.arange(6) * 0.01, atol=1e-15)
+    assert list(r) == ["t", *hacksaw.outputs("motion")] == r.keys()
+    assert "t" in r and "none" not in r and len(r) == len(r.keys())
+    assert r.units["t"] == "s" and r.info["steps"] > 0 and r.info["rtol"] == 1e-8
+    with pytest.raises(KeyError, match="there is no column `none`; there are t, "):
+        r["none"]
+
+
+def test_columns_are_not_copied():
+    r = hacksaw.run("motion", **SHORT)
+    # The array is over memory that the run filled, and the same one each time.
+    assert r["t"] is r["t"] and not r["t"].flags.owndata and r["t"].base is not None
+
+
+def test_parameters_change_the_run_and_have_units_and_ranges():
+    torque = hacksaw.parameters()["torque"]
+    assert torque["unit"] == "N*m" and torque["lower"] <= torque["default"] <= torque["upper"]
+    a, b, c = (hacksaw.run("motion", **way, **SHORT)["C4_x"] for way in ({"torque": 8}, {"set": {"torque": 14}}, {"torque": 14}))
+    assert not np.array_equal(a, b) and np.array_equal(b, c)
+    assert set(hacksaw.parameters("motion")) < set(hacksaw.parameters())
+    assert "paper" in hacksaw.scenes()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({"torke": 12}, "there is no parameter `torke`; did you mean `torque`?"),
+        ({"scene": "nothing"}, "there is no scene `nothing`; there are "),
+        ({"t_end": -1}, "t_end -1: must be a finite number above 0"),
+        ({"method": "euler"}, "method: there is no integrator `euler`"),
+        ({"start": "there"}, 'start "there": give "model" or "equilibrium"'),
+        ({"inputs": {"force": 3}}, "there is no input `force`"),
+    ],
+)
+def test_what_cannot_be_is_a_value_error_with_a_sentence(arguments, sentence):
+    with pytest.raises(ValueError) as fault:
+        hacksaw.run(**arguments)
+    assert sentence in str(fault.value)
+
+
+def test_frames():
+    pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
+    r = hacksaw.run("motion", **SHORT)
+    frame = r.to_pandas()
+    assert isinstance(frame, pandas.DataFrame) and frame.index.name == "t" and len(frame) == 6
+    assert isinstance(r.to_polars(), polars.DataFrame) and r.to_polars()["t"].to_list() == list(r["t"])
+
+
+def test_a_linear_model_has_matrices_and_modes():
+    linear = hacksaw.linearize("motion", at=0)
+    states, outputs = len(linear["states"]), len(linear["outputs"])
+    assert linear["a"].shape == (states, states) and linear["c"].shape == (outputs, states)
+    swings = sorted(abs(mode["imaginary"]) for mode in linear["modes"])
+    assert np.allclose(max(swings), max(abs(np.linalg.eigvals(linear["a"]).imag)), rtol=1e-6)
+    with pytest.raises(ValueError, match="at -1"):
+        hacksaw.linearize("motion", at=-1)
+
+
+def test_other_threads_run_meanwhile():
+    counted, done = 0, threading.Event()
+
+    def count():
+        nonlocal counted
+        while not done.is_set():
+            counted += 1
+            time.sleep(0.001)
+
+    other = threading.Thread(target=count)
+    other.start()
+    hacksaw.run("motion", t_end=0.5)
+    during = counted
+    done.set()
+    other.join()
+    assert during > 10
+
+
+PLAN = {
+    "scene": "motion",
+    "t_end": 0.02,
+    "shard": 4,
+    "grid": {"torque": {"from": 8, "to": 14, "count": 10}},
+    "columns": ["final", "max"],
+}
+
+
+def test_a_sweep_by_a_dict_is_that_of_the_file(tmp_path):
+    counts = hacksaw.sweep(PLAN, tmp_path / "a")
+    assert counts == {"runs": 10, "made": 10, "failed": 0, "files": 3, "found": 0}
+    assert hacksaw.sweep_shards(PLAN) == 3
+    plan = tmp_path / "plan.toml"
+    plan.write_text(
+        "scene = 'motion'\nt_end = 0.02\nshard = 4\ncolumns = ['final', 'max']\n"
+        "[grid]\ntorque = { from = 8, to = 14, count = 10 }\n"
+    )
+    # The same recipe in other words, so nothing is left to do.
+    assert hacksaw.sweep(plan, tmp_path / "a")["found"] == 3
+    for part in (1, 2):
+        hacksaw.sweep(PLAN, tmp_path / "b", shard=(part, 2), threads=1)
+    names = sorted(path.name for path in (tmp_path / "a").iterdir())
+    assert all((tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes() for name in names)
+    rows = hacksaw.read_sweep(tmp_path / "a")
+    assert list(rows["run"]) == list(range(10)) and np.allclose(rows["torque"], np.linspace(8, 14, 10))
+    assert rows.units["torque"] == "N*m" and set(rows["failure"]) == {""}
+    with pytest.raises(ValueError, match="has another sweep: `t_end` is 0.02 there and 0.03 here"):
+        hacksaw.sweep({**PLAN, "t_end": 0.03}, tmp_path / "a")
+
+
+def test_other_readers_read_a_sweep_to_the_same_bits(tmp_path):
+    pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
+    pytest.importorskip("pyarrow")
+    hacksaw.sweep({**PLAN, "trajectories": True}, tmp_path)
+    for kind in ("runs", "trajectories"):
+        ours = hacksaw.read_sweep(tmp_path, trajectories=kind == "trajectories")
+        theirs = pandas.concat(map(pandas.read_parquet, sorted(tmp_path.glob(f"{kind}-*.parquet"))))
+        other = polars.read_parquet(tmp_path / f"{kind}-*.parquet")
+        assert list(theirs.columns) == ours.keys() == other.columns
+        for name in ours:
+            assert list(theirs[name]) == list(ours[name]) == other[name].to_list(), name
+
+
+def test_ctrl_c_ends_a_sweep_between_runs(tmp_path):
+    program = (
+        "import hacksaw, _thread, threading\n"
+        "threading.Timer(1.0, _thread.interrupt_main).start()\n"
+        f"plan = {{**{PLAN!r}, 't_end': 2, 'grid': {{'torque': {{'from': 8, 'to': 14, 'count': 5000}}}}}}\n"
+        f"try:\n    hacksaw.sweep(plan, {str(tmp_path / 'c')!r})\n"
+        "except KeyboardInterrupt:\n    print('ended')\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
+    assert ended.stdout == "ended\n", ended.stderr
+    assert not [path for path in (tmp_path / "c").iterdir() if path.suffix == ".unfinished"]
+
+
+def test_the_stubs_have_what_the_module_has():
+    stubs = Path(hacksaw.__file__).with_suffix(".pyi").read_text()
+    for name in hacksaw.__all__:
+        assert f"def {name}(" in stubs or f"class {name}" in stubs or f"{name}:" in stubs, name
+        assert getattr(hacksaw, name).__doc__
