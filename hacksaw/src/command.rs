@@ -1,6 +1,6 @@
 //! The program `hacksaw`: the workbench with the paper's figures, statements and reference solutions on top.
 
-use std::ffi::OsString;
+use std::env::ArgsOs;
 use std::process::ExitCode;
 
 use bg_model::description::Description;
@@ -34,8 +34,8 @@ pub fn program() -> Program<Hacksaw> {
     program
 }
 
-/// Does what the arguments ask for and gives the exit code.
-pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+/// Does what the arguments ask for and gives the exit code. All that it calls is compiled here, once, since nothing of it is generic.
+pub fn main(arguments: ArgsOs) -> ExitCode {
     program().main(arguments)
 }
 

@@ -24,6 +24,13 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// negative guard. Allocates nothing.
     fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>);
 
+    /// As [`System::rate`], for the stages of explicit steps, where a run spends its time: a generated model has its rate inlined
+    /// here. All else calls `rate`, so that it is compiled once. By default there is no difference.
+    #[inline(always)]
+    fn inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
+        self.rate(t, x, negative, dx);
+    }
+
     /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
     fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _guards: &mut SVector<S, G>) {}
 

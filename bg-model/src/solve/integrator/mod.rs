@@ -54,6 +54,12 @@ pub trait Flow<const N: usize> {
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`.
     fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>);
 
+    /// As [`Flow::rate`], to be inlined into the stages of a step.
+    #[inline(always)]
+    fn inlined_rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        self.rate(t, x, dx);
+    }
+
     /// Where the Jacobian df/dx can differ from zero.
     fn sparsity(&self) -> Sparsity {
         Sparsity::Full

@@ -72,6 +72,12 @@ where
         self.system.rate(t, x, self.negative, dx);
     }
 
+    #[inline(always)]
+    fn inlined_rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        count(self.counters.rates, 1);
+        self.system.inlined_rate(t, x, self.negative, dx);
+    }
+
     fn sparsity(&self) -> Sparsity {
         self.system.linearised().map_or(Sparsity::Full, Linearised::sparsity)
     }

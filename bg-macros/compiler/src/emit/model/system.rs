@@ -40,14 +40,20 @@ impl Emission<'_> {
         let (body, rates) = self.with_pairs(&running.rate, running.paired_rate.as_ref(), "constant");
         // The unknowns of iterations come after the rates.
         let rates = &rates[..self.model.equations.states.len()];
-        let inline = self.inline();
-        quote! {
-            #inline
-            fn rate(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], dx: &mut SVector<S, #n>) {
-                #body
-                dx.data.0 = [[#(#rates),*]];
-            }
-        }
+        let arguments = quote!(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], dx: &mut SVector<S, #n>);
+        let body = quote!(#body dx.data.0 = [[#(#rates),*]];);
+        self.inline().map_or_else(
+            || quote!(fn rate(#arguments) { #body }),
+            |inline| {
+                quote! {
+                    fn rate(#arguments) {
+                        ::bg_model::system::System::inlined_rate(self, t, x, negative, dx);
+                    }
+                    #inline
+                    fn inlined_rate(#arguments) { #body }
+                }
+            },
+        )
     }
 
     /// The attribute of rates, and of forces, that are inlined into a step.

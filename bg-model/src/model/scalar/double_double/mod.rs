@@ -97,7 +97,7 @@ fn two_product(a: f64, b: f64) -> DoubleDouble {
 
 impl Add for DoubleDouble {
     type Output = Self;
-    #[inline(always)]
+    #[inline(never)]
     fn add(self, b: Self) -> Self {
         let high = two_sum(self.high, b.high);
         let low = two_sum(self.low, b.low);
@@ -114,7 +114,7 @@ impl Sub for DoubleDouble {
 }
 impl Mul for DoubleDouble {
     type Output = Self;
-    #[inline(always)]
+    #[inline(never)]
     fn mul(self, b: Self) -> Self {
         let product = two_product(self.high, b.high);
         let cross = self.high * b.low + self.low * b.high;
@@ -123,7 +123,7 @@ impl Mul for DoubleDouble {
 }
 impl Div for DoubleDouble {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn div(self, b: Self) -> Self {
         let quotient = self.high / b.high;
         // b * quotient with the product by one word.
@@ -152,7 +152,7 @@ impl Scalar for DoubleDouble {
     fn to_f64(self) -> f64 {
         self.high
     }
-    #[inline]
+    #[inline(never)]
     fn sqrt(self) -> Self {
         if self.high == 0.0 {
             return self;

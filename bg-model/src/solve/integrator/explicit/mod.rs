@@ -150,9 +150,9 @@ fn combine<const N: usize>(row: Row, k: &Stages<N>, i: usize) -> f64 {
 
 impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its weights
-    /// as constants; the rate stands there once, which is less to compile and takes no longer.
+    /// as constants; the rate stands there once, which is less to compile and takes no longer. It is called where not `IS_INLINED`.
     #[inline(always)]
-    fn evaluate(
+    fn evaluate<const IS_INLINED: bool>(
         &mut self,
         flow: &impl Flow<N>,
         start: &Point<N>,
@@ -172,7 +172,12 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
             }
             written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
             completed.complete(stage, T::C[stage], &mut x);
-            flow.rate(start.t + T::C[stage] * h, &x, &mut self.k[stage]);
+            let t = start.t + T::C[stage] * h;
+            if IS_INLINED {
+                flow.inlined_rate(t, &x, &mut self.k[stage]);
+            } else {
+                flow.rate(t, &x, &mut self.k[stage]);
+            }
         }
     }
 
@@ -196,7 +201,7 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         completed: &mut impl Complete<N>,
     ) -> f64 {
         self.k[0] = start.rate;
-        self.evaluate(flow, start, h, 1..T::END, completed);
+        self.evaluate::<true>(flow, start, h, 1..T::END, completed);
         self.finish_step(start, h, scale, end, completed)
     }
 
@@ -338,7 +343,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
 
     fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         self.k[T::END] = end.rate;
-        self.evaluate(flow, start, h, T::END + 1..T::A.len(), &mut ());
+        self.evaluate::<false>(flow, start, h, T::END + 1..T::A.len(), &mut ());
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
         self.polynomial.set(start, h, end, |m, i, _| h * combine(row(m), &self.k, i));
     }

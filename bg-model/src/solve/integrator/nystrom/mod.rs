@@ -124,7 +124,7 @@ impl<const N: usize> Nystrom<N> {
             let (t, k) = (start.t + c * h, &mut self.k[stage].0);
             match &second {
                 Some(second) => second.forces(t, &x, &[], k),
-                None => flow.rate(t, &x, k),
+                None => flow.inlined_rate(t, &x, k),
             }
         }
     }

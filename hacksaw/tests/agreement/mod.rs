@@ -9,7 +9,7 @@ use std::error::Error;
 
 use bg_model::assembly::AssemblyError;
 use bg_model::description::{Description, StateKind};
-use bg_model::integrator::{Absolute, AnyMethod, Integrator, Tolerances};
+use bg_model::integrator::{Absolute, AnyMethod, Dop853, Integrator, Method, Rk4, Tolerances};
 use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor};
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
@@ -18,9 +18,9 @@ use bg_model::statistics::Statistics;
 use bg_model::system::{Model, Powers, System};
 use bg_workbench::compare;
 
-use crate::columns::{AXES, add_angles};
-use crate::mechanism::{Hacksaw, HacksawParameters};
-use crate::scenes::Scene;
+use hacksaw::columns::{AXES, add_angles};
+use hacksaw::mechanism::{Hacksaw, HacksawParameters};
+use hacksaw::scenes::Scene;
 
 /// The steps that both models take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,9 +134,22 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run<Mo, const N: usize, const G: usize, const M: usize>(&self, model: &Mo) -> Result<Run, Box<dyn Error>>
+    /// The method that makes the steps; that of any run, which is compiled already.
+    fn method<const N: usize>(&self) -> AnyMethod<N> {
+        match self.steps {
+            Steps::Rk4(step) => Integrator::Rk4.method(step),
+            Steps::ByError { .. } | Steps::Equal(_) => Integrator::Dop853.method(f64::NAN),
+        }
+    }
+
+    fn run<Mo, Me, const N: usize, const G: usize, const M: usize>(
+        &self,
+        model: &Mo,
+        method: &mut Me,
+    ) -> Result<Run, Box<dyn Error>>
     where
         Mo: Model<f64, N, G, M>,
+        Me: Method<N>,
     {
         // Larger than any error: what has it does not shorten a step.
         const NEVER: f64 = 1e300;
@@ -154,13 +167,9 @@ impl Job<'_> {
             samples: Samples::At(self.instants.to_vec()),
             ..Settings::default()
         };
-        let mut method: AnyMethod<N> = match self.steps {
-            Steps::Rk4(step) => Integrator::Rk4.method(step),
-            _ => Integrator::Dop853.method(f64::NAN),
-        };
         let mut recorder = Recorder::new(model, &[Part::Outputs]);
         let span = Span { t0: 0.0, t_end: self.t_end };
-        let finish = integrate(model, &mut method, &model.start()?, span, &settings, &mut recorder);
+        let finish = integrate(model, method, &model.start()?, span, &settings, &mut recorder);
         // A failure has the numbers of its model's states in its type.
         let finish = finish.map_err(|failure| failure.to_string())?;
         Ok(Run { samples: recorder.recording, statistics: finish.statistics })
@@ -174,7 +183,7 @@ impl ModelVisitor<f64> for Job<'_> {
     where
         Mo: Model<f64, N, G, M>,
     {
-        self.run(model)
+        self.run(model, &mut self.method())
     }
 }
 
@@ -196,12 +205,16 @@ impl MechanismVisitor for Reduced<'_> {
 fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Run, Box<dyn Error>> {
     let mut values = values.clone();
     if scene != Scene::FreeRun {
-        return job.run(&Hacksaw::new(values)?);
+        return Hacksaw::new(values)?.visit(job);
     }
     for name in ["r_cut", "r_return", "k_work", "r_work"] {
         values.set(name, 0.0)?;
     }
-    job.run(&Unswitched(Hacksaw::new(values)?))
+    let model = Unswitched(Hacksaw::new(values)?);
+    match job.steps {
+        Steps::Rk4(step) => job.run(&model, &mut Rk4::new(step)),
+        Steps::ByError { .. } | Steps::Equal(_) => job.run(&model, &mut Dop853::new()),
+    }
 }
 
 /// A model with its one switch left in the branch of the positive guard: right where both branches are the same.
