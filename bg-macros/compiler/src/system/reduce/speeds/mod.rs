@@ -1,0 +1,78 @@
+//! Momenta that rigid joints determine.
+//!
+//! In: equations with the reactions of rigid joints. Out: the same in fewer unknowns: the momenta and positions that joints determine
+//! are expressions of the others, and the reactions of these joints occur in no rate.
+//! Method: a row that a joint holds, J v = 0, is solved for a momentum with a pivot that is constant along every motion
+//! (`choice`). What is left of the momenta obeys the equations projected on the motions that these rows allow (`projected`). Rows
+//! without such a pivot, as those that close a loop, keep their reactions.
+//! The step is taken back as a whole where something does not fit it: velocities at the start that the rows do not allow for all
+//! parameters, as many rows left as momenta.
+
+mod choice;
+mod circle;
+mod projected;
+
+use std::collections::BTreeSet;
+
+use super::report::Report;
+use crate::expr::{Id, Symbol, same_polynomial, substitute};
+use crate::system::equations::{Kind, StateEquations};
+use choice::Choice;
+
+/// Takes momenta out of the equations that rigid joints determine.
+pub(super) fn choose(equations: &mut StateEquations, report: &mut Report) {
+    let mut changed = equations.clone();
+    let Some(choice) = Choice::of(&mut changed).filter(|choice| suits(&mut changed, choice)) else { return };
+    let Some(values) = projected::equations(&mut changed, &choice) else { return };
+    for (&state, fate) in &choice.fates {
+        report.say(state, fate.clone());
+    }
+    *equations = changed;
+    equations.replace(&|symbol| match symbol {
+        Symbol::Multiplier(_) => values.get(&symbol).copied(),
+        _ => symbol.as_state().and_then(|state| choice.images.get(&state).copied()),
+    });
+    let mut row = 0;
+    equations.reactions.retain(|_| {
+        row += 1;
+        !choice.is_solved(row - 1)
+    });
+    let kept: Vec<bool> = (0..equations.states.len()).map(|state| !choice.images.contains_key(&state)).collect();
+    super::live::keep_states(equations, report, &kept);
+}
+
+/// Whether the mechanism can do without the reactions of the chosen rows.
+fn suits(equations: &mut StateEquations, choice: &Choice) -> bool {
+    let left: Vec<usize> = (0..choice.rigid).filter(|&row| !choice.is_solved(row)).collect();
+    let moved: BTreeSet<usize> = choice.survivors(equations).collect();
+    // As many rows as momenta: they may follow from each other, and reactions of least norm be asked for, or nothing may move.
+    if !left.is_empty() && left.len() >= moved.len() {
+        return false;
+    }
+    // Where several rows close loops, some of them may follow from others; what is shared then is shared among all joints.
+    if left.len() > 1 && is_watched(equations, choice) {
+        return false;
+    }
+    choice.rows.iter().all(|&(row, _)| starts_at_rest(equations, row))
+}
+
+/// Whether an output shows a reaction of a chosen row.
+fn is_watched(equations: &StateEquations, choice: &Choice) -> bool {
+    let outputs: Vec<Id> = equations.outputs.iter().map(|output| output.value).collect();
+    let watched = equations.pool.symbols(&outputs);
+    choice.rows.iter().any(|&(row, _)| watched.contains(&equations.reactions[row].multiplier))
+}
+
+/// Whether the flow of a row is zero at the start, whatever the parameters and the pose are.
+fn starts_at_rest(equations: &mut StateEquations, row: usize) -> bool {
+    let StateEquations { pool, states, reactions, .. } = equations;
+    let flow = reactions[row].slip.flow;
+    let at_start = substitute(pool, &[flow], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
+    let zero = pool.zero();
+    same_polynomial(pool, at_start, zero)
+}
+
+/// The states of one kind.
+fn of_kind(equations: &StateEquations, kind: Kind) -> impl Iterator<Item = usize> + '_ {
+    (0..equations.states.len()).filter(move |&state| equations.states[state].origin.kind() == kind)
+}
