@@ -9,9 +9,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::report::Fate;
-use super::super::friction;
+use super::super::{angle, friction};
 use super::of_kind;
-use crate::expr::{Id, Pool, Symbol, derivative, partial, same_polynomial, substitute};
+use crate::expr::{Circles, Id, Pool, Symbol, derivative, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, Origin, StateEquations};
 
 /// Solved rows and what they determine.
@@ -28,6 +28,8 @@ pub(super) struct Choice {
     pub loads: Vec<Option<BTreeMap<usize, Id>>>,
     /// The velocity of each momentum: the derivative of the energy.
     pub velocities: BTreeMap<usize, Id>,
+    /// The cosines and sines of the angles that stay.
+    pub circles: Circles,
 }
 
 /// States with their images.
@@ -47,6 +49,7 @@ impl Choice {
             fates: BTreeMap::new(),
             loads,
             velocities,
+            circles: Circles::default(),
         };
         for row in 0..rigid {
             let solved = choice.translation(equations, row).or_else(|| choice.rotation(equations, row));
@@ -55,7 +58,20 @@ impl Choice {
                 choice.add(equations, row, images);
             }
         }
+        choice.circles = choice.circles(equations);
+        let (states, before): (Vec<usize>, Vec<Id>) = choice.images.iter().map(|(&state, &id)| (state, id)).unzip();
+        let after = choice.circles.shortened(&mut equations.pool, &before);
+        choice.images = states.into_iter().zip(after).collect();
         (!choice.rows.is_empty()).then_some(choice)
+    }
+
+    /// The cosines and sines among the states that stay.
+    fn circles(&self, equations: &mut StateEquations) -> Circles {
+        let pairs = angle::circles(equations);
+        let stays = |state: &usize| !self.images.contains_key(state);
+        let pairs = pairs.into_iter().filter(|(cosine, sine)| stays(cosine) && stays(sine));
+        let mut symbol = |state: usize| equations.pool.symbol(Symbol::state(state));
+        Circles::new(pairs.map(|(cosine, sine)| (symbol(cosine), symbol(sine))).collect())
     }
 
     /// Whether a row is solved.
@@ -76,6 +92,12 @@ impl Choice {
     /// Expressions over the states that stay.
     pub fn applied(&self, pool: &mut Pool, ids: &[Id]) -> Vec<Id> {
         applied(pool, ids, &self.images)
+    }
+
+    /// The same, written shorter.
+    pub fn shortened(&self, pool: &mut Pool, ids: &[Id]) -> Vec<Id> {
+        let applied = self.applied(pool, ids);
+        self.circles.shortened(pool, &applied)
     }
 
     fn add(&mut self, equations: &mut StateEquations, row: usize, images: Images) {

@@ -9,13 +9,12 @@
 //! parameters, as many rows left as momenta.
 
 mod choice;
-mod circle;
 mod projected;
 
 use std::collections::BTreeSet;
 
 use super::report::Report;
-use crate::expr::{Id, Symbol, same_polynomial, substitute};
+use crate::expr::{Id, Symbol, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, StateEquations};
 use choice::Choice;
 
@@ -32,11 +31,14 @@ pub(super) fn choose(equations: &mut StateEquations, report: &mut Report) {
         Symbol::Multiplier(_) => values.get(&symbol).copied(),
         _ => symbol.as_state().and_then(|state| choice.images.get(&state).copied()),
     });
+    let circles = choice.circles.clone();
+    equations.rewrite(&|pool, ids| circles.shortened(pool, ids));
     let mut row = 0;
     equations.reactions.retain(|_| {
         row += 1;
         !choice.is_solved(row - 1)
     });
+    write_by_momenta(equations, &choice);
     let kept: Vec<bool> = (0..equations.states.len()).map(|state| !choice.images.contains_key(&state)).collect();
     super::live::keep_states(equations, report, &kept);
 }
@@ -70,6 +72,26 @@ fn starts_at_rest(equations: &mut StateEquations, row: usize) -> bool {
     let at_start = substitute(pool, &[flow], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
     let zero = pool.zero();
     same_polynomial(pool, at_start, zero)
+}
+
+/// The flows that are still held, each as a sum over the momenta with coefficients as short as they can be.
+fn write_by_momenta(equations: &mut StateEquations, choice: &Choice) {
+    let survivors: Vec<usize> = choice.survivors(equations).collect();
+    let StateEquations { pool, reactions, .. } = equations;
+    let zero = pool.zero();
+    for reaction in reactions {
+        let flow = &mut reaction.slip.flow;
+        let is_momentum = |symbol: Symbol| symbol.as_state().is_some_and(|state| survivors.contains(&state));
+        let rest = substitute(pool, &[*flow], &|symbol| is_momentum(symbol).then_some(zero))[0];
+        let mut parts = vec![rest];
+        for &state in &survivors {
+            let slope = partial(pool, &[*flow], Symbol::state(state));
+            let slope = choice.circles.shortened(pool, &slope)[0];
+            let momentum = pool.symbol(Symbol::state(state));
+            parts.push(pool.mul(slope, momentum));
+        }
+        *flow = pool.sum(&parts);
+    }
 }
 
 /// The states of one kind.

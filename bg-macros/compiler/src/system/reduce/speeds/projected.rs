@@ -10,9 +10,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::choice::Choice;
-use super::circle::Circles;
 use super::of_kind;
-use crate::expr::{Id, Linear, Symbol, derivative, partial, solve_linear, substitute};
+use crate::expr::{Id, Linear, Pool, Symbol, derivative, partial, solve_linear, substitute};
 use crate::system::equations::definite::Factors;
 use crate::system::equations::{Kind, StateEquations};
 
@@ -26,7 +25,7 @@ pub(super) fn equations(equations: &mut StateEquations, choice: &Choice) -> Opti
     let images = choice.applied(&mut equations.pool, &images);
     let drifts = drifts(equations, choice, &images);
     let velocities: Vec<Id> = momenta.iter().map(|state| choice.velocities[state]).collect();
-    let velocities = choice.applied(&mut equations.pool, &velocities);
+    let velocities = choice.shortened(&mut equations.pool, &velocities);
     let active = active(equations, choice, &velocities);
     let is_free = |state: &usize| !active.contains(state) && !choice.images.contains_key(state);
     if momenta.iter().filter(|&state| is_free(state)).any(|state| {
@@ -35,36 +34,54 @@ pub(super) fn equations(equations: &mut StateEquations, choice: &Choice) -> Opti
     }) {
         return None;
     }
-    let circles = Circles::of(equations, choice);
     let pool = &mut equations.pool;
-    let columns = |pool: &mut _, of: &[Id]| -> Vec<Vec<Id>> {
+    let columns = |pool: &mut Pool, of: &[Id]| -> Vec<Vec<Id>> {
         active.iter().map(|&state| partial(pool, of, Symbol::state(state))).collect()
     };
     let (shapes, motions) = (columns(pool, &images), columns(pool, &velocities));
-    let mut right = Vec::new();
+    let net: Vec<Id> = forces.iter().zip(&drifts).map(|(&force, &drift)| pool.sub(force, drift)).collect();
+    let right: Vec<Id> = motions.iter().map(|motion| dot(pool, motion, &net)).collect();
+    let right = choice.circles.shortened(pool, &right);
     let mut matrix = Vec::new();
     for (i, motion) in motions.iter().enumerate() {
-        let parts: Vec<Id> = (0..momenta.len())
-            .map(|k| {
-                let net = pool.sub(forces[k], drifts[k]);
-                pool.mul(motion[k], net)
-            })
-            .collect();
-        right.push(pool.sum(&parts));
-        let entry = |shape: &Vec<Id>| {
-            let parts: Vec<Id> = motion.iter().zip(shape).map(|(&a, &b)| pool.mul(a, b)).collect();
-            let entry = pool.sum(&parts);
-            circles.tidied(pool, entry)
-        };
-        matrix.push(shapes[..=i].iter().map(entry).collect::<Vec<Id>>());
+        let row: Vec<Id> = shapes[..=i].iter().map(|shape| dot(pool, motion, shape)).collect();
+        matrix.push(choice.circles.shortened(pool, &row));
     }
     let factors = Factors::of(pool, &matrix, |pool, _, pivot, _| pool.powi(pivot, -1));
-    let rates = factors.solve(pool, &right);
+    let rates = superposed(pool, &factors, &right);
     let values = reactions(equations, choice, (&momenta, &forces), (&shapes, &rates, &drifts))?;
     for (&state, rate) in active.iter().zip(rates) {
         equations.states[state].rate = rate;
     }
     Some(values)
+}
+
+fn dot(pool: &mut Pool, a: &[Id], b: &[Id]) -> Id {
+    let parts: Vec<Id> = a.iter().zip(b).map(|(&a, &b)| pool.mul(a, b)).collect();
+    pool.sum(&parts)
+}
+
+/// The solution for `right`, as that without the reactions that are left, and a multiple of each of these: so their values, which
+/// are not known yet, are put in once.
+fn superposed(pool: &mut Pool, factors: &Factors, right: &[Id]) -> Vec<Id> {
+    let left: Vec<Symbol> =
+        pool.symbols(right).into_iter().filter(|symbol| matches!(symbol, Symbol::Multiplier(_))).collect();
+    let columns: Vec<Vec<Id>> = left.iter().map(|&multiplier| partial(pool, right, multiplier)).collect();
+    let all: Vec<Id> = columns.iter().flatten().copied().collect();
+    if pool.symbols(&all).iter().any(|symbol| left.contains(symbol)) {
+        return factors.solve(pool, right);
+    }
+    let zero = pool.zero();
+    let rest = substitute(pool, right, &|symbol| left.contains(&symbol).then_some(zero));
+    let mut solution = factors.solve(pool, &rest);
+    for (&multiplier, column) in left.iter().zip(&columns) {
+        let (by, multiplier) = (factors.solve(pool, column), pool.symbol(multiplier));
+        for (value, by) in solution.iter_mut().zip(by) {
+            let part = pool.mul(by, multiplier);
+            *value = pool.add(*value, part);
+        }
+    }
+    solution
 }
 
 /// The rates of the momenta without the reactions of the solved rows.
@@ -77,7 +94,7 @@ fn forces(
     let StateEquations { pool, states, .. } = equations;
     let (zero, rates) = (pool.zero(), momenta.iter().map(|&state| states[state].rate).collect::<Vec<_>>());
     let rates = substitute(pool, &rates, &|symbol| solved.contains(&symbol).then_some(zero));
-    choice.applied(pool, &rates)
+    choice.shortened(pool, &rates)
 }
 
 /// How images change by the motion of the pose alone.
@@ -89,7 +106,8 @@ fn drifts(equations: &mut StateEquations, choice: &Choice, images: &[Id]) -> Vec
     let rates: Vec<Id> = pose.iter().map(|&state| states[state].rate).collect();
     let rates = choice.applied(pool, &rates);
     let seeds = pose.into_iter().map(Symbol::state).zip(rates).collect();
-    derivative(pool, images, &seeds)
+    let drifts = derivative(pool, images, &seeds);
+    choice.circles.shortened(pool, &drifts)
 }
 
 /// The momenta that stay and whose equations belong together, as velocities of what goes depend on them.
