@@ -132,9 +132,19 @@ impl Choice {
         (is_linear && same_polynomial(pool, at_rest, zero)).then_some(Row { flow, gap, slopes })
     }
 
+    /// Whether the gap of a row is zero at the start, or is closed by guesses. An open one is for the run time to refuse.
+    fn is_closed(equations: &mut StateEquations, row: usize) -> bool {
+        let StateEquations { pool, states, reactions, .. } = equations;
+        let gap = reactions[row].slip.gap.unwrap_or(pool.zero());
+        let at_start = substitute(pool, &[gap], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
+        let is_guessed = pool.symbols(&[at_start]).into_iter().any(|symbol| matches!(symbol, Symbol::Unknown(_)));
+        let zero = pool.zero();
+        is_guessed || same_polynomial(pool, at_start, zero)
+    }
+
     /// A row solved for the momentum of a body, with its position.
     fn translation(&self, equations: &mut StateEquations, number: usize) -> Option<(usize, Images)> {
-        let row = self.row(equations, number)?;
+        let row = self.row(equations, number).filter(|_| Self::is_closed(equations, number))?;
         let positions: Vec<usize> = of_kind(equations, Kind::Position).collect();
         for (&momentum, &slope) in &row.slopes {
             let StateEquations { pool, states, .. } = &mut *equations;
