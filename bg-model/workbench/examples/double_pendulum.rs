@@ -85,7 +85,7 @@ bond_graph! {
                 supplied: J = integral(supplied_power);
             }
             expect planar;
-            expect states = 14;
+            expect states = 6;
         }
     }
 }
