@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::{Id, Monomials, Node, Pool, children, monomials};
+use super::{Id, Monomials, Node, Pool, monomials};
 
 /// Sums of more monomials stay as they are.
 const MOST_MONOMIALS: usize = 16;
@@ -72,7 +72,7 @@ impl Circles {
         let mut sum: Sum = reduced.into_iter().filter(|(_, value)| value.abs() > ROUNDING * largest).collect();
         self.join(pool, &mut sum);
         let found = factored(pool, sum.into_iter().collect());
-        if cost(pool, found) < cost(pool, of) { found } else { of }
+        if pool.cost(&[found]) < pool.cost(&[of]) { found } else { of }
     }
 
     /// Puts products of two angles' cosines and sines together.
@@ -169,28 +169,4 @@ fn factored(pool: &mut Pool, sum: Vec<(Box<[(Id, i32)]>, f64)>) -> Id {
 fn product(pool: &mut Pool, monomial: &[(Id, i32)]) -> Id {
     let factors: Vec<Id> = monomial.iter().map(|&(factor, power)| pool.powi(factor, power)).collect();
     pool.product(&factors)
-}
-
-/// The operations that a node takes, those of what it calls and switches apart.
-fn cost(pool: &Pool, id: Id) -> usize {
-    let mut seen = std::collections::HashSet::new();
-    let (mut open, mut cost) = (vec![id], 0);
-    while let Some(id) = open.pop() {
-        if !seen.insert(id) {
-            continue;
-        }
-        match pool.node(id) {
-            Node::Sum { constant, terms } => {
-                let scaled = terms.iter().filter(|(_, factor)| factor.value().abs() != 1.0).count();
-                cost += scaled + terms.len() - usize::from(constant.value() == 0.0);
-                open.extend(children(pool.node(id)));
-            }
-            Node::Product(factors) => {
-                cost += factors.iter().map(|(_, power)| power.unsigned_abs() as usize).sum::<usize>() - 1;
-                open.extend(children(pool.node(id)));
-            }
-            _ => {}
-        }
-    }
-    cost
 }

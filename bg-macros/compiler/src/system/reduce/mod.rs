@@ -50,7 +50,7 @@ const PASSES: [Pass; 8] = [
     },
     Pass { name: "equal states merged", applies: always, run: |equations, _, report| equal::merge(equations, report) },
     Pass {
-        name: "independent speeds chosen",
+        name: "states of joints expressed",
         applies: |equations, _| !equations.reactions.is_empty() && equations.baumgarte.is_none(),
         run: |equations, _, report| speeds::choose(equations, report),
     },

@@ -6,9 +6,11 @@
 //! (`choice`). What is left of the momenta obeys the equations projected on the motions that these rows allow (`projected`). Rows
 //! without such a pivot, as those that close a loop, keep their reactions.
 //! The step is taken back as a whole where something does not fit it: velocities at the start that the rows do not allow for all
-//! parameters, as many rows left as momenta.
+//! parameters, as many rows left as momenta; or where rates would take more operations, as those of a long chain do, whose matrix is
+//! full where that of the reactions is a band.
 
 mod choice;
+mod inverse;
 mod projected;
 
 use std::collections::BTreeSet;
@@ -18,29 +20,48 @@ use crate::expr::{Id, Symbol, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, StateEquations};
 use choice::Choice;
 
-/// Takes momenta out of the equations that rigid joints determine.
+/// Takes momenta out of the equations that rigid joints determine, where rates take fewer operations then.
 pub(super) fn choose(equations: &mut StateEquations, report: &mut Report) {
     let mut changed = equations.clone();
     let Some(choice) = Choice::of(&mut changed).filter(|choice| suits(&mut changed, choice)) else { return };
-    let Some(values) = projected::equations(&mut changed, &choice) else { return };
+    if !put(&mut changed, &choice) || cost(&changed) >= cost(equations) {
+        return;
+    }
     for (&state, fate) in &choice.fates {
         report.say(state, fate.clone());
     }
     *equations = changed;
+    let kept: Vec<bool> = (0..equations.states.len()).map(|state| !choice.images.contains_key(&state)).collect();
+    super::live::keep_states(equations, report, &kept);
+}
+
+/// Puts what is chosen into the equations; false where the rows act on what cannot be projected.
+fn put(equations: &mut StateEquations, choice: &Choice) -> bool {
+    let Some(values) = projected::equations(equations, choice) else { return false };
     equations.replace(&|symbol| match symbol {
         Symbol::Multiplier(_) => values.get(&symbol).copied(),
         _ => symbol.as_state().and_then(|state| choice.images.get(&state).copied()),
     });
-    let circles = choice.circles.clone();
-    equations.rewrite(&|pool, ids| circles.shortened(pool, ids));
+    equations.rewrite(&|pool, ids| choice.circles.shortened(pool, ids));
     let mut row = 0;
     equations.reactions.retain(|_| {
         row += 1;
         !choice.is_solved(row - 1)
     });
-    write_by_momenta(equations, &choice);
-    let kept: Vec<bool> = (0..equations.states.len()).map(|state| !choice.images.contains_key(&state)).collect();
-    super::live::keep_states(equations, report, &kept);
+    write_by_momenta(equations, choice);
+    true
+}
+
+/// About how many operations the rates take that are left, when the reactions are solved for.
+fn cost(equations: &StateEquations) -> usize {
+    let mut solved = equations.clone();
+    super::reaction::solve(&mut solved);
+    let StateEquations { pool, states, solution, .. } = &mut solved;
+    let is_named: BTreeSet<Symbol> = pool.symbols(&states.iter().map(|state| state.rate).collect::<Vec<_>>());
+    let rates = states.iter().enumerate().filter(|(state, _)| is_named.contains(&Symbol::state(*state)));
+    let rates: Vec<Id> = rates.map(|(_, state)| state.rate).collect();
+    let rates = solution.closed(pool, &rates);
+    pool.cost(&rates)
 }
 
 /// Whether the mechanism can do without the reactions of the chosen rows.

@@ -10,9 +10,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::choice::Choice;
+use super::inverse::Inverse;
 use super::of_kind;
 use crate::expr::{Id, Linear, Pool, Symbol, derivative, partial, solve_linear, substitute};
-use crate::system::equations::definite::Factors;
 use crate::system::equations::{Kind, StateEquations};
 
 /// Gives the momenta that stay their rates, and returns the values of the solved rows' reactions; none where these act on a momentum
@@ -47,8 +47,8 @@ pub(super) fn equations(equations: &mut StateEquations, choice: &Choice) -> Opti
         let row: Vec<Id> = shapes[..=i].iter().map(|shape| dot(pool, motion, shape)).collect();
         matrix.push(choice.circles.shortened(pool, &row));
     }
-    let factors = Factors::of(pool, &matrix, |pool, _, pivot, _| pool.powi(pivot, -1));
-    let rates = superposed(pool, &factors, &right);
+    let inverse = Inverse::of(pool, &matrix);
+    let rates = superposed(pool, &inverse, &right);
     let values = reactions(equations, choice, (&momenta, &forces), (&shapes, &rates, &drifts))?;
     for (&state, rate) in active.iter().zip(rates) {
         equations.states[state].rate = rate;
@@ -63,25 +63,18 @@ fn dot(pool: &mut Pool, a: &[Id], b: &[Id]) -> Id {
 
 /// The solution for `right`, as that without the reactions that are left, and a multiple of each of these: so their values, which
 /// are not known yet, are put in once.
-fn superposed(pool: &mut Pool, factors: &Factors, right: &[Id]) -> Vec<Id> {
+fn superposed(pool: &mut Pool, inverse: &Inverse, right: &[Id]) -> Vec<Id> {
     let left: Vec<Symbol> =
         pool.symbols(right).into_iter().filter(|symbol| matches!(symbol, Symbol::Multiplier(_))).collect();
     let columns: Vec<Vec<Id>> = left.iter().map(|&multiplier| partial(pool, right, multiplier)).collect();
     let all: Vec<Id> = columns.iter().flatten().copied().collect();
     if pool.symbols(&all).iter().any(|symbol| left.contains(symbol)) {
-        return factors.solve(pool, right);
+        return inverse.times(pool, right, &[]);
     }
     let zero = pool.zero();
     let rest = substitute(pool, right, &|symbol| left.contains(&symbol).then_some(zero));
-    let mut solution = factors.solve(pool, &rest);
-    for (&multiplier, column) in left.iter().zip(&columns) {
-        let (by, multiplier) = (factors.solve(pool, column), pool.symbol(multiplier));
-        for (value, by) in solution.iter_mut().zip(by) {
-            let part = pool.mul(by, multiplier);
-            *value = pool.add(*value, part);
-        }
-    }
-    solution
+    let columns: Vec<(Id, Vec<Id>)> = left.iter().map(|&symbol| pool.symbol(symbol)).zip(columns).collect();
+    inverse.times(pool, &rest, &columns)
 }
 
 /// The rates of the momenta without the reactions of the solved rows.
