@@ -21,9 +21,6 @@ pub struct Circles {
     pairs: Vec<(Id, Id)>,
 }
 
-/// A sum under way: monomials by their factors.
-type Sum = BTreeMap<Box<[(Id, i32)]>, f64>;
-
 impl Circles {
     /// With these pairs of a cosine and a sine.
     #[must_use]
@@ -69,14 +66,14 @@ impl Circles {
         let Some(expanded) = monomials(pool, of) else { return of };
         let reduced = self.pairs.iter().fold(expanded, |sum, &pair| without_square(sum, pair));
         let largest = reduced.values().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let mut sum: Sum = reduced.into_iter().filter(|(_, value)| value.abs() > ROUNDING * largest).collect();
+        let mut sum: Monomials = reduced.into_iter().filter(|(_, value)| value.abs() > ROUNDING * largest).collect();
         self.join(pool, &mut sum);
-        let found = factored(pool, sum.into_iter().collect());
+        let found = factored(pool, sum);
         if pool.cost(&[found]) < pool.cost(&[of]) { found } else { of }
     }
 
     /// Puts products of two angles' cosines and sines together.
-    fn join(&self, pool: &mut Pool, sum: &mut Sum) {
+    fn join(&self, pool: &mut Pool, sum: &mut Monomials) {
         for (k, &(c, s)) in self.pairs.iter().enumerate() {
             for &(d, t) in &self.pairs[..k] {
                 for (a, b) in [([c, d], [s, t]), ([s, d], [c, t])] {
@@ -89,7 +86,7 @@ impl Circles {
 }
 
 /// `m (x + y)` in place of `m x + m y`, `m (x - y)` of `m x - m y`, for two products of two factors.
-fn join_two(pool: &mut Pool, sum: &mut Sum, (a, x): ([Id; 2], Id), (b, y): ([Id; 2], Id)) {
+fn join_two(pool: &mut Pool, sum: &mut Monomials, (a, x): ([Id; 2], Id), (b, y): ([Id; 2], Id)) {
     let with = |monomial: &[(Id, i32)], factors: [Id; 2], by: i32| {
         let mut all: BTreeMap<Id, i32> = monomial.iter().copied().collect();
         factors.into_iter().for_each(|factor| raise(&mut all, factor, by));
@@ -140,17 +137,24 @@ fn raise(monomial: &mut BTreeMap<Id, i32>, factor: Id, by: i32) {
 }
 
 /// The sum with the most common factor taken out, again and again.
-fn factored(pool: &mut Pool, sum: Vec<(Box<[(Id, i32)]>, f64)>) -> Id {
+fn factored(pool: &mut Pool, sum: Monomials) -> Id {
     let mut counts: BTreeMap<Id, usize> = BTreeMap::new();
-    for (monomial, _) in &sum {
-        monomial.iter().filter(|(_, power)| *power > 0).for_each(|(factor, _)| *counts.entry(*factor).or_default() += 1);
+    for monomial in sum.keys() {
+        monomial
+            .iter()
+            .filter(|(_, power)| *power > 0)
+            .for_each(|(factor, _)| *counts.entry(*factor).or_default() += 1);
     }
-    let most = counts.into_iter().filter(|(_, count)| *count > 1).max_by_key(|&(factor, count)| (count, std::cmp::Reverse(factor)));
+    let most = counts
+        .into_iter()
+        .filter(|(_, count)| *count > 1)
+        .max_by_key(|&(factor, count)| (count, std::cmp::Reverse(factor)));
     let Some((factor, _)) = most else {
-        let terms: Vec<(Id, f64)> = sum.into_iter().map(|(monomial, value)| (product(pool, &monomial), value)).collect();
+        let terms: Vec<(Id, f64)> =
+            sum.into_iter().map(|(monomial, value)| (product(pool, &monomial), value)).collect();
         return pool.linear(0.0, &terms);
     };
-    let (with, without): (Vec<_>, Vec<_>) =
+    let (with, without): (Monomials, Monomials) =
         sum.into_iter().partition(|(monomial, _)| monomial.iter().any(|&(id, power)| id == factor && power > 0));
     let divided = with.into_iter().map(|(monomial, value)| {
         let mut rest: BTreeMap<Id, i32> = monomial.iter().copied().collect();
@@ -169,4 +173,65 @@ fn factored(pool: &mut Pool, sum: Vec<(Box<[(Id, i32)]>, f64)>) -> Id {
 fn product(pool: &mut Pool, monomial: &[(Id, i32)]) -> Id {
     let factors: Vec<Id> = monomial.iter().map(|&(factor, power)| pool.powi(factor, power)).collect();
     pool.product(&factors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::{Environment, Symbol, evaluate};
+
+    /// Cosine and sine of two angles as states 0 to 3, two more symbols.
+    fn circles(pool: &mut Pool) -> ([Id; 6], Circles) {
+        let symbols: [Id; 6] = std::array::from_fn(|k| pool.symbol(Symbol::state(k)));
+        let [c, s, d, t, ..] = symbols;
+        (symbols, Circles::new(vec![(c, s), (d, t)]))
+    }
+
+    /// The value of a node where the angles are 0.3 and 1.1.
+    fn value(pool: &Pool, id: Id) -> f64 {
+        let (a, b) = (0.3_f64, 1.1_f64);
+        let states = [a.cos(), a.sin(), b.cos(), b.sin(), 0.7, -1.9];
+        evaluate(pool, &[id], &Environment { states: &states, ..Environment::default() })[0]
+    }
+
+    #[test]
+    fn squares_add_up_to_one() {
+        let mut pool = Pool::new();
+        let ([c, s, _, _, x, _], circles) = circles(&mut pool);
+        let [cosine, sine] = [c, s].map(|id| pool.product(&[id, id, x]));
+        let sum = pool.linear(0.0, &[(cosine, 2.0), (sine, 2.0)]);
+        let expected = pool.scale(2.0, x);
+        assert_eq!(circles.shortened(&mut pool, &[sum]), [expected]);
+    }
+
+    #[test]
+    fn products_of_two_angles_are_shared() {
+        let mut pool = Pool::new();
+        let ([c, s, d, t, x, y], circles) = circles(&mut pool);
+        let of = |pool: &mut Pool, factor: Id| {
+            let parts = [pool.product(&[factor, c, d]), pool.product(&[factor, s, t])];
+            pool.sum(&parts)
+        };
+        let sums = [of(&mut pool, x), of(&mut pool, y)];
+        let shortened = circles.shortened(&mut pool, &sums);
+        assert!(sums.iter().zip(&shortened).all(|(&a, &b)| (value(&pool, a) - value(&pool, b)).abs() < 1e-15));
+        // Two products and their sum, which both take, times x and y.
+        assert_eq!((pool.cost(&sums), pool.cost(&shortened)), (10, 5));
+    }
+
+    #[test]
+    fn parts_that_cancel_go_and_what_is_no_shorter_stays() {
+        let mut pool = Pool::new();
+        let ([c, s, d, t, x, y], circles) = circles(&mut pool);
+        let inner = pool.linear(0.0, &[(c, 2.0), (d, 1.0)]);
+        let whole = [pool.mul(x, inner), pool.mul(x, d)];
+        let difference = pool.sub(whole[0], whole[1]);
+        let shortened = circles.shortened(&mut pool, &[difference])[0];
+        assert_eq!(pool.cost(&[shortened]), 2);
+        assert!((value(&pool, difference) - value(&pool, shortened)).abs() < 1e-15);
+        let [first, second] = [pool.add(c, y), pool.add(s, t)];
+        let product = pool.mul(first, second);
+        let kept = pool.add(product, x);
+        assert_eq!(circles.shortened(&mut pool, &[kept]), [kept]);
+    }
 }

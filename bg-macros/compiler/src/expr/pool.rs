@@ -107,9 +107,7 @@ impl Pool {
                 let scaled = terms.iter().filter(|(_, factor)| factor.value().abs() != 1.0).count();
                 scaled + terms.len() - usize::from(constant.value() == 0.0)
             }
-            Node::Product(factors) => {
-                factors.iter().map(|(_, power)| power.unsigned_abs() as usize).sum::<usize>() - 1
-            }
+            Node::Product(factors) => factors.iter().map(|(_, power)| power.unsigned_abs() as usize).sum::<usize>() - 1,
             Node::Call(..) | Node::Select { .. } => 1,
         };
         self.reachable(roots).into_iter().map(cost).sum()

@@ -154,7 +154,8 @@ impl Choice {
                 continue;
             }
             let moves = |&&state: &&usize| {
-                let of: Vec<usize> = pool.symbols(&[states[state].rate]).into_iter().filter_map(Symbol::as_state).collect();
+                let of: Vec<usize> =
+                    pool.symbols(&[states[state].rate]).into_iter().filter_map(Symbol::as_state).collect();
                 of == [momentum] && !self.images.contains_key(&state)
             };
             let Some(&position) = positions.iter().find(moves) else { continue };

@@ -67,3 +67,35 @@ impl Inverse {
         cofactors.iter().map(row).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::{Environment, Symbol, evaluate};
+
+    #[test]
+    fn every_size_solves_its_equations() {
+        for size in 1..=5 {
+            let mut pool = Pool::new();
+            let mut values = Vec::new();
+            let mut symbol = |pool: &mut Pool, value: f64| {
+                values.push(value);
+                pool.symbol(Symbol::state(values.len() - 1))
+            };
+            let full = |i: usize, j: usize| if i == j { 4.0 + i as f64 } else { 1.0 / (1 + i + j) as f64 };
+            let matrix: Vec<Vec<Id>> =
+                (0..size).map(|i| (0..=i).map(|j| symbol(&mut pool, full(i, j))).collect()).collect();
+            let mut column =
+                |pool: &mut Pool, from: f64| (0..size).map(|k| symbol(pool, from + k as f64)).collect::<Vec<Id>>();
+            let (right, more) = (column(&mut pool, -1.0), column(&mut pool, 2.5));
+            let by = symbol(&mut pool, 0.3);
+            let solution = Inverse::of(&mut pool, &matrix).times(&mut pool, &right, &[(by, more)]);
+            let found = evaluate(&pool, &solution, &Environment { states: &values, ..Environment::default() });
+            for i in 0..size {
+                let product: f64 = (0..size).map(|j| full(i, j) * found[j]).sum();
+                let expected = -1.0 + i as f64 + 0.3 * (2.5 + i as f64);
+                assert!((product - expected).abs() < 1e-13, "{size}: {product} {expected}");
+            }
+        }
+    }
+}

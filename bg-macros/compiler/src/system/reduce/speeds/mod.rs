@@ -12,6 +12,8 @@
 mod choice;
 mod inverse;
 mod projected;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeSet;
 

@@ -78,12 +78,7 @@ fn superposed(pool: &mut Pool, inverse: &Inverse, right: &[Id]) -> Vec<Id> {
 }
 
 /// The rates of the momenta without the reactions of the solved rows.
-fn forces(
-    equations: &mut StateEquations,
-    choice: &Choice,
-    momenta: &[usize],
-    solved: &BTreeSet<Symbol>,
-) -> Vec<Id> {
+fn forces(equations: &mut StateEquations, choice: &Choice, momenta: &[usize], solved: &BTreeSet<Symbol>) -> Vec<Id> {
     let StateEquations { pool, states, .. } = equations;
     let (zero, rates) = (pool.zero(), momenta.iter().map(|&state| states[state].rate).collect::<Vec<_>>());
     let rates = substitute(pool, &rates, &|symbol| solved.contains(&symbol).then_some(zero));
@@ -94,8 +89,7 @@ fn forces(
 fn drifts(equations: &mut StateEquations, choice: &Choice, images: &[Id]) -> Vec<Id> {
     let StateEquations { pool, states, .. } = equations;
     let is_pose = |&state: &usize| states[state].origin.kind() != Kind::Momentum;
-    let pose: Vec<usize> =
-        pool.symbols(images).into_iter().filter_map(Symbol::as_state).filter(is_pose).collect();
+    let pose: Vec<usize> = pool.symbols(images).into_iter().filter_map(Symbol::as_state).filter(is_pose).collect();
     let rates: Vec<Id> = pose.iter().map(|&state| states[state].rate).collect();
     let rates = choice.applied(pool, &rates);
     let seeds = pose.into_iter().map(Symbol::state).zip(rates).collect();
@@ -142,7 +136,8 @@ fn reactions(
         let change = pool.add(change, drifts[k]);
         right.push(pool.sub(change, forces[k]));
         let loads = choice.rows.iter().enumerate();
-        let loads = loads.filter_map(|(column, &(row, _))| Some((column, *choice.loads[row].as_ref()?.get(&momentum)?)));
+        let loads =
+            loads.filter_map(|(column, &(row, _))| Some((column, *choice.loads[row].as_ref()?.get(&momentum)?)));
         let (columns, loads): (Vec<usize>, Vec<Id>) = loads.unzip();
         let loads = choice.applied(pool, &loads);
         rows.push(columns.into_iter().zip(loads).collect());
