@@ -14,6 +14,9 @@ use super::of_kind;
 use crate::expr::{Circles, Id, Pool, Symbol, derivative, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, Origin, StateEquations};
 
+/// A gap at the start below it is rounding of the numbers that place the bodies, m.
+const ROUNDING: f64 = 1e-12;
+
 /// Solved rows and what they determine.
 pub(super) struct Choice {
     /// How many rows are those of rigid joints; they come first.
@@ -139,7 +142,8 @@ impl Choice {
         let at_start = substitute(pool, &[gap], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
         let is_guessed = pool.symbols(&[at_start]).into_iter().any(|symbol| matches!(symbol, Symbol::Unknown(_)));
         let zero = pool.zero();
-        is_guessed || same_polynomial(pool, at_start, zero)
+        let is_rounding = pool.as_number(at_start).is_some_and(|gap| gap.abs() < ROUNDING);
+        is_guessed || is_rounding || same_polynomial(pool, at_start, zero)
     }
 
     /// A row solved for the momentum of a body, with its position.
