@@ -218,7 +218,7 @@ bond_graph! {
             }
             tune { torque, crank_angle, r_cut, r_return }
             expect planar;
-            expect states = 28;
+            expect states = 9;
         }
         /// The machine running free, the blade off the work.
         scene FreeRun {

@@ -82,7 +82,7 @@ mod tests {
             ("motion", "Motion", 29),
             ("full", "Full", 83),
             ("angles", "Angles", 24),
-            ("rigid", "Rigid", 28),
+            ("rigid", "Rigid", 9),
             ("free-run", "FreeRun", 29),
             ("literal", "Hacksaw", 85),
         ];

@@ -97,7 +97,7 @@ bond_graph! {
             }
             tune { torque, crank_angle, crank_length, rod_length }
             expect planar;
-            expect states = 18;
+            expect states = 6;
         }
     }
 }

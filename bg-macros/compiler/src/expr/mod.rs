@@ -5,6 +5,7 @@
 
 mod antiderivative;
 mod calculus;
+mod circle;
 mod evaluate;
 mod function;
 mod gauss;
@@ -22,6 +23,7 @@ mod text;
 
 pub use antiderivative::antiderivative;
 pub use calculus::{derivative, gradient, partial};
+pub use circle::Circles;
 pub use evaluate::{Environment, apply, evaluate};
 pub use gauss::{Linear, Solution, solve_linear};
 pub use node::{Function, Id, Node, Number, Symbol};

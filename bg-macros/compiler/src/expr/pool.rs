@@ -98,6 +98,21 @@ impl Pool {
         found
     }
 
+    /// About how many operations the nodes take, each node once, before common factors are taken out.
+    #[must_use]
+    pub fn cost(&self, roots: &[Id]) -> usize {
+        let cost = |id: Id| match self.node(id) {
+            Node::Number(_) | Node::Symbol(_) => 0,
+            Node::Sum { constant, terms } => {
+                let scaled = terms.iter().filter(|(_, factor)| factor.value().abs() != 1.0).count();
+                scaled + terms.len() - usize::from(constant.value() == 0.0)
+            }
+            Node::Product(factors) => factors.iter().map(|(_, power)| power.unsigned_abs() as usize).sum::<usize>() - 1,
+            Node::Call(..) | Node::Select { .. } => 1,
+        };
+        self.reachable(roots).into_iter().map(cost).sum()
+    }
+
     /// All symbols that the roots contain.
     #[must_use]
     pub fn symbols(&self, roots: &[Id]) -> BTreeSet<Symbol> {

@@ -39,7 +39,7 @@ pub fn substitute_switched(
                 Branch::Negative => images[&negative],
                 Branch::Positive => images[&positive],
             },
-            _ => pool.rebuild(id, &images),
+            _ => pool.rebuilt(id, &images),
         };
         images.insert(id, image);
     }
@@ -48,7 +48,7 @@ pub fn substitute_switched(
 
 impl Pool {
     /// The node over the images of its children.
-    fn rebuild(&mut self, id: Id, images: &HashMap<Id, Id>) -> Id {
+    pub(super) fn rebuilt(&mut self, id: Id, images: &HashMap<Id, Id>) -> Id {
         if children(self.node(id)).all(|child| images[&child] == child) {
             return id;
         }

@@ -3,7 +3,7 @@
 //! In: [`StateEquations`], what stands for each symbol. Out: the same with it in every expression.
 
 use super::StateEquations;
-use crate::expr::{Branch, Id, Symbol, substitute_switched};
+use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 
 impl StateEquations {
     /// Every expression of the model that depends on states.
@@ -45,6 +45,15 @@ impl StateEquations {
             (self.outputs, self.shown) = (outputs, shown);
         }
         self.solution = solution;
+    }
+
+    /// Writes every expression that depends on states anew.
+    pub fn rewrite(&mut self, written: &dyn Fn(&mut Pool, &[Id]) -> Vec<Id>) {
+        let mut pool = std::mem::take(&mut self.pool);
+        let before: Vec<Id> = self.roots().into_iter().map(|id| *id).collect();
+        let after = written(&mut pool, &before);
+        self.roots().into_iter().zip(after).for_each(|(root, id)| *root = id);
+        self.pool = pool;
     }
 
     /// Replaces symbols everywhere.

@@ -44,6 +44,13 @@ pub(super) fn integrate(equations: &mut StateEquations, report: &mut Report) {
     super::live::keep_states(equations, report, &kept);
 }
 
+/// The states that are the cosine and the sine of one angle.
+pub(super) fn circles(equations: &mut StateEquations) -> Vec<(usize, usize)> {
+    let pairs = pairs(equations).into_iter();
+    let proved = pairs.filter_map(|(track, cosine, sine)| proved(equations, track, cosine, sine));
+    proved.map(|turn| (turn.cosine, turn.sine)).collect()
+}
+
 /// The orientations with two components left: a track, its diagonal component, and the other.
 fn pairs(equations: &StateEquations) -> Vec<(usize, usize, usize)> {
     let mut tracks: BTreeMap<usize, Vec<(usize, bool)>> = BTreeMap::new();

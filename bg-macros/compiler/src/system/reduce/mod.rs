@@ -14,6 +14,7 @@ mod invariant;
 mod live;
 mod reaction;
 mod report;
+mod speeds;
 
 use crate::expr::{Branch, Id, Pool, Symbol};
 use crate::system::equations::StateEquations;
@@ -40,7 +41,7 @@ struct Pass {
 }
 
 /// The reductions in the order in which they find most.
-const PASSES: [Pass; 7] = [
+const PASSES: [Pass; 8] = [
     Pass { name: "parameters folded", applies: always, run: |equations, wanted, _| fold_parameters(equations, wanted) },
     Pass {
         name: "constant states folded",
@@ -48,6 +49,11 @@ const PASSES: [Pass; 7] = [
         run: |equations, _, report| invariant::fold(equations, report),
     },
     Pass { name: "equal states merged", applies: always, run: |equations, _, report| equal::merge(equations, report) },
+    Pass {
+        name: "states of joints expressed",
+        applies: |equations, _| !equations.reactions.is_empty() && equations.baumgarte.is_none(),
+        run: |equations, _, report| speeds::choose(equations, report),
+    },
     Pass {
         name: "reactions solved",
         applies: |equations, _| !equations.reactions.is_empty(),

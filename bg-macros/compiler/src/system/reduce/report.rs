@@ -18,6 +18,8 @@ pub enum Fate {
     Equal(String),
     /// It stays an affine combination of others.
     Recovered(String),
+    /// This joint determines it from others.
+    Joined(String),
     /// It reaches no output.
     Unwatched,
 }
@@ -32,6 +34,7 @@ impl std::fmt::Display for Fate {
             }
             Self::Equal(other) => write!(f, "equal: it starts as {other} and has its rate"),
             Self::Recovered(value) => write!(f, "recovered: its rate is that of {value}"),
+            Self::Joined(joint) => write!(f, "joined: the rigid joint `{joint}` gives it from others"),
             Self::Unwatched => f.write_str("unwatched: no output and no other state depends on it"),
         }
     }
@@ -98,9 +101,13 @@ impl Report {
 impl std::fmt::Display for Report {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let of = |wanted: fn(&Fate) -> bool| self.fates.iter().filter(|(_, fate)| wanted(fate)).count();
+        let joined = match of(|fate| matches!(fate, Fate::Joined(_))) {
+            0 => String::new(),
+            joined => format!(" {joined} joined;"),
+        };
         writeln!(
             f,
-            "{} states: {} constant; {} equal up to sign; {} recovered; {} unwatched; {} integrated; {} for outputs only",
+            "{} states: {} constant; {} equal up to sign; {} recovered;{joined} {} unwatched; {} integrated; {} for outputs only",
             self.fates.len(),
             of(|fate| matches!(fate, Fate::Constant(_))),
             of(|fate| matches!(fate, Fate::Equal(_))),

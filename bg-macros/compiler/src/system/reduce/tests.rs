@@ -140,6 +140,7 @@ pub(super) fn word(fate: &Fate) -> String {
         Fate::Constant(value) => format!("constant {value}"),
         Fate::Equal(other) => format!("equal {other}"),
         Fate::Recovered(value) => format!("recovered {value}"),
+        Fate::Joined(joint) => format!("joined {joint}"),
         Fate::Unwatched => "unwatched".to_owned(),
     }
 }

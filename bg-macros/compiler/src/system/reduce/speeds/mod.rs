@@ -1,0 +1,123 @@
+//! Momenta that rigid joints determine.
+//!
+//! In: equations with the reactions of rigid joints. Out: the same in fewer unknowns: the momenta and positions that joints determine
+//! are expressions of the others, and the reactions of these joints occur in no rate.
+//! Method: a row that a joint holds, J v = 0, is solved for a momentum with a pivot that is constant along every motion
+//! (`choice`). What is left of the momenta obeys the equations projected on the motions that these rows allow (`projected`). Rows
+//! without such a pivot, as those that close a loop, keep their reactions.
+//! The step is taken back as a whole where something does not fit it: velocities at the start that the rows do not allow for all
+//! parameters, as many rows left as momenta; or where rates would take more operations, as those of a long chain do, whose matrix is
+//! full where that of the reactions is a band.
+
+mod choice;
+mod inverse;
+mod projected;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeSet;
+
+use super::report::Report;
+use crate::expr::{Id, Symbol, partial, same_polynomial, substitute};
+use crate::system::equations::{Kind, StateEquations};
+use choice::Choice;
+
+/// Takes momenta out of the equations that rigid joints determine, where rates take fewer operations then.
+pub(super) fn choose(equations: &mut StateEquations, report: &mut Report) {
+    let mut changed = equations.clone();
+    let Some(choice) = Choice::of(&mut changed).filter(|choice| suits(&mut changed, choice)) else { return };
+    if !put(&mut changed, &choice) || cost(&changed) >= cost(equations) {
+        return;
+    }
+    for (&state, fate) in &choice.fates {
+        report.say(state, fate.clone());
+    }
+    *equations = changed;
+    let kept: Vec<bool> = (0..equations.states.len()).map(|state| !choice.images.contains_key(&state)).collect();
+    super::live::keep_states(equations, report, &kept);
+}
+
+/// Puts what is chosen into the equations; false where the rows act on what cannot be projected.
+fn put(equations: &mut StateEquations, choice: &Choice) -> bool {
+    let Some(values) = projected::equations(equations, choice) else { return false };
+    equations.replace(&|symbol| match symbol {
+        Symbol::Multiplier(_) => values.get(&symbol).copied(),
+        _ => symbol.as_state().and_then(|state| choice.images.get(&state).copied()),
+    });
+    equations.rewrite(&|pool, ids| choice.circles.shortened(pool, ids));
+    let mut row = 0;
+    equations.reactions.retain(|_| {
+        row += 1;
+        !choice.is_solved(row - 1)
+    });
+    write_by_momenta(equations, choice);
+    true
+}
+
+/// About how many operations the rates take that are left, when the reactions are solved for.
+fn cost(equations: &StateEquations) -> usize {
+    let mut solved = equations.clone();
+    super::reaction::solve(&mut solved);
+    let StateEquations { pool, states, solution, .. } = &mut solved;
+    let is_named: BTreeSet<Symbol> = pool.symbols(&states.iter().map(|state| state.rate).collect::<Vec<_>>());
+    let rates = states.iter().enumerate().filter(|(state, _)| is_named.contains(&Symbol::state(*state)));
+    let rates: Vec<Id> = rates.map(|(_, state)| state.rate).collect();
+    let rates = solution.closed(pool, &rates);
+    pool.cost(&rates)
+}
+
+/// Whether the mechanism can do without the reactions of the chosen rows.
+fn suits(equations: &mut StateEquations, choice: &Choice) -> bool {
+    let left: Vec<usize> = (0..choice.rigid).filter(|&row| !choice.is_solved(row)).collect();
+    let moved: BTreeSet<usize> = choice.survivors(equations).collect();
+    // As many rows as momenta: they may follow from each other, and reactions of least norm be asked for, or nothing may move.
+    if !left.is_empty() && left.len() >= moved.len() {
+        return false;
+    }
+    // Where several rows close loops, some of them may follow from others; what is shared then is shared among all joints.
+    if left.len() > 1 && is_watched(equations, choice) {
+        return false;
+    }
+    choice.rows.iter().all(|&(row, _)| starts_at_rest(equations, row))
+}
+
+/// Whether an output shows a reaction of a chosen row.
+fn is_watched(equations: &StateEquations, choice: &Choice) -> bool {
+    let outputs: Vec<Id> = equations.outputs.iter().map(|output| output.value).collect();
+    let watched = equations.pool.symbols(&outputs);
+    choice.rows.iter().any(|&(row, _)| watched.contains(&equations.reactions[row].multiplier))
+}
+
+/// Whether the flow of a row is zero at the start, whatever the parameters and the pose are.
+fn starts_at_rest(equations: &mut StateEquations, row: usize) -> bool {
+    let StateEquations { pool, states, reactions, .. } = equations;
+    let flow = reactions[row].slip.flow;
+    let at_start = substitute(pool, &[flow], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
+    let zero = pool.zero();
+    same_polynomial(pool, at_start, zero)
+}
+
+/// The flows that are still held, each as a sum over the momenta with coefficients as short as they can be.
+fn write_by_momenta(equations: &mut StateEquations, choice: &Choice) {
+    let survivors: Vec<usize> = choice.survivors(equations).collect();
+    let StateEquations { pool, reactions, .. } = equations;
+    let zero = pool.zero();
+    for reaction in reactions {
+        let flow = &mut reaction.slip.flow;
+        let is_momentum = |symbol: Symbol| symbol.as_state().is_some_and(|state| survivors.contains(&state));
+        let rest = substitute(pool, &[*flow], &|symbol| is_momentum(symbol).then_some(zero))[0];
+        let mut parts = vec![rest];
+        for &state in &survivors {
+            let slope = partial(pool, &[*flow], Symbol::state(state));
+            let slope = choice.circles.shortened(pool, &slope)[0];
+            let momentum = pool.symbol(Symbol::state(state));
+            parts.push(pool.mul(slope, momentum));
+        }
+        *flow = pool.sum(&parts);
+    }
+}
+
+/// The states of one kind.
+fn of_kind(equations: &StateEquations, kind: Kind) -> impl Iterator<Item = usize> + '_ {
+    (0..equations.states.len()).filter(move |&state| equations.states[state].origin.kind() == kind)
+}
