@@ -1062,7 +1062,7 @@ use proc_macro::TokenStream;
 /// | `MotorInputs` | a struct of `bg_model::input::Input`; only where there are inputs |
 /// | `Motor<S = f64>` | the model, generic over the scalar; its documentation has the tables of states and of operation counts |
 /// | `Motor::STATES`, `SWITCHES`, `OUTPUTS` | the sizes |
-/// | `Motor::new(parameters)`, `Motor::new(parameters, inputs)` | checks the ranges and [what cannot be](#values-that-cannot-be), and calculates what depends on parameters only; `in_scalar` is the same for any `S: Scalar` |
+/// | `Motor::new(parameters)`, `Motor::new(parameters, inputs)` | checks the ranges and [what cannot be](#values-that-cannot-be), and calculates what depends on parameters only; `in_scalar` is the same for any `S: Scalar`, `lifted` for parameters of `S`, which may be dual numbers |
 /// | `impl System` | `rate`, `guards`, `project`, `state_name`, `switch_name`, `not_finite`, what joints hold and more; nothing is allocated |
 /// | `impl Model` | `start`, `impulse_energy`, `outputs`, `stored_energy`, `powers`, `description` with the tables, the expanded graph and, of a scene, the report |
 ///

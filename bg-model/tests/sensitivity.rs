@@ -1,16 +1,14 @@
 //! Derivatives by parameters and start values against five-point differences in double-double arithmetic, and closed forms.
 
 use bg_model::bond_graph;
-use bg_model::extended::{self, Accuracy};
+use bg_model::extended::Accuracy;
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::{LiftedVisitor, Mechanism};
-use bg_model::nalgebra::SVector;
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::mechanism::Mechanism;
+use bg_model::parameters::Parameters;
 use bg_model::run::Request;
-use bg_model::scalar::{DoubleDouble, Gradient, Scalar};
-use bg_model::sensitivity::{Direction, sensitivities};
-use bg_model::simulation::{Samples, Span};
-use bg_model::system::Model;
+use bg_model::scalar::{Gradient, Scalar};
+use bg_model::sensitivity::{Direction, differences, sensitivities};
+use bg_model::simulation::Samples;
 
 bond_graph! {
     /// A rod on a hinge that does not give, with what it loses.
@@ -72,46 +70,6 @@ bond_graph! {
     }
 }
 
-/// The derivatives of the outputs by one parameter at `t` (s), by five-point differences of runs in double-double numbers.
-struct Differences {
-    values: Vec<f64>,
-    parameter: usize,
-    t: f64,
-}
-
-impl LiftedVisitor<DoubleDouble> for Differences {
-    type Output = Vec<f64>;
-
-    fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
-        self,
-        _: &Mo,
-        lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
-    ) -> Vec<f64>
-    where
-        Mo: Model<f64, N, G, M>,
-        Li: Model<DoubleDouble, N, G, M>,
-    {
-        let number = DoubleDouble::from_f64;
-        // The truncation error goes with the fourth power, rounding of the assembly in `f64` is 1e-16 over the step.
-        let h = 1e-4 * self.values[self.parameter].abs().max(1e-2);
-        let at = |by: f64| {
-            let mut values: Vec<DoubleDouble> = self.values.iter().map(|&value| number(value)).collect();
-            values[self.parameter] = values[self.parameter] + number(by) * number(h);
-            let model = lifted(&values).expect("in range");
-            let accuracy = Accuracy { columns: 8, tolerance: 1e-20 };
-            let span = Span { t0: 0.0, t_end: self.t };
-            let start = model.start().expect("it closes");
-            let finish = extended::integrate(&model, &start, span, accuracy, &[], |_, _, _| {}).expect("a run");
-            let mut outputs = SVector::repeat(number(0.0));
-            model.outputs(number(self.t), &finish.x, &finish.negative, &mut outputs);
-            outputs
-        };
-        let [far_back, back, ahead, far] = [-2.0, -1.0, 1.0, 2.0].map(at);
-        let slope = |i: usize| ((ahead[i] - back[i]) * number(8.0) - (far[i] - far_back[i])) / number(12.0 * h);
-        (0..M).map(|i| slope(i).to_f64()).collect()
-    }
-}
-
 fn all_parameters<Me: Mechanism>() -> Vec<Direction> {
     (0..Me::Parameters::table().len()).map(Direction::Parameter).collect()
 }
@@ -127,8 +85,9 @@ fn deviation<Me: Mechanism>(model: &Me, t: f64, method: Integrator) -> (f64, u64
     let found = sensitivities(model, &request(t, method), &directions).expect("derivatives");
     let values: Vec<f64> = (0..directions.len()).map(|k| model.parameters().value(k)).collect();
     let mut worst = 0.0_f64;
+    let accuracy = Accuracy { columns: 8, tolerance: 1e-20 };
     let expected: Vec<Vec<f64>> = (0..directions.len())
-        .map(|parameter| model.visit_lifted(Differences { values: values.clone(), parameter, t }))
+        .map(|parameter| differences(model, parameter, t, 1e-4, accuracy).expect("runs"))
         .collect();
     for output in 0..Me::describe().outputs.len() {
         let size = |k: usize| (expected[k][output] * values[k]).abs();

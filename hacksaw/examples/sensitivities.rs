@@ -6,16 +6,12 @@
 
 use std::time::{Duration, Instant};
 
-use bg_model::extended::{self, Accuracy};
+use bg_model::extended::Accuracy;
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::{LiftedVisitor, Mechanism};
-use bg_model::nalgebra::SVector;
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::parameters::ParameterError;
 use bg_model::run::{Request, Simulation};
-use bg_model::scalar::{DoubleDouble, Scalar};
-use bg_model::sensitivity::{Direction, sensitivities};
-use bg_model::simulation::{Samples, Span};
-use bg_model::system::Model;
+use bg_model::sensitivity::{Direction, differences, sensitivities};
+use bg_model::simulation::Samples;
 use hacksaw::mechanism::{Motion, MotionParameters};
 
 const RUNS: usize = 5;
@@ -53,8 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     for (k, name) in THREE.iter().enumerate() {
         let Direction::Parameter(parameter) = directions[k] else { unreachable!("parameters were asked for") };
-        let values = (0..MotionParameters::table().len()).map(|index| model.parameters().value(index)).collect();
-        let expected = model.visit_lifted(Differences { values, parameter, t: end });
+        let expected = differences(&model, parameter, end, 1e-5, Accuracy { columns: 10, tolerance: 1e-20 })?;
         let size = expected.iter().fold(0.0_f64, |size, slope| size.max(slope.abs()));
         let error = |(output, slope): (usize, &f64)| (found.of(k, output)[0] - slope).abs() / size;
         println!("{name:10} size {size:.3e} error {:.1e}", expected.iter().enumerate().map(error).fold(0.0, f64::max));
@@ -75,43 +70,4 @@ fn least<E>(mut run: impl FnMut() -> Result<(), E>) -> Result<Duration, E> {
         least = least.min(begin.elapsed());
     }
     Ok(least)
-}
-
-/// Five-point differences by one parameter at `t` (s), in double-double numbers.
-struct Differences {
-    values: Vec<f64>,
-    parameter: usize,
-    t: f64,
-}
-
-impl LiftedVisitor<DoubleDouble> for Differences {
-    type Output = Vec<f64>;
-
-    fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
-        self,
-        _: &Mo,
-        lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
-    ) -> Vec<f64>
-    where
-        Mo: Model<f64, N, G, M>,
-        Li: Model<DoubleDouble, N, G, M>,
-    {
-        let number = DoubleDouble::from_f64;
-        let h = 1e-5 * self.values[self.parameter].abs().max(1e-2);
-        let at = |by: f64| {
-            let mut values: Vec<DoubleDouble> = self.values.iter().map(|&value| number(value)).collect();
-            values[self.parameter] = values[self.parameter] + number(by) * number(h);
-            let model = lifted(&values).expect("in range");
-            let accuracy = Accuracy { columns: 10, tolerance: 1e-20 };
-            let span = Span { t0: 0.0, t_end: self.t };
-            let start = model.start().expect("it closes");
-            let finish = extended::integrate(&model, &start, span, accuracy, &[], |_, _, _| {}).expect("a run");
-            let mut outputs = SVector::repeat(number(0.0));
-            model.outputs(number(self.t), &finish.x, &finish.negative, &mut outputs);
-            outputs
-        };
-        let [far_back, back, ahead, far] = [-2.0, -1.0, 1.0, 2.0].map(at);
-        let slope = |i: usize| ((ahead[i] - back[i]) * number(8.0) - (far[i] - far_back[i])) / number(12.0 * h);
-        (0..M).map(|i| slope(i).to_f64()).collect()
-    }
 }

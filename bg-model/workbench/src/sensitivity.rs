@@ -119,6 +119,7 @@ impl Influence {
         let plain = |unit: &str| if unit.is_empty() { "1".to_owned() } else { unit.to_owned() };
         match (plain(self.unit), plain(self.per)) {
             (unit, per) if per == "1" => unit,
+            (unit, per) if unit == per => "1".to_owned(),
             (unit, per) if per.contains(['*', '/']) => format!("{unit}/({per})"),
             (unit, per) => format!("{unit}/{per}"),
         }
@@ -279,6 +280,6 @@ mod tests {
         };
         assert_eq!(unit("N", "m"), "N/m");
         assert_eq!(unit("N", "N*s/m"), "N/(N*s/m)");
-        assert_eq!(unit("rad", "1"), "rad");
+        assert_eq!((unit("rad", "1"), unit("rad", "rad")), ("rad".to_owned(), "1".to_owned()));
     }
 }

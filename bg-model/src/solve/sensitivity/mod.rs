@@ -31,6 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod differences;
 mod follow;
 mod jump;
 mod step;
@@ -47,6 +48,7 @@ use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
 use crate::solve::simulation::{Observer, Switching};
+pub use differences::{DifferencesError, differences};
 use follow::Follower;
 
 /// How many directions are followed in one pass.

@@ -33,9 +33,10 @@ const DAMPING: f64 = 1e-4;
 const LESS: f64 = 0.1;
 const MORE: f64 = 10.0;
 const LARGEST: f64 = 1e12;
-/// A step below this part of a variable's size, or a fall of the sum below this part, is none.
+/// A step below this part of a variable's size is none, nor one by which the sum of squares is to fall by less than this part: far
+/// below what noise makes of it.
 const STEP: f64 = 1e-9;
-const FALL: f64 = 1e-13;
+const FALL: f64 = 1e-10;
 
 /// Fits the variables from `start` on between `lower` and `upper`. `sizes` are what steps are measured with; `evaluate` fails where
 /// there are no residuals, which calls for a shorter step.
@@ -57,15 +58,15 @@ pub fn fit<E>(
         let held = held(&x, lower, upper, &jacobian.tr_mul(&residuals));
         let next = within(&x + step(&residuals, &jacobian, &held, damping));
         let way = &next - &x;
-        if way.iter().zip(sizes).all(|(way, size)| way.abs() <= STEP * size) {
+        let before = residuals.norm_squared();
+        let is_still = way.iter().zip(sizes).all(|(way, size)| way.abs() <= STEP * size);
+        if is_still || before - (&residuals + &jacobian * &way).norm_squared() <= FALL * before {
             has_converged = true;
             break;
         }
         evaluations += 1;
-        let before = residuals.norm_squared();
         match evaluate(&next) {
             Ok((there, slopes)) if there.norm_squared() < before => {
-                has_converged = before - there.norm_squared() <= FALL * before;
                 (x, residuals, jacobian) = (next, there, slopes);
                 damping *= LESS;
             }
