@@ -60,9 +60,16 @@ pub fn fit<E>(
         let way = &next - &x;
         let (before, rows) = (residuals.norm_squared(), residuals.len() as f64);
         let is_still = way.iter().zip(sizes).all(|(way, size)| way.abs() <= STEP * size);
-        if is_still || before - (&residuals + &jacobian * &way).norm_squared() <= FALL * before / rows {
+        let fall = before - (&residuals + &jacobian * &way).norm_squared();
+        if is_still || (0.0..=FALL * before / rows).contains(&fall) {
             has_converged = true;
             break;
+        }
+        if fall < 0.0 {
+            // Cut at the bounds the step leads up; a shorter one does not.
+            damping *= MORE;
+            has_converged = damping > LARGEST;
+            continue;
         }
         evaluations += 1;
         match evaluate(&next) {
