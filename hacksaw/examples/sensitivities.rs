@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p hacksaw --example sensitivities [-- SECONDS]`: a run of the scene `motion` with derivatives by eight
 //! parameters over the run alone, minima of several; then the derivatives at the end by three parameters against five-point
-//! differences of runs in double-double arithmetic over the SECONDS (0.3 unless given; 5 takes an hour).
+//! differences of runs in double-double arithmetic over the SECONDS (0.3 unless given; 5 takes two minutes of one core).
 
 use std::time::{Duration, Instant};
 
