@@ -4,6 +4,7 @@
 //! `trajectories-000000.parquet` as well, which is there before. Each file is written aside and renamed, so a file of such a
 //! name is whole. Several processes may work in one folder, even on the same shard: they write the same bytes.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -16,6 +17,9 @@ use super::recipe::difference;
 use crate::files::{FileError, check_is_no_file, whole};
 
 const RECIPE: &str = "sweep.toml";
+/// The end of the name of a file that is being written, and how many letters before it make it a new one.
+const ASIDE: &str = ".unfinished";
+const RANDOM: usize = 6;
 const HEAD: &str =
     "# What the files in this folder were made with. A sweep by another plan goes into another folder.\n";
 /// The entry of a file's metadata that has the recipe.
@@ -98,8 +102,11 @@ impl Folder {
         fs::create_dir_all(path).map_err(failed)?;
         if !file.exists() {
             // The first of several processes wins; what it wrote is compared below by all of them.
-            let mut aside =
-                tempfile::Builder::new().prefix(".sweep").suffix(".unfinished").tempfile_in(path).map_err(failed)?;
+            let mut aside = tempfile::Builder::new()
+                .prefix(&format!(".{RECIPE}"))
+                .suffix(ASIDE)
+                .tempfile_in(path)
+                .map_err(failed)?;
             aside.write_all(format!("{HEAD}{recipe}").as_bytes()).map_err(failed)?;
             match aside.persist_noclobber(&file) {
                 Err(fault) if fault.error.kind() != io::ErrorKind::AlreadyExists => {
@@ -166,20 +173,25 @@ impl Folder {
     /// # Errors
     /// It cannot be written.
     pub fn write(&self, kind: Kind, shard: usize, table: &Table) -> Result<(), FileError> {
-        whole::write(&self.path.join(kind.file(shard)), |file| file.write_all(&table.bytes()))
+        let (path, bytes) = (self.path.join(kind.file(shard)), table.bytes());
+        match whole::write(&path, |file| file.write_all(&bytes)) {
+            // Another process has made the same shard at the same time, and has cleared up.
+            Err(_) if fs::read(&path).is_ok_and(|there| there == bytes) => Ok(()),
+            outcome => outcome,
+        }
     }
 
-    /// Removes what earlier processes left on their way to the files of these shards, which are there now.
+    /// Removes what earlier processes left on their way to the recipe and to the files of these shards, which are there now.
     pub fn clear(&self, shards: &[usize]) {
-        let names: Vec<String> = [Kind::Runs, Kind::Trajectories]
-            .iter()
-            .flat_map(|kind| shards.iter().map(|&shard| format!(".{}", kind.file(shard))))
-            .collect();
-        let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
-        for entry in entries.filter(|entry| entry.path().extension().is_some_and(|end| end == "unfinished")) {
+        let of_shard = |shard: usize| [Kind::Runs, Kind::Trajectories].map(|kind| kind.file(shard));
+        let files = shards.iter().flat_map(|&shard| of_shard(shard)).chain([RECIPE.to_owned()]);
+        let names: BTreeSet<String> = files.collect();
+        for entry in fs::read_dir(&self.path).into_iter().flatten().flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
-            // The name of the file comes first, then what makes it a new one.
-            if names.iter().any(|own| name.starts_with(own.as_str())) {
+            // A dot, the name of the file, what makes it a new one, the end.
+            let of = name.strip_prefix('.').and_then(|name| name.strip_suffix(ASIDE));
+            let of = of.and_then(|of| of.get(..of.len().checked_sub(RANDOM)?));
+            if of.is_some_and(|of| names.contains(of)) {
                 // What cannot be removed is in nobody's way.
                 let _ = fs::remove_file(entry.path());
             }
@@ -190,5 +202,32 @@ impl Folder {
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_killed_process_left_is_removed_and_nothing_else() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder { path: place.path().to_owned(), recipe: String::new() };
+        // As `whole` and `claim` name what they write.
+        let left = |name: &str| {
+            let file = tempfile::Builder::new().prefix(&format!(".{name}")).suffix(ASIDE).tempfile_in(&place).unwrap();
+            file.keep().unwrap();
+        };
+        for name in ["runs-000003.parquet", "trajectories-000003.parquet", "sweep.toml", "runs-000004.parquet", "mine"]
+        {
+            left(name);
+        }
+        fs::write(place.path().join("runs-000003.parquet"), "").unwrap();
+        folder.clear(&[3]);
+        let mut names: Vec<String> =
+            fs::read_dir(&place).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        let starts = [".mine", ".runs-000004.parquet", "runs-000003.parquet"];
+        assert!(names.len() == 3 && names.iter().zip(starts).all(|(name, start)| name.starts_with(start)), "{names:?}");
     }
 }

@@ -24,6 +24,8 @@ pub mod runs;
 pub mod shown;
 pub mod wanted;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use bg_model::mechanism::Scenes;
 use rayon::prelude::*;
 use thiserror::Error;
@@ -106,7 +108,7 @@ pub struct Outcome {
     pub found: usize,
     /// Those that were made now.
     pub made: usize,
-    /// The runs that were made now, and those of them that failed.
+    /// The runs that were made now.
     pub made_runs: usize,
     /// Those of them that failed.
     pub failed: usize,
@@ -154,10 +156,10 @@ fn all(
     let (found, total) = (count(&own) - count(&left), count(&own));
     told(found, total);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
-    let finished = std::sync::atomic::AtomicUsize::new(found);
+    let finished = AtomicUsize::new(found);
     let one = |&number: &usize| {
-        let done = told(finished.load(std::sync::atomic::Ordering::Relaxed), total).then(|| job.run(number, run))?;
-        told(1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed), total).then_some(done)
+        let done = told(finished.load(Ordering::Relaxed), total).then(|| job.run(number, run))?;
+        told(1 + finished.fetch_add(1, Ordering::Relaxed), total).then_some(done)
     };
     for shards in left.chunks((RUNS_OF_A_THREAD * pool.current_num_threads()).div_ceil(runs)) {
         let numbers: Vec<usize> = shards.iter().flat_map(|&shard| job.runs_of(shard)).collect();
