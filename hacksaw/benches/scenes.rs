@@ -4,13 +4,9 @@
 //! the scene's own trajectory, the models taking turns so that all see the same machine; of [`RUNS`] runs of 5 s.
 #![allow(missing_docs)]
 
-#[path = "../tests/agreement/mod.rs"]
-mod agreement;
-
 use std::hint::black_box;
 use std::time::Instant;
 
-use agreement::{Steps, compare, horizon};
 use bg_model::integrator::{Dop853, Integrator, Tolerances};
 use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor};
 use bg_model::nalgebra::SVector;
@@ -18,6 +14,7 @@ use bg_model::run::{Request, Simulation, sample_times};
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::Model;
 use bg_workbench::tables::{rate_operations, table};
+use hacksaw::agreement::{Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
 use hacksaw::scenes::Scene;
 use hacksaw_planar::{self as planar, Comparison, Planar};

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`mechanism`] | what the hacksaw is: its multibond graph, compiled |
 //! | [`scenes`] | which of its models there are, by a name that the compiler knows |
+//! | [`agreement`] | how far a scene is from the literal model |
 //! | [`columns`] | which columns the paper's figures and its reference have |
 //! | [`checks`] | does the motion show what the paper says of it |
 //! | [`figures`] | what the paper's figures 4 to 19 look like |
@@ -11,6 +12,8 @@
 //! | [`precision`] | which cases are measured, and their stored solutions |
 //! | [`command`] | the program |
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod agreement;
 pub mod checks;
 pub mod columns;
 pub mod command;

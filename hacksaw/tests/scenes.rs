@@ -4,14 +4,12 @@
 //! the same outputs change by C 4e-14 m, R 6e-13, p 9e-11 kg m/s, h 8e-12 N m s, F 9e-7 N, gaps 7e-15 m. The pins' stiffness
 //! of 1e8 N/m makes a force of 1e-8 N of the last bit of a position, and they ring at 1e4 rad/s almost without decay.
 
-mod agreement;
-
-use agreement::{Agreement, Steps, compare, horizon};
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::{Mechanism, MechanismVisitor};
 use bg_model::parameters::Parameters;
 use bg_model::run::{Simulation, sample_times};
 use bg_model::system::Model;
+use hacksaw::agreement::{Agreement, Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
 use hacksaw::scenes::Scene;
 use hacksaw_planar as planar;

@@ -61,7 +61,7 @@ impl<const S: usize, const N: usize> Stages<S, N> {
             if i > 0 {
                 let mut x = start.x;
                 add(&mut x, &tableau.a[i][..i], &self.u, 1.0);
-                flow.rate(start.t + tableau.c[i] * h, &x, &mut rate);
+                flow.inlined_rate(start.t + tableau.c[i] * h, &x, &mut rate);
                 if !is_finite(&rate) {
                     self.fault = first_not_finite(&rate);
                     return Some(false);

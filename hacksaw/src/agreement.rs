@@ -9,7 +9,7 @@ use std::error::Error;
 
 use bg_model::assembly::AssemblyError;
 use bg_model::description::{Description, StateKind};
-use bg_model::integrator::{Absolute, AnyMethod, Dop853, Integrator, Method, Rk4, Tolerances};
+use bg_model::integrator::{Absolute, AnyMethod, Dop853, Method, Tolerances};
 use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor};
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
@@ -18,9 +18,9 @@ use bg_model::statistics::Statistics;
 use bg_model::system::{Model, Powers, System};
 use bg_workbench::compare;
 
-use hacksaw::columns::{AXES, add_angles};
-use hacksaw::mechanism::{Hacksaw, HacksawParameters};
-use hacksaw::scenes::Scene;
+use crate::columns::{AXES, add_angles};
+use crate::mechanism::{Hacksaw, HacksawParameters};
+use crate::scenes::Scene;
 
 /// The steps that both models take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +35,6 @@ pub enum Steps {
     },
     /// The same method with this step, s, whatever the error: the same steps but for those that end at an event.
     Equal(f64),
-    /// The classical Runge-Kutta method of order 4 with this step, s.
-    Rk4(f64),
 }
 
 /// The largest difference in one output.
@@ -80,26 +78,12 @@ pub struct Agreement {
     pub deviations: Vec<Deviation>,
 }
 
-impl Agreement {
-    /// For each kind of output the one with the largest difference, in the order of first appearance.
-    #[must_use]
-    pub fn by_kind(&self) -> Vec<Deviation> {
-        let mut kinds: Vec<Deviation> = Vec::new();
-        for deviation in &self.deviations {
-            match kinds.iter_mut().find(|other| other.kind() == deviation.kind()) {
-                Some(other) if other.largest < deviation.largest => *other = deviation.clone(),
-                Some(_) => {}
-                None => kinds.push(deviation.clone()),
-            }
-        }
-        kinds
-    }
-}
-
 /// Runs `scene` and the literal model until `t_end` (s) with the same `values` and compares them at `instants` (s).
 ///
 /// # Errors
 /// Values that the scene does not take, and a run that fails.
+// To be inlined, as `literal` is: compiled where it is called, since no program does.
+#[inline]
 pub fn compare(
     scene: Scene,
     values: &HacksawParameters,
@@ -134,14 +118,6 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The method that makes the steps; that of any run, which is compiled already.
-    fn method<const N: usize>(&self) -> AnyMethod<N> {
-        match self.steps {
-            Steps::Rk4(step) => Integrator::Rk4.method(step),
-            Steps::ByError { .. } | Steps::Equal(_) => Integrator::Dop853.method(f64::NAN),
-        }
-    }
-
     fn run<Mo, Me, const N: usize, const G: usize, const M: usize>(
         &self,
         model: &Mo,
@@ -155,7 +131,7 @@ impl Job<'_> {
         const NEVER: f64 = 1e300;
         let (relative, absolute, step) = match self.steps {
             Steps::ByError { rtol, atol } => (rtol, atol, f64::INFINITY),
-            Steps::Equal(step) | Steps::Rk4(step) => (1.0, NEVER, step),
+            Steps::Equal(step) => (1.0, NEVER, step),
         };
         let states = model.description().states;
         let absolute =
@@ -183,7 +159,9 @@ impl ModelVisitor<f64> for Job<'_> {
     where
         Mo: Model<f64, N, G, M>,
     {
-        self.run(model, &mut self.method())
+        // As in any run, so that it is compiled already.
+        let mut method: AnyMethod<N> = Dop853::new().into();
+        self.run(model, &mut method)
     }
 }
 
@@ -202,6 +180,7 @@ impl MechanismVisitor for Reduced<'_> {
 }
 
 /// The run of the literal model that `scene` stands for.
+#[inline]
 fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Run, Box<dyn Error>> {
     let mut values = values.clone();
     if scene != Scene::FreeRun {
@@ -210,11 +189,7 @@ fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Run, Bo
     for name in ["r_cut", "r_return", "k_work", "r_work"] {
         values.set(name, 0.0)?;
     }
-    let model = Unswitched(Hacksaw::new(values)?);
-    match job.steps {
-        Steps::Rk4(step) => job.run(&model, &mut Rk4::new(step)),
-        Steps::ByError { .. } | Steps::Equal(_) => job.run(&model, &mut Dop853::new()),
-    }
+    job.run(&Unswitched(Hacksaw::new(values)?), &mut Dop853::new())
 }
 
 /// A model with its one switch left in the branch of the positive guard: right where both branches are the same.
