@@ -57,8 +57,9 @@ fn derivatives_in_the_table_are_those_of_runs() {
         let derivative: f64 = fields[7].parse().unwrap();
         let [low, high] = ["stiffness=199.99", "stiffness=200.01"].map(|set| last(path, set, output));
         let difference = (high - low) / 0.02;
+        // In truncation and rounding the differences err by some 1e-10.
         assert!(
-            (derivative - difference).abs() < 1e-7 * derivative.abs().max(1e-4),
+            (derivative - difference).abs() < 1e-6 * derivative.abs().max(1e-3),
             "{output} {derivative} {difference}"
         );
     }
@@ -126,7 +127,7 @@ fn what_cannot_be_identified_is_said_by_name() {
     measured(path);
     let fit = ["identify", "noisy.csv", "--column", "place=x", "--fit"];
     let together = text(path, &[&fit[..], &["stiffness,damping,mass", "--out", "a"][..]].concat());
-    assert!(together.contains("cannot be told apart") && together.contains("of `mass`"), "{together}");
+    assert!(together.contains("cannot be told apart") && together.contains("`mass` by +1.00 %"), "{together}");
     assert_eq!(found(&together, "mass").1, None);
     let bounded = ["stiffness", "--set", "stiffness=210", "--bounds", "stiffness=200..220", "--out", "b"];
     let bounded = text(path, &[&fit[..], &bounded[..]].concat());

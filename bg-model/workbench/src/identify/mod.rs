@@ -112,7 +112,8 @@ pub struct Identified {
     pub estimates: Vec<Estimate>,
     /// The correlation of the errors of each two of them; not a number where the data do not determine them.
     pub correlations: DMatrix<f64>,
-    /// Combinations of parameters that the data do not determine: each with the parts of parameters in it, the largest first.
+    /// Combinations of parameters that the data do not determine: each with the parts of their sizes by which they change together,
+    /// the largest first.
     pub undetermined: Vec<Vec<(&'static str, f64)>>,
     /// The columns of the data with the model's values.
     pub columns: Vec<Column>,
@@ -251,13 +252,20 @@ fn identified(variables: &[Variable], fitted: &Fitted, columns: Vec<Column>, eva
     let largest = svd.singular_values.max();
     let right = svd.v_t.as_ref().expect("it was asked for");
     let is_weak = |k: &usize| svd.singular_values[*k] <= SAME * largest;
+    // In parts of the variables' sizes, the largest 1; nothing of those that move no residual at all, which come by themselves.
     let parts = |row: usize| {
-        let mut parts: Vec<(usize, f64)> = (0..parameters).map(|k| (k, right[(row, k)])).collect();
-        parts.retain(|(_, part)| part.abs() >= NAMED);
+        let part = |k: usize| if norms[k] > 0.0 { right[(row, k)] / (norms[k] * variables[k].size()) } else { 0.0 };
+        let mut parts: Vec<(usize, f64)> = (0..parameters).map(|k| (k, part(k))).collect();
         parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let largest = parts[0].1;
+        parts.iter_mut().for_each(|(_, part)| *part /= largest);
+        parts.retain(|(_, part)| part.abs() >= NAMED);
         parts
     };
-    let undetermined: Vec<Vec<(usize, f64)>> = (0..svd.singular_values.len()).filter(is_weak).map(parts).collect();
+    let is_of_others = |row: &usize| (0..parameters).any(|k| norms[k] > 0.0 && right[(*row, k)].abs() > SAME);
+    let without_influence = (0..parameters).filter(|&k| norms[k] == 0.0).map(|k| vec![(k, 1.0)]);
+    let combined = (0..svd.singular_values.len()).filter(is_weak).filter(is_of_others).map(parts);
+    let undetermined: Vec<Vec<(usize, f64)>> = without_influence.chain(combined).collect();
     let is_undetermined = |k: usize| undetermined.iter().flatten().any(|(named, _)| *named == k);
     let freedom = (rows - parameters) as f64;
     let variance = fitted.residuals.norm_squared() / freedom;

@@ -76,9 +76,9 @@ fn undetermined(parts: &[(&str, f64)]) -> String {
             "`{name}` cannot be identified: it does not move what was measured; fix it, or measure another output\n"
         ),
         several => {
-            let names: Vec<String> = several.iter().map(|(name, part)| format!("{part:+.2} of `{name}`")).collect();
+            let names: Vec<String> = several.iter().map(|(name, part)| format!("`{name}` by {part:+.2} %")).collect();
             format!(
-                "these cannot be told apart: a change by {} together moves nothing that was measured; fix one of them\n",
+                "these cannot be told apart: {} together move nothing that was measured; fix one of them\n",
                 names.join(", ")
             )
         }
