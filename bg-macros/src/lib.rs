@@ -285,7 +285,7 @@ use proc_macro::TokenStream;
 /// ## `ground`, `gravity`
 ///
 /// ```text
-/// ground  = "ground" "{" { "point" NAME "=" EXPRESSION ";" } "}"
+/// ground  = "ground" "{" { "point" NAME "=" EXPRESSION ["turned" EXPRESSION] ";" } "}"
 /// gravity = "gravity" EXPRESSION ";"
 /// ```
 ///
@@ -299,7 +299,7 @@ use proc_macro::TokenStream;
 /// solid = ( "cuboid" EDGES | "cylinder" "radius" E "length" E "along" AXIS | "sphere" "radius" E )
 ///         { "at" E | "turned" E | "density" E } ";"
 /// setting = "density" E ";" | "mass" E ";" | "center" E ";" | "inertia" E ";"
-/// point = "point" NAME "=" E ";"
+/// point = "point" NAME "=" E ["turned" E] ";"
 /// start = "start" [POINT] "at" E ";" | "start" "turned" E ";" | "start" ("velocity" | "spin") (E | "guess") ";"
 /// ```
 ///
@@ -347,7 +347,9 @@ use proc_macro::TokenStream;
 /// start pose does not depend on how stiff a joint is.
 ///
 /// **The relative motion is that of the second end to the first, and forces and moments are those on the second body**,
-/// their opposites act on the first. Axes are the first body's (`universal x y`: x of the first, y of the second body).
+/// their opposites act on the first. Axes are the first body's (`universal x y`: x of the first, y of the second body). Where
+/// the point of an end is `turned`, they are those of the point, for this joint in place of its body's: so axes may be skew, and
+/// what is held or an angle counts from the pose in which the two points' axes agree. A contact, too, takes the axes of such a point.
 /// A pin whose stiffness is one number is kept in inertial axes. Held rotations are measured as direction cosines of
 /// the two bodies' axes, which equal the angles while these are small, and cost no states. With `frame inertial` they
 /// are the integrals of the relative angular velocity in inertial axes, one state each.

@@ -464,6 +464,8 @@ pub struct Point {
     pub name: Name,
     /// Its place in the body's axes from the body's origin, m.
     pub place: Expression,
+    /// `turned E`: the rotation matrix from the point's axes to the body's, whose axes joints at the point have then.
+    pub turned: Option<Expression>,
 }
 
 /// The gravity field.

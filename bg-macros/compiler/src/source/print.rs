@@ -369,7 +369,11 @@ impl Display for Ground {
 
 impl Display for Point {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        write!(f, "point {} = {};", self.name, self.place)
+        write!(f, "point {} = {}", self.name, self.place)?;
+        if let Some(turned) = &self.turned {
+            write!(f, " turned {turned}")?;
+        }
+        write!(f, ";")
     }
 }
 

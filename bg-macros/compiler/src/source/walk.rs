@@ -170,7 +170,7 @@ fn of_body(body: &mut Body, each: &mut dyn FnMut(Met)) {
 }
 
 fn points(points: &mut [Point]) -> impl Iterator<Item = &mut Expression> {
-    points.iter_mut().map(|point| &mut point.place)
+    points.iter_mut().flat_map(|point| [&mut point.place].into_iter().chain(&mut point.turned))
 }
 
 fn of_solid(solid: &mut Solid, each: &mut dyn FnMut(Met)) {

@@ -58,13 +58,13 @@ impl Expansion<'_> {
         self.text(span, &format!("let {name}.gap: m = {} - {};", b.position, a.position));
         self.text(
             span,
-            &format!("let {name}.speed: m/s = dot({}.{}_axis, {name}.slip.flow);", b.body, contact.along.letter()),
+            &format!("let {name}.speed: m/s = dot({}.{}_axis, {name}.slip.flow);", b.axes, contact.along.letter()),
         );
         let mut axes = Vec::new();
         for law in &contact.laws {
             let letter = law.axis.letter();
             let label = format!("{name}.{letter}");
-            let direction = format!("{}.{letter}_axis", b.body);
+            let direction = format!("{}.{letter}_axis", b.axes);
             if !axes.contains(&law.axis) {
                 axes.push(law.axis);
                 self.contact_axis(contact, law.axis, &b);
@@ -97,7 +97,7 @@ impl Expansion<'_> {
             &format!(
                 "1 {label}: translation; MTF {label}_axis(v) = dot({}.{letter}_axis, v);
                  {name}.slip -> {label}_axis -> {label};",
-                b.body
+                b.axes
             ),
         );
     }

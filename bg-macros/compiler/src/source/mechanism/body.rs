@@ -193,6 +193,7 @@ impl Expansion<'_> {
         for point in &body.points {
             let clause = Clause::new(format!("point `{}` of body `{name}`", point.name.text), 3);
             self.bind(&format!("{name}.{}.place", point.name.text), "m", &point.place, clause);
+            self.point_axes(point, name, &format!("{name}.orientation * "));
         }
         let span = body.name.span;
         self.text(span, &format!("let {name}.origin.place: m = [0, 0, 0];"));

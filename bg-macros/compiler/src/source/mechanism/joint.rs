@@ -1,10 +1,10 @@
 //! Compliant joints: relative motion, a C and an R on every held direction.
 //!
 //! In: `ast::Joint`. Out: bond-graph words. Flows and displacements are those of the second end relative to the first;
-//! `NAME.force` and `NAME.moment` act on the second body. Directions are those of the first body's axes; a pin whose
-//! stiffness is one number has the same in all of them and is kept in inertial axes. With `frame inertial` the held
-//! rotations are about inertial axes and their displacements integrate the relative angular velocity; without it they
-//! are direction cosines of the two bodies' axes, which the poses determine.
+//! `NAME.force` and `NAME.moment` act on the second body. Directions are those of the first end's axes, which are its
+//! body's where its point is not turned; a pin whose stiffness is one number has the same in all of them and is kept in
+//! inertial axes. With `frame inertial` the held rotations are about inertial axes and their displacements integrate the
+//! relative angular velocity; without it they are direction cosines of the two ends' axes, which the poses determine.
 
 use super::attachment::stiff;
 use super::{End, Expansion, MechanismFault, is_vector};
@@ -149,7 +149,7 @@ impl Expansion<'_> {
         for axis in Axis::ALL.into_iter().filter(|&axis| Some(axis) != slide) {
             let letter = axis.letter();
             let label = format!("{name}.{letter}");
-            let direction = format!("{}.{letter}_axis", a.body);
+            let direction = format!("{}.{letter}_axis", a.axes);
             self.text(
                 span,
                 &format!(
@@ -186,7 +186,7 @@ impl Expansion<'_> {
                 &format!(
                     "1 {name}.slide: translation; MTF {name}.slide_axis(v) = dot({}.{}_axis, v);
                      {name}.slip -> {name}.slide_axis -> {name}.slide;",
-                    a.body,
+                    a.axes,
                     axis.letter()
                 ),
             );
@@ -197,7 +197,7 @@ impl Expansion<'_> {
     fn rotations(&mut self, joint: &Joint, a: &End, b: &End) -> bool {
         let (name, span) = (&joint.name.text, joint.name.span);
         let spin = joint.kind.spin().filter(|_| self.is_used(joint, "spin"));
-        let held = held_rotations(joint.kind, &a.body, &b.body);
+        let held = held_rotations(joint.kind, &a.axes, &b.axes);
         if held.is_empty() && spin.is_none() {
             return false;
         }
@@ -239,7 +239,7 @@ impl Expansion<'_> {
                 &format!(
                     "1 {name}.spin: rotation; MTF {name}.spin_axis(w) = dot({}.{}_axis, w);
                      {name}.twist -> {name}.spin_axis -> {name}.spin;",
-                    a.body,
+                    a.axes,
                     axis.letter()
                 ),
             );
@@ -288,7 +288,7 @@ impl Expansion<'_> {
     /// Names for the free motion: angle and speed about, travel along the free axis.
     fn motion(&mut self, joint: &Joint, a: &End, b: &End) {
         let (name, span) = (&joint.name.text, joint.name.span);
-        let (a, b) = (&a.body, &b.body);
+        let (turns, carries, a, b) = (&b.body, &a.body, &a.axes, &b.axes);
         if let Some(axis) = joint.kind.spin() {
             let (along, across) = (axis.letter(), axis.next().letter());
             self.text(
@@ -296,7 +296,7 @@ impl Expansion<'_> {
                 &format!(
                     "let {name}.angle: rad = atan2(dot(cross({a}.{across}_axis, {b}.{across}_axis), {a}.{along}_axis), \
                      dot({a}.{across}_axis, {b}.{across}_axis));
-                     let {name}.speed: rad/s = dot({a}.{along}_axis, {b}.angular_velocity - {a}.angular_velocity);"
+                     let {name}.speed: rad/s = dot({a}.{along}_axis, {turns}.angular_velocity - {carries}.angular_velocity);"
                 ),
             );
         }
@@ -377,6 +377,26 @@ mod tests {
         let source = syntax::parse(format!("graph G {{ {statements} }}").parse().expect("tokens")).expect("syntax");
         let resolved = graph::resolve(&mechanism::expand(&source.graphs[0]).expect("words")).expect("names and units");
         resolved.observations.iter().map(|observation| format!("{} {}", observation.name, observation.unit)).collect()
+    }
+
+    #[test]
+    fn a_joint_has_the_axes_of_points_that_are_turned() {
+        let text = "graph G {
+            ground { point foot = [0, 0, 1] turned rotation_x(0.3); }
+            body rod { mass 1; inertia [1, 1, 1]; point top = [0, 1, 0] turned rotation_z(0.2); }
+            joint pin: revolute z (ground.foot -> rod.top) { rigid; }
+            observe { pin.angle }
+        }";
+        let parsed = |text: &str| syntax::parse(text.parse().expect("tokens")).expect("syntax");
+        let source = parsed(text);
+        let printed = source.graphs[0].to_string();
+        assert_eq!(printed, parsed(&printed).graphs[0].to_string());
+        let expanded = mechanism::expand(&source.graphs[0]).expect("words").to_string();
+        let has = |words: &str| assert!(expanded.contains(words), "no `{words}` in\n{expanded}");
+        has("let ground.foot.z_axis: 1 = ground.foot.turned * [0, 0, 1];");
+        has("let rod.top.z_axis: 1 = rod.orientation * (rod.top.turned * [0, 0, 1]);");
+        has("rSe pin.tilt_x_reaction = 0 at -dot(ground.foot.y_axis, rod.top.z_axis) of pin about x;");
+        has("let pin.speed: rad/s = dot(ground.foot.z_axis, rod.angular_velocity - ground.angular_velocity);");
     }
 
     #[test]

@@ -20,8 +20,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Group, Span, TokenStream, TokenTree};
 
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
-use crate::source::ast::{Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name, Point};
-use crate::source::clause::{Clause, Given};
+use crate::source::ast::{Axis, Body, Ends, Expression, Graph, Ground, Item, Joint, Let, Name, Point};
+use crate::source::clause::{Allowed, Clause, Given};
 use crate::source::drawing::Drawing;
 use crate::source::syntax;
 use crate::source::words::GROUND;
@@ -46,6 +46,8 @@ pub fn expand(source: &Graph) -> Staged<Graph> {
 /// One end of a joint: expressions as text.
 struct End {
     body: String,
+    /// What has the axes of a joint here: the body, or the point where that is turned.
+    axes: String,
     /// The end's position, inertial axes.
     position: String,
     /// From the body's centre of mass to the end, inertial axes; none on the ground.
@@ -176,6 +178,7 @@ impl<'a> Expansion<'a> {
             let name = &point.name.text;
             let clause = Clause::new(format!("point `{name}` of the ground"), 3);
             self.bind(&format!("ground.{name}.position"), "m", &point.place, clause);
+            self.point_axes(point, GROUND, "");
         }
     }
 
@@ -248,12 +251,26 @@ impl<'a> Expansion<'a> {
         let place = match (point, body == GROUND) {
             (Some(point), _) => format!("{body}.{point}"),
             (None, true) => {
-                return Some(End { body: body.to_owned(), position: "ground.position".to_owned(), arm: None });
+                let (body, position) = (body.to_owned(), "ground.position".to_owned());
+                return Some(End { axes: body.clone(), body, position, arm: None });
             }
             (None, false) => format!("{body}.origin"),
         };
         let arm = (body != GROUND).then(|| format!("{place}.arm"));
-        Some(End { body: body.to_owned(), position: format!("{place}.position"), arm })
+        let is_turned = points.iter().any(|known| Some(known.name.text.as_str()) == point && known.turned.is_some());
+        let axes = if is_turned { &place } else { body }.to_owned();
+        Some(End { body: body.to_owned(), axes, position: format!("{place}.position"), arm })
+    }
+
+    /// The axes of a point that is turned, in inertial axes; `orientation` is that of its body, as a factor.
+    fn point_axes(&mut self, point: &Point, body: &str, orientation: &str) {
+        let (Some(turned), name) = (&point.turned, format!("{body}.{}", point.name.text)) else { return };
+        let clause = Clause::new(format!("the axes of point `{}` of {}", point.name.text, in_words(body)), 9);
+        self.bind(&format!("{name}.turned"), "1", turned, clause.allowed(Allowed::Rotation));
+        for (axis, unit) in Axis::ALL.into_iter().zip(["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"]) {
+            let letter = axis.letter();
+            self.text(turned.span, &format!("let {name}.{letter}_axis: 1 = {orientation}({name}.turned * {unit});"));
+        }
     }
 
     /// The force junction between two bodies with its lever arms: 1 `NAME.slip` has the relative velocity of the second
@@ -288,6 +305,11 @@ impl<'a> Expansion<'a> {
             );
         }
     }
+}
+
+/// A body, or the ground, in a message.
+fn in_words(body: &str) -> String {
+    if body == GROUND { "the ground".to_owned() } else { format!("body `{body}`") }
 }
 
 /// Whether a point of this name is declared.

@@ -94,12 +94,13 @@ impl Cursor<'_> {
         self.place_of(name)
     }
 
-    /// `= E;`
+    /// `= E;`, `= E turned E;`
     fn place_of(&mut self, name: Name) -> Parsed<Point> {
         self.expect("=")?;
         let place = self.expression()?;
+        let turned = if self.eat_word("turned").is_some() { Some(self.expression()?) } else { None };
         self.end_statement(OPERATOR);
-        Ok(Point { name, place })
+        Ok(Point { name, place, turned })
     }
 
     /// `gravity E;`

@@ -1,0 +1,451 @@
+//! A robot to a Rust file with one `bond_graph!`, as a person would write it.
+//!
+//! In: a robot whose links all have masses. Out: a head comment, parameters, inputs, bodies with their start poses and joints in
+//! the order of the tree, outputs. A joint about an axis of its frame has that axis; one against it goes from the child to
+//! the parent; for any other one the points at both ends are turned, so that x or z is the axis.
+
+mod frames;
+
+use std::fmt::Write;
+
+use nalgebra::Vector3;
+
+use crate::Options;
+use crate::names::{Names, type_name};
+use crate::number::{inverse_rotation, is_identity, matrix, number, rotation, vector};
+use crate::robot::{Inertia, Joint, Kind, Link, Loop, Pose, Robot};
+use frames::{Frames, frames};
+
+/// Columns of a comment.
+const WIDTH: usize = 110;
+
+/// What compliant joints have, since no file says it: N/m, N s/m, N m/rad, N m s/rad.
+const COMPLIANCE: [(&str, &str, &str); 4] = [
+    ("stiffness", "N/m", "1e6"),
+    ("damping", "N*s/m", "100"),
+    ("tilt stiffness", "N*m/rad", "1e4"),
+    ("tilt damping", "N*m*s/rad", "1"),
+];
+
+/// Writes the file.
+#[must_use]
+pub fn write(robot: &Robot, file: &str, options: Options) -> String {
+    let mut names = Names::default();
+    let bodies: Vec<String> = robot
+        .links
+        .iter()
+        .enumerate()
+        .map(|(k, link)| if k == 0 { "ground".to_owned() } else { names.take(&link.name, "body") })
+        .collect();
+    let joints: Vec<JointNames> = robot.joints.iter().map(|joint| JointNames::new(joint, &mut names)).collect();
+    let loops: Vec<String> = robot.loops.iter().map(|closed| names.take(&closed.name, "loop")).collect();
+    let writer = Writer { robot, options, bodies, joints, loops };
+    writer.file(file)
+}
+
+/// What stands for a joint.
+struct JointNames {
+    /// The joint, and the points that it joins.
+    joint: String,
+    /// The parameter for its start.
+    start: String,
+    /// The input that drives it.
+    effort: String,
+}
+
+impl JointNames {
+    fn new(joint: &Joint, names: &mut Names) -> Self {
+        let name = names.take(&joint.name, "joint");
+        let of = |names: &mut Names, what: &str| names.take(&format!("{name}_{what}"), "of_joint");
+        let start = of(names, "start");
+        let effort = of(names, if joint.kind == Kind::Prismatic { "force" } else { "torque" });
+        Self { joint: name, start, effort }
+    }
+}
+
+struct Writer<'r> {
+    robot: &'r Robot,
+    options: Options,
+    /// For each link.
+    bodies: Vec<String>,
+    /// For each joint.
+    joints: Vec<JointNames>,
+    /// For each loop.
+    loops: Vec<String>,
+}
+
+impl Writer<'_> {
+    fn file(&self, file: &str) -> String {
+        let graph = type_name(&self.robot.name);
+        let mut sections = vec![self.parameters(), self.inputs(), self.surroundings()];
+        for (k, joint) in self.robot.joints.iter().enumerate() {
+            sections.push(self.body(joint, &self.joints[k]) + &self.joint(joint, &self.joints[k]));
+        }
+        sections.extend(self.robot.loops.iter().zip(&self.loops).map(|(closed, name)| self.closed(closed, name)));
+        sections.push(self.observed());
+        sections.push(self.scene(&graph));
+        let body: Vec<String> =
+            sections.iter().filter(|section| !section.is_empty()).map(|section| indented(&indented(section))).collect();
+        format!(
+            "{}\nuse bg_model::bond_graph;\n\nbond_graph! {{\n    /// The robot `{}` of `{file}`.\n    pub graph {graph} {{\n{}    }}\n}}\n",
+            self.head(file),
+            self.robot.name,
+            body.join("\n")
+        )
+    }
+
+    /// Where it is from and what is other than there.
+    fn head(&self, file: &str) -> String {
+        let mut text = String::new();
+        let Robot { name, format, .. } = self.robot;
+        comment(&mut text, "", &format!("The robot `{name}`, made by bg-import from `{file}` ({format}). SI units."));
+        for (link, body) in self.robot.links.iter().zip(&self.bodies).filter(|(link, _)| !link.merged.is_empty()) {
+            let merged: Vec<String> = link.merged.iter().map(|name| format!("`{name}`")).collect();
+            comment(&mut text, "", &format!("In `{body}`: {}.", merged.join(", ")));
+        }
+        for note in &self.robot.notes {
+            comment(&mut text, "- ", note);
+        }
+        text
+    }
+
+    fn parameters(&self) -> String {
+        let mut text = String::new();
+        for (joint, names) in self.scalar() {
+            let (what, unit) = coordinate(joint);
+            let (name, start) = (&names.joint, number(joint.start));
+            line(&mut text, &format!("/// {what} of `{name}` at the start."));
+            line(&mut text, &format!("param {}: {unit} = {start};", names.start));
+        }
+        let has_welds = self.robot.loops.iter().any(|closed| closed.holds_rotation);
+        let used = [
+            (self.options.compliant, "joint", "joints", true),
+            (!self.robot.loops.is_empty(), "loop", "joints that close loops", has_welds),
+        ];
+        for (_, whose, words, tilt) in used.into_iter().filter(|(is_used, ..)| *is_used) {
+            for (what, unit, value) in compliance(tilt) {
+                line(&mut text, &format!("/// The {what} of {words}, chosen by the importer."));
+                line(&mut text, &format!("param {whose}_{}: {unit} = {value}, at least 0;", what.replace(' ', "_")));
+            }
+        }
+        text
+    }
+
+    fn inputs(&self) -> String {
+        let mut text = String::new();
+        for (joint, names) in self.scalar().filter(|_| self.options.drives) {
+            let (word, unit) = effort(joint);
+            line(&mut text, &format!("/// Drives `{}`: a {word}.", names.joint));
+            line(&mut text, &format!("input {}: {unit};", names.effort));
+        }
+        text
+    }
+
+    fn surroundings(&self) -> String {
+        let mut text = String::new();
+        if self.robot.gravity != Vector3::zeros() {
+            line(&mut text, &format!("gravity {};", vector(&self.robot.gravity, 0.0)));
+        }
+        let points = self.points(0);
+        if !points.is_empty() {
+            line(&mut text, &format!("ground {{\n{}}}", indented(&points)));
+        }
+        text
+    }
+
+    /// The points of a link: those of the joints that it carries, of its own joint, of loops.
+    fn points(&self, link: usize) -> String {
+        let mut text = String::new();
+        let mut point = |name: &str, pose: &Pose| {
+            if is_point(pose) {
+                let turned = rotation(&pose.turned).map(|turned| format!(" turned {turned}")).unwrap_or_default();
+                line(&mut text, &format!("point {name} = {}{turned};", vector(&pose.place, 1e-3)));
+            }
+        };
+        for (joint, names) in self.robot.joints.iter().zip(&self.joints).filter(|(joint, _)| joint.kind != Kind::Free) {
+            let frames = frames(joint);
+            if joint.parent == link {
+                point(&names.joint, &frames.in_parent);
+            }
+            if joint.child == link {
+                point(&names.joint, &frames.in_child);
+            }
+        }
+        for (closed, name) in self.robot.loops.iter().zip(&self.loops) {
+            closed.ends.iter().filter(|end| end.0 == link).for_each(|end| point(name, &end.1));
+        }
+        text
+    }
+
+    /// The body that a joint carries, with its start.
+    fn body(&self, joint: &Joint, names: &JointNames) -> String {
+        let (link, name) = (&self.robot.links[joint.child], &self.bodies[joint.child]);
+        let (place, turned) = self.start(joint, names);
+        let mut inner = masses(link);
+        inner += &self.points(joint.child);
+        let (has_place, has_turned) = (!place.is_empty(), !turned.is_empty());
+        let starts =
+            [(has_place, format!("start at {name}_place;")), (has_turned, format!("start turned {name}_turned;"))];
+        let starts: Vec<String> = starts.into_iter().filter(|(has, _)| *has).map(|(_, start)| start).collect();
+        if !starts.is_empty() {
+            line(&mut inner, &starts.join(" "));
+        }
+        let mut text = String::new();
+        if has_turned {
+            line(&mut text, &format!("let {name}_turned: 1 = {};", turned.join(" * ")));
+        }
+        if has_place {
+            line(&mut text, &format!("let {name}_place: m = {};", place.join(" + ").replace("+ -", "- ")));
+        }
+        line(&mut text, &format!("body {name} {{\n{}}}", indented(&inner)));
+        text
+    }
+
+    /// Where a body starts: the terms of its origin's place, the factors of its orientation; none for zero and one.
+    fn start(&self, joint: &Joint, names: &JointNames) -> (Vec<String>, Vec<String>) {
+        let Frames { letter, reversed, in_parent, in_child } = frames(joint);
+        let start = if reversed { format!("-{}", names.start) } else { names.start.clone() };
+        let parent = self.turned(joint.parent);
+        let carried: Vec<String> = parent.iter().cloned().chain(rotation(&in_parent.turned)).collect();
+        let turned: Vec<String> = if joint.kind == Kind::Revolute {
+            let spin = format!("rotation_{letter}({start})");
+            carried.iter().cloned().chain([spin]).chain(inverse_rotation(&in_child.turned)).collect()
+        } else {
+            parent.iter().cloned().chain(rotation(&(in_parent.turned * in_child.turned.transpose()))).collect()
+        };
+        let product = |factors: &[String], vector: String| [factors, &[vector]].concat().join(" * ");
+        let mut place: Vec<String> = self.placed(joint.parent).into_iter().collect();
+        if in_parent.place != Vector3::zeros() {
+            place.push(product(parent.as_slice(), vector(&in_parent.place, 1e-3)));
+        }
+        if joint.kind == Kind::Prismatic {
+            let along = ["x", "y", "z"].map(|axis| if axis == letter { start.as_str() } else { "0" }).join(", ");
+            place.push(product(&carried, format!("[{along}]")));
+        }
+        if in_child.place != Vector3::zeros() {
+            place.push(if turned.is_empty() {
+                vector(&-in_child.place, 1e-3)
+            } else {
+                format!("-{}_turned * {}", self.bodies[joint.child], vector(&in_child.place, 1e-3))
+            });
+        }
+        (place, turned)
+    }
+
+    /// The name of a link's orientation at the start; none where it is not turned.
+    fn turned(&self, link: usize) -> Option<String> {
+        let has = |k: usize| !self.start(&self.robot.joints[k], &self.joints[k]).1.is_empty();
+        self.carrier(link).filter(|&k| has(k)).map(|_| format!("{}_turned", self.bodies[link]))
+    }
+
+    /// The name of a link's place at the start; none where it is the ground's origin.
+    fn placed(&self, link: usize) -> Option<String> {
+        let has = |k: usize| !self.start(&self.robot.joints[k], &self.joints[k]).0.is_empty();
+        self.carrier(link).filter(|&k| has(k)).map(|_| format!("{}_place", self.bodies[link]))
+    }
+
+    fn carrier(&self, link: usize) -> Option<usize> {
+        self.robot.joints.iter().position(|joint| joint.child == link)
+    }
+
+    /// A joint with what acts on it.
+    fn joint(&self, joint: &Joint, names: &JointNames) -> String {
+        let name = &names.joint;
+        let Frames { letter, reversed, in_parent, in_child } = frames(joint);
+        let kind = match joint.kind {
+            Kind::Free => return String::new(),
+            Kind::Fixed => "fixed".to_owned(),
+            Kind::Revolute => format!("revolute {letter}"),
+            Kind::Prismatic => format!("prismatic {letter}"),
+            Kind::Cylindrical => format!("cylindrical {letter}"),
+            Kind::Universal => "universal x y".to_owned(),
+            Kind::Spherical => "spherical".to_owned(),
+        };
+        let (parent, child) = (self.end(joint.parent, name, &in_parent), self.end(joint.child, name, &in_child));
+        let (first, second) = if reversed { (child, parent) } else { (parent, child) };
+        let clauses =
+            if self.options.compliant { clauses("joint", joint.kind != Kind::Spherical) } else { "rigid;".to_owned() };
+        let mut text = String::new();
+        line(&mut text, &format!("joint {name}: {kind} ({first} -> {second}) {{ {clauses} }}"));
+        if joint.is_scalar() {
+            self.actors(&mut text, joint, names);
+        }
+        text
+    }
+
+    /// What acts on the free axis of a joint.
+    fn actors(&self, text: &mut String, joint: &Joint, names: &JointNames) {
+        let JointNames { joint: name, start, effort: input } = names;
+        let slides = joint.kind == Kind::Prismatic;
+        let axis = if slides { "slide" } else { "spin" };
+        if joint.friction > 0.0 {
+            let viscous =
+                if joint.damping > 0.0 { format!(" viscous {};", number(joint.damping)) } else { String::new() };
+            line(
+                text,
+                &format!("friction {name}_friction on {name} {{ coulomb {};{viscous} }}", number(joint.friction)),
+            );
+        } else if joint.damping > 0.0 {
+            line(text, &format!("R {name}_bearing = {}; {name}.{axis} -> {name}_bearing;", number(joint.damping)));
+        }
+        if let Some((stiffness, rest)) = joint.spring {
+            let from = match number(-rest) {
+                zero if zero == "0" => start.clone(),
+                rest if rest.starts_with('-') => format!("{start} - {}", &rest[1..]),
+                rest => format!("{start} + {rest}"),
+            };
+            line(
+                text,
+                &format!(
+                    "C {name}_spring(q) = {} * q start {from}; {name}.{axis} -> {name}_spring;",
+                    number(stiffness)
+                ),
+            );
+        }
+        if joint.armature > 0.0 {
+            line(text, &format!("I {name}_rotor = {}; {name}.{axis} -> {name}_rotor;", number(joint.armature)));
+        }
+        if let Some((least, most)) = joint.limits.filter(|_| self.options.limits) {
+            let from = if slides { String::new() } else { format!(" start {start};") };
+            let (least, most) = (number(least), number(most));
+            line(
+                text,
+                &format!("stop {name}_stop on {name} {{ at least {least}; at most {most}; restitution 0;{from} }}"),
+            );
+        }
+        if self.options.drives {
+            line(text, &format!("drive {name}_motor on {name} {} = {input};", effort(joint).0));
+        }
+    }
+
+    /// A joint that closes a loop.
+    fn closed(&self, closed: &Loop, name: &str) -> String {
+        let kind = if closed.holds_rotation { "fixed" } else { "spherical" };
+        let [first, second] = closed.ends.each_ref().map(|(link, pose)| self.end(*link, name, pose));
+        let clauses = clauses("loop", closed.holds_rotation);
+        format!("joint {name}: {kind} ({first} -> {second}) {{ {clauses} }}\n")
+    }
+
+    fn end(&self, link: usize, point: &str, pose: &Pose) -> String {
+        let body = &self.bodies[link];
+        if is_point(pose) { format!("{body}.{point}") } else { body.clone() }
+    }
+
+    fn observed(&self) -> String {
+        let mut inner = String::new();
+        for (joint, names) in self.scalar() {
+            let (name, unit) = (&names.joint, coordinate(joint).1);
+            let what = if joint.kind == Kind::Prismatic { "travel" } else { "angle" };
+            line(&mut inner, &format!("{name}: {unit} = {name}.{what};"));
+        }
+        for joint in self.robot.joints.iter().filter(|joint| joint.kind == Kind::Free) {
+            let body = &self.bodies[joint.child];
+            line(&mut inner, &format!("{body}_position: m = {body}.position;"));
+        }
+        let potential = self.potential();
+        let sum = if potential.is_empty() { "" } else { " + potential" };
+        line(&mut inner, &format!("energy: J = stored_energy{sum};"));
+        format!("{potential}observe {{\n{}}}\n", indented(&inner))
+    }
+
+    /// Minus the work of the weights.
+    fn potential(&self) -> String {
+        let gravity = self.robot.gravity;
+        if gravity == Vector3::zeros() {
+            return String::new();
+        }
+        let terms = |of: &str| {
+            let bodies: Vec<String> =
+                self.bodies[1..].iter().map(|body| format!("{body}.mass * {body}.position{of}")).collect();
+            bodies.join("\n    + ")
+        };
+        let along =
+            ["x", "y", "z"].into_iter().zip(gravity.iter()).filter(|(_, part)| **part != 0.0).collect::<Vec<_>>();
+        match along[..] {
+            [(axis, part)] => {
+                format!("let potential: J = {} * (\n    {}\n);\n", number(-part), terms(&format!(".{axis}")))
+            }
+            _ => format!("let potential: J = -dot(\n    {},\n    {}\n);\n", vector(&gravity, 0.0), terms("")),
+        }
+    }
+
+    /// Of compliant joints: the same with rigid ones.
+    fn scene(&self, graph: &str) -> String {
+        if !self.options.compliant {
+            return String::new();
+        }
+        let joints = if self.robot.loops.is_empty() {
+            "joints;".to_owned()
+        } else {
+            let held = self.robot.joints.iter().zip(&self.joints).filter(|(joint, _)| joint.kind != Kind::Free);
+            format!("{{ {} }}", held.map(|(_, names)| names.joint.as_str()).collect::<Vec<_>>().join(", "))
+        };
+        format!("/// The same on rigid joints.\nscene {graph}Rigid {{\n    rigid {joints}\n}}\n")
+    }
+
+    /// The joints that have an angle or a travel.
+    fn scalar(&self) -> impl Iterator<Item = (&Joint, &JointNames)> {
+        self.robot.joints.iter().zip(&self.joints).filter(|(joint, _)| joint.is_scalar())
+    }
+}
+
+/// Mass, centre and moments.
+fn masses(link: &Link) -> String {
+    let Some(Inertia { mass, center, tensor }) = &link.inertia else { return String::new() };
+    let mut text = format!("mass {};\n", number(*mass));
+    if *center != Vector3::zeros() {
+        line(&mut text, &format!("center {};", vector(center, 1e-3)));
+    }
+    let moments = tensor.diagonal();
+    let is_principal = (tensor - nalgebra::Matrix3::from_diagonal(&moments)).amax() <= 1e-12 * tensor.amax();
+    let inertia = if is_principal { vector(&moments, 0.0) } else { matrix(tensor) };
+    line(&mut text, &format!("inertia {inertia};"));
+    text
+}
+
+/// What a joint has that gives way.
+fn compliance(holds_rotation: bool) -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    COMPLIANCE.into_iter().filter(move |(what, ..)| holds_rotation || !what.starts_with("tilt"))
+}
+
+/// The same as clauses.
+fn clauses(whose: &str, holds_rotation: bool) -> String {
+    let clause = |what: &str| format!("{what} {whose}_{};", what.replace(' ', "_"));
+    compliance(holds_rotation).map(|(what, ..)| clause(what)).collect::<Vec<_>>().join(" ")
+}
+
+fn is_point(pose: &Pose) -> bool {
+    pose.place.amax() > 1e-18 || !is_identity(&pose.turned)
+}
+
+fn coordinate(joint: &Joint) -> (&'static str, &'static str) {
+    if joint.kind == Kind::Prismatic { ("Travel", "m") } else { ("Angle", "rad") }
+}
+
+fn effort(joint: &Joint) -> (&'static str, &'static str) {
+    if joint.kind == Kind::Prismatic { ("force", "N") } else { ("torque", "N*m") }
+}
+
+fn line(text: &mut String, line: &str) {
+    text.push_str(line);
+    text.push('\n');
+}
+
+/// Comment lines, broken at words; all after the first are indented as far as `mark` is long.
+fn comment(text: &mut String, mark: &str, words: &str) {
+    let mut row = format!("// {mark}");
+    let indent = format!("// {}", " ".repeat(mark.len()));
+    for word in words.split(' ') {
+        if row.len() + word.len() > WIDTH {
+            line(text, row.trim_end());
+            row.clone_from(&indent);
+        }
+        let _ = write!(row, "{word} ");
+    }
+    line(text, row.trim_end());
+}
+
+/// Lines two steps into the graph, or one step into a block.
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("    {line}\n")).collect()
+}
