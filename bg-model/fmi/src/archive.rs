@@ -1,6 +1,6 @@
 //! A unit as a file: the archive of a library and its description.
 //!
-//! In: an exported model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml` and the
+//! In: a model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml` and the
 //! library in the folder of its platform. Source: FMI 3.0.1, section 2.5.
 
 use std::io::{self, Cursor, Error, Write};
@@ -8,7 +8,7 @@ use std::io::{self, Cursor, Error, Write};
 use rawzip::{CompressionMethod, DataDescriptorOutput, ZipArchiveWriter};
 
 use crate::description::{Packing, model_description};
-use crate::exported::Exported;
+use crate::exported::Described;
 
 /// How hard the compressor tries, of 10.
 const LEVEL: u8 = 6;
@@ -33,7 +33,7 @@ pub fn library_name(identifier: &str) -> String {
 ///
 /// # Errors
 /// The library is larger than an archive takes.
-pub fn archive(model: &dyn Exported, packing: &Packing, library: &[u8]) -> io::Result<Vec<u8>> {
+pub fn archive(model: &dyn Described, packing: &Packing, library: &[u8]) -> io::Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let mut archive = ZipArchiveWriter::new(&mut bytes);
     let place = format!("binaries/{}/{}", platform(), library_name(&packing.identifier));

@@ -1,6 +1,6 @@
 //! `modelDescription.xml`: a model as hosts read it.
 //!
-//! In: an exported model and how it is packed. Out: the text. Source: FMI 3.0.1, section 2.4 and its schemas.
+//! In: a model and how it is packed. Out: the text. Source: FMI 3.0.1, section 2.4 and its schemas.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -9,7 +9,7 @@ use bg_model::description::{Description, Range};
 use bg_model::run::Request;
 use quick_xml::Writer;
 
-use crate::exported::Exported;
+use crate::exported::Described;
 use crate::units::{BASES, exponents};
 use crate::variables::{Counts, Kind, names, unit};
 
@@ -34,12 +34,13 @@ type Xml = Writer<Vec<u8>>;
 
 /// The text of `modelDescription.xml`.
 #[must_use]
-pub fn model_description(model: &dyn Exported, packing: &Packing) -> String {
-    text(model, packing, &model.token())
+pub fn model_description(model: &dyn Described, packing: &Packing) -> String {
+    text(model, packing, &token(model))
 }
 
-/// The token of a model: a hash of its description, packed in the usual way.
-pub(crate) fn token(model: &dyn Exported) -> String {
+/// What tells this model, its variables and their order from all others: a hash of its description, packed in the usual way.
+#[must_use]
+pub fn token(model: &dyn Described) -> String {
     let text = text(model, &Packing::default(), "");
     // FNV-1a, 128 bits: http://www.isthe.com/chongo/tech/comp/fnv/.
     let hash = text.bytes().fold(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128, |hash, byte| {
@@ -48,7 +49,7 @@ pub(crate) fn token(model: &dyn Exported) -> String {
     format!("{{{hash:032x}}}")
 }
 
-fn text(model: &dyn Exported, packing: &Packing, token: &str) -> String {
+fn text(model: &dyn Described, packing: &Packing, token: &str) -> String {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     write(&mut xml, model, packing, token).expect("a vector takes all that is written");
     let body = String::from_utf8(xml.into_inner()).expect("names are text");
@@ -75,7 +76,7 @@ fn line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn write(xml: &mut Xml, model: &dyn Exported, packing: &Packing, token: &str) -> io::Result<()> {
+fn write(xml: &mut Xml, model: &dyn Described, packing: &Packing, token: &str) -> io::Result<()> {
     let description = model.description();
     let version = env!("CARGO_PKG_VERSION");
     let mut head = vec![
@@ -183,7 +184,7 @@ fn variables(xml: &mut Xml, description: &'static Description) -> io::Result<()>
     })
 }
 
-fn structure(xml: &mut Xml, model: &dyn Exported) -> io::Result<()> {
+fn structure(xml: &mut Xml, model: &dyn Described) -> io::Result<()> {
     let counts = Counts::of(model.description());
     let pattern = model.dependencies();
     let reference = |kind| vec![("valueReference", counts.reference(kind).to_string())];

@@ -11,7 +11,6 @@ use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::system::Model;
 
-use crate::description;
 use crate::instance::{AtStart, Fault, InDuals, Machine, Signals, Slopes};
 
 /// A model with what it knows of its derivatives.
@@ -26,32 +25,32 @@ impl Made {
     }
 }
 
+/// A model as its `modelDescription.xml` has it. What only this is asked of is compiled without what makes it run.
+pub trait Described {
+    /// Its tables.
+    fn description(&self) -> &'static Description;
+
+    /// For each state the states on which its derivative may depend; none where that is not known.
+    fn dependencies(&self) -> Option<Vec<Vec<usize>>>;
+}
+
 /// Keeps [`Exported`] to the types of this crate.
 pub(crate) mod sealed {
-    use super::{Fault, Made, Signals};
+    use super::{Fault, Made, ParameterError, Signals};
 
     pub trait Make {
         /// The model with these parameters, at its start at time `t` (s).
         fn make(&self, parameters: &[f64], signals: &Signals, t: f64) -> Result<Made, Fault>;
+
+        /// Whether parameter `index` can have this value.
+        fn check(&self, index: usize, value: f64) -> Result<(), ParameterError>;
     }
 }
 
 /// A model that a library exports.
-pub trait Exported: sealed::Make + Sync {
-    /// Its tables.
-    fn description(&self) -> &'static Description;
-
-    /// What tells this model, its variables and their order from all others: the token of `modelDescription.xml`.
-    fn token(&self) -> String;
-
-    /// Whether parameter `index` can have this value.
-    ///
-    /// # Errors
-    /// It is out of its range.
-    fn check(&self, index: usize, value: f64) -> Result<(), ParameterError>;
-
-    /// For each state the states on which its derivative may depend; none where that is not known.
-    fn dependencies(&self) -> Option<Vec<Vec<usize>>>;
+pub trait Exported: Described + sealed::Make + Sync {
+    /// It as its description has it.
+    fn described(&self) -> &dyn Described;
 }
 
 /// The mechanism `Me` as an exported model.
@@ -70,19 +69,21 @@ impl<Me: Mechanism + 'static> sealed::Make for Of<Me> {
         let mechanism = Me::make(parameters, &signals.inputs())?;
         Ok(Made { machine: mechanism.visit(AtStart { t })?, slopes: mechanism.visit(InDuals) })
     }
-}
-
-impl<Me: Mechanism + 'static> Exported for Of<Me> {
-    fn description(&self) -> &'static Description {
-        Me::describe()
-    }
-
-    fn token(&self) -> String {
-        description::token(self)
-    }
 
     fn check(&self, index: usize, value: f64) -> Result<(), ParameterError> {
         Me::Parameters::default().set(Me::describe().parameters[index].name, value)
+    }
+}
+
+impl<Me: Mechanism + 'static> Exported for Of<Me> {
+    fn described(&self) -> &dyn Described {
+        self
+    }
+}
+
+impl<Me: Mechanism> Described for Of<Me> {
+    fn description(&self) -> &'static Description {
+        Me::describe()
     }
 
     fn dependencies(&self) -> Option<Vec<Vec<usize>>> {

@@ -10,10 +10,11 @@
 //!     /// A mass on a spring, pushed by a given force.
 //!     pub graph Oscillator {
 //!         param mass: kg = 2, above 0;
+//!         param stiffness: N/m = 50, above 0;
 //!         input force: N;
 //!         Se push = force;
 //!         1 slide: translation;
-//!         I body = mass; C spring = 50 start 0.1;
+//!         I body = mass; C spring = stiffness start 0.1;
 //!         push -> slide -> body; slide -> spring;
 //!         observe { x: m = spring.q; }
 //!     }
@@ -41,8 +42,8 @@ mod units;
 pub mod variables;
 
 pub use bg_model;
-pub use description::{Packing, model_description};
-pub use exported::{Exported, Of};
+pub use description::{Packing, model_description, token};
+pub use exported::{Described, Exported, Of};
 pub use instance::{Fault, Instance, Interface};
 
 /// The category of log messages.

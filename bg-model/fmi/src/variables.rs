@@ -38,6 +38,9 @@ pub(crate) struct Counts {
     pub guards: usize,
 }
 
+/// A kind of variable, and how many of it there are.
+type Row = (fn(usize) -> Kind, usize);
+
 impl Counts {
     pub const fn of(description: &Description) -> Self {
         Self {
@@ -50,7 +53,7 @@ impl Counts {
     }
 
     /// The kinds with their numbers, in the order of the value references.
-    const fn rows(&self) -> [(fn(usize) -> Kind, usize); 7] {
+    const fn rows(&self) -> [Row; 7] {
         [
             (|_| Kind::Time, 1),
             (Kind::Parameter, self.parameters),

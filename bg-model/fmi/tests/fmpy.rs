@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use bg_fmi::archive::archive;
-use bg_fmi::{Exported, Of, Packing};
+use bg_fmi::{Described, Of, Packing};
 use bg_model::mechanism::Mechanism;
 use bg_model::run::Simulation;
 use machines::{Ball, Pendulum, Shaker};
@@ -37,7 +37,7 @@ fn library() -> PathBuf {
 }
 
 /// The unit of a model, in a folder that goes away.
-fn unit(model: &dyn Exported) -> (tempfile::TempDir, PathBuf) {
+fn unit(model: &dyn Described) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let identifier = model.description().name.to_lowercase();
     let path = folder.path().join(format!("{identifier}.fmu"));
@@ -64,7 +64,7 @@ fn units_are_valid() {
     if !has_fmpy() {
         return;
     }
-    for model in [&PENDULUM as &dyn Exported, &BALL, &SHAKER] {
+    for model in [&PENDULUM as &dyn Described, &BALL, &SHAKER] {
         let (_folder, path) = unit(model);
         assert_eq!(host(&path, &["validate"]).join(" "), "no problems");
     }
@@ -80,7 +80,7 @@ fn a_host_comes_where_our_run_does() {
     let ball = Ball::make(Default::default(), &[]).unwrap();
     let own = |run: Simulation<'_, _>| run.rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap();
     let wanted = [
-        (&PENDULUM as &dyn Exported, "angle", own(Simulation::new(&pendulum))["angle"][0]),
+        (&PENDULUM as &dyn Described, "angle", own(Simulation::new(&pendulum))["angle"][0]),
         (&SHAKER, "x", Simulation::new(&shaker).rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap()["x"][0]),
         (&BALL, "height", Simulation::new(&ball).rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap()["height"][0]),
     ];
@@ -99,7 +99,7 @@ fn a_host_gets_derivatives_and_saved_states() {
     if !has_fmpy() {
         return;
     }
-    for model in [&PENDULUM as &dyn Exported, &BALL, &SHAKER] {
+    for model in [&PENDULUM as &dyn Described, &BALL, &SHAKER] {
         let (_folder, path) = unit(model);
         let jacobian = numbers(&host(&path, &["derivatives"]));
         assert!(jacobian[0] <= 1e-12 * jacobian[1] && jacobian[1] > 0.0, "{jacobian:?}");

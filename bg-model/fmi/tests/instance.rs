@@ -4,7 +4,7 @@
 mod machines;
 
 use bg_fmi::variables::Kind;
-use bg_fmi::{Exported, Instance, Interface, Of, Packing, model_description};
+use bg_fmi::{Exported, Instance, Interface, Of, Packing, model_description, token};
 use bg_model::input::Input;
 use bg_model::mechanism::Mechanism;
 use bg_model::run::Simulation;
@@ -165,8 +165,7 @@ fn an_input_holds_from_one_step_to_the_next() {
     set(&mut shaker, &SHAKER, Kind::Parameter(2), 0.0);
     shaker.enter_initialization(0.0, Some(1e-10)).unwrap();
     shaker.exit_initialization().unwrap();
-    let mut parameters = machines::ShakerParameters::default();
-    parameters.stretch = 0.0;
+    let parameters = machines::ShakerParameters { stretch: 0.0, ..Default::default() };
     let force = |t: f64| (3.0 * t).sin() * 5.0;
     let mut state = None;
     for k in 0..50 {
@@ -293,5 +292,5 @@ fn the_description_names_every_variable_once() {
         "{text}"
     );
     assert!(text.contains("name=\"length\" valueReference=\"2\" description=\"Length of the rod.\""), "{text}");
-    assert!(text.contains(&PENDULUM.token()) && PENDULUM.token() != BALL.token());
+    assert!(text.contains(&token(&PENDULUM)) && token(&PENDULUM) != token(&BALL));
 }

@@ -17,6 +17,7 @@ use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::LOG_ERROR;
+use crate::description;
 use crate::exported::Exported;
 use crate::instance::{Fault, Instance, Interface};
 
@@ -121,7 +122,7 @@ pub unsafe fn instantiate(
     // SAFETY: not null, and it ends with 0.
     let token = unsafe { CStr::from_ptr(token) }.to_string_lossy();
     let made = catch_unwind(AssertUnwindSafe(|| {
-        let model = models.iter().find(|model| model.token() == token)?;
+        let model = models.iter().find(|model| description::token(model.described()) == token)?;
         Some(Box::new(Handle { instance: Instance::new(*model, interface), logger, is_lost: false }))
     }));
     match made {

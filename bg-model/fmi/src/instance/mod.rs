@@ -275,7 +275,8 @@ impl Instance {
         if !(h.is_finite() && h >= 0.0) {
             return Err(Fault::Step(h));
         }
-        if !((t - present).abs() <= NEAR * present.abs().max(1.0)) {
+        let is_near = (t - present).abs() <= NEAR * present.abs().max(1.0);
+        if !is_near {
             return Err(Fault::CommunicationPoint { asked: t, present });
         }
         if t + h > present { machine.advance(t + h, rtol) } else { Ok(()) }

@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Fault, Instance, Mode};
+use crate::description::token;
 use crate::exported::Made;
 
 /// A saved state.
@@ -78,7 +79,7 @@ impl Instance {
             return Err(Fault::Saved("a state is not a finite number".to_owned()));
         }
         let text = Text {
-            token: self.model.token(),
+            token: token(self.model.described()),
             mode: snapshot.mode.name().to_owned(),
             parameters: snapshot.parameters.clone(),
             inputs: snapshot.inputs.clone(),
@@ -96,7 +97,7 @@ impl Instance {
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Snapshot, Fault> {
         let foreign = |what: &str| Fault::Saved(what.to_owned());
         let text: Text = serde_json::from_slice(bytes).map_err(|fault| Fault::Saved(fault.to_string()))?;
-        if text.token != self.model.token() {
+        if text.token != token(self.model.described()) {
             return Err(foreign("it is one of another model"));
         }
         let mode = Mode::ALL.into_iter().find(|mode| mode.name() == text.mode).ok_or_else(|| foreign("its mode"))?;

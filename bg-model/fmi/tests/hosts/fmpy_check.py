@@ -65,7 +65,7 @@ def states(unit):
     again = fmu.getFloat64(outputs)
     data = fmu.serializeFMUState(saved)
     fmu.freeFMUState(saved)
-    read = fmu.deserializeFMUState(data, len(data))
+    read = fmu.deserializeFMUState(data)
     fmu.setFMUState(read)
     on(40, 80)
     from_bytes = fmu.getFloat64(outputs)

@@ -5,6 +5,7 @@
 
 mod arguments;
 mod compare;
+mod fmu;
 mod golden;
 mod graph;
 mod linearize;
@@ -42,6 +43,7 @@ use crate::samples::Unreadable;
 use crate::scenes::Fixed;
 use crate::tables::{self, Part};
 use arguments::{Cli, Command, GoldenCommand};
+use fmu::LibraryError;
 
 /// Input that cannot be used.
 #[derive(Debug, Error)]
@@ -84,6 +86,8 @@ enum InputError {
     Golden(#[from] GoldenError),
     #[error("--live: {0}")]
     Live(#[from] ModuleError),
+    #[error(transparent)]
+    Library(#[from] LibraryError),
 }
 
 impl From<BeginError> for InputError {
@@ -129,6 +133,7 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
             Ok(say(&tables::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))
         }
         Command::Graph(arguments) => graph::graph(program, &arguments),
+        Command::Fmu(arguments) => fmu::pack(program, &arguments),
         Command::States { scene } => print(&scene, Part::States),
         Command::Equations { scene } => print(&scene, Part::Equations),
         Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&Me::Parameters::default()))),
