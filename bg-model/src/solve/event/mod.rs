@@ -39,7 +39,7 @@ struct Reading<const G: usize> {
 }
 
 /// What is known of the guards.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Watch<const G: usize> {
     start: Reading<G>,
     end: Reading<G>,

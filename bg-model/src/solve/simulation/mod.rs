@@ -6,6 +6,7 @@
 
 mod cause;
 mod observer;
+mod ongoing;
 mod pace;
 mod recording;
 mod rounding;
@@ -16,6 +17,7 @@ mod settings;
 use nalgebra::SVector;
 
 pub use observer::{EachSample, EachStep, Observer, Switching};
+pub use ongoing::Ongoing;
 pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 

@@ -33,7 +33,7 @@ const STRETCH: f64 = 0.01;
 const SLIVER: f64 = 1e-9;
 
 /// Chooses steps.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Pace {
     control: StepControl,
     span: Span,
@@ -52,6 +52,8 @@ pub(super) struct Pace {
     sliver: f64,
     /// Whether a break has cut the step that is tried.
     is_cut: bool,
+    /// Whether the run goes on from the end of the span, which then is a break.
+    goes_on: bool,
 }
 
 impl Pace {
@@ -72,7 +74,13 @@ impl Pace {
             short: f64::INFINITY,
             sliver: if has_breaks { SLIVER * asked.min(largest) } else { 0.0 },
             is_cut: false,
+            goes_on: false,
         }
+    }
+
+    /// The next piece of a run that goes on from its end.
+    pub fn go_on(&mut self, span: Span) {
+        (self.span, self.grid, self.goes_on) = (span, 1, true);
     }
 
     /// The size of the next step if nothing is in its way, s.
@@ -107,7 +115,7 @@ impl Pace {
             let goal = if next_break < t_end { next_break } else { t_end };
             let stretched = t + (1.0 + STRETCH) * self.step >= goal;
             let reaches = stretched && goal - t <= (1.0 + 1e-9) * self.largest;
-            self.is_cut = reaches && next_break < t_end && goal - t < self.step;
+            self.is_cut = reaches && (next_break < t_end || self.goes_on) && goal - t < self.step;
             return if reaches { goal } else { t + self.step };
         }
         let end_of = |grid: u64| self.span.t0 + grid as f64 * self.step;

@@ -12,6 +12,7 @@ use super::sensitivity::SensitivityArguments;
 use super::sweep::SweepArguments;
 use crate::golden::FOLDER;
 use crate::picture::Level;
+use crate::program::T_END;
 use crate::request::Integration;
 use crate::tables::Part;
 
@@ -60,6 +61,8 @@ pub enum Command {
     Identify(IdentifyArguments),
     /// Run for many values of parameters by a plan, into Parquet files; on all cores, or on many machines
     Sweep(SweepArguments),
+    /// Pack a scene as a functional mock-up unit for other programs: FMI 3.0, Model Exchange and Co-Simulation in one file
+    Fmu(FmuArguments),
     /// Record a run as a golden output, or check that what was recorded still comes out
     #[command(subcommand)]
     Golden(GoldenCommand),
@@ -95,6 +98,26 @@ pub struct GraphArguments {
     /// How much of it is drawn
     #[arg(long, value_name = "LEVEL", value_enum, default_value_t)]
     pub level: Level,
+}
+
+/// Which model is packed, and into what.
+#[derive(Debug, Args)]
+pub struct FmuArguments {
+    /// The scene
+    #[arg(long, value_name = "NAME")]
+    pub scene: String,
+
+    /// The library that exports the scene; without it, the one of the program's name with `_fmu` beside the program
+    #[arg(long, value_name = "FILE")]
+    pub library: Option<PathBuf>,
+
+    /// The unit; without it, in this folder, of the program's and the scene's name. Replaces a file that is there
+    #[arg(long, value_name = "FILE.fmu")]
+    pub out: Option<PathBuf>,
+
+    /// The end of a simulation that the unit proposes, s
+    #[arg(long, value_name = "SECONDS", default_value_t = T_END)]
+    pub t_end: f64,
 }
 
 /// What is run, and how.

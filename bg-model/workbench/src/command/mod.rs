@@ -5,6 +5,7 @@
 
 mod arguments;
 mod compare;
+mod fmu;
 mod golden;
 mod graph;
 mod identify;
@@ -49,6 +50,7 @@ use crate::scenes::Fixed;
 use crate::sweep::SweepError;
 use crate::tables::{self, Part};
 use arguments::{Cli, Command, GoldenCommand};
+use fmu::LibraryError;
 pub(crate) use linearize::space as linearised;
 
 /// Input that cannot be used.
@@ -102,6 +104,8 @@ enum InputError {
     Sweep(#[from] SweepError),
     #[error("--live: {0}")]
     Live(#[from] ModuleError),
+    #[error(transparent)]
+    Library(#[from] LibraryError),
 }
 
 impl From<BeginError> for InputError {
@@ -150,6 +154,7 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
             Ok(say(&tables::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))
         }
         Command::Graph(arguments) => graph::graph(program, &arguments),
+        Command::Fmu(arguments) => fmu::pack(program, &arguments),
         Command::States { scene } => print(&scene, Part::States),
         Command::Equations { scene } => print(&scene, Part::Equations),
         Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&Me::Parameters::default()))),

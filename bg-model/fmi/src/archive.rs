@@ -1,0 +1,50 @@
+//! A unit as a file: the archive of a library and its description.
+//!
+//! In: a model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml` and the
+//! library in the folder of its platform. Source: FMI 3.0.1, section 2.5.
+
+use std::io::{self, Cursor, Error, Write};
+
+use rawzip::{CompressionMethod, DataDescriptorOutput, ZipArchiveWriter};
+
+use crate::description::{Packing, model_description};
+use crate::exported::Described;
+
+/// How hard the compressor tries, of 10.
+const LEVEL: u8 = 6;
+
+/// The folder of a unit that has the libraries of this platform, as `x86_64-linux`: FMI 3.0.1, section 2.5.1.4.1.
+#[must_use]
+pub fn platform() -> String {
+    let system = match std::env::consts::OS {
+        "macos" => "darwin",
+        system => system,
+    };
+    format!("{}-{system}", std::env::consts::ARCH)
+}
+
+/// The file name of the library `identifier` on this platform, in a unit.
+#[must_use]
+pub fn library_name(identifier: &str) -> String {
+    format!("{identifier}{}", std::env::consts::DLL_SUFFIX)
+}
+
+/// The bytes of the unit of `model`, whose `library` is one for this platform that exports it.
+///
+/// # Errors
+/// The library is larger than an archive takes.
+pub fn archive(model: &dyn Described, packing: &Packing, library: &[u8]) -> io::Result<Vec<u8>> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut archive = ZipArchiveWriter::new(&mut bytes);
+    let place = format!("binaries/{}/{}", platform(), library_name(&packing.identifier));
+    let description = model_description(model, packing);
+    for (name, content) in [("modelDescription.xml", description.as_bytes()), (&place, library)] {
+        let entry = archive.new_file(name).compression_method(CompressionMethod::DEFLATE);
+        let (mut entry, _) = entry.start().map_err(Error::other)?;
+        entry.write_all(&miniz_oxide::deflate::compress_to_vec(content, LEVEL))?;
+        let described = DataDescriptorOutput::new(rawzip::crc32(content), content.len() as u64);
+        entry.finish(described).map_err(Error::other)?;
+    }
+    archive.finish().map_err(Error::other)?;
+    Ok(bytes.into_inner())
+}

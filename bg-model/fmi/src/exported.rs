@@ -1,0 +1,129 @@
+//! A model as an instance needs it: its tables, and how it is made of numbers.
+//!
+//! In: a mechanism's type. Out: a value that stands for it, so that a library can list its models.
+
+use std::marker::PhantomData;
+
+use bg_model::capability::Linearised;
+use bg_model::description::Description;
+use bg_model::linear::Sparsity;
+use bg_model::mechanism::{Mechanism, ModelVisitor};
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::system::Model;
+
+use crate::instance::{AtStart, Fault, InDuals, Machine, Signals, Slopes};
+
+/// A model with what it knows of its derivatives.
+pub struct Made {
+    pub(crate) machine: Box<dyn Machine>,
+    pub(crate) slopes: Box<dyn Slopes>,
+}
+
+impl Made {
+    pub(crate) fn twin(&self) -> Self {
+        Self { machine: self.machine.twin(), slopes: self.slopes.twin() }
+    }
+}
+
+/// A model as its `modelDescription.xml` has it. What only this is asked of is compiled without what makes it run.
+pub trait Described {
+    /// Its tables.
+    fn description(&self) -> &'static Description;
+
+    /// For each state the states on which its derivative may depend; none where that is not known.
+    fn dependencies(&self) -> Option<Vec<Vec<usize>>>;
+}
+
+/// Keeps [`Exported`] to the types of this crate.
+pub(crate) mod sealed {
+    use super::{Fault, Made, ParameterError, Signals};
+
+    pub trait Make {
+        /// The model with these parameters, at its start at time `t` (s).
+        fn make(&self, parameters: &[f64], signals: &Signals, t: f64) -> Result<Made, Fault>;
+
+        /// Whether parameter `index` can have this value.
+        fn check(&self, index: usize, value: f64) -> Result<(), ParameterError>;
+    }
+}
+
+/// A model that a library exports.
+pub trait Exported: Described + sealed::Make + Sync {
+    /// It as its description has it.
+    fn described(&self) -> &dyn Described;
+}
+
+/// The mechanism `Me` as an exported model.
+pub struct Of<Me>(PhantomData<fn() -> Me>);
+
+impl<Me> Of<Me> {
+    /// It.
+    pub const NEW: Self = Self(PhantomData);
+}
+
+impl<Me: Mechanism + 'static> sealed::Make for Of<Me> {
+    fn make(&self, values: &[f64], signals: &Signals, t: f64) -> Result<Made, Fault> {
+        let mut parameters = Me::Parameters::default();
+        values.iter().enumerate().for_each(|(index, &value)| parameters.set_value(index, value));
+        parameters.validate()?;
+        let mechanism = Me::make(parameters, &signals.inputs())?;
+        Ok(Made { machine: mechanism.visit(AtStart { t })?, slopes: mechanism.visit(InDuals) })
+    }
+
+    fn check(&self, index: usize, value: f64) -> Result<(), ParameterError> {
+        Me::Parameters::default().set(Me::describe().parameters[index].name, value)
+    }
+}
+
+impl<Me: Mechanism + 'static> Exported for Of<Me> {
+    fn described(&self) -> &dyn Described {
+        self
+    }
+}
+
+impl<Me: Mechanism> Described for Of<Me> {
+    fn description(&self) -> &'static Description {
+        Me::describe()
+    }
+
+    fn dependencies(&self) -> Option<Vec<Vec<usize>>> {
+        Me::make(Me::Parameters::default(), &[]).ok()?.visit(Pattern)
+    }
+}
+
+/// Which rate depends on which states.
+struct Pattern;
+
+impl ModelVisitor<f64> for Pattern {
+    type Output = Option<Vec<Vec<usize>>>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        let (places, unknowns) = match model.linearised()?.sparsity() {
+            Sparsity::Full => return None,
+            Sparsity::Places(places) => (places, 0),
+            Sparsity::Bordered { places, unknowns } => (places, unknowns),
+        };
+        let mut depends = vec![vec![false; N]; N];
+        // The unknowns are solved for together: what one of them needs, all of them may need.
+        let mut of_unknowns = vec![false; N];
+        let mut reads_unknowns = vec![false; N];
+        for (row, column) in places.iter().map(|&(row, column)| (usize::from(row), usize::from(column))) {
+            match (row < N, column < N) {
+                (true, true) => depends[row][column] = true,
+                (true, false) => reads_unknowns[row] = true,
+                (false, true) => of_unknowns[column] = true,
+                (false, false) => {}
+            }
+        }
+        for (own, reads) in depends.iter_mut().zip(&reads_unknowns) {
+            if *reads && unknowns > 0 {
+                own.iter_mut().zip(&of_unknowns).for_each(|(own, more)| *own |= more);
+            }
+        }
+        let places = |own: Vec<bool>| own.iter().enumerate().filter_map(|(k, on)| on.then_some(k)).collect();
+        Some(depends.into_iter().map(places).collect())
+    }
+}

@@ -1,0 +1,79 @@
+//! What an instance cannot do, in sentences for the log of its host.
+
+use bg_model::parameters::ParameterError;
+use thiserror::Error;
+
+/// What an instance cannot do.
+#[derive(Debug, Error)]
+pub enum Fault {
+    /// A parameter's value.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// The start cannot be assembled.
+    #[error("{0}")]
+    Start(String),
+    /// The model cannot go on from where it is.
+    #[error("{0}")]
+    Stopped(String),
+    /// Something that the interface does not allow now.
+    #[error("{what} is not possible in {mode}")]
+    Mode {
+        /// What was asked for.
+        what: &'static str,
+        /// The state of the instance, in the words of the standard.
+        mode: &'static str,
+    },
+    /// No such variable.
+    #[error("there is no variable with the value reference {0}")]
+    Reference(u32),
+    /// A variable that is calculated.
+    #[error("`{0}` is calculated and cannot be set")]
+    Calculated(String),
+    /// A number that is none.
+    #[error("`{name}` is set to {value}; it must be a finite number")]
+    NotFinite {
+        /// The variable.
+        name: String,
+        /// The value.
+        value: f64,
+    },
+    /// Arguments of different lengths.
+    #[error("{what}: {found} numbers are given, {wanted} are wanted")]
+    Length {
+        /// Which.
+        what: &'static str,
+        /// What is given.
+        found: usize,
+        /// What is wanted.
+        wanted: usize,
+    },
+    /// A communication point that is not where the instance is.
+    #[error(
+        "the step is to begin at {asked:?} s, the model is at {present:?} s: go on from there, or restore a saved state"
+    )]
+    CommunicationPoint {
+        /// What is asked for, s.
+        asked: f64,
+        /// Where the instance is, s.
+        present: f64,
+    },
+    /// A step that leads back, or nowhere.
+    #[error("a step of {0:?} s is none: it must be a finite number that is not negative")]
+    Step(f64),
+    /// A derivative that is not known.
+    #[error(
+        "the derivative of `{unknown}` by `{known}` is not known; known are those of derivatives, outputs and guards by states and inputs"
+    )]
+    Derivative {
+        /// What is derived.
+        unknown: String,
+        /// By what.
+        known: String,
+    },
+    /// Bytes that are no saved state.
+    #[error("this is no saved state of this model: {0}")]
+    Saved(String),
+    /// Something that this unit does not have.
+    #[error("{0}")]
+    Absent(String),
+}

@@ -1,0 +1,122 @@
+//! A saved state of an instance: a copy in memory, from which it goes on with the same steps, and the same as bytes.
+//!
+//! In: an instance. Out: a copy; bytes, and a copy of them again. What the method of a run keeps from step to step is not among
+//! the bytes: an instance that is restored from them finds its rate and its branches anew, with the same step size.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Fault, Instance, Mode};
+use crate::description::token;
+use crate::exported::Made;
+
+/// A saved state.
+pub struct Snapshot {
+    mode: Mode,
+    parameters: Vec<f64>,
+    inputs: Vec<f64>,
+    start: f64,
+    rtol: f64,
+    made: Option<Made>,
+}
+
+/// The same as JSON, every number in the shortest form that reads back to the same bits.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Text {
+    token: String,
+    mode: String,
+    parameters: Vec<f64>,
+    inputs: Vec<f64>,
+    start: f64,
+    rtol: f64,
+    place: Option<Place>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Place {
+    t: f64,
+    x: Vec<f64>,
+    negative: Vec<bool>,
+    step: Option<f64>,
+}
+
+impl Instance {
+    /// A copy of where it stands.
+    #[must_use]
+    pub fn save(&self) -> Snapshot {
+        Snapshot {
+            mode: self.mode,
+            parameters: self.parameters.clone(),
+            inputs: self.signals.values(),
+            start: self.start,
+            rtol: self.rtol,
+            made: self.made.as_ref().map(Made::twin),
+        }
+    }
+
+    /// Stands where `snapshot`, one of this instance, was taken.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        self.mode = snapshot.mode;
+        self.parameters.clone_from(&snapshot.parameters);
+        snapshot.inputs.iter().enumerate().for_each(|(index, &value)| self.signals.set(index, value));
+        (self.start, self.rtol) = (snapshot.start, snapshot.rtol);
+        self.made = snapshot.made.as_ref().map(Made::twin);
+    }
+
+    /// The bytes of a saved state.
+    ///
+    /// # Errors
+    /// [`Fault::Saved`]: a state is not finite.
+    pub fn serialize(&self, snapshot: &Snapshot) -> Result<Vec<u8>, Fault> {
+        let place = snapshot.made.as_ref().map(|made| Place {
+            t: made.machine.time(),
+            x: made.machine.states().to_vec(),
+            negative: made.machine.branches().to_vec(),
+            step: made.machine.next_step().filter(|step| step.is_finite()),
+        });
+        if place.as_ref().is_some_and(|place| !place.x.iter().all(|value| value.is_finite())) {
+            return Err(Fault::Saved("a state is not a finite number".to_owned()));
+        }
+        let text = Text {
+            token: token(self.model.described()),
+            mode: snapshot.mode.name().to_owned(),
+            parameters: snapshot.parameters.clone(),
+            inputs: snapshot.inputs.clone(),
+            start: snapshot.start,
+            rtol: snapshot.rtol,
+            place,
+        };
+        serde_json::to_vec(&text).map_err(|fault| Fault::Saved(fault.to_string()))
+    }
+
+    /// The saved state of these bytes, for this instance.
+    ///
+    /// # Errors
+    /// [`Fault::Saved`]: they are of another model, or none.
+    pub fn deserialize(&self, bytes: &[u8]) -> Result<Snapshot, Fault> {
+        let foreign = |what: &str| Fault::Saved(what.to_owned());
+        let text: Text = serde_json::from_slice(bytes).map_err(|fault| Fault::Saved(fault.to_string()))?;
+        if text.token != token(self.model.described()) {
+            return Err(foreign("it is one of another model"));
+        }
+        let mode = Mode::ALL.into_iter().find(|mode| mode.name() == text.mode).ok_or_else(|| foreign("its mode"))?;
+        let fits = |place: &Place| {
+            place.x.len() == self.counts.states && place.negative.len() == self.counts.guards && place.t.is_finite()
+        };
+        let is_whole = text.parameters.len() == self.counts.parameters && text.inputs.len() == self.counts.inputs;
+        if !is_whole || !text.place.as_ref().is_none_or(fits) {
+            return Err(foreign("the numbers of its variables"));
+        }
+        let made = match text.place {
+            None => None,
+            Some(place) => {
+                let mut made = self.model.make(&text.parameters, &self.signals, text.start)?;
+                made.machine.place(place.t, &place.x, &place.negative, place.step);
+                Some(made)
+            }
+        };
+        let Text { parameters, inputs, start, rtol, .. } = text;
+        Ok(Snapshot { mode, parameters, inputs, start, rtol, made })
+    }
+}

@@ -1,0 +1,217 @@
+//! A run that is made piece by piece, each to an end that is known only when the one before is done: co-simulation, control.
+//!
+//! In: a state, then one end after the other. Out: the state there. From piece to piece stay the rate, the branches, what is
+//! known of the guards, the size of the next step and what the method keeps; only where the system has changed in between is
+//! the start looked at anew, and then too the size of the step stays.
+
+use nalgebra::SVector;
+
+use super::observer::Observer;
+use super::pace::Pace;
+use super::run::Run;
+use super::settings::{self, Settings, Span};
+use crate::model::system::System;
+use crate::solve::event::{Never, Watch};
+use crate::solve::failure::{Cause, Failure};
+use crate::solve::finish::{Ended, Finish};
+use crate::solve::integrator::{Method, Point, Scale};
+use crate::solve::statistics::Statistics;
+use crate::solve::stepper::Stepper;
+
+/// A run that goes on.
+///
+/// ```
+/// use bg_model::integrator::Dop853;
+/// use bg_model::nalgebra::SVector;
+/// use bg_model::simulation::{Ongoing, Settings};
+/// use bg_model::system::System;
+///
+/// struct Decay;
+/// impl System<f64, 1, 0> for Decay {
+///     fn rate(&self, _: f64, x: &SVector<f64, 1>, _: &[bool; 0], dx: &mut SVector<f64, 1>) {
+///         dx[0] = -x[0];
+///     }
+/// }
+///
+/// let (mut run, mut method) = (Ongoing::at(0.0, SVector::from([1.0])), Dop853::new());
+/// for k in 1..=10 {
+///     run.advance(&Decay, &mut method, 0.1 * f64::from(k), &Settings::default(), &mut ())?;
+/// }
+/// assert!((run.state()[0] - (-1.0_f64).exp()).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Ongoing<const N: usize, const G: usize> {
+    start: Point<N>,
+    negative: [bool; G],
+    watch: Watch<G>,
+    /// None where the start has to be looked at.
+    pace: Option<Pace>,
+    /// The size of the next step, s, where it is known.
+    step: Option<f64>,
+    statistics: Statistics,
+}
+
+impl<const N: usize, const G: usize> Ongoing<N, G> {
+    /// A run from state `x` at time `t` (s).
+    #[must_use]
+    pub fn at(t: f64, x: SVector<f64, N>) -> Self {
+        let (start, statistics) = (Point::at(t, x), Statistics::default());
+        Self { start, negative: [false; G], watch: Watch::new(), pace: None, step: None, statistics }
+    }
+
+    /// The time that it has reached, s.
+    #[must_use]
+    pub const fn time(&self) -> f64 {
+        self.start.t
+    }
+
+    /// The state there.
+    #[must_use]
+    pub const fn state(&self) -> &SVector<f64, N> {
+        &self.start.x
+    }
+
+    /// The branches from there on; all positive before the first piece.
+    #[must_use]
+    pub const fn negative(&self) -> &[bool; G] {
+        &self.negative
+    }
+
+    /// The size that the next step is to have, s, where that is known.
+    #[must_use]
+    pub const fn next_step(&self) -> Option<f64> {
+        self.step
+    }
+
+    /// What all pieces have cost.
+    #[must_use]
+    pub const fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// The system has changed, as where an input has jumped: branches and rate are found anew, as at the start of a run. The next
+    /// step is tried with `step` (s), where that is given, else with the size that it was to have.
+    pub fn renew(&mut self, step: Option<f64>) {
+        self.pace = None;
+        self.step = step.or(self.step);
+    }
+
+    /// Goes on to `t_end` (s), where a step ends. Samples are those of this piece.
+    ///
+    /// # Errors
+    /// As [`integrate`](super::integrate); the run then is at its last good point.
+    pub fn advance<Sys, M, O>(
+        &mut self,
+        system: &Sys,
+        method: &mut M,
+        t_end: f64,
+        settings: &Settings<N>,
+        observer: &mut O,
+    ) -> Result<Ended, Failure<N, G>>
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+        O: Observer<N, G>,
+    {
+        let span = Span { t0: self.start.t, t_end };
+        let control = method.control();
+        let needs_series = method.needs_series().then(|| method.name());
+        let settings = &Settings { first_step: self.step.or(settings.first_step), ..settings.clone() };
+        let stepper = Stepper::new(system, method, Scale::from(&settings.tolerances), self.start);
+        let mut run = Run::new(stepper, Never, control, span, settings);
+        let outcome = settings::check(system, control, &self.start.x, span, settings)
+            .and_then(|()| settings::check_series(system, needs_series))
+            .map_err(Cause::from)
+            .and_then(|()| match self.pace.take() {
+                None => run.begin(control, settings),
+                Some(pace) => {
+                    (run.stepper.negative, run.pace, run.watch) = (self.negative, pace, self.watch.clone());
+                    Ok(())
+                }
+            })
+            .and_then(|()| {
+                run.pace.go_on(span);
+                run.advance_to_end(observer)
+            });
+        let Run { stepper, pace, watch, .. } = run;
+        (self.start, self.negative, self.watch) = (stepper.start, stepper.negative, watch);
+        self.statistics.add(&stepper.statistics);
+        match outcome {
+            Ok(ended) => {
+                self.step = pace.is_adaptive().then(|| pace.step());
+                self.pace = Some(pace);
+                Ok(ended)
+            }
+            Err(cause) => {
+                let (Point { t, x, .. }, ended) = (self.start, Ended::ByFailure);
+                let last = Finish { t, x, negative: self.negative, ended, statistics: self.statistics };
+                Err(Failure { cause, last: Box::new(last) })
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::integrator::{Dop853, Tolerances};
+    use crate::solve::simulation::integrate;
+
+    /// A mass of 1 kg on a spring of 1 N/m that is pulled with 0.3 N to the middle: by a relay.
+    struct Relay;
+    impl System<f64, 2, 1> for Relay {
+        fn rate(&self, _: f64, x: &SVector<f64, 2>, negative: &[bool; 1], dx: &mut SVector<f64, 2>) {
+            *dx = SVector::from([x[1], -x[0] + if negative[0] { 0.3 } else { -0.3 }]);
+        }
+        fn guards(&self, _: f64, x: &SVector<f64, 2>, _: &[bool; 1], guards: &mut SVector<f64, 1>) {
+            guards[0] = x[0];
+        }
+    }
+
+    fn settings() -> Settings<2> {
+        Settings { tolerances: Tolerances::new(1e-10, 1e-11), ..Settings::default() }
+    }
+
+    #[test]
+    fn pieces_lead_where_one_run_does_and_start_once() {
+        let start = SVector::from([1.0, 0.0]);
+        let span = Span { t0: 0.0, t_end: 10.0 };
+        let whole = integrate(&Relay, &mut Dop853::new(), &start, span, &settings(), &mut ()).unwrap();
+        let (mut run, mut method) = (Ongoing::at(0.0, start), Dop853::new());
+        let mut ends = Vec::new();
+        for k in 1..=1000 {
+            run.advance(&Relay, &mut method, f64::from(k) / 100.0, &settings(), &mut ()).unwrap();
+            ends.push(run.time());
+        }
+        assert_eq!((ends[0], ends[999], run.negative()), (0.01, 10.0, &whole.negative));
+        assert!((run.state() - whole.x).amax() < 1e-8, "{} {}", run.state(), whole.x);
+        let (cost, events) = (run.statistics(), whole.statistics.events);
+        // At acos(0.3 / 1.3) = 1.338 s, then every 2.676 s.
+        assert_eq!((cost.events, events), (4, 4));
+        assert_eq!(cost.steps, 1000 + events);
+        // No piece estimates a first step: the next one is as long as the tolerances allow all the time.
+        assert!(run.next_step().is_some_and(|step| step > 0.05), "{:?}", run.next_step());
+        assert!(cost.rate_evaluations < 12 * cost.steps + 40 * events + 10, "{cost:?}");
+    }
+
+    #[test]
+    fn what_changes_in_between_is_looked_at() {
+        struct Pushed(f64);
+        impl System<f64, 1, 1> for Pushed {
+            fn rate(&self, _: f64, _: &SVector<f64, 1>, negative: &[bool; 1], dx: &mut SVector<f64, 1>) {
+                dx[0] = if negative[0] { -1.0 } else { 1.0 };
+            }
+            fn guards(&self, _: f64, _: &SVector<f64, 1>, _: &[bool; 1], guards: &mut SVector<f64, 1>) {
+                guards[0] = self.0;
+            }
+        }
+        let (mut run, mut method) = (Ongoing::at(0.0, SVector::from([0.0])), Dop853::new());
+        run.advance(&Pushed(1.0), &mut method, 1.0, &Settings::default(), &mut ()).unwrap();
+        run.renew(None);
+        run.advance(&Pushed(-1.0), &mut method, 3.0, &Settings::default(), &mut ()).unwrap();
+        assert!((run.state()[0] + 1.0).abs() < 1e-12, "{}", run.state());
+        let failure = run.advance(&Pushed(-1.0), &mut method, 2.0, &Settings::default(), &mut ()).unwrap_err();
+        assert_eq!((run.time(), failure.last.t), (3.0, 3.0));
+    }
+}
