@@ -142,6 +142,9 @@ fn co_simulation_goes_on_from_step_to_step() {
     let angle = get(&mut instance, &PENDULUM, Kind::Output(0));
     let wanted = own(&Pendulum::new(Default::default()).unwrap(), 1.0, 1e-10, "angle");
     assert!((instance.time().unwrap() - 1.0).abs() < 1e-12 && (angle - wanted).abs() < 1e-9, "{angle} {wanted}");
+    // A step of DOP853 takes twelve rates; one that began anew would take two more.
+    let cost = instance.statistics();
+    assert!(cost.steps < 1010 && cost.rate_evaluations < 13 * cost.steps + 100, "{cost:?}");
 }
 
 #[test]
@@ -182,6 +185,9 @@ fn an_input_holds_from_one_step_to_the_next() {
     }
     let (x, wanted) = (get(&mut shaker, &SHAKER, Kind::State(0)), state.unwrap().states[0].1);
     assert!(wanted.abs() > 1e-3 && (x - wanted).abs() < 1e-8, "{x} {wanted}");
+    // The rate at the start of a step is that of the new force: with that of the old one steps would be rejected.
+    let cost = shaker.statistics();
+    assert!(cost.rejected <= 10 && cost.steps < 200, "{cost:?}");
 }
 
 #[test]

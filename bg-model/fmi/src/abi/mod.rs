@@ -11,6 +11,8 @@ mod absent;
 mod exchange;
 mod lifecycle;
 mod saved;
+#[cfg(test)]
+mod tests;
 mod values;
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};

@@ -8,6 +8,7 @@ use bg_model::mechanism::ModelVisitor;
 use bg_model::nalgebra::SVector;
 use bg_model::run::Request;
 use bg_model::simulation::{Ongoing, Settings};
+use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 
 use super::Fault;
@@ -39,6 +40,8 @@ pub(crate) trait Machine {
     fn disturb(&mut self);
     /// The size that the next step of the run is to have, s, where that is known.
     fn next_step(&self) -> Option<f64>;
+    /// What the run has cost, where there is one.
+    fn statistics(&self) -> Option<Statistics>;
     /// Stands at another place; the next step of the run is tried with `step` (s).
     fn place(&mut self, t: f64, x: &[f64], negative: &[bool], step: Option<f64>);
     /// Another one at the same place, whose run goes on with the same steps.
@@ -172,6 +175,10 @@ where
 
     fn next_step(&self) -> Option<f64> {
         self.run.as_ref().and_then(|run| run.ongoing.next_step())
+    }
+
+    fn statistics(&self) -> Option<Statistics> {
+        self.run.as_ref().map(|run| *run.ongoing.statistics())
     }
 
     fn place(&mut self, t: f64, x: &[f64], negative: &[bool], step: Option<f64>) {

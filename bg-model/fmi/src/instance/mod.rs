@@ -12,6 +12,7 @@ mod slopes;
 
 use bg_model::description::Description;
 use bg_model::run::Request;
+use bg_model::statistics::Statistics;
 
 use crate::exported::{Exported, Made};
 use crate::variables::{Counts, Kind, names};
@@ -280,6 +281,12 @@ impl Instance {
             return Err(Fault::CommunicationPoint { asked: t, present });
         }
         if t + h > present { machine.advance(t + h, rtol) } else { Ok(()) }
+    }
+
+    /// What the steps of Co-Simulation have cost; nothing before the first one, or in Model Exchange.
+    #[must_use]
+    pub fn statistics(&self) -> Statistics {
+        self.made.as_ref().and_then(|made| made.machine.statistics()).unwrap_or_default()
     }
 
     /// Time, s.

@@ -16,7 +16,7 @@ const WAIT: u64 = 64;
 const ESTIMATE: f64 = 4.0;
 
 /// Looks at the rounding now and then.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct RoundingWatch {
     /// Whether rounding was above the tolerances at the last look.
     is_above: bool,

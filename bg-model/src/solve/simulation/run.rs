@@ -41,7 +41,7 @@ pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
     /// Of impacts on stops, where there are any.
     collision: Option<Collision<f64>>,
     /// Of the error estimates, where the tolerances may be below it.
-    rounding: Option<RoundingWatch>,
+    pub rounding: Option<RoundingWatch>,
 }
 
 /// What is watched in a step and is not finite at its end.
