@@ -15,6 +15,7 @@ use crate::{pipeline, program};
 
 mod dependent;
 mod networks;
+mod speeds;
 
 /// A scene's equations after the reductions beside those of its own literal graph.
 pub(super) struct Scene {

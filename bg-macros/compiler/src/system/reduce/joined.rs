@@ -8,9 +8,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::report::Fate;
-use super::super::{angle, friction};
-use super::of_kind;
+use super::report::Fate;
+use super::speeds::of_kind;
+use super::{angle, friction};
 use crate::expr::{Circles, Id, Pool, Symbol, derivative, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, Origin, StateEquations};
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::system::reduce::tests::{Scene, scene};
+use super::{Scene, scene};
 
 /// A chain of rods on pins from the ground, the first of them driven.
 fn chain(rods: usize, first: &str) -> String {

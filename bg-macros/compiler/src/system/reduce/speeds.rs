@@ -3,24 +3,19 @@
 //! In: equations with the reactions of rigid joints. Out: the same in fewer unknowns: the momenta and positions that joints determine
 //! are expressions of the others, and the reactions of these joints occur in no rate.
 //! Method: a row that a joint holds, J v = 0, is solved for a momentum with a pivot that is constant along every motion
-//! (`choice`). What is left of the momenta obeys the equations projected on the motions that these rows allow (`projected`). Rows
+//! (`joined`). What is left of the momenta obeys the equations projected on the motions that these rows allow (`projected`). Rows
 //! without such a pivot, as those that close a loop, keep their reactions.
 //! The step is taken back as a whole where something does not fit it: velocities at the start that the rows do not allow for all
 //! parameters, as many rows left as momenta; or where rates would take more operations, as those of a long chain do, whose matrix is
 //! full where that of the reactions is a band.
 
-mod choice;
-mod inverse;
-mod projected;
-#[cfg(test)]
-mod tests;
-
 use std::collections::BTreeSet;
 
+use super::joined::Choice;
+use super::projected;
 use super::report::Report;
 use crate::expr::{Id, Symbol, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, StateEquations};
-use choice::Choice;
 
 /// Takes momenta out of the equations that rigid joints determine, where rates take fewer operations then.
 pub(super) fn choose(equations: &mut StateEquations, report: &mut Report) {
@@ -118,6 +113,6 @@ fn write_by_momenta(equations: &mut StateEquations, choice: &Choice) {
 }
 
 /// The states of one kind.
-fn of_kind(equations: &StateEquations, kind: Kind) -> impl Iterator<Item = usize> + '_ {
+pub(super) fn of_kind(equations: &StateEquations, kind: Kind) -> impl Iterator<Item = usize> + '_ {
     (0..equations.states.len()).filter(move |&state| equations.states[state].origin.kind() == kind)
 }

@@ -9,9 +9,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::choice::Choice;
 use super::inverse::Inverse;
-use super::of_kind;
+use super::joined::Choice;
+use super::speeds::of_kind;
 use crate::expr::{Id, Linear, Pool, Symbol, derivative, partial, solve_linear, substitute};
 use crate::system::equations::{Kind, StateEquations};
 
