@@ -18,6 +18,10 @@ const MOST_COLUMNS: usize = 10;
 const NAMES: i32 = 130;
 /// Height of the outputs' names, CSS pixels.
 const HEAD: i32 = 22;
+/// Height of the line below the bars, CSS pixels.
+const FOOT: i32 = 22;
+/// What a bar's length means.
+const SCALE: &str = "length of a bar: logarithmic, from 0.001 to 10";
 /// The decades that bars span: an influence of 10 fills a cell, one of 1e-3 is none.
 const LONGEST: f64 = 1.0;
 const SHORTEST: f64 = -3.0;
@@ -51,7 +55,7 @@ pub fn influence(heading: &str, influences: &[Influence]) -> Result<String, Figu
     figure(heading, |area| {
         let content = Rectangle::CONTENT;
         let width = (content.width - NAMES) / columns.len() as i32;
-        let height = ((content.height - HEAD) / rows.len() as i32).min(34);
+        let height = ((content.height - HEAD - FOOT) / rows.len() as i32).min(34);
         for (column, name) in columns.iter().enumerate() {
             let x = content.x + NAMES + column as i32 * width;
             write(area, &literally(&shortened(name, width)), (x + 4, content.y), &text(12, INK.light, HPos::Left))?;
@@ -66,7 +70,8 @@ pub fn influence(heading: &str, influences: &[Influence]) -> Result<String, Figu
                 cell(area, Rectangle { x, y, width, height }, relative)?;
             }
         }
-        Ok(())
+        let below = content.y + HEAD + rows.len() as i32 * height + 6;
+        write(area, SCALE, (content.x + NAMES + 4, below), &text(11, PENCIL.light, HPos::Left))
     })
 }
 
@@ -122,7 +127,7 @@ mod tests {
             .unwrap();
         let place = |name: &str| svg.find(name);
         assert!(place("strong") < place("weak") && place("still").is_none(), "{svg}");
-        assert!(svg.contains("1.000") && svg.contains("5e-4"), "{svg}");
+        assert!(svg.contains("1.000") && svg.contains("5e-4") && svg.contains(SCALE), "{svg}");
         assert!(matches!(influence("", &[of("force", "still", 0.0)]), Err(FigureError::Empty)));
     }
 }
