@@ -1,18 +1,15 @@
 //! What a user of any mechanism's program sees: files, lines, faults, exit codes. The program is the example `pendulum`.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
-/// The example's program, which cargo builds with the tests.
-fn program() -> PathBuf {
-    let test = std::env::current_exe().expect("the test has a path");
-    let folder = test.parent().and_then(Path::parent).expect("in `deps` of the target's folder");
-    folder.join("examples").join(format!("pendulum{}", std::env::consts::EXE_SUFFIX))
-}
+use example::program;
+
+mod example;
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(program()).current_dir(directory).args(arguments).output().expect("the example was built")
+    program("pendulum").current_dir(directory).args(arguments).output().expect("the example was built")
 }
 
 fn text(directory: &Path, arguments: &[&str]) -> String {

@@ -1,10 +1,12 @@
 //! The gallery: every example runs, does what its head comment tells the reader to try, and stands in the README's table.
-//!
-//! Cargo builds the examples with `cargo test -p bg-workbench`; a run with `--test gallery` alone takes those built before.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
+
+use example::program;
+
+mod example;
 
 /// The names of the examples, sorted.
 fn examples() -> Vec<String> {
@@ -16,18 +18,9 @@ fn examples() -> Vec<String> {
     names
 }
 
-/// The built program of an example. Tests are in `deps`, examples in `examples` beside it.
-fn program(example: &str) -> PathBuf {
-    let test = std::env::current_exe().expect("this test is a file");
-    let target = test.parent().and_then(Path::parent).expect("the test is in a folder of the target folder");
-    let program = target.join("examples").join(format!("{example}{}", std::env::consts::EXE_SUFFIX));
-    assert!(program.exists(), "{} is not built; run `cargo test -p bg-workbench`", program.display());
-    program
-}
-
 /// What the example does with these arguments.
 fn run(example: &str, arguments: &[&str]) -> Output {
-    Command::new(program(example)).args(arguments).output().expect("the program starts")
+    program(example).args(arguments).output().expect("the program starts")
 }
 
 /// The rows of a CSV file, its head first.

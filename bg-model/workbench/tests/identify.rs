@@ -3,18 +3,15 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
-/// The example's program, which cargo builds with the tests.
-fn program() -> PathBuf {
-    let test = std::env::current_exe().expect("the test has a path");
-    let folder = test.parent().and_then(Path::parent).expect("in `deps` of the target's folder");
-    folder.join("examples").join(format!("mass_spring_damper{}", std::env::consts::EXE_SUFFIX))
-}
+use example::program;
+
+mod example;
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(program()).current_dir(directory).args(arguments).output().expect("the example was built")
+    program("mass_spring_damper").current_dir(directory).args(arguments).output().expect("the example was built")
 }
 
 fn text(directory: &Path, arguments: &[&str]) -> String {

@@ -7,6 +7,7 @@ use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
 use bg_workbench::{Program, live};
+use example::program;
 use serde_json::{Value, json};
 
 #[path = "page/browser.rs"]
@@ -14,6 +15,8 @@ mod browser;
 #[path = "../examples/pendulum.rs"]
 #[allow(dead_code, unused_attributes)]
 mod pendulum;
+
+mod example;
 
 use pendulum::Pendulum;
 
@@ -35,19 +38,12 @@ fn parsed(answer: &str) -> Value {
     serde_json::from_str(answer).expect("an answer is JSON")
 }
 
-/// The example that cargo builds with the tests.
-fn program() -> PathBuf {
-    let test = std::env::current_exe().expect("the test has a path");
-    let folder = test.parent().and_then(Path::parent).expect("in `deps` of the target's folder");
-    folder.join("examples").join(format!("pendulum{}", std::env::consts::EXE_SUFFIX))
-}
-
 /// The live report of the pendulum over 2 s, made once; `None`, and a line that says why, where the target is not installed.
 fn page() -> Option<&'static Path> {
     static PAGE: OnceLock<Option<PathBuf>> = OnceLock::new();
     let page = PAGE.get_or_init(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("live");
-        let output = Command::new(program())
+        let output = program("pendulum")
             .args(["report", "--live", "--t-end", "2", "--out"])
             .arg(folder.join("out"))
             .env("CARGO_TARGET_DIR", folder.join("target"))
@@ -99,7 +95,7 @@ fn a_model_that_cannot_be_had_is_one_line() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("no.wasm"), "text").unwrap();
     let refused = |argument: &str, rustc: &str| {
-        let mut run = Command::new(program());
+        let mut run = program("pendulum");
         run.current_dir(folder.path()).args(["report", argument, "--t-end", "0.1"]).env("RUSTC", rustc);
         let output = run.output().expect("the example was built");
         let told = String::from_utf8(output.stderr).unwrap();

@@ -7,11 +7,14 @@
 #[path = "../../../bg-macros/picture/tests/support/mod.rs"]
 mod support;
 
+mod example;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use bg_picture::{Graph, Level};
+use example::program;
 use support::{Picture, faults, faults_in_words};
 
 /// The names of the examples, sorted.
@@ -24,10 +27,7 @@ fn examples() -> Vec<String> {
 }
 
 fn run(example: &str, arguments: &[&str]) -> Output {
-    let test = std::env::current_exe().expect("this test is a file");
-    let target = test.parent().and_then(Path::parent).expect("the test is in a folder of the target folder");
-    let program: PathBuf = target.join("examples").join(format!("{example}{}", std::env::consts::EXE_SUFFIX));
-    Command::new(program).args(arguments).output().expect("the example is built")
+    program(example).args(arguments).output().expect("the example is built")
 }
 
 fn printed(example: &str, arguments: &[&str]) -> String {

@@ -1,23 +1,19 @@
 //! What a user sees of the command `report`. The programs are the examples `pendulum` and `rlc_circuit`.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
+use example::program;
 use serde_json::Value;
+
+mod example;
 
 #[path = "page/browser.rs"]
 mod browser;
 
-/// A program that cargo builds with the tests.
-fn program(example: &str) -> PathBuf {
-    let test = std::env::current_exe().expect("the test has a path");
-    let folder = test.parent().and_then(Path::parent).expect("in `deps` of the target's folder");
-    folder.join("examples").join(format!("{example}{}", std::env::consts::EXE_SUFFIX))
-}
-
 fn run(example: &str, directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(program(example)).current_dir(directory).args(arguments).output().expect("the example was built")
+    program(example).current_dir(directory).args(arguments).output().expect("the example was built")
 }
 
 fn text(example: &str, directory: &Path, arguments: &[&str]) -> String {

@@ -4,21 +4,17 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
 use bg_workbench::sweep::parquet::{Table, Values};
+use example::program;
 
-/// The example's program, which cargo builds with the tests.
-fn program() -> Command {
-    let test = std::env::current_exe().expect("the test has a path");
-    let folder = test.parent().and_then(Path::parent).expect("in `deps` of the target's folder");
-    Command::new(folder.join("examples").join(format!("pendulum{}", std::env::consts::EXE_SUFFIX)))
-}
+mod example;
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
-    program().current_dir(directory).args(arguments).output().expect("the example was built")
+    program("pendulum").current_dir(directory).args(arguments).output().expect("the example was built")
 }
 
 fn text(directory: &Path, arguments: &[&str]) -> String {
@@ -126,7 +122,7 @@ fn a_sweep_that_is_killed_at_any_instant_goes_on_to_the_same_bytes() {
     let whole = files(&path.join("whole"));
     assert_eq!(whole.len(), 1 + 2 * 43);
     let start = |arguments: &[&str]| -> Child {
-        let mut command = program();
+        let mut command = program("pendulum");
         command.current_dir(path).args(arguments).stdout(Stdio::null()).stderr(Stdio::null());
         command.spawn().expect("the example was built")
     };
