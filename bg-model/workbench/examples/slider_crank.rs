@@ -96,6 +96,7 @@ bond_graph! {
                 supplied: J = integral(supplied_power);
             }
             tune { torque, crank_angle, crank_length, rod_length }
+            independent speeds;
             expect planar;
             expect states = 6;
         }

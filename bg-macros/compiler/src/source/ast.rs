@@ -422,6 +422,8 @@ pub struct Scene {
     pub rigid: Rigid,
     /// `angles;`: orientations that turn about one axis only are integrated as angles.
     pub angles: bool,
+    /// `independent speeds;`: what rigid joints determine of bodies is no state.
+    pub speeds: bool,
     /// `expect planar;`, `expect states = 29;`, `expect integral causality;`
     pub expect: Vec<Expectation>,
 }

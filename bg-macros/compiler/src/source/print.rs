@@ -342,6 +342,7 @@ impl Display for Scene {
             Rigid::All(_) => entries.push("rigid joints;".into()),
             Rigid::Some(names) => entries.push(format!("rigid {}", list(names, ", "))),
         }
+        entries.extend(self.speeds.then(|| "independent speeds;".into()));
         entries.extend(self.angles.then(|| "angles;".into()));
         entries.extend(self.expect.iter().map(Expectation::to_string));
         write!(f, "scene {} ", self.name)?;

@@ -12,8 +12,11 @@ use super::{
 use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene, Tune, Watch};
 
 /// The block of a scene.
-const SCENE: Place =
-    Place { name: "a scene", words: &["observe", "tune", "without", "rigid", "angles", "expect"], list: false };
+const SCENE: Place = Place {
+    name: "a scene",
+    words: &["observe", "tune", "without", "rigid", "independent", "angles", "expect"],
+    list: false,
+};
 
 /// `observe { ... }`
 const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
@@ -70,6 +73,7 @@ impl Cursor<'_> {
             without: Vec::new(),
             rigid: Rigid::None,
             angles: false,
+            speeds: false,
             expect: Vec::new(),
         };
         let block = self.group(Delimiter::Brace, "`{ ... }`", &SCENE);
@@ -116,6 +120,13 @@ impl Cursor<'_> {
                 self.advance();
                 self.end_statement("");
                 scene.angles = true;
+            }
+            Some("independent") => {
+                self.fill(&mut filled.speeds, (), "independent speeds", span);
+                self.advance();
+                self.expect_word("speeds")?;
+                self.end_statement("");
+                scene.speeds = true;
             }
             Some("expect") => {
                 let expectation = self.expectation()?;
@@ -198,6 +209,7 @@ struct Filled {
     tune: Option<()>,
     rigid: Option<()>,
     angles: Option<()>,
+    speeds: Option<()>,
 }
 
 /// `NAME: UNIT = E`, `NAME = E` or `E`

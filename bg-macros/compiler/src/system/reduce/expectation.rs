@@ -65,7 +65,7 @@ fn list(states: &[String]) -> String {
 /// # Errors
 /// Names to tune that are no parameters.
 pub fn wanted(scene: &Scene, parameters: &[Parameter]) -> Staged<Wanted> {
-    Ok(Wanted { tuned: tuned(scene, parameters)?, angles: scene.angles })
+    Ok(Wanted { tuned: tuned(scene, parameters)?, angles: scene.angles, speeds: scene.speeds })
 }
 
 /// For each parameter whether the scene tunes it.

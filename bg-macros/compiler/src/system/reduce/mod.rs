@@ -32,6 +32,8 @@ pub struct Wanted {
     pub tuned: Vec<bool>,
     /// Whether orientations that turn about one axis are to be integrated as angles.
     pub angles: bool,
+    /// Whether what rigid joints determine of bodies is to be expressed by the other states.
+    pub speeds: bool,
 }
 
 /// One reduction.
@@ -54,7 +56,7 @@ const PASSES: [Pass; 8] = [
     Pass { name: "equal states merged", applies: always, run: |equations, _, report| equal::merge(equations, report) },
     Pass {
         name: "states of joints expressed",
-        applies: |equations, _| !equations.reactions.is_empty() && equations.baumgarte.is_none(),
+        applies: |equations, wanted| wanted.speeds && !equations.reactions.is_empty() && equations.baumgarte.is_none(),
         run: |equations, _, report| speeds::choose(equations, report),
     },
     Pass {

@@ -49,13 +49,13 @@ fn fits_the_literal_model(scene: &Scene) {
 #[test]
 fn rods_on_pins_are_left_with_an_angle_and_a_momentum_each() {
     for (rods, expected) in [(1, 6), (2, 35)] {
-        let scene = scene(&chain(rods, ""), "tune {}");
+        let scene = scene(&chain(rods, ""), "independent speeds; tune {}");
         assert_eq!(scene.left().len(), 3 * rods, "{}", scene.report);
         assert_eq!(operations(&scene), expected, "{}", scene.report);
         assert!(scene.reduced.holding.rigid.is_empty());
         fits_the_literal_model(&scene);
     }
-    let scene = scene(&chain(2, ""), "tune {}");
+    let scene = scene(&chain(2, ""), "independent speeds; tune {}");
     let names = ["b1.linear.p_x", "b1.position_y", "b1.angular.p_z"];
     assert_eq!(scene.words(&names), ["joined j1", "joined j1", "integrated"]);
 }
@@ -63,7 +63,7 @@ fn rods_on_pins_are_left_with_an_angle_and_a_momentum_each() {
 /// The full matrix of a long chain takes more operations than the band of its reactions.
 #[test]
 fn a_long_chain_keeps_its_reactions() {
-    let scene = scene(&chain(10, ""), "tune {}");
+    let scene = scene(&chain(10, ""), "independent speeds; tune {}");
     assert_eq!((scene.left().len(), scene.reduced.holding.rigid.len()), (70, 20));
 }
 
@@ -71,7 +71,7 @@ fn a_long_chain_keeps_its_reactions() {
 #[test]
 fn a_start_that_may_not_fit_keeps_its_reactions() {
     for (start, states) in [("start spin [0, 0, 2];", 7), ("start spin [0, 0, 2]; start velocity [1, 0, 0];", 3)] {
-        let scene = scene(&chain(1, start), "tune {}");
+        let scene = scene(&chain(1, start), "independent speeds; tune {}");
         assert_eq!(scene.left().len(), states, "{start} {}", scene.report);
         fits_the_literal_model(&scene);
     }
@@ -81,7 +81,7 @@ fn a_start_that_may_not_fit_keeps_its_reactions() {
 #[test]
 fn what_may_not_move_keeps_its_reactions() {
     let graph = format!("{} joint back: revolute z (ground.O -> b0.low) {{ rigid; }}", chain(1, ""));
-    let scene = scene(&graph, "tune {}");
+    let scene = scene(&graph, "independent speeds; tune {}");
     assert_eq!(scene.reduced.holding.rigid.len(), 4, "{}", scene.report);
 }
 
@@ -94,7 +94,7 @@ fn a_slide_between_moving_bodies_leaves_one_reaction() {
     let shaper =
         shaper.replace("start Q at [0, -1, 0]; start turned rotation_z(guess(1.3));", "start Q at [-0.9, 0, 0];");
     let shaper = shaper.replace("point Q = [0, -1, 0];", "point Q = [-0.9, 0, 0];");
-    let scene = scene(&shaper, "tune { torque }");
+    let scene = scene(&shaper, "independent speeds; tune { torque }");
     assert_eq!(scene.left().len(), 7, "{}", scene.report);
     assert_eq!(scene.words(&["block.orientation_11", "block.angular.p_z"]), ["joined slot", "joined slot"]);
     assert_eq!(scene.reduced.holding.rigid.len(), 1, "{}", scene.report);
@@ -111,7 +111,7 @@ fn a_slide_between_moving_bodies_leaves_one_reaction() {
 #[test]
 fn orientations_that_start_apart_stay() {
     for (force, rows) in [("", 2), ("f: N = o.force;", 8)] {
-        let scene = scene(&SHAPER.replace("FORCE", force), "tune { torque }");
+        let scene = scene(&SHAPER.replace("FORCE", force), "independent speeds; tune { torque }");
         assert!(scene.words(&["block.orientation_11"]) == ["integrated"], "{}", scene.report);
         assert_eq!(scene.reduced.holding.rigid.len(), rows, "{}", scene.report);
     }
