@@ -97,8 +97,8 @@ mod tests {
     #[test]
     fn numbers_are_short_and_small_residues_are_nothing() {
         assert_eq!(
-            ["0.3", "-1.5708", "1e-5", "2", "0"].map(str::to_owned),
-            [0.1 + 0.2, -1.5708, 1e-5, 2.0, 0.0].map(number)
+            ["0.3", "-1.2345", "1e-5", "2", "0"].map(str::to_owned),
+            [0.1 + 0.2, -1.2345, 1e-5, 2.0, 0.0].map(number)
         );
         assert_eq!(vector(&Vector3::new(1.0, 6e-17, -0.5), 0.0), "[1, 0, -0.5]");
     }
