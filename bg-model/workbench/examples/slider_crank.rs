@@ -96,9 +96,8 @@ bond_graph! {
                 supplied: J = integral(supplied_power);
             }
             tune { torque, crank_angle, crank_length, rod_length }
-            independent speeds;
             expect planar;
-            expect states = 6;
+            expect states = 18;
         }
     }
 }
