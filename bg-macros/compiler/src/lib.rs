@@ -10,20 +10,20 @@
 //! | [`program`] | -> [`program::Programs`] | order left open: flat single assignment |
 //! | [`emit`] | [`pipeline::Compiled`] -> tokens | |
 //!
-//! Beside them stand [`expr`], the kernel of expressions, which knows nothing of bond graphs, and [`fault`].
+//! Under them are [`expr`], the expressions of package `bg-expressions`, which know nothing of bond graphs, and [`fault`].
 //! [`stages::stages`] gives every stage's result as text.
 
 pub mod emit;
-pub mod expr;
 pub mod fault;
 pub mod graph;
 pub mod pipeline;
 pub mod program;
-mod random;
 pub mod source;
 pub mod stages;
 pub mod system;
 
+pub use bg_expressions::expr;
+use bg_expressions::random;
 use proc_macro2::TokenStream;
 
 use crate::fault::compile_errors;

@@ -16,7 +16,7 @@ const READERS: [&str; 2] = ["emit", "stages"];
 /// The rooms whose arrows are counted, with the rooms in them.
 const STAGES: [&str; 5] = ["source", "graph", "system", "program", "emit"];
 /// The most arrows between them. What another room needs stands at the door: the room's `mod.rs`.
-const MOST_ARROWS: usize = 39;
+const MOST_ARROWS: usize = 34;
 
 fn floor(room: &str) -> usize {
     if READERS.contains(&room) {

@@ -7,17 +7,17 @@ use std::path::Path;
 use std::process::Output;
 
 use example::program;
+use outcome::text_of;
 
 mod example;
+mod outcome;
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
     program("mass_spring_damper").current_dir(directory).args(arguments).output().expect("the example was built")
 }
 
 fn text(directory: &Path, arguments: &[&str]) -> String {
-    let output = run(directory, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("text")
+    text_of(run(directory, arguments), arguments)
 }
 
 fn refused(directory: &Path, arguments: &[&str]) -> String {

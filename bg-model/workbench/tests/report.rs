@@ -5,9 +5,11 @@ use std::path::Path;
 use std::process::Output;
 
 use example::program;
+use outcome::text_of;
 use serde_json::Value;
 
 mod example;
+mod outcome;
 
 #[path = "page/browser.rs"]
 mod browser;
@@ -17,9 +19,7 @@ fn run(example: &str, directory: &Path, arguments: &[&str]) -> Output {
 }
 
 fn text(example: &str, directory: &Path, arguments: &[&str]) -> String {
-    let output = run(example, directory, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("text")
+    text_of(run(example, directory, arguments), arguments)
 }
 
 /// The names of the files in a folder, sorted.

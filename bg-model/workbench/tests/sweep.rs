@@ -10,17 +10,17 @@ use std::time::Duration;
 
 use bg_workbench::sweep::parquet::{Table, Values};
 use example::program;
+use outcome::text_of;
 
 mod example;
+mod outcome;
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
     program("pendulum").current_dir(directory).args(arguments).output().expect("the example was built")
 }
 
 fn text(directory: &Path, arguments: &[&str]) -> String {
-    let output = run(directory, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("text")
+    text_of(run(directory, arguments), arguments)
 }
 
 /// A folder with `plan` as plan.toml.

@@ -76,7 +76,7 @@ impl Value {
             (_, 1) => Self(self.0.iter().map(|&a| pool.mul(a, other.0[0])).collect()),
             (9, columns) => {
                 let width = columns / 3;
-                Self((0..columns).map(|k| pool.row_times_column(self, k / width, other, k % width, width)).collect())
+                Self((0..columns).map(|k| row_times_column(pool, self, k / width, other, k % width, width)).collect())
             }
             _ => self.clone(),
         }
@@ -160,10 +160,8 @@ impl Value {
     }
 }
 
-impl Pool {
-    /// Row `row` of `a` times column `column` of `b`, which has `width` columns.
-    fn row_times_column(&mut self, a: &Value, row: usize, b: &Value, column: usize, width: usize) -> Id {
-        let products: Vec<Id> = (0..3).map(|k| self.mul(a.0[3 * row + k], b.0[width * k + column])).collect();
-        self.sum(&products)
-    }
+/// Row `row` of `a` times column `column` of `b`, which has `width` columns.
+fn row_times_column(pool: &mut Pool, a: &Value, row: usize, b: &Value, column: usize, width: usize) -> Id {
+    let products: Vec<Id> = (0..3).map(|k| pool.mul(a.0[3 * row + k], b.0[width * k + column])).collect();
+    pool.sum(&products)
 }

@@ -126,14 +126,7 @@ impl<S: Scalar> Scalar for Dual<S> {
 mod tests {
     use super::*;
     use crate::model::scalar::DoubleDouble;
-
-    /// A function of two numbers that takes every operation.
-    fn everything<S: Scalar>(x: S, y: S) -> S {
-        let number = S::from_f64;
-        let trigonometry = x.sin() * y.cos() + (x * y).tan() - (x * number(0.5)).asin() / (y * number(0.25)).acos();
-        let growth = (x * y).exp() + (x + y).ln() * y.tanh() - x.powf(y) * x.powf(number(1.5)) + (-x).abs();
-        trigonometry + growth * x.atan2(y) + (x / y).sqrt()
-    }
+    use crate::model::scalar::tests::everything;
 
     #[test]
     fn slopes_are_difference_quotients() {

@@ -129,3 +129,16 @@ impl Scalar for f64 {
         libm::pow(self, exponent)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Scalar;
+
+    /// A function of two numbers that takes every operation.
+    pub fn everything<S: Scalar>(x: S, y: S) -> S {
+        let number = S::from_f64;
+        let trigonometry = x.sin() * y.cos() + (x * y).tan() - (x * number(0.5)).asin() / (y * number(0.25)).acos();
+        let growth = (x * y).exp() + (x + y).ln() * y.tanh() - x.powf(y) * x.powf(number(1.5)) + (-x).abs();
+        trigonometry + growth * x.atan2(y) + (x / y).sqrt()
+    }
+}

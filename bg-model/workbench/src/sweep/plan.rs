@@ -234,10 +234,7 @@ impl<'a, P: Parameters> Plan<'a, P> {
         folder: &Path,
         text: String,
     ) -> Result<Self, PlanError> {
-        let file: File = toml::from_str(&text).map_err(|fault| {
-            let [line, column] = place_of(&fault, &text);
-            PlanError::Toml { plan: plan.to_owned(), line, column, message: one_line(fault.message()) }
-        })?;
+        let file = entries(plan, &text)?;
         let other = |fault: String| PlanError::Other { plan: plan.to_owned(), fault };
         let scene = program.find_scene(file.scene.as_deref()).map_err(other)?;
         let mut chosen =
@@ -269,6 +266,14 @@ impl<'a, P: Parameters> Plan<'a, P> {
         };
         Ok(Self { text, scene, integration, request, begin, chosen, settings, design, wanted, shard })
     }
+}
+
+/// The entries of a plan. For all mechanisms the same, so it is compiled once.
+fn entries(plan: &str, text: &str) -> Result<File, PlanError> {
+    toml::from_str(text).map_err(|fault| {
+        let [line, column] = place_of(&fault, text);
+        PlanError::Toml { plan: plan.to_owned(), line, column, message: one_line(fault.message()) }
+    })
 }
 
 fn inputs(

@@ -7,7 +7,7 @@
 use super::choose::Choice;
 use super::nodes::{Kind, Nodes, Signed};
 use super::parity::Parity;
-use crate::program::Operand;
+use crate::schedule::Operand;
 
 /// The unknowns in the sign of a term as it is held: that of the sum, that of the operand; and its own sign.
 fn term(node: usize, operand: Signed) -> (Vec<usize>, bool) {

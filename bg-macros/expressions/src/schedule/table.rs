@@ -1,70 +1,23 @@
-//! Hash tables that hash the same way in every run, and stores in which equal items are stored once.
+//! Stores in which equal items are stored once.
 //!
-//! In: keys of small integers. Out: lookups; nothing ever iterates over such a table.
-//! Method: one multiplication and rotation per word, as in the Firefox hash of rustc (crate rustc-hash 1.1, `FxHasher`).
+//! In: items. Out: their indices.
 
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hash, Hasher};
+use std::hash::Hash;
 use std::ops::{Index, IndexMut};
 
-/// A hash table without a random seed.
-pub(crate) type Table<K, V> = HashMap<K, V, BuildHasherDefault<Mixer>>;
-
-/// The state of one hash.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Mixer(u64);
-
-/// 2^64 over pi, the multiplier of `FxHasher`.
-const MULTIPLIER: u64 = 0x517c_c1b7_2722_0a95;
-
-impl Hasher for Mixer {
-    fn finish(&self) -> u64 {
-        // The table takes its bucket from the low bits, the multiplication mixes best into the high ones.
-        self.0.rotate_left(26)
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.write_u64(u64::from(byte));
-        }
-    }
-
-    fn write_u8(&mut self, word: u8) {
-        self.write_u64(u64::from(word));
-    }
-
-    fn write_u32(&mut self, word: u32) {
-        self.write_u64(u64::from(word));
-    }
-
-    fn write_i32(&mut self, word: i32) {
-        self.write_u64(u64::from(word.cast_unsigned()));
-    }
-
-    fn write_u64(&mut self, word: u64) {
-        self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(MULTIPLIER);
-    }
-
-    fn write_usize(&mut self, word: usize) {
-        self.write_u64(word as u64);
-    }
-
-    fn write_isize(&mut self, word: isize) {
-        self.write_u64(word.cast_unsigned() as u64);
-    }
-}
+use rustc_hash::FxHashMap;
 
 /// Items by index; hash-consing (Ershov 1958) stores equal items once.
 #[derive(Debug)]
 pub(super) struct Store<T> {
     /// The items.
     pub(super) items: Vec<T>,
-    index: Table<T, u32>,
+    index: FxHashMap<T, u32>,
 }
 
 impl<T> Default for Store<T> {
     fn default() -> Self {
-        Self { items: Vec::new(), index: Table::default() }
+        Self { items: Vec::new(), index: FxHashMap::default() }
     }
 }
 

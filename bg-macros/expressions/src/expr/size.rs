@@ -4,7 +4,7 @@
 //! leaves of parts that cancel.
 //! Method: running error analysis (Higham 2002, Accuracy and Stability of Numerical Algorithms, sec. 3.3).
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::{Id, Node, Pool, Symbol, apply};
 
@@ -48,7 +48,7 @@ impl Sized {
 /// The values of nodes, where symbols have these values and switches these branches.
 #[must_use]
 pub fn sized(pool: &Pool, roots: &[Id], of: &dyn Fn(Symbol) -> f64, is_negative: &dyn Fn(u32) -> bool) -> Vec<Sized> {
-    let mut known: HashMap<Id, Sized> = HashMap::new();
+    let mut known: FxHashMap<Id, Sized> = FxHashMap::default();
     for id in pool.reachable(roots) {
         let sized = match pool.node(id) {
             Node::Number(number) => Sized::exact(number.value()),

@@ -7,7 +7,9 @@
 //! from, and counts as zero where it is rounding beside that (running error analysis, Higham 2002, Accuracy and
 //! Stability of Numerical Algorithms, sec. 3.3).
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
 
 use super::{Function, Id, Node, Number, Pool, children};
 
@@ -61,22 +63,22 @@ pub fn monomials(pool: &mut Pool, of: Id) -> Option<Monomials> {
 struct Expansion<'p> {
     pool: &'p mut Pool,
     /// The polynomials of the nodes that are still needed.
-    known: HashMap<Id, Polynomial>,
+    known: FxHashMap<Id, Polynomial>,
     /// How often each node is still needed.
-    parents: HashMap<Id, usize>,
+    parents: FxHashMap<Id, usize>,
     /// The polynomials of the denominators and of the arguments of calls and switched values.
-    atoms: HashMap<Id, Polynomial>,
+    atoms: FxHashMap<Id, Polynomial>,
     work: usize,
 }
 
 impl<'p> Expansion<'p> {
     fn new(pool: &'p mut Pool, roots: &[Id]) -> Self {
-        let mut parents = HashMap::new();
+        let mut parents = FxHashMap::default();
         let nodes = pool.reachable(roots);
         for id in nodes.iter().flat_map(|id| children(pool.node(*id))).chain(roots.iter().copied()) {
             *parents.entry(id).or_default() += 1;
         }
-        Self { pool, known: HashMap::new(), parents, atoms: HashMap::new(), work: 0 }
+        Self { pool, known: FxHashMap::default(), parents, atoms: FxHashMap::default(), work: 0 }
     }
 
     /// Whether `a - b` is zero.

@@ -3,8 +3,8 @@
 use super::{Half, Paired, Step, Value, pair, paired};
 use crate::expr::random::Source;
 use crate::expr::{Environment, Function, Id, Pool, Symbol};
-use crate::program::tests::{apply_operation, run, value};
-use crate::program::{Program, Request, schedule};
+use crate::schedule::tests::{apply_operation, run, value};
+use crate::schedule::{Program, Request, schedule};
 
 /// The results of paired code, by an interpreter.
 fn results(of: &Paired, constants: &[f64], environment: &Environment) -> Vec<f64> {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::choose::{Choice, Pair};
 use super::nodes::{Kind, Nodes, Place, Signed};
 use super::{Half, Paired, Step, Value};
-use crate::program::{Assignment, Operand, Operation, Routine};
+use crate::schedule::{Assignment, Operand, Operation, Routine};
 
 /// The routine in steps.
 pub(super) fn lower(routine: &Routine, nodes: &Nodes, choice: &Choice, negative: &[bool]) -> Paired {

@@ -7,10 +7,11 @@
 
 use std::collections::BTreeMap;
 
+use rustc_hash::FxHashMap;
+
 use super::graph::{Graph, Value};
 use super::rebuild::{Origins, pair_counts};
 use super::statics::Statics;
-use super::table::Table;
 use crate::expr::Id;
 
 /// When common factors come out of sums.
@@ -36,7 +37,7 @@ enum Literal {
 #[derive(Debug)]
 pub(super) struct Sharing {
     grouping: Grouping,
-    pairs: Table<(u32, u32), u32>,
+    pairs: FxHashMap<(u32, u32), u32>,
     origins: Origins,
     uses: Vec<u32>,
 }
@@ -60,7 +61,7 @@ const LEAST_SAVING: f64 = 1e-6;
 impl Sharing {
     /// The sharing in this graph.
     pub(super) fn new(grouping: Grouping, graph: &Graph, order: &[u32]) -> Self {
-        let pairs = if grouping == Grouping::Shared { pair_counts(graph, order) } else { Table::default() };
+        let pairs = if grouping == Grouping::Shared { pair_counts(graph, order) } else { FxHashMap::default() };
         Self { grouping, pairs, origins: Origins::default(), uses: Vec::new() }
     }
 

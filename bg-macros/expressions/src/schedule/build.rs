@@ -3,9 +3,10 @@
 //! In: roots in a pool. Out: a [`Graph`] and the roots as values in it.
 //! Method: one sweep over the nodes, children first; static parts are gathered into coefficients on the way.
 
+use rustc_hash::FxHashMap;
+
 use super::graph::{Core, Graph, ONE, Value};
 use super::statics::Statics;
-use super::table::Table;
 use crate::expr::{Id, Node, Symbol};
 
 /// When a parameter is known.
@@ -19,7 +20,7 @@ pub(super) enum Parameters {
 
 /// The graph of these roots.
 pub(super) fn build(statics: &mut Statics, roots: &[Id], parameters: Parameters) -> (Graph, Vec<Value>) {
-    let mut sweep = Sweep { statics, graph: Graph::new(), values: Table::default(), parameters };
+    let mut sweep = Sweep { statics, graph: Graph::new(), values: FxHashMap::default(), parameters };
     for id in sweep.statics.pool.reachable(roots) {
         let node = sweep.statics.pool.node(id).clone();
         let value = sweep.value(id, &node);
@@ -32,7 +33,7 @@ pub(super) fn build(statics: &mut Statics, roots: &[Id], parameters: Parameters)
 struct Sweep<'s, 'p> {
     statics: &'s mut Statics<'p>,
     graph: Graph,
-    values: Table<Id, Value>,
+    values: FxHashMap<Id, Value>,
     parameters: Parameters,
 }
 

@@ -5,7 +5,9 @@
 //! put together to those of their difference and sum, which many sums then share; common factors are taken out. What costs
 //! fewer operations than before is taken.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
 
 use super::{Id, Monomials, Node, Pool, monomials};
 
@@ -30,8 +32,8 @@ impl Circles {
 
     /// The nodes, written shorter.
     pub fn shortened(&self, pool: &mut Pool, roots: &[Id]) -> Vec<Id> {
-        let mut images: HashMap<Id, Id> = HashMap::new();
-        let mut sizes: HashMap<Id, usize> = HashMap::new();
+        let mut images: FxHashMap<Id, Id> = FxHashMap::default();
+        let mut sizes: FxHashMap<Id, usize> = FxHashMap::default();
         for id in pool.reachable(roots) {
             let mut image = pool.rebuilt(id, &images);
             if matches!(pool.node(image), Node::Sum { .. }) && self.size(pool, image, &mut sizes) <= MOST_MONOMIALS {
@@ -43,7 +45,7 @@ impl Circles {
     }
 
     /// How many monomials a node has at most when it is expanded.
-    fn size(&self, pool: &Pool, id: Id, known: &mut HashMap<Id, usize>) -> usize {
+    fn size(&self, pool: &Pool, id: Id, known: &mut FxHashMap<Id, usize>) -> usize {
         if let Some(&size) = known.get(&id) {
             return size;
         }

@@ -4,10 +4,11 @@
 //! own; the order of the cores no longer is children first.
 //! Method: greedy elimination (`greedy`).
 
+use rustc_hash::FxHashMap;
+
 use super::graph::{Core, Graph, ONE, Value};
 use super::greedy::{Elimination, LONGEST, Seen, eliminate};
 use super::statics::Statics;
-use super::table::Table;
 use crate::expr::Id;
 
 /// Two cores, ascending, with the coefficients that they have in the pair.
@@ -25,7 +26,7 @@ struct Sums<'g, 's, 'p> {
     all: Vec<Sum>,
     seen: Seen<Pair>,
     /// How many sums contain this coefficient's magnitude times this core.
-    scaled: Table<(Id, u32), i64>,
+    scaled: FxHashMap<(Id, u32), i64>,
 }
 
 /// A pair in one sum.
@@ -47,7 +48,7 @@ pub(super) fn share_addends(statics: &mut Statics, graph: &mut Graph, roots: &[V
     }
     let members = sums.iter().flat_map(|sum| &sum.terms).map(|term| term.core);
     let seen = Seen::new(members, graph.cores.len());
-    let mut search = Sums { graph, statics, all: sums, seen, scaled: Table::default() };
+    let mut search = Sums { graph, statics, all: sums, seen, scaled: FxHashMap::default() };
     let found = search.pairs();
     eliminate(&mut search, found);
     for Sum { core, terms } in search.all {

@@ -7,9 +7,10 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use rustc_hash::FxHashMap;
+
 use super::choose::{Choice, Needs, is_pairable};
 use super::nodes::{Kind, Nodes, Place};
-use crate::program::table::Table;
 use crate::random::Random;
 
 /// Changes tried for each operation, and at most: long routines take a compiler that is not optimised seconds.
@@ -79,7 +80,7 @@ struct State<'n> {
     needs: Needs,
     cost: i32,
     /// How often two values are gathered.
-    gathered: Table<[usize; 2], u32>,
+    gathered: FxHashMap<[usize; 2], u32>,
     /// By operation: how often it is taken out of a pair whose second half it is.
     taken: Vec<u32>,
     /// Where the change under way costs or saves: operations by themselves or the pairs whose first halves they are, then results.
@@ -149,7 +150,7 @@ impl<'n> State<'n> {
             choice,
             needs: Needs::new(count),
             cost: 0,
-            gathered: Table::default(),
+            gathered: FxHashMap::default(),
             taken: vec![0; count],
             sites: Vec::new(),
             named: vec![0; sites + 1],

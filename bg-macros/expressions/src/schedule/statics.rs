@@ -4,7 +4,8 @@
 //! Method: each is read as a monomial, number * product of node^exponent. A common factor never needs a division by a
 //! parameter, which may be zero.
 
-use super::table::Table;
+use rustc_hash::FxHashMap;
+
 use crate::expr::{Id, Node, Pool};
 
 /// number * product of node^exponent, factors sorted by node.
@@ -20,8 +21,8 @@ pub(super) struct Statics<'a> {
     pub(super) pool: &'a mut Pool,
     /// The number one.
     pub(super) one: Id,
-    magnitudes: Table<Id, (bool, Id)>,
-    commons: Table<(Id, Id), Common>,
+    magnitudes: FxHashMap<Id, (bool, Id)>,
+    commons: FxHashMap<(Id, Id), Common>,
 }
 
 /// Two static values over their common factor.
@@ -39,7 +40,7 @@ impl<'a> Statics<'a> {
     /// The arithmetic over this pool.
     pub(super) fn new(pool: &'a mut Pool) -> Self {
         let one = pool.one();
-        Self { pool, one, magnitudes: Table::default(), commons: Table::default() }
+        Self { pool, one, magnitudes: FxHashMap::default(), commons: FxHashMap::default() }
     }
 
     /// Whether the value is -1 or 1, which a product leaves out.

@@ -8,7 +8,9 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::hash::Hash;
 
-use super::table::{Table, number};
+use rustc_hash::FxHashMap;
+
+use super::table::number;
 
 /// The number of neighbours with which a term or factor forms pairs.
 pub(super) const LONGEST: usize = 32;
@@ -64,7 +66,7 @@ fn enqueue<E: Elimination>(from: &mut E, mut found: Vec<E::Pair>, queue: &mut Bi
 /// In which lines each pair was seen.
 #[derive(Debug)]
 pub(super) struct Seen<P> {
-    lines: Table<P, Vec<u32>>,
+    lines: FxHashMap<P, Vec<u32>>,
     /// In how many lines each member was initially; a member of one line forms no common pair. Members beyond the end are new.
     members: Vec<u32>,
 }
@@ -74,7 +76,7 @@ impl<P: Copy + Eq + Hash> Seen<P> {
     pub(super) fn new(members: impl Iterator<Item = u32>, end: usize) -> Self {
         let mut counts = vec![0; end];
         members.for_each(|member| counts[member as usize] += 1);
-        Self { lines: Table::default(), members: counts }
+        Self { lines: FxHashMap::default(), members: counts }
     }
 
     /// Whether a member stands in one line only.

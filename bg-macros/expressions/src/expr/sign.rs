@@ -4,7 +4,7 @@
 //! Method: interval arithmetic with the intervals below, at and above zero (Moore 1966, Interval Analysis); it can say too much, never
 //! too little, but for underflow.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::{Function, Id, Node, Pool, Symbol};
 
@@ -82,7 +82,7 @@ impl Signs {
 /// The signs that the root can have.
 #[must_use]
 pub fn signs(pool: &Pool, root: Id, of: &dyn Fn(Symbol) -> Signs) -> Signs {
-    let mut known: HashMap<Id, Signs> = HashMap::new();
+    let mut known: FxHashMap<Id, Signs> = FxHashMap::default();
     for id in pool.reachable(&[root]) {
         let signs = match pool.node(id) {
             Node::Number(number) => Signs::of(number.value()),

@@ -14,7 +14,7 @@ mod tests;
 
 use pattern::Pattern;
 
-use crate::program::Counts;
+use crate::schedule::Counts;
 
 /// How I - c J is factored and solved: with unknowns, the matrix of the rows (I - c f_x, -c f_l) of states and (r_x, r_l) of
 /// unknowns, whose right sides are zero. A slot is an index into the factors: the places of L and U beside the diagonal, and

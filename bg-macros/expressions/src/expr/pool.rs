@@ -4,7 +4,9 @@
 //! children have smaller ids than the node itself.
 //! Method: hash-consing (Ershov 1958, On programming of arithmetic operations).
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::BTreeSet;
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Id, Node, Number, Symbol};
 
@@ -13,7 +15,7 @@ use super::{Id, Node, Number, Symbol};
 pub struct Pool {
     nodes: Vec<Node>,
     /// For look-up only; never iterated.
-    ids: HashMap<Node, Id>,
+    ids: FxHashMap<Node, Id>,
 }
 
 const ZERO: Id = Id(0);
@@ -30,7 +32,7 @@ impl Pool {
     /// A pool with the numbers 0 and 1.
     #[must_use]
     pub fn new() -> Self {
-        let mut pool = Self { nodes: Vec::new(), ids: HashMap::new() };
+        let mut pool = Self { nodes: Vec::new(), ids: FxHashMap::default() };
         pool.number(0.0);
         pool.number(1.0);
         pool
@@ -85,7 +87,7 @@ impl Pool {
     /// All nodes that the roots are made of, the roots included; ascending, so children come before parents.
     #[must_use]
     pub fn reachable(&self, roots: &[Id]) -> Vec<Id> {
-        let mut seen = HashSet::new();
+        let mut seen = FxHashSet::default();
         let mut found = Vec::new();
         let mut pending = roots.to_vec();
         while let Some(id) = pending.pop() {

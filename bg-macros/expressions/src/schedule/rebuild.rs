@@ -3,11 +3,12 @@
 //! In: a [`Graph`] and its roots in any order of cores. Out: a graph in normal form without dead cores.
 //! Method: one sweep, children first; every sum is regrouped by [`super::factor`].
 
+use rustc_hash::FxHashMap;
+
 use super::factor::{Grouping, Sharing};
 use super::graph::{Core, Graph, ONE, Value};
 use super::greedy::LONGEST;
 use super::statics::Statics;
-use super::table::Table;
 
 /// The graph of the same roots, its sums regrouped.
 pub(super) fn rebuild(
@@ -116,8 +117,8 @@ pub(super) fn has_unit(statics: &Statics, terms: &[Value]) -> bool {
 }
 
 /// How often two factors are multiplied with each other in different products.
-pub(super) fn pair_counts(graph: &Graph, order: &[u32]) -> Table<(u32, u32), u32> {
-    let mut counts = Table::default();
+pub(super) fn pair_counts(graph: &Graph, order: &[u32]) -> FxHashMap<(u32, u32), u32> {
+    let mut counts = FxHashMap::default();
     for &core in order {
         let factors = graph.factors(core);
         // Beyond this length a product is no monomial of a mechanism's equations, and its pairs would be too many.

@@ -15,7 +15,7 @@ mod signs;
 #[cfg(test)]
 mod tests;
 
-use crate::program::{Assignment, Operand, Routine};
+use crate::schedule::{Assignment, Operand, Routine};
 
 /// Straight-line code with pairs.
 #[derive(Clone, PartialEq, Debug)]

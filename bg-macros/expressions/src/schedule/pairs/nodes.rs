@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use crate::expr::Symbol;
-use crate::program::{Operand, Operation, Routine};
+use crate::schedule::{Operand, Operation, Routine};
 
 /// A value or its negative.
 #[derive(Clone, Copy, PartialEq, Debug)]

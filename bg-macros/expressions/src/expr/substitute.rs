@@ -3,7 +3,7 @@
 //! In: nodes, and an expression for each symbol to be replaced. Out: the same nodes over the new symbols, in canonical
 //! form.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::{Id, Node, Pool, Symbol, children};
 
@@ -30,7 +30,7 @@ pub fn substitute_switched(
     replace: &dyn Fn(Symbol) -> Option<Id>,
     branch: &dyn Fn(u32) -> Branch,
 ) -> Vec<Id> {
-    let mut images: HashMap<Id, Id> = HashMap::new();
+    let mut images: FxHashMap<Id, Id> = FxHashMap::default();
     for id in pool.reachable(roots) {
         let image = match *pool.node(id) {
             Node::Symbol(symbol) => replace(symbol).unwrap_or(id),
@@ -48,7 +48,7 @@ pub fn substitute_switched(
 
 impl Pool {
     /// The node over the images of its children.
-    pub(super) fn rebuilt(&mut self, id: Id, images: &HashMap<Id, Id>) -> Id {
+    pub(super) fn rebuilt(&mut self, id: Id, images: &FxHashMap<Id, Id>) -> Id {
         if children(self.node(id)).all(|child| images[&child] == child) {
             return id;
         }

@@ -4,7 +4,9 @@
 //! Method: the node is expanded into a sum of terms `coefficient * wrt^n` and `coefficient * f(slope * wrt + offset)`,
 //! and each term is integrated by table.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::BTreeMap;
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Function, Id, Node, Pool, Symbol, children};
 
@@ -25,7 +27,7 @@ type Terms = BTreeMap<(u32, Option<Shape>), Id>;
 /// The antiderivative of `of` by `wrt` that is 0 at `wrt` = 0, where `of` is a sum of terms free of `wrt` times a power
 /// of `wrt` or times sin, cos, exp or tanh of an argument linear in `wrt`. A slope of such an argument must not be 0.
 pub fn antiderivative(pool: &mut Pool, of: Id, wrt: Symbol) -> Option<Id> {
-    let mut expansion = Expansion { pool, wrt, dependent: HashMap::new() };
+    let mut expansion = Expansion { pool, wrt, dependent: FxHashMap::default() };
     expansion.expand(of)?;
     let terms = expansion.terms(of);
     let symbol = pool.symbol(wrt);
@@ -37,13 +39,13 @@ pub fn antiderivative(pool: &mut Pool, of: Id, wrt: Symbol) -> Option<Id> {
 struct Expansion<'p> {
     pool: &'p mut Pool,
     wrt: Symbol,
-    dependent: HashMap<Id, Terms>,
+    dependent: FxHashMap<Id, Terms>,
 }
 
 impl Expansion<'_> {
     /// Expands the node and all that it is made of.
     fn expand(&mut self, root: Id) -> Option<()> {
-        let mut contains: HashSet<Id> = HashSet::new();
+        let mut contains: FxHashSet<Id> = FxHashSet::default();
         for id in self.pool.reachable(&[root]) {
             let node = self.pool.node(id);
             if *node == Node::Symbol(self.wrt) || children(node).any(|child| contains.contains(&child)) {

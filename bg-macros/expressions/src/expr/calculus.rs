@@ -3,13 +3,15 @@
 //! In: nodes and what to differentiate by. Out: the derivatives as nodes.
 //! Method: forward and reverse accumulation over the graph (Griewank & Walther 2008, Evaluating Derivatives, ch. 3).
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::BTreeMap;
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Function, Id, Node, Pool, Symbol, children};
 
 /// The directional derivatives of the nodes, where each symbol changes at the rate `seeds[symbol]`, or not at all.
 pub fn derivative(pool: &mut Pool, of: &[Id], seeds: &BTreeMap<Symbol, Id>) -> Vec<Id> {
-    let mut tangents: HashMap<Id, Id> = HashMap::new();
+    let mut tangents: FxHashMap<Id, Id> = FxHashMap::default();
     for id in pool.reachable(of) {
         let tangent = tangent(pool, id, seeds, &tangents);
         if !pool.is_zero(tangent) {
@@ -30,7 +32,7 @@ pub fn gradient(pool: &mut Pool, of: Id, wrt: &[Symbol]) -> Vec<Id> {
     let nodes = pool.reachable(&[of]);
     let active = dependents(pool, &nodes, wrt);
     let slopes = slopes_of_selects(pool, &nodes, &active, wrt);
-    let mut adjoints: HashMap<Id, Vec<Id>> = HashMap::from([(of, vec![pool.one()])]);
+    let mut adjoints: FxHashMap<Id, Vec<Id>> = FxHashMap::from_iter([(of, vec![pool.one()])]);
     let mut parts: Vec<Vec<Id>> = vec![Vec::new(); wrt.len()];
     for &id in nodes.iter().rev().filter(|id| active.contains(id)) {
         let Some(contributions) = adjoints.remove(&id) else { continue };
@@ -51,7 +53,7 @@ pub fn gradient(pool: &mut Pool, of: Id, wrt: &[Symbol]) -> Vec<Id> {
 }
 
 /// The rate of a node whose children's rates are known, where they are not zero.
-fn tangent(pool: &mut Pool, id: Id, seeds: &BTreeMap<Symbol, Id>, tangents: &HashMap<Id, Id>) -> Id {
+fn tangent(pool: &mut Pool, id: Id, seeds: &BTreeMap<Symbol, Id>, tangents: &FxHashMap<Id, Id>) -> Id {
     match *pool.node(id) {
         Node::Symbol(symbol) => seeds.get(&symbol).copied().unwrap_or(pool.zero()),
         Node::Select { switch, negative, positive } => {
@@ -68,8 +70,8 @@ fn tangent(pool: &mut Pool, id: Id, seeds: &BTreeMap<Symbol, Id>, tangents: &Has
 }
 
 /// The nodes that contain one of the symbols.
-fn dependents(pool: &Pool, nodes: &[Id], wrt: &[Symbol]) -> HashSet<Id> {
-    let mut found = HashSet::new();
+fn dependents(pool: &Pool, nodes: &[Id], wrt: &[Symbol]) -> FxHashSet<Id> {
+    let mut found = FxHashSet::default();
     for &id in nodes {
         let node = pool.node(id);
         let is_wrt = matches!(node, Node::Symbol(symbol) if wrt.contains(symbol));
@@ -82,7 +84,7 @@ fn dependents(pool: &Pool, nodes: &[Id], wrt: &[Symbol]) -> HashSet<Id> {
 
 /// The derivatives of all switched values by each of the symbols. They are differentiated forward, branch by branch: in
 /// a reverse sweep the branch that is switched off would contribute 0 times a value that may not be finite.
-fn slopes_of_selects(pool: &mut Pool, nodes: &[Id], active: &HashSet<Id>, wrt: &[Symbol]) -> BTreeMap<Id, Vec<Id>> {
+fn slopes_of_selects(pool: &mut Pool, nodes: &[Id], active: &FxHashSet<Id>, wrt: &[Symbol]) -> BTreeMap<Id, Vec<Id>> {
     let is_select = |id: &Id| active.contains(id) && matches!(pool.node(*id), Node::Select { .. });
     let selects: Vec<_> = nodes.iter().copied().filter(is_select).collect();
     let mut slopes: BTreeMap<Id, Vec<Id>> = BTreeMap::new();
