@@ -12,6 +12,7 @@ use bg_model::run::Trajectory;
 use bg_workbench::Program;
 use bg_workbench::calls::{self, Asked, Started};
 use bg_workbench::linear::StateSpace;
+use bg_workbench::sensitivity::Course;
 use bg_workbench::sweep::folder::{Folder, Kind};
 use bg_workbench::sweep::plan::Plan;
 use bg_workbench::sweep::{Outcome, Share, parquet, recipe, shown, sweep};
@@ -31,8 +32,8 @@ pyo3::create_exception!(
 );
 
 /// The functions that a module has.
-pub const FUNCTIONS: [&str; 8] =
-    ["run", "linearize", "parameters", "scenes", "outputs", "sweep", "sweep_shards", "read_sweep"];
+pub const FUNCTIONS: [&str; 9] =
+    ["run", "linearize", "sensitivity", "parameters", "scenes", "outputs", "sweep", "sweep_shards", "read_sweep"];
 
 /// What a module does, whatever its mechanism.
 trait Workbench: Send + Sync {
@@ -42,6 +43,7 @@ trait Workbench: Send + Sync {
     fn outputs(&self, scene: Option<&str>) -> Result<Vec<(String, String)>, String>;
     fn run(&self, asked: &Asked) -> Result<(Trajectory, Option<String>), String>;
     fn linearize(&self, asked: &Asked, at: Option<f64>) -> Result<StateSpace, String>;
+    fn sensitivity(&self, asked: &Asked, by: &[String], of: &[String]) -> Result<(Trajectory, Vec<Course>), String>;
     fn shards(&self, plan: &Source) -> Result<usize, String>;
     fn sweep(&self, work: &Work, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, String>;
 }
@@ -98,6 +100,10 @@ impl<Me: Scenes> Workbench for Of<Me> {
         calls::linearize(&(self.0)(), asked, at).map_err(|fault| fault.to_string())
     }
 
+    fn sensitivity(&self, asked: &Asked, by: &[String], of: &[String]) -> Result<(Trajectory, Vec<Course>), String> {
+        calls::sensitivity(&(self.0)(), asked, by, of).map_err(|fault| fault.to_string())
+    }
+
     fn shards(&self, plan: &Source) -> Result<usize, String> {
         let program = (self.0)();
         let plan = plan.read(&program)?;
@@ -146,6 +152,26 @@ fn asked(
     Ok(Asked { scene, set, inputs, start, ..Asked::default() })
 }
 
+/// How it is integrated, where that is given.
+fn integrated(
+    asked: &mut Asked,
+    t_end: Option<f64>,
+    step: Option<f64>,
+    method: Option<&str>,
+    rtol: Option<f64>,
+    atol: Option<f64>,
+) -> PyResult<()> {
+    let integration = &mut asked.integration;
+    integration.t_end = t_end.unwrap_or(integration.t_end);
+    integration.step = step.unwrap_or(integration.step);
+    integration.rtol = rtol.unwrap_or(integration.rtol);
+    integration.atol = atol;
+    if let Some(method) = method {
+        integration.method = method.parse().map_err(|fault| PyValueError::new_err(format!("method: {fault}")))?;
+    }
+    Ok(())
+}
+
 #[pymethods]
 impl Model {
     /// What the model is.
@@ -185,15 +211,8 @@ impl Model {
         parameters: Option<BTreeMap<String, f64>>,
     ) -> PyResult<Table> {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
-        let integration = &mut asked.integration;
-        integration.t_end = t_end.unwrap_or(integration.t_end);
-        integration.step = step.unwrap_or(integration.step);
-        integration.rtol = rtol.unwrap_or(integration.rtol);
-        integration.atol = atol;
-        integration.fixed_step = fixed_step.unwrap_or(integration.fixed_step);
-        if let Some(method) = method {
-            integration.method = method.parse().map_err(|fault| PyValueError::new_err(format!("method: {fault}")))?;
-        }
+        integrated(&mut asked, t_end, step, method, rtol, atol)?;
+        asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
         let (run, failure) = interruptible(py, |_| self.workbench.run(&asked))?.map_err(PyValueError::new_err)?;
         let table = table(py, run)?;
         match failure {
@@ -226,6 +245,38 @@ impl Model {
             linear.set_item(name, array(py, matrix)?)?;
         }
         Ok(linear)
+    }
+
+    /// Run the model and differentiate: how outputs change with parameters, exactly and through events.
+    ///
+    /// Gives a table with the time `t` in s and a column `d(output)/d(parameter)` for each of the `outputs` and each parameter in
+    /// `by`; without them for all outputs, by all parameters of the scene. Raises ValueError where something cannot be.
+    #[pyo3(signature = (scene=None, *, by=None, outputs=None, t_end=None, step=None, method=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn sensitivity(
+        &self,
+        py: Python<'_>,
+        scene: Option<String>,
+        by: Option<Vec<String>>,
+        outputs: Option<Vec<String>>,
+        t_end: Option<f64>,
+        step: Option<f64>,
+        method: Option<&str>,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<Table> {
+        let mut asked = asked(scene, set, inputs, "model", parameters)?;
+        integrated(&mut asked, t_end, step, method, rtol, atol)?;
+        let (by, outputs) = (by.unwrap_or_default(), outputs.unwrap_or_default());
+        let found = interruptible(py, |_| self.workbench.sensitivity(&asked, &by, &outputs))?;
+        let (run, courses) = found.map_err(PyValueError::new_err)?;
+        let info = about_run(py, &run)?;
+        let t = ("t".to_owned(), "s".to_owned(), Values::Real(run.recording.times));
+        let courses = courses.into_iter().map(|course| (course.name, course.unit, Values::Real(course.values)));
+        Table::new(py, std::iter::once(t).chain(courses), info)
     }
 
     /// The parameters by name, each a dict of default, unit, lower and upper end of its range, doc; those of a scene, or all.
@@ -328,8 +379,8 @@ fn source(plan: &Bound<'_, PyAny>) -> PyResult<Source> {
     calls::toml_of_json(&text).map(Source::Text).map_err(|fault| PyValueError::new_err(fault.to_string()))
 }
 
-/// A run as columns.
-fn table(py: Python<'_>, run: Trajectory) -> PyResult<Table> {
+/// How a run was integrated, what it cost, where it ended.
+fn about_run<'py>(py: Python<'py>, run: &Trajectory) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
     let statistics = &run.statistics;
     info.set_item("methods", PyList::new(py, run.methods.iter().map(|change| (change.t, change.method)))?)?;
@@ -340,8 +391,14 @@ fn table(py: Python<'_>, run: Trajectory) -> PyResult<Table> {
     info.set_item("rate_evaluations", statistics.rate_evaluations)?;
     info.set_item("wall_time", run.wall.as_secs_f64())?;
     info.set_item("state", run.last.to_json().map_err(|fault| PyValueError::new_err(fault.to_string()))?)?;
+    info.set_item("events", PyArray1::from_slice(py, &run.recording.events))?;
+    Ok(info)
+}
+
+/// A run as columns.
+fn table(py: Python<'_>, run: Trajectory) -> PyResult<Table> {
+    let info = about_run(py, &run)?;
     let recording = run.recording;
-    info.set_item("events", PyArray1::from_vec(py, recording.events))?;
     let columns = recording.columns.into_iter().map(|column| (column.name, column.unit, Values::Real(column.values)));
     let t = ("t".to_owned(), "s".to_owned(), Values::Real(recording.times));
     Table::new(py, std::iter::once(t).chain(columns), info)

@@ -1,6 +1,6 @@
 //! What a program does for another program: runs and linear models as values, without files and terminal.
 //!
-//! In: parameters, inputs and settings by name. Out: what the commands `run` and `linearize` make, or the sentence that they
+//! In: parameters, inputs and settings by name. Out: what the commands `run`, `linearize` and `sensitivity` make, or the sentence that they
 //! would refuse it with.
 
 use std::collections::BTreeMap;
@@ -12,13 +12,14 @@ use bg_model::run::{Request, Trajectory};
 use thiserror::Error;
 
 use crate::Program;
-use crate::command::linearised;
+use crate::command::{derivatives, linearised};
 use crate::inputs;
 use crate::linear::StateSpace;
 use crate::parameters::{self, Chosen};
 use crate::request::Integration;
 use crate::running::{Begin, follow};
 use crate::scenes::{Scene, own_parameters};
+use crate::sensitivity::Course;
 
 /// What cannot be done, in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -111,6 +112,22 @@ pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<(Trajecto
 pub fn linearize<Me: Scenes>(program: &Program<Me>, asked: &Asked, at: Option<f64>) -> Result<StateSpace, Refused> {
     let (scene, chosen) = chosen(program, asked)?;
     linearised(program, scene, &chosen, at).map_err(Refused)
+}
+
+/// A run with the derivatives of the outputs `of` by the parameters `by` over it; without names of all outputs, or by all that the
+/// scene leaves adjustable. It begins at the model's own start.
+///
+/// # Errors
+/// It cannot be made, or has no derivatives.
+pub fn sensitivity<Me: Scenes>(
+    program: &Program<Me>,
+    asked: &Asked,
+    by: &[String],
+    of: &[String],
+) -> Result<(Trajectory, Vec<Course>), Refused> {
+    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let (scene, chosen) = chosen(program, asked)?;
+    derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)
 }
 
 /// What is written in JSON, as TOML.

@@ -116,13 +116,18 @@ impl Influence {
     /// The derivative's unit.
     #[must_use]
     pub fn derivative_unit(&self) -> String {
-        let plain = |unit: &str| if unit.is_empty() { "1".to_owned() } else { unit.to_owned() };
-        match (plain(self.unit), plain(self.per)) {
-            (unit, per) if per == "1" => unit,
-            (unit, per) if unit == per => "1".to_owned(),
-            (unit, per) if per.contains(['*', '/']) => format!("{unit}/({per})"),
-            (unit, per) => format!("{unit}/{per}"),
-        }
+        quotient(self.unit, self.per)
+    }
+}
+
+/// The unit `unit` per `per`.
+fn quotient(unit: &str, per: &str) -> String {
+    let plain = |unit: &str| if unit.is_empty() { "1".to_owned() } else { unit.to_owned() };
+    match (plain(unit), plain(per)) {
+        (unit, per) if per == "1" => unit,
+        (unit, per) if unit == per => "1".to_owned(),
+        (unit, per) if per.contains(['*', '/']) => format!("{unit}/({per})"),
+        (unit, per) => format!("{unit}/{per}"),
     }
 }
 
@@ -206,23 +211,41 @@ pub fn csv(influences: &[Influence]) -> String {
     text
 }
 
-/// The derivative of each output by each parameter over time as CSV: `d(output)/d(parameter)`.
+/// The derivative of one output by one parameter over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// `d(output)/d(parameter)`.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its values at the run's samples.
+    pub values: Vec<f64>,
+}
+
+/// The derivative of each output by each parameter, in this order.
 #[must_use]
-pub fn courses(found: &Sensitivities, question: &Question) -> String {
-    let pairs: Vec<(usize, usize)> = question
-        .outputs
-        .iter()
-        .flat_map(|&(output, _)| (0..question.parameters.len()).map(move |direction| (output, direction)))
-        .collect();
-    let name = |&(output, direction): &(usize, usize)| {
+pub fn courses(found: &Sensitivities, question: &Question) -> Vec<Course> {
+    let course = |&(output, info): &(usize, &'static OutputInfo), direction: usize| {
         let (parameter, _) = question.parameters[direction];
-        format!("d({})/d({})", found.trajectory.columns[output].name, parameter.name)
+        Course {
+            name: format!("d({})/d({})", info.name, parameter.name),
+            unit: quotient(info.unit, parameter.unit),
+            values: found.of(direction, output).to_vec(),
+        }
     };
-    let mut text = format!("t,{}\n", pairs.iter().map(name).collect::<Vec<_>>().join(","));
-    for (k, t) in found.trajectory.times.iter().enumerate() {
+    let directions = 0..question.parameters.len();
+    question.outputs.iter().flat_map(|output| directions.clone().map(move |of| course(output, of))).collect()
+}
+
+/// Courses at `times` (s) as CSV.
+#[must_use]
+pub fn courses_csv(times: &[f64], courses: &[Course]) -> String {
+    let names: Vec<&str> = courses.iter().map(|course| course.name.as_str()).collect();
+    let mut text = format!("t,{}\n", names.join(","));
+    for (k, t) in times.iter().enumerate() {
         text += &format!("{t:?}");
-        for &(output, direction) in &pairs {
-            text += &format!(",{:?}", found.of(direction, output)[k]);
+        for course in courses {
+            text += &format!(",{:?}", course.values[k]);
         }
         text.push('\n');
     }

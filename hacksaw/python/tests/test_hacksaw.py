@@ -75,6 +75,17 @@ def test_a_linear_model_has_matrices_and_modes():
         hacksaw.linearize("motion", at=-1)
 
 
+def test_derivatives_are_differences():
+    exact = hacksaw.sensitivity("motion", by=["torque"], outputs=["C4"], rtol=1e-11, **SHORT)
+    assert list(exact) == ["t", "d(C4_x)/d(torque)", "d(C4_y)/d(torque)", "d(C4_z)/d(torque)"]
+    assert exact.units["d(C4_x)/d(torque)"] == "m/(N*m)" and exact.info["steps"] > 0
+    low, high = (hacksaw.run("motion", torque=torque, rtol=1e-11, **SHORT)["C4_x"] for torque in (9.99, 10.01))
+    middle = hacksaw.sensitivity("motion", by=["torque"], outputs=["C4_x"], torque=10, rtol=1e-11, **SHORT)["d(C4_x)/d(torque)"]
+    assert np.abs(middle).max() > 0 and np.allclose(middle, (high - low) / 0.02, rtol=1e-5, atol=1e-6 * np.abs(middle).max())
+    with pytest.raises(ValueError, match="has no parameter `torke` to be asked for; did you mean `torque`?"):
+        hacksaw.sensitivity("motion", by=["torke"])
+
+
 def test_other_threads_run_meanwhile():
     counted, done = 0, threading.Event()
 

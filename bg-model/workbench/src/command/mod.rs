@@ -52,6 +52,7 @@ use crate::tables::{self, Part};
 use arguments::{Cli, Command, GoldenCommand};
 use fmu::LibraryError;
 pub(crate) use linearize::space as linearised;
+pub(crate) use sensitivity::derivatives;
 
 /// Input that cannot be used.
 #[derive(Debug, Error)]

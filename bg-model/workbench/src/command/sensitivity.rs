@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use bg_model::description::{OutputInfo, ParameterInfo};
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::Parameters;
-use bg_model::run::Request;
+use bg_model::run::{Request, Trajectory};
 use bg_model::sensitivity::{Direction, Sensitivities, sensitivities};
 use bg_model::simulation::Samples;
 use clap::Args;
@@ -22,7 +22,9 @@ use crate::inputs;
 use crate::output::OutputError;
 use crate::parameters::{self, Chosen, nearest};
 use crate::scenes::Scene;
-use crate::sensitivity::{Influence, Measure, Question, courses, csv, influences, text, without_influence};
+use crate::sensitivity::{
+    Course, Influence, Measure, Question, courses, courses_csv, csv, influences, text, without_influence,
+};
 
 const TABLE: &str = "sensitivity.txt";
 const CSV: &str = "sensitivity.csv";
@@ -76,9 +78,7 @@ pub fn sensitivity<Me: Scenes>(
     let request = with_times(request(&arguments.integration, 0.0, None)?, &arguments.at);
     let names = [TABLE, CSV, COURSES, FIGURE].map(str::to_owned);
     let folder = RunFolder::claim(&arguments.out, &names)?;
-    let by: Vec<&str> = parameters.iter().map(|(info, _)| info.name).collect();
-    let found =
-        Me::model(scene.index, Differentiated { scene, scenes: &program.scenes, chosen: &chosen, request, by })?;
+    let found = differentiated(program, scene, &chosen, request, &parameters)?;
     let mut measures = Measure::ALL.to_vec();
     measures.extend(arguments.at.iter().map(|&t| Measure::At(t)));
     let question = Question { outputs: &outputs, parameters: &parameters, measures: &measures };
@@ -156,6 +156,36 @@ fn with_times(mut request: Request, at: &[f64]) -> Request {
     request
 }
 
+/// A run of a scene and the derivatives over it of outputs by parameters, given `by` and `of` their names; or the sentence why there
+/// are none.
+pub fn derivatives<Me: Scenes>(
+    program: &Program<Me>,
+    scene: &Scene,
+    chosen: &Chosen<Me::Parameters>,
+    request: Request,
+    [by, of]: [&[String]; 2],
+) -> Result<(Trajectory, Vec<Course>), String> {
+    let found = adjustable(scene, chosen, by, "by").and_then(|parameters| {
+        let outputs = observed(scene, of, "outputs")?;
+        let found = differentiated(program, scene, chosen, request, &parameters)?;
+        let courses = courses(&found, &Question { outputs: &outputs, parameters: &parameters, measures: &[] });
+        Ok((found.trajectory, courses))
+    });
+    found.map_err(|fault| fault.to_string())
+}
+
+/// A run of a scene with its derivatives by these parameters.
+fn differentiated<Me: Scenes>(
+    program: &Program<Me>,
+    scene: &Scene,
+    chosen: &Chosen<Me::Parameters>,
+    request: Request,
+    parameters: &[(&'static ParameterInfo, f64)],
+) -> Result<Sensitivities, InputError> {
+    let by = parameters.iter().map(|(info, _)| info.name).collect();
+    Me::model(scene.index, Differentiated { scene, scenes: &program.scenes, chosen, request, by })
+}
+
 /// A scene's model with its run and derivatives.
 struct Differentiated<'a, P> {
     scene: &'a Scene,
@@ -204,7 +234,7 @@ fn write(
     let mut fill = || -> Result<(), FileError> {
         folder.write_text(TABLE, &text(all, question.parameters.len()))?;
         folder.write_text(CSV, &csv(all))?;
-        folder.write_text(COURSES, &courses(found, question))?;
+        folder.write_text(COURSES, &courses_csv(&found.trajectory.times, &courses(found, question)))?;
         match influence(&format!("{scene}: change of each course for a change of the parameter by its size"), all) {
             Ok(svg) => folder.write_text(FIGURE, &svg)?,
             Err(FigureError::Empty) => {}

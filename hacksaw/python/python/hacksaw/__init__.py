@@ -20,6 +20,7 @@ from ._hacksaw import (
     read_sweep,
     run,
     scenes,
+    sensitivity,
     sweep,
     sweep_shards,
 )
@@ -34,6 +35,7 @@ __all__ = [
     "read_sweep",
     "run",
     "scenes",
+    "sensitivity",
     "sweep",
     "sweep_shards",
 ]

@@ -1,4 +1,4 @@
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, TypedDict
 
@@ -68,6 +68,22 @@ def linearize(
     **parameters: float,
 ) -> dict[str, Any]:
     """Linearise where the run is at ``at`` s, or at the equilibrium near the start."""
+
+def sensitivity(
+    scene: str | None = None,
+    *,
+    by: Sequence[str] | None = None,
+    outputs: Sequence[str] | None = None,
+    t_end: float | None = None,
+    step: float | None = None,
+    method: str | None = None,
+    rtol: float | None = None,
+    atol: float | None = None,
+    inputs: Mapping[str, float | str] | None = None,
+    set: Mapping[str, float] | None = None,
+    **parameters: float,
+) -> Table:
+    """A column ``d(output)/d(parameter)`` over the run for each of the outputs and each parameter in ``by``."""
 
 def parameters(scene: str | None = None) -> dict[str, Parameter]:
     """The parameters by name; those of a scene, or all."""

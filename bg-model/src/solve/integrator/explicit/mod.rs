@@ -223,7 +223,7 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         end: &mut SVector<f64, N>,
         completed: &mut impl Complete<N>,
     ) -> f64 {
-        let (mut first, mut second) = ([0.0; N], [0.0; N]);
+        let (mut difference, mut first, mut second) = ([0.0; N], [0.0; N], [0.0; N]);
         for i in 0..N {
             let from = start.x.data.0[0][i];
             let slope = combine(T::B, &self.k, i);
@@ -231,17 +231,19 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
             let to = if T::IS_COMPENSATED { self.carry.add(i, from, change) } else { from + change };
             let allowed = scale.allowed(i, from, to);
             end.data.0[0][i] = to;
-            first[i] = (combine(T::ERROR, &self.k, i) / allowed).abs();
+            difference[i] = combine(T::ERROR, &self.k, i);
+            first[i] = (difference[i] / allowed).abs();
             if !T::SECOND.is_empty() {
                 second[i] = ((slope - combine(T::SECOND, &self.k, i)) / allowed).abs();
             }
         }
         let allowed = |i: usize| scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i]);
-        completed.correct(&mut first, |i| combine(T::ERROR, &self.k, i), allowed);
+        completed.correct(&mut first, |i| difference[i], allowed);
         let first = largest(&first);
         if !T::START.is_empty() {
-            let mut start: [f64; N] = std::array::from_fn(|i| (combine(T::START, &self.k, i) / allowed(i)).abs());
-            completed.correct(&mut start, |i| combine(T::START, &self.k, i), allowed);
+            difference = std::array::from_fn(|i| combine(T::START, &self.k, i));
+            let mut start: [f64; N] = std::array::from_fn(|i| (difference[i] / allowed(i)).abs());
+            completed.correct(&mut start, |i| difference[i], allowed);
             let start = AT_START * largest(&start);
             return h.abs() * if start > first { start } else { first };
         }

@@ -8,6 +8,7 @@
 //! what damping has brought to equilibrium drifts.
 
 mod block;
+mod inverse;
 mod pattern;
 mod tableau;
 
@@ -38,7 +39,11 @@ impl<const N: usize> Ark5<N> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        Self { explicit: Explicit::new(), block: Block::new(), arch: Arch::new() }
+        Self::in_vectors(Arch::new())
+    }
+
+    fn in_vectors(arch: Arch) -> Self {
+        Self { explicit: Explicit::new(), block: Block::new(arch), arch }
     }
 }
 
@@ -135,7 +140,7 @@ mod tests {
     #[test]
     fn every_machine_gives_the_same_bytes() {
         let of = |arch: Arch| {
-            let mut method = Ark5::<10> { arch, ..Ark5::new() };
+            let mut method = Ark5::<10>::in_vectors(arch);
             let start = SVector::from_fn(|i, _| 0.3 - 0.07 * i as f64);
             let settings = Settings { tolerances: Tolerances::new(1e-7, 1e-8), ..Settings::default() };
             let finish = integrate(&Row, &mut method, &start, Span { t0: 0.0, t_end: 10.0 }, &settings, &mut ());

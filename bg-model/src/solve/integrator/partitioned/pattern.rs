@@ -86,9 +86,10 @@ impl Pattern {
 
     /// The entries between these states, each with its place in a matrix whose columns have `length` numbers.
     pub fn sources(&self, states: &[usize], length: usize, sources: &mut Vec<(usize, usize)>) {
-        let place = |state: usize| states.binary_search(&state).ok();
+        let mut place = vec![None; self.damped.len()];
+        states.iter().enumerate().for_each(|(k, &state)| place[state] = Some(k));
         let within = self.places.iter().enumerate();
         sources.clear();
-        sources.extend(within.filter_map(|(k, &(row, column))| Some((k, place(column)? * length + place(row)?))));
+        sources.extend(within.filter_map(|(k, &(row, column))| Some((k, place[column]? * length + place[row]?))));
     }
 }
