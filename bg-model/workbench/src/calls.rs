@@ -15,7 +15,7 @@ use crate::Program;
 use crate::command::{derivatives, linearised};
 use crate::inputs;
 use crate::linear::StateSpace;
-use crate::parameters::{self, Chosen};
+use crate::parameters::{self, Chosen, number};
 use crate::request::Integration;
 use crate::running::{Begin, follow};
 use crate::scenes::{Scene, own_parameters};
@@ -144,8 +144,10 @@ fn chosen<'a, Me: Scenes>(
     asked: &Asked,
 ) -> Result<(&'a Scene, Chosen<Me::Parameters>), Refused> {
     let scene = program.find_scene(asked.scene.as_deref()).map_err(Refused)?;
-    let settings: Vec<String> = asked.set.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
-    let mut chosen = parameters::merge(None, &settings).map_err(refused)?;
+    let mut chosen = Chosen::<Me::Parameters>::default();
+    for (name, &value) in &asked.set {
+        parameters::set(&mut chosen, &format!("{name}={}", number(value)), name, value).map_err(refused)?;
+    }
     chosen.inputs = inputs::chosen(&asked.inputs, Me::describe().inputs).map_err(refused)?;
     Ok((scene, chosen))
 }
