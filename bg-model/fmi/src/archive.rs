@@ -1,26 +1,30 @@
 //! A unit as a file: the archive of a library and its description.
 //!
 //! In: a model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml` and the
-//! library in the folder of its platform. Source: FMI 3.0.1, section 2.5.
+//! library in the folder of its platform. Source: FMI 3.0.1, section 2.5, and 2.0.4, section 2.3.
 
 use std::io::{self, Cursor, Error, Write};
 
 use rawzip::{CompressionMethod, DataDescriptorOutput, ZipArchiveWriter};
 
-use crate::description::{Packing, model_description};
+use crate::description::{Packing, Version, model_description};
 use crate::exported::Described;
 
 /// How hard the compressor tries, of 10.
 const LEVEL: u8 = 6;
 
-/// The folder of a unit that has the libraries of this platform, as `x86_64-linux`: FMI 3.0.1, section 2.5.1.4.1.
+/// The folder of a unit that has the libraries of this platform: `x86_64-linux` in FMI 3.0 (3.0.1, section 2.5.1.4.1), `linux64` in
+/// FMI 2.0 (2.0.4, section 2.3), which does not tell processors apart.
 #[must_use]
-pub fn platform() -> String {
+pub fn platform(version: Version) -> String {
     let system = match std::env::consts::OS {
         "macos" => "darwin",
         system => system,
     };
-    format!("{}-{system}", std::env::consts::ARCH)
+    match version {
+        Version::Three => format!("{}-{system}", std::env::consts::ARCH),
+        Version::Two => format!("{}{}", if system == "windows" { "win" } else { system }, usize::BITS),
+    }
 }
 
 /// The file name of the library `identifier` on this platform, in a unit.
@@ -36,7 +40,7 @@ pub fn library_name(identifier: &str) -> String {
 pub fn archive(model: &dyn Described, packing: &Packing, library: &[u8]) -> io::Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let mut archive = ZipArchiveWriter::new(&mut bytes);
-    let place = format!("binaries/{}/{}", platform(), library_name(&packing.identifier));
+    let place = format!("binaries/{}/{}", platform(packing.version), library_name(&packing.identifier));
     let description = model_description(model, packing);
     for (name, content) in [("modelDescription.xml", description.as_bytes()), (&place, library)] {
         let entry = archive.new_file(name).compression_method(CompressionMethod::DEFLATE);

@@ -1,4 +1,4 @@
-//! `bond_graph!` models as functional mock-up units (FMU): FMI 3.0, Model Exchange and Co-Simulation in one file.
+//! `bond_graph!` models as functional mock-up units (FMU): FMI 3.0 or 2.0, Model Exchange and Co-Simulation in one file.
 //!
 //! A unit is a dynamic library and `modelDescription.xml` in an archive. The library is a package of a few lines, of
 //! `crate-type = ["cdylib"]`:
@@ -42,7 +42,7 @@ mod units;
 pub mod variables;
 
 pub use bg_model;
-pub use description::{Packing, model_description, token};
+pub use description::{Packing, Version, model_description, token};
 pub use exported::{Described, Exported, Of};
 pub use instance::{Fault, Instance, Interface};
 
@@ -94,6 +94,20 @@ macro_rules! export {
                 }
                 // SAFETY: the host hands over texts that end with 0, or none.
                 unsafe { $crate::abi::instantiate(MODELS, $crate::Interface::CoSimulation, name, token, logger) }
+            }
+
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn fmi2Instantiate(
+                name: *const ::core::ffi::c_char,
+                kind: ::core::ffi::c_int,
+                token: *const ::core::ffi::c_char,
+                _resources: *const ::core::ffi::c_char,
+                callbacks: *const $crate::abi::two::Callbacks,
+                _visible: ::core::ffi::c_int,
+                logging: ::core::ffi::c_int,
+            ) -> *mut ::core::ffi::c_void {
+                // SAFETY: the host hands over texts that end with 0, or none, and its functions, or none.
+                unsafe { $crate::abi::two::instantiate(MODELS, kind, name, token, callbacks, logging) }
             }
         };
     };

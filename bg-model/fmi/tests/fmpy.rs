@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use bg_fmi::archive::archive;
-use bg_fmi::{Described, Of, Packing};
+use bg_fmi::{Described, Of, Packing, Version};
 use bg_model::mechanism::Mechanism;
 use bg_model::run::Simulation;
 use machines::{Ball, Pendulum, Shaker};
@@ -16,6 +16,7 @@ use machines::{Ball, Pendulum, Shaker};
 static PENDULUM: Of<Pendulum> = Of::NEW;
 static BALL: Of<Ball> = Of::NEW;
 static SHAKER: Of<Shaker> = Of::NEW;
+const VERSIONS: [Version; 2] = [Version::Three, Version::Two];
 
 fn python() -> String {
     std::env::var("FMPY_PYTHON").unwrap_or_else(|_| "python3".to_owned())
@@ -37,11 +38,11 @@ fn library() -> PathBuf {
 }
 
 /// The unit of a model, in a folder that goes away.
-fn unit(model: &dyn Described) -> (tempfile::TempDir, PathBuf) {
+fn unit(model: &dyn Described, version: Version) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let identifier = model.description().name.to_lowercase();
     let path = folder.path().join(format!("{identifier}.fmu"));
-    let packing = Packing { identifier, stop_time: 1.0 };
+    let packing = Packing { version, identifier, stop_time: 1.0 };
     std::fs::write(&path, archive(model, &packing, &std::fs::read(library()).unwrap()).unwrap()).unwrap();
     (folder, path)
 }
@@ -65,8 +66,10 @@ fn units_are_valid() {
         return;
     }
     for model in [&PENDULUM as &dyn Described, &BALL, &SHAKER] {
-        let (_folder, path) = unit(model);
-        assert_eq!(host(&path, &["validate"]).join(" "), "no problems");
+        for version in VERSIONS {
+            let (_folder, path) = unit(model, version);
+            assert_eq!(host(&path, &["validate"]).join(" "), "no problems");
+        }
     }
 }
 
@@ -84,11 +87,12 @@ fn a_host_comes_where_our_run_does() {
         (&SHAKER, "x", Simulation::new(&shaker).rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap()["x"][0]),
         (&BALL, "height", Simulation::new(&ball).rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap()["height"][0]),
     ];
-    for (model, output, wanted) in wanted {
-        let (_folder, path) = unit(model);
+    let units = wanted.into_iter().flat_map(|unit| VERSIONS.map(|version| (unit, version)));
+    for ((model, output, wanted), version) in units {
+        let (_folder, path) = unit(model, version);
         for (kind, tolerance, allowed) in [("CoSimulation", "1e-9", 1e-8), ("ModelExchange", "1e-8", 1e-5)] {
             let found = numbers(&host(&path, &["simulate", kind, "1", "0.01", tolerance, output]));
-            println!("{output} by {kind}: {:e} off", found[1] - wanted);
+            println!("{output} by {kind} of FMI {}: {:e} off", version.name(), found[1] - wanted);
             assert!((found[0] - 1.0).abs() < 1e-9 && (found[1] - wanted).abs() < allowed, "{kind}: {found:?} {wanted}");
         }
     }
@@ -99,8 +103,9 @@ fn a_host_gets_derivatives_and_saved_states() {
     if !has_fmpy() {
         return;
     }
-    for model in [&PENDULUM as &dyn Described, &BALL, &SHAKER] {
-        let (_folder, path) = unit(model);
+    let models = [&PENDULUM as &dyn Described, &BALL, &SHAKER];
+    for (model, version) in models.into_iter().flat_map(|model| VERSIONS.map(|version| (model, version))) {
+        let (_folder, path) = unit(model, version);
         let jacobian = numbers(&host(&path, &["derivatives"]));
         assert!(jacobian[0] <= 1e-12 * jacobian[1] && jacobian[1] > 0.0, "{jacobian:?}");
         let states = host(&path, &["states"]);

@@ -4,7 +4,7 @@
 mod machines;
 
 use bg_fmi::variables::Kind;
-use bg_fmi::{Exported, Instance, Interface, Of, Packing, model_description, token};
+use bg_fmi::{Exported, Instance, Interface, Of, Packing, Version, model_description, token};
 use bg_model::input::Input;
 use bg_model::mechanism::Mechanism;
 use bg_model::run::Simulation;
@@ -291,7 +291,11 @@ fn what_cannot_be_is_refused_in_words() {
 
 #[test]
 fn the_description_names_every_variable_once() {
-    let text = model_description(&PENDULUM, &Packing { identifier: "pendulum".to_owned(), stop_time: 5.0 });
+    let text =
+        |version| model_description(&PENDULUM, &Packing { version, identifier: "pendulum".to_owned(), stop_time: 5.0 });
+    let two = text(Version::Two);
+    assert!(two.contains(&token(&PENDULUM)) && two.contains("<Real unit=\"m\" min=\"0.0\" start="), "{two}");
+    let text = text(Version::Three);
     assert_eq!(text.matches("name=\"angle\"").count(), 1);
     assert!(
         text.contains("name=\"angle_parameter\"") && text.contains("<BaseUnit kg=\"1\" m=\"1\" s=\"-2\"/>"),

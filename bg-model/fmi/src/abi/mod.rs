@@ -1,8 +1,8 @@
-//! The functions of FMI 3.0, as a host finds them in a library: pointers in, slices on to [`Instance`].
+//! The functions of FMI 3.0 and 2.0, as a host finds them in a library: pointers in, slices on to [`Instance`].
 //!
-//! In: calls of a host. Out: a status; on `fmi3Error` or worse a sentence in its log. A panic ends here as `fmi3Fatal`; of an
-//! instance that has panicked only what frees it works. Source of names and types: FMI 3.0.1, sections 2.2 to 4 and its headers.
-//! The three functions that make instances are in [`export!`](crate::export) and `absent`.
+//! In: calls of a host. Out: a status; on an error or worse a sentence in its log. A panic ends here as the status Fatal; of an
+//! instance that has panicked only what frees it works. Source of names and types: FMI 3.0.1, sections 2.2 to 4 and its headers;
+//! for `two` FMI 2.0.4. The functions that make instances are in [`export!`](crate::export) and `absent`.
 
 #![allow(non_snake_case, reason = "the names are those of the standard")]
 #![allow(clippy::missing_safety_doc, reason = "the caller is a host that keeps to the standard, see `Handle::call`")]
@@ -13,6 +13,7 @@ mod lifecycle;
 mod saved;
 #[cfg(test)]
 mod tests;
+pub mod two;
 mod values;
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -23,7 +24,7 @@ use crate::description;
 use crate::exported::Exported;
 use crate::instance::{Fault, Instance, Interface};
 
-/// `fmi3Status`.
+/// `fmi3Status` and `fmi2Status`, whose numbers are the same.
 pub type Status = c_int;
 /// All well.
 const OK: Status = 0;
@@ -36,18 +37,27 @@ const FATAL: Status = 4;
 pub type LogMessage = Option<unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char)>;
 
 /// Where messages go.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Logger {
     environment: *mut c_void,
-    log: LogMessage,
+    log: Log,
     is_on: bool,
+}
+
+/// A host's function for messages.
+#[derive(Clone, Debug)]
+enum Log {
+    /// Of FMI 3.0.
+    Three(LogMessage),
+    /// Of FMI 2.0, with the instance's name.
+    Two(two::LogMessage, CString),
 }
 
 impl Logger {
     /// A logger of these arguments of an instantiation.
     #[must_use]
     pub const fn new(environment: *mut c_void, log: LogMessage, is_on: bool) -> Self {
-        Self { environment, log, is_on }
+        Self { environment, log: Log::Three(log), is_on }
     }
 
     /// Says why there is no instance.
@@ -56,19 +66,30 @@ impl Logger {
     }
 
     fn say(&self, status: Status, message: &str) {
-        let Some(log) = self.log.filter(|_| self.is_on || status >= ERROR) else { return };
+        if !self.is_on && status < ERROR {
+            return;
+        }
         let text = |text: &str| CString::new(text.replace('\0', " ")).unwrap_or_default();
         let (category, message) = (text(LOG_ERROR), text(message));
-        // SAFETY: the host gave this function with this environment, for as long as the instance lives.
-        unsafe { log(self.environment, status, category.as_ptr(), message.as_ptr()) }
+        match &self.log {
+            // SAFETY: the host gave this function with this environment, for as long as the instance lives.
+            Log::Three(Some(log)) => unsafe { log(self.environment, status, category.as_ptr(), message.as_ptr()) },
+            // SAFETY: as above; what comes behind the format is what the format asks for.
+            Log::Two(Some(log), name) => unsafe {
+                log(self.environment, name.as_ptr(), status, category.as_ptr(), c"%s".as_ptr(), message.as_ptr());
+            },
+            Log::Three(None) | Log::Two(None, _) => {}
+        }
     }
 }
 
-/// What an `fmi3Instance` points to.
+/// What an `fmi3Instance` or `fmi2Component` points to.
 struct Handle {
     instance: Instance,
     logger: Logger,
     is_lost: bool,
+    /// Start time, s, and relative tolerance, where a call before the initialization has given them.
+    experiment: (f64, Option<f64>),
 }
 
 impl Handle {
@@ -125,7 +146,8 @@ pub unsafe fn instantiate(
     let token = unsafe { CStr::from_ptr(token) }.to_string_lossy();
     let made = catch_unwind(AssertUnwindSafe(|| {
         let model = models.iter().find(|model| description::token(model.described()) == token)?;
-        Some(Box::new(Handle { instance: Instance::new(*model, interface), logger, is_lost: false }))
+        let instance = Instance::new(*model, interface);
+        Some(Box::new(Handle { instance, logger: logger.clone(), is_lost: false, experiment: (0.0, None) }))
     }));
     match made {
         Ok(Some(handle)) => Box::into_raw(handle).cast(),

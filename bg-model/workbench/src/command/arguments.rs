@@ -107,6 +107,10 @@ pub struct FmuArguments {
     #[arg(long, value_name = "NAME")]
     pub scene: String,
 
+    /// The version of the standard
+    #[arg(long, value_name = "VERSION", default_value = "3.0", value_parser = ["2.0", "3.0"])]
+    pub fmi: String,
+
     /// The library that exports the scene; without it, the one of the program's name with `_fmu` beside the program
     #[arg(long, value_name = "FILE")]
     pub library: Option<PathBuf>,

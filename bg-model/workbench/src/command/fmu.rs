@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use bg_fmi::archive::archive;
-use bg_fmi::{Of, Packing};
+use bg_fmi::{Of, Packing, Version};
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use thiserror::Error;
 
@@ -28,8 +28,11 @@ pub(super) enum LibraryError {
     Absent { file: String, folder: PathBuf, model: &'static str },
     #[error("--library {}: {source}", path.display())]
     Unreadable { path: PathBuf, source: io::Error },
-    #[error("--library {}: it exports no model; give the file that cargo builds of a package with `bg_fmi::export!(..)`", .0.display())]
-    Foreign(PathBuf),
+    #[error(
+        "--library {}: it exports no model for FMI {}; give the file that cargo builds of a package with `bg_fmi::export!(..)`",
+        .0.display(), .1
+    )]
+    Foreign(PathBuf, &'static str),
 }
 
 pub(super) fn pack<Me: Scenes>(program: &Program<Me>, arguments: &FmuArguments) -> Result<ExitCode, InputError> {
@@ -44,14 +47,16 @@ pub(super) fn pack<Me: Scenes>(program: &Program<Me>, arguments: &FmuArguments) 
     };
     let bytes = std::fs::read(&library);
     let bytes = bytes.map_err(|source| LibraryError::Unreadable { path: library.clone(), source })?;
-    if !exports(&bytes) {
-        return Err(LibraryError::Foreign(library).into());
+    let version = if arguments.fmi == Version::Two.name() { Version::Two } else { Version::Three };
+    if !exports(&bytes, version) {
+        return Err(LibraryError::Foreign(library, version.name()).into());
     }
     let path = out.clone().unwrap_or_else(|| PathBuf::from(format!("{identifier}.fmu")));
-    let packing = Packing { identifier, stop_time: *t_end };
+    let packing = Packing { version, identifier, stop_time: *t_end };
     let unit = Me::model(scene.index, Packed { packing: &packing, library: &bytes });
     whole::write(&path, |file| file.write_all(&unit?))?;
-    Ok(say(&format!("{}: {} for FMI 3.0, {}\n", path.display(), scene.description.name, bg_fmi::archive::platform())))
+    let (name, version, platform) = (scene.description.name, version.name(), bg_fmi::archive::platform(version));
+    Ok(say(&format!("{}: {name} for FMI {version}, {platform}\n", path.display())))
 }
 
 /// The archive of a model.
@@ -88,9 +93,12 @@ fn beside_the_program(name: &str, model: &'static str) -> Result<PathBuf, Librar
 }
 
 /// Whether a library has the names of the standard among its symbols.
-fn exports(library: &[u8]) -> bool {
-    const NAME: &[u8] = b"fmi3InstantiateModelExchange";
-    library.windows(NAME.len()).any(|bytes| bytes == NAME)
+fn exports(library: &[u8], version: Version) -> bool {
+    let name: &[u8] = match version {
+        Version::Two => b"fmi2Instantiate",
+        Version::Three => b"fmi3InstantiateModelExchange",
+    };
+    library.windows(name.len()).any(|bytes| bytes == name)
 }
 
 #[cfg(test)]
@@ -111,6 +119,9 @@ mod tests {
                 && fault.contains("--library FILE"),
             "{fault}"
         );
-        assert!(exports(b"..fmi3InstantiateModelExchange..") && !exports(b"text"));
+        let library = b"..fmi3InstantiateModelExchange..";
+        assert!(
+            exports(library, Version::Three) && !exports(library, Version::Two) && !exports(b"text", Version::Three)
+        );
     }
 }
