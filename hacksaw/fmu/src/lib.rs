@@ -1,4 +1,4 @@
-//! The paper's hacksaw for other programs: its scenes `paper` and `motion` as FMI 3.0 units.
+//! The paper's hacksaw for other programs: its scenes `paper` and `motion` as FMI units.
 //!
 //!     cargo build --release --target-dir target --manifest-path hacksaw/fmu/Cargo.toml
 //!     cargo run --release -- fmu --scene motion

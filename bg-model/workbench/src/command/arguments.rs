@@ -61,7 +61,7 @@ pub enum Command {
     Identify(IdentifyArguments),
     /// Run for many values of parameters by a plan, into Parquet files; on all cores, or on many machines
     Sweep(SweepArguments),
-    /// Pack a scene as a functional mock-up unit for other programs: FMI 3.0, Model Exchange and Co-Simulation in one file
+    /// Pack a scene as a functional mock-up unit for other programs: FMI 3.0 or 2.0, Model Exchange and Co-Simulation in one file
     Fmu(FmuArguments),
     /// Record a run as a golden output, or check that what was recorded still comes out
     #[command(subcommand)]

@@ -1,5 +1,5 @@
-//! Units as a host finds them: packed, validated, simulated by FMPy, where that is installed: `pip install fmpy`, and the variable
-//! `FMPY_PYTHON` for a Python that is not `python3`.
+//! Units as hosts find them, where these are installed: packed, validated and simulated by FMPy (`pip install fmpy`), in steps by libcosim
+//! (`pip install libcosimpy`). The variable `FMPY_PYTHON` names a Python that is not `python3`.
 
 #[path = "../examples/machines/mod.rs"]
 mod machines;
@@ -22,10 +22,11 @@ fn python() -> String {
     std::env::var("FMPY_PYTHON").unwrap_or_else(|_| "python3".to_owned())
 }
 
-fn has_fmpy() -> bool {
-    let found = Command::new(python()).args(["-c", "import fmpy"]).output().is_ok_and(|output| output.status.success());
+fn has(module: &str) -> bool {
+    let import = format!("import {module}");
+    let found = Command::new(python()).args(["-c", &import]).output().is_ok_and(|output| output.status.success());
     if !found {
-        println!("skipped: FMPy is not installed");
+        println!("skipped: {module} is not installed");
     }
     found
 }
@@ -47,9 +48,14 @@ fn unit(model: &dyn Described, version: Version) -> (tempfile::TempDir, PathBuf)
     (folder, path)
 }
 
-/// What the host prints.
+/// What FMPy finds.
 fn host(unit: &Path, arguments: &[&str]) -> Vec<String> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts/fmpy_check.py");
+    told_by("fmpy_check.py", unit, arguments)
+}
+
+/// What a host's script prints.
+fn told_by(script: &str, unit: &Path, arguments: &[&str]) -> Vec<String> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts").join(script);
     let output: Output = Command::new(python()).arg(script).arg(unit).args(arguments).output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
@@ -62,7 +68,7 @@ fn numbers(words: &[String]) -> Vec<f64> {
 
 #[test]
 fn units_are_valid() {
-    if !has_fmpy() {
+    if !has("fmpy") {
         return;
     }
     for model in [&PENDULUM as &dyn Described, &BALL, &SHAKER] {
@@ -75,7 +81,7 @@ fn units_are_valid() {
 
 #[test]
 fn a_host_comes_where_our_run_does() {
-    if !has_fmpy() {
+    if !has("fmpy") {
         return;
     }
     let pendulum = Pendulum::new(Default::default()).unwrap();
@@ -100,7 +106,7 @@ fn a_host_comes_where_our_run_does() {
 
 #[test]
 fn a_host_gets_derivatives_and_saved_states() {
-    if !has_fmpy() {
+    if !has("fmpy") {
         return;
     }
     let models = [&PENDULUM as &dyn Described, &BALL, &SHAKER];
@@ -112,4 +118,17 @@ fn a_host_gets_derivatives_and_saved_states() {
         println!("from bytes: {} off", states[1]);
         assert!(states[0] == "True" && states[1].parse::<f64>().unwrap() < 1e-7, "{states:?}");
     }
+}
+
+#[test]
+fn another_host_comes_there_too() {
+    if !has("libcosimpy") {
+        return;
+    }
+    let ball = Ball::make(Default::default(), &[]).unwrap();
+    let wanted = Simulation::new(&ball).rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap()["height"][0];
+    let (_folder, path) = unit(&BALL, Version::Two);
+    let found = numbers(&told_by("cosim_check.py", &path, &["1", "0.01", "height"]));
+    println!("height by libcosim: {:e} off", found[1] - wanted);
+    assert!((found[0] - 1.0).abs() < 1e-9 && (found[1] - wanted).abs() < 1e-6, "{found:?} {wanted}");
 }
