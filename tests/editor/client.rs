@@ -27,8 +27,9 @@ pub fn is_there() -> bool {
 impl Editor {
     /// Opens `src/lib.rs` of the crate in a folder, and waits until its macros are built.
     pub fn open(folder: &Path, target: &Path) -> Self {
-        let process = Command::new("rust-analyzer").stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut process = process.spawn().expect("rust-analyzer runs");
+        let mut command = Command::new("rust-analyzer");
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut process = command.spawn().expect("rust-analyzer runs");
         let (input, output) = (process.stdin.take().expect("a pipe"), process.stdout.take().expect("a pipe"));
         let file = folder.join("src/lib.rs");
         let uri = format!("file://{}", file.display());

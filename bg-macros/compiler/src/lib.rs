@@ -43,6 +43,7 @@ pub fn compile(tokens: TokenStream) -> TokenStream {
     let mut items: TokenStream = emit::parts(&source);
     match models {
         Ok(models) => {
+            items.extend(emit::version());
             items.extend(models.iter().map(emit::model));
             items.extend(emit::anchors(&source, &models));
         }

@@ -18,9 +18,11 @@ pub mod routine;
 mod scopes;
 mod series;
 mod stub;
+mod version;
 
 pub use anchors::{anchors, anchors_with_faults};
 pub use model::model;
 pub use parts::{parts, question};
 pub use picture::picture;
 pub use stub::stub;
+pub use version::version;

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use bg_compiler::graph::units::DOMAINS;
 
@@ -13,8 +13,13 @@ const OTHERS: [&str; 5] = ["crate", "self", "super", "from", "3"];
 
 type Words = BTreeSet<String>;
 
+/// A place below the workspace.
+fn place(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
 fn text(path: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    let path = place(path);
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
@@ -33,7 +38,7 @@ fn between<'t>(text: &'t str, start: &'t str, end: &'t str) -> impl Iterator<Ite
 
 /// The words that the parser compares with, in its lists, and the names of functions and domains.
 fn of_the_parser() -> Words {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/source/syntax");
+    let folder = place("bg-macros/compiler/src/source/syntax");
     let mut words = Words::new();
     for entry in fs::read_dir(folder).expect("the parser").map(|entry| entry.expect("an entry").path()) {
         if entry.extension().is_none() || entry.ends_with("fault.rs") {
@@ -50,8 +55,9 @@ fn of_the_parser() -> Words {
         between(code, "] = [", "];").for_each(|list| quoted(list, &mut words));
         between(code, "] = &[", "];").for_each(|list| quoted(list, &mut words));
     }
-    between(&text("src/source/words.rs"), "] =", "];").for_each(|table| quoted(table, &mut words));
-    between(&text("src/graph/term.rs"), "NAMES: [", "];").for_each(|table| quoted(table, &mut words));
+    between(&text("bg-macros/compiler/src/source/words.rs"), "] =", "];").for_each(|table| quoted(table, &mut words));
+    between(&text("bg-macros/compiler/src/graph/term.rs"), "NAMES: [", "];")
+        .for_each(|table| quoted(table, &mut words));
     words.extend(DOMAINS.iter().map(|domain| domain.name.to_owned()));
     words.extend(["guess", "ground", "pub"].map(str::to_owned));
     words.retain(|word| !OTHERS.contains(&word.as_str()));
@@ -60,7 +66,7 @@ fn of_the_parser() -> Words {
 
 /// The alternatives of the grammar's patterns.
 fn of_the_grammar() -> Words {
-    let grammar = text("../../docs/editor/bond.tmLanguage.json");
+    let grammar = text("docs/editor/bond.tmLanguage.json");
     let mut words = Words::new();
     for pattern in between(&grammar, "\"match\": \"", "\",\n").chain(between(&grammar, "\"match\": \"", "\" }")) {
         for group in between(pattern, "(", ")") {
