@@ -161,7 +161,7 @@ impl<'c> Meaning<'c> {
         // The place of a graph's name is that of the generated model.
         let is_part = self.parts.iter().any(|part| std::ptr::eq(part, scope));
         let place = if is_part { scope.name.places()[0] } else { Span::call_site() };
-        let name = placed(&scope.name.text, place);
+        let (name, own_name) = (placed(&scope.name.text, place), identifier(&scope.name.text));
         let (own, docs) = (Fields { model }, &scope.docs);
         let fields = scope.fields.iter().map(|field| own.field(scope, field));
         let frames = scope.fields.iter().filter_map(|field| own.frame(scope, field));
@@ -185,7 +185,7 @@ impl<'c> Meaning<'c> {
             pub struct #name { #(#fields)* }
             #(#frames)*
             #(#outputs)*
-            impl #name {
+            impl #own_name {
                 fn mentions(of: &Self) { #(let _ = of #mentions;)* }
                 #parameters
                 #inputs
