@@ -41,7 +41,11 @@ const SHOWN: [(&str, &[&str]); 10] = [
     ("torque in motor", &["torque: Input", "What turns the pin.", "Unit: N*m."]),
     (
         "rod in observe",
-        &["rod: Body", "mass mass;", "States: `rod.position` m, `rod.orientation` 1, `rod.linear.p` kg*m/s"],
+        &[
+            "rod: Body",
+            "mass mass;",
+            "States: `rod.linear.p` kg*m/s, `rod.angular.p` kg*m^2/s, `rod.position` m, `rod.orientation` 1.",
+        ],
     ),
     ("end in pin", &["end: Point", "point end = [-length / 2, 0, 0]"]),
     ("pin in scene", &["pin: Revolute", "joint pin: revolute z (ground.pivot -> rod.end)"]),
