@@ -14,6 +14,12 @@ fn messages() {
     }
 }
 
+/// Generated code and run time are of one version.
+#[test]
+fn another_version() {
+    trybuild::TestCases::new().compile_fail("tests/version/*.rs");
+}
+
 /// The expected messages are ours alone: a code and a help line each, and no warning or error of rustc's.
 #[test]
 fn no_error_follows() {

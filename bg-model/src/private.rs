@@ -17,3 +17,20 @@ pub use crate::model::series::{load, store};
 pub mod table {
     pub use crate::model::linear::table::{Slot, eliminate, substitute};
 }
+
+/// What generated code says first: the version of the macro that wrote it, which must be this crate's.
+///
+/// `tests/version.rs` compares the version here with the crate's.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __bond_graph_of_one_version {
+    ("0.1.0") => {};
+    ($version:literal) => {
+        ::core::compile_error!(::core::concat!(
+            "bg-macros ",
+            $version,
+            " wrote this code, and bg-model 0.1.0 is to run it\nhelp: let Cargo.toml give both the same version"
+        ));
+    };
+}
+pub use crate::__bond_graph_of_one_version as of_one_version;

@@ -42,8 +42,13 @@ pub fn compile(tokens: TokenStream) -> TokenStream {
     let models = if faults.is_empty() { pipeline::models(&source) } else { Err(faults) };
     let mut items: TokenStream = emit::parts(&source);
     match models {
-        Ok(models) => items.extend(models.iter().map(emit::model)),
+        Ok(models) => {
+            items.extend(emit::version());
+            items.extend(models.iter().map(emit::model));
+            items.extend(emit::anchors(&source, &models));
+        }
         Err(faults) => {
+            items.extend(emit::anchors_with_faults(&source, &faults));
             items.extend(compile_errors(&faults));
             items.extend(emit::stub(&part::flatten_leniently(&source).0.source));
         }

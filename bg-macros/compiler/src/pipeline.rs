@@ -66,6 +66,12 @@ pub fn models(source: &Source) -> Staged<Vec<Compiled>> {
 }
 
 impl Compiled {
+    /// Whether its structs are those of its graph: it is no scene, or the first one of `scenes only`.
+    #[must_use]
+    pub fn stands_for_graph(&self) -> bool {
+        !self.is_scene || !self.scenes.is_empty()
+    }
+
     /// The model's name and the names of the parameters that it keeps adjustable.
     fn adjustable(&self) -> (&Name, Vec<&str>) {
         let parameters = self.equations.parameters.iter().map(|parameter| parameter.name.text.as_str());

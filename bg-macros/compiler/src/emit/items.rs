@@ -6,11 +6,14 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::graph::{Input, Parameter};
+use crate::source::ast::Name;
 use crate::source::names::{self, INPUTS, PARAMETERS};
 
 /// What the generated structs are made from.
 pub(super) struct Given<'a> {
-    pub(super) name: &'a str,
+    pub(super) name: &'a Name,
+    /// Whether an editor finds the fields at the declarations of what they are.
+    pub(super) stands_for_graph: bool,
     pub(super) visibility: &'a syn::Visibility,
     pub(super) parameters: &'a [Parameter],
     pub(super) inputs: &'a [Input],
@@ -21,6 +24,18 @@ pub(super) fn identifier(name: &str) -> Ident {
     let name = &names::field(name);
     let make = if name == "gen" { Ident::new_raw } else { Ident::new };
     make(name, Span::call_site())
+}
+
+/// An identifier of the user's at its place in the source, where editors find it and lints complain about it.
+pub(super) fn placed(name: &str, place: Span) -> Ident {
+    let mut ident = identifier(name);
+    ident.set_span(place);
+    ident
+}
+
+/// A name at its place.
+pub(super) fn declared(name: &Name) -> Ident {
+    placed(&name.text, name.places()[0])
 }
 
 /// A literal `f64`; infinities and not-a-number by their names.
@@ -45,8 +60,9 @@ impl Given<'_> {
     /// `Inputs` only. So what is called `Option`, `f64` or `S` by the user, as a model or beside one, is no other thing for
     /// the generated code; and without a prelude of the user's there is still its own.
     pub(super) fn items(&self, definition: &TokenStream, code: &TokenStream) -> TokenStream {
-        let (visibility, name) = (self.visibility, identifier(self.name));
-        let (outside, inside) = (format_ident!("__bond_graph_{}", self.name), format_ident!("{}_code", self.name));
+        // Not at the declaration, which is the struct's.
+        let (visibility, name) = (self.visibility, identifier(&self.name.text));
+        let (outside, inside) = (self.word("__bond_graph_", ""), self.word("", "_code"));
         let (parameters, parameter_struct) = (self.parameters_name(), self.parameter_struct());
         let (inputs, input_struct) = (self.inputs_name(), self.input_struct());
         let (input, input_alias) = match &input_struct {
@@ -58,7 +74,7 @@ impl Given<'_> {
             #[allow(unused_imports)]
             #visibility use #outside::{#name, #input #parameters};
 
-            #[allow(non_snake_case, unreachable_pub)]
+            #[allow(dead_code, non_snake_case, non_camel_case_types, unreachable_pub)]
             mod #outside {
                 use ::core::prelude::rust_2024::*;
 
@@ -78,19 +94,30 @@ impl Given<'_> {
         }
     }
 
+    /// The model's name with words around it.
+    fn word(&self, before: &str, after: &str) -> Ident {
+        format_ident!("{before}{}{after}", self.name.text)
+    }
+
+    /// The field of a parameter or input.
+    fn field(&self, name: &Name) -> Ident {
+        let is_word = names::field(&name.text) == name.text && name.places().len() == 1;
+        if self.stands_for_graph && is_word { declared(name) } else { identifier(&name.text) }
+    }
+
     /// The name of the parameter struct.
     fn parameters_name(&self) -> Ident {
-        format_ident!("{}{PARAMETERS}", self.name)
+        self.word("", PARAMETERS)
     }
 
     /// The name of the input struct.
     fn inputs_name(&self) -> Ident {
-        format_ident!("{}{INPUTS}", self.name)
+        self.word("", INPUTS)
     }
 
     /// What the model is generic over in the definition of its struct.
     pub(super) fn scalar(&self) -> Ident {
-        format_ident!("{}", if self.name == "S" { "T" } else { "S" })
+        format_ident!("{}", if self.name.text == "S" { "T" } else { "S" })
     }
 
     /// The fields of the structs' values that the model's struct has.
@@ -103,9 +130,9 @@ impl Given<'_> {
     /// The input struct, where there are inputs.
     fn input_struct(&self) -> Option<TokenStream> {
         let name = self.inputs_name();
-        let doc = format!("Inputs of [`{}`]: functions of time in s.", self.name);
+        let doc = format!("Inputs of [`{}`]: functions of time in s.", self.name.text);
         let fields = self.inputs.iter().map(|input| {
-            let (field, doc) = (identifier(&input.name.text), field_doc(&input.docs, &input.unit, None));
+            let (field, doc) = (self.field(&input.name), field_doc(&input.docs, &input.unit, None));
             quote! { #[doc = #doc] pub #field: ::bg_model::input::Input, }
         });
         (!self.inputs.is_empty()).then(|| {
@@ -123,12 +150,12 @@ impl Given<'_> {
 
     fn parameter_struct(&self) -> TokenStream {
         let name = self.parameters_name();
-        let doc = format!("Parameters of [`{}`], SI units.", self.name);
+        let doc = format!("Parameters of [`{}`], SI units.", self.name.text);
         let docs = self
             .parameters
             .iter()
             .map(|parameter| field_doc(&parameter.docs, &parameter.unit, Some(parameter.default)));
-        let names = self.parameter_names();
+        let names = self.parameters.iter().map(|parameter| self.field(&parameter.name));
         quote! {
             #[doc = #doc]
             #[derive(Clone, Debug, PartialEq)]

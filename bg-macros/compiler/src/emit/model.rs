@@ -20,7 +20,7 @@ mod tables;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::items::{Given, identifier};
+use super::items::{Given, declared};
 use super::{description, documentation, picture};
 use crate::pipeline::Compiled;
 use crate::program::Counts;
@@ -64,7 +64,8 @@ impl Emission<'_> {
     fn items(&self) -> TokenStream {
         let graph = &self.model.derived.causal.graph;
         let given = Given {
-            name: &graph.name.text,
+            name: &graph.name,
+            stands_for_graph: self.model.stands_for_graph(),
             visibility: &graph.visibility,
             parameters: &self.model.equations.parameters,
             inputs: &graph.inputs,
@@ -80,7 +81,7 @@ impl Emission<'_> {
 
     /// The model's struct.
     fn definition(&self, given: &Given, costs: &[(&str, Counts)], constants: &Tables) -> TokenStream {
-        let (name, scalar, fields) = (identifier(given.name), given.scalar(), given.fields());
+        let (name, scalar, fields) = (declared(given.name), given.scalar(), given.fields());
         let doc = &self.model.derived.causal.graph.docs;
         let picture = picture::text(self.model);
         let tables = documentation::tables(self.model, costs);

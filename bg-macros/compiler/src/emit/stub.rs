@@ -5,7 +5,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::items::{Given, identifier};
+use super::items::{Given, declared, identifier};
 use super::model::mechanism;
 use crate::graph::units::Dimension;
 use crate::graph::{Input, Parameter};
@@ -25,7 +25,7 @@ fn is_other(a: &Name, b: &Name) -> bool {
 
 /// The stub of one model, with the parameters that it keeps.
 fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
-    let model = &scene.map_or(&graph.name, |scene| &scene.name).text;
+    let model = scene.map_or(&graph.name, |scene| &scene.name);
     let keeps = |parameter: &str| scene.is_none_or(|scene| scene.tune.keeps(parameter));
     let mut parameters: Vec<Parameter> = Vec::new();
     let mut inputs: Vec<Input> = Vec::new();
@@ -51,8 +51,9 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
             _ => {}
         }
     }
-    let given = Given { name: model, visibility: &graph.visibility, parameters: &parameters, inputs: &inputs };
-    let (name, scalar, fields) = (identifier(model), given.scalar(), given.fields());
+    let (visibility, stands_for_graph) = (&graph.visibility, false);
+    let given = Given { name: model, stands_for_graph, visibility, parameters: &parameters, inputs: &inputs };
+    let (name, scalar, fields) = (declared(model), given.scalar(), given.fields());
     let has_inputs = !inputs.is_empty();
     let argument = has_inputs.then(|| quote!(, inputs: Inputs));
     let value = has_inputs.then(|| quote!(inputs,));

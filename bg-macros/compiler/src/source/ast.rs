@@ -3,6 +3,8 @@
 //! One tree serves both vocabularies; after `part::flatten` parts and repetitions no longer occur, after `mechanism::expand` the
 //! items of the second vocabulary.
 
+use std::fmt::{Debug, Formatter, Result};
+
 use proc_macro2::Span;
 
 use crate::source::clause::Clause;
@@ -21,6 +23,8 @@ pub struct Source {
     pub parts: Vec<Part>,
     /// The graphs in the order of declaration.
     pub graphs: Vec<Graph>,
+    /// Names that end with a dot: faults of syntax, whose statements are not there.
+    pub unfinished: Vec<Name>,
 }
 
 /// One `graph NAME { ... }`.
@@ -45,6 +49,32 @@ pub struct Name {
     pub text: String,
     /// Where it stands.
     pub span: Span,
+    /// Where each of its words stands, if it has several and somebody has written them.
+    pub words: Words,
+}
+
+impl Name {
+    /// A name without places of its words.
+    #[must_use]
+    pub fn new(text: impl Into<String>, span: Span) -> Self {
+        Self { text: text.into(), span, words: Words::default() }
+    }
+
+    /// Where each of its words stands; of a name of one word where it stands itself.
+    #[must_use]
+    pub fn places(&self) -> &[Span] {
+        if self.words.0.is_empty() { std::slice::from_ref(&self.span) } else { &self.words.0 }
+    }
+}
+
+/// Places of words. They print as nothing: two names are alike wherever they stand.
+#[derive(Clone, Default)]
+pub struct Words(pub Vec<Span>);
+
+impl Debug for Words {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        f.write_str("Words")
+    }
 }
 
 /// A statement of a graph.
@@ -807,7 +837,7 @@ pub enum ExpressionKind {
     /// A number; in a unit check it takes the unit that its place asks for.
     Number(f64),
     /// A name, possibly dotted, possibly with a component (`.x`) at the end.
-    Name(String),
+    Name(Name),
     /// `-a`
     Negate(Box<Expression>),
     /// `a + b - c` or `a * b / c`: operators that bind alike, from left to right. The first operand is neither, so that a chain

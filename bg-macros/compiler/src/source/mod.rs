@@ -13,5 +13,5 @@ pub mod print;
 mod print_part;
 pub mod scene;
 pub mod syntax;
-mod walk;
-mod words;
+pub(crate) mod walk;
+pub(crate) mod words;

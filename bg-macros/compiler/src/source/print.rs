@@ -548,7 +548,7 @@ impl Display for Expression {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match &self.kind {
             ExpressionKind::Number(value) => f.write_str(&number(*value)),
-            ExpressionKind::Name(name) => f.write_str(name),
+            ExpressionKind::Name(name) => name.fmt(f),
             ExpressionKind::Negate(operand) => {
                 // The sign of a number is part of the number, so that the minus in front of one needs parentheses.
                 let is_number = matches!(operand.kind, ExpressionKind::Number(value) if value.is_sign_positive());

@@ -56,7 +56,7 @@ pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
 impl Given<'_> {
     /// The types of the graph's other models. Stands where these are: no module inside sees items of a function's body.
     pub(in super::super) fn scenes(&self, is_literal: bool, names: &[&str]) -> TokenStream {
-        let name = identifier(self.name);
+        let name = identifier(&self.name.text);
         let count = Literal::usize_unsuffixed(names.len() + 1);
         let places = (1..=names.len()).map(Literal::usize_unsuffixed);
         let scenes = names.iter().map(|name| identifier(name));

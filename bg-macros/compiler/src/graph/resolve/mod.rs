@@ -385,7 +385,7 @@ impl Resolver {
         let span = expression.span;
         let kind = match &expression.kind {
             ExpressionKind::Number(value) => TermKind::Number(*value),
-            ExpressionKind::Name(name) => return self.named(name, span, place),
+            ExpressionKind::Name(name) => return self.named(&name.text, span, place),
             ExpressionKind::Negate(inner) => TermKind::Negate(Box::new(self.term(inner, place))),
             ExpressionKind::Chain(first, rest) => {
                 let first = Box::new(self.term(first, place));

@@ -79,7 +79,7 @@ impl Expansion<'_> {
             self.items.push(Item::Element(Element {
                 variable: law.variable.clone(),
                 displacement,
-                ..Element::new(law.kind, Name { text: element.clone(), span: law.span }, law.law.clone())
+                ..Element::new(law.kind, Name::new(element.clone(), law.span), law.law.clone())
             }));
             self.text(law.span, &format!("{label} -> {element};"));
         }
@@ -227,7 +227,7 @@ pub(super) fn stiff(clause: Clause) -> Clause {
 fn names(expression: &Expression) -> Vec<String> {
     match &expression.kind {
         ExpressionKind::Number(_) => Vec::new(),
-        ExpressionKind::Name(name) => vec![name.clone()],
+        ExpressionKind::Name(name) => vec![name.text.clone()],
         ExpressionKind::Negate(inner) => names(inner),
         ExpressionKind::Chain(first, rest) => {
             [&**first].into_iter().chain(rest.iter().map(|operation| &operation.operand)).flat_map(names).collect()

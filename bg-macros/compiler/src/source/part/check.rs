@@ -55,7 +55,7 @@ pub(super) fn alone(part: &Part, flat: Flat) -> Graph {
     let chains = flat
         .ports
         .iter()
-        .map(|port| Item::Chain(vec![Name { text: format!("{}.probe", port.text), span: port.span }, port.clone()]));
+        .map(|port| Item::Chain(vec![Name::new(format!("{}.probe", port.text), port.span), port.clone()]));
     let items = flat.items.iter().cloned().chain(ports).chain(chains).collect();
     let (docs, visibility, name) = (part.docs.clone(), part.visibility.clone(), part.name.clone());
     Graph { docs, visibility, name, items, drawing: Drawing::default() }
@@ -65,7 +65,7 @@ pub(super) fn alone(part: &Part, flat: Flat) -> Graph {
 fn probe(item: &Item, ports: &[Name]) -> Option<Item> {
     let Item::Junction(junction) = item else { return None };
     let port = ports.iter().find(|port| port.text == junction.name.text)?;
-    let name = Name { text: format!("{}.probe", port.text), span: port.span };
+    let name = Name::new(format!("{}.probe", port.text), port.span);
     Some(Item::Element(Element::new(ElementKind::Se, name, zero(junction.cardinality, port.span))))
 }
 

@@ -73,7 +73,7 @@ impl Flat {
         };
         let text = name(&output);
         self.outputs.retain(|known| name(known) != text);
-        let named = Some(Name { text, span: output.value.span });
+        let named = Some(Name::new(text, output.value.span));
         self.outputs.push(Observation { name: output.name.clone().or(named), ..output });
     }
 
@@ -96,9 +96,9 @@ fn rename(met: Met, path: &str, moved: &dyn Fn(&str) -> String) {
         Met::Named(name) | Met::Index(name) => name.text = moved(&name.text),
         Met::Value(value, variable) => each_name(value, &mut |value| {
             if let ExpressionKind::Name(name) = &mut value.kind
-                && !variable.is_some_and(|variable| is_at(name, variable))
+                && !variable.is_some_and(|variable| is_at(&name.text, variable))
             {
-                *name = moved(name);
+                name.text = moved(&name.text);
             }
         }),
     }

@@ -106,12 +106,12 @@ impl Names {
     pub fn value(&mut self, value: &mut Expression, variable: Option<&str>, faults: &mut Faults) {
         each_name(value, &mut |value| {
             let ExpressionKind::Name(name) = &value.kind else { return };
-            if variable.is_some_and(|variable| is_at(name, variable)) {
+            if variable.is_some_and(|variable| is_at(&name.text, variable)) {
                 return;
             }
-            self.check(name, value.span, faults);
-            let path = self.path(name);
-            value.kind = self.observed(&path).unwrap_or(ExpressionKind::Name(path));
+            self.check(&name.text, value.span, faults);
+            let path = Name::new(self.path(&name.text), value.span);
+            value.kind = self.observed(&path.text).unwrap_or(ExpressionKind::Name(path));
         });
     }
 
@@ -141,13 +141,13 @@ impl Names {
         let place = ["x", "y", "z"].iter().position(|letter| *letter == component)?;
         let value = &self.output(whole)?.value;
         if let ExpressionKind::Name(path) = &value.kind {
-            return Some(ExpressionKind::Name(format!("{path}.{component}")));
+            return Some(ExpressionKind::Name(Name::new(format!("{path}.{component}"), path.span)));
         }
         let span = value.span;
         let axis = std::array::from_fn::<f64, 3, _>(|k| if k == place { 1.0 } else { 0.0 });
         let axis = axis.map(|number| Expression { kind: ExpressionKind::Number(number), span });
         let axis = Expression { kind: ExpressionKind::Vector(axis.into()), span };
-        Some(ExpressionKind::Call(Name { text: "dot".to_owned(), span }, vec![axis, value.clone()]))
+        Some(ExpressionKind::Call(Name::new("dot", span), vec![axis, value.clone()]))
     }
 
     /// Faults of numbers in brackets, and of arrays without.

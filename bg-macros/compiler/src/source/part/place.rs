@@ -107,12 +107,12 @@ fn distance_words(what: &str, bound: &Bound, is_lower: bool) -> String {
 /// How far a parameter is inside of one end of its range.
 fn distance(parameter: &Parameter, bound: &Bound, is_lower: bool, clause: Clause) -> Let {
     let (name, span) = (&parameter.name, parameter.name.span);
-    let own = Expression { kind: ExpressionKind::Name(name.text.clone()), span };
+    let own = Expression { kind: ExpressionKind::Name(name.clone()), span };
     let (first, second) = if is_lower { (own, bound.value.clone()) } else { (bound.value.clone(), own) };
     let operation = Operation { operator: BinaryOperator::Subtract, span, operand: second };
     let value = Expression { kind: ExpressionKind::Chain(Box::new(first), vec![operation]), span };
     let end = if is_lower { "above_lower" } else { "below_upper" };
-    let_of(&Name { text: format!("{}.{end}", name.text), span }, &parameter.unit, &value, clause)
+    let_of(&Name::new(format!("{}.{end}", name.text), span), &parameter.unit, &value, clause)
 }
 
 /// What the range of a parameter wants of a number that is outside of it.
@@ -146,7 +146,7 @@ pub(super) fn start(items: &mut [Item], starts: Vec<Start>, faults: &mut Faults)
             faults.push(Fault::new(span, &PartFault::StartTwice { body, clause }));
             continue;
         }
-        let point = point.map(|text| Name { text, span });
+        let point = point.map(|text| Name::new(text, span));
         set(body, start, point);
     }
 }

@@ -86,10 +86,10 @@ impl Writing<'_> {
             Met::Value(value, _) => each_name(value, &mut |value| {
                 let span = value.span;
                 let ExpressionKind::Name(name) = &mut value.kind else { return };
-                match indices.iter().find(|(index, _)| index == name) {
+                match indices.iter().find(|(index, _)| *index == name.text) {
                     #[expect(clippy::cast_precision_loss, reason = "an index is a small number")]
                     Some((_, number)) => value.kind = ExpressionKind::Number(*number as f64),
-                    None => evaluate(name, span, indices, faults),
+                    None => evaluate(&mut name.text, span, indices, faults),
                 }
             }),
         });

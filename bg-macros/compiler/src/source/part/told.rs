@@ -46,6 +46,10 @@ fn plain(message: &str, uses: &[Placed]) -> String {
     parts.fold(first, |text, part| text + "[" + part.trim_start_matches(|c: char| c.is_ascii_digit()))
 }
 
+/// Where the compiler of the macro call knows no places, as in an editor, nothing is within anything.
 fn is_within(span: Span, within: Span) -> bool {
-    span.file() == within.file() && span.start() >= within.start() && span.end() <= within.end()
+    within.start() != within.end()
+        && span.file() == within.file()
+        && span.start() >= within.start()
+        && span.end() <= within.end()
 }

@@ -33,7 +33,7 @@ impl Seen<'_> {
     /// An output. The name of a part's output alone stands for it with its unit.
     fn observation(&mut self, mut observation: Observation) -> Observation {
         if let ExpressionKind::Name(name) = &observation.value.kind {
-            let path = self.names.path(name);
+            let path = self.names.path(&name.text);
             if let Some(output) = self.names.output(&path) {
                 let output = watched_at(output, observation.value.span);
                 return Observation {
@@ -123,5 +123,9 @@ fn of_element(kind: ElementKind) -> Vec<&'static str> {
 }
 
 fn observation(path: &str, span: Span) -> Observation {
-    Observation { name: None, unit: None, value: Expression { kind: ExpressionKind::Name(path.to_owned()), span } }
+    Observation {
+        name: None,
+        unit: None,
+        value: Expression { kind: ExpressionKind::Name(Name::new(path, span)), span },
+    }
 }

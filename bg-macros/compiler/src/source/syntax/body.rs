@@ -107,7 +107,7 @@ impl Cursor<'_> {
         }
         let span = self.advance();
         let zero = Expression { kind: ExpressionKind::Number(0.0), span };
-        let guess = ExpressionKind::Call(Name { text: "guess".to_owned(), span }, vec![zero]);
+        let guess = ExpressionKind::Call(Name::new("guess", span), vec![zero]);
         let component = Expression { kind: guess, span };
         Ok(Expression { kind: ExpressionKind::Vector(vec![component; 3]), span })
     }

@@ -13,7 +13,7 @@ use super::{
     token::{Token, TokenKind, joined, tokens},
 };
 use crate::fault::{Fault, Faults};
-use crate::source::ast::Name;
+use crate::source::ast::{Name, Words};
 
 /// The proof that a fault has been noted.
 #[derive(Debug)]
@@ -39,6 +39,14 @@ const BLOCKS: [&str; 17] = [
     "orifice", "tune", "without", "rigid", "part", "for",
 ];
 
+/// What is noted on the way.
+#[derive(Debug, Default)]
+pub(super) struct Noted {
+    pub faults: Faults,
+    /// Names that end with a dot.
+    pub unfinished: Vec<Name>,
+}
+
 /// A walk over one level of tokens.
 #[derive(Debug)]
 pub(super) struct Cursor<'f> {
@@ -53,7 +61,7 @@ pub(super) struct Cursor<'f> {
     pub depth: usize,
     /// The repetition that the name of the present statement asks for, `pin[i in 1..20]`.
     pub repetition: Option<Repetition>,
-    faults: &'f RefCell<Faults>,
+    noted: &'f RefCell<Noted>,
 }
 
 /// An index with the two ends of its numbers.
@@ -61,10 +69,10 @@ pub(super) type Repetition = [Name; 3];
 
 impl<'f> Cursor<'f> {
     /// A walk over the whole macro call.
-    pub fn new(stream: TokenStream, place: &'static Place, faults: &'f RefCell<Faults>) -> Self {
+    pub fn new(stream: TokenStream, place: &'static Place, noted: &'f RefCell<Noted>) -> Self {
         let tokens = tokens(stream);
         let close = tokens.last().map_or_else(Span::call_site, |last| last.span);
-        Self { tokens, at: 0, head: 0, close, place, depth: 0, repetition: None, faults }
+        Self { tokens, at: 0, head: 0, close, place, depth: 0, repetition: None, noted }
     }
 
     /// The token ahead.
@@ -174,7 +182,7 @@ impl<'f> Cursor<'f> {
                 place,
                 depth: self.depth,
                 repetition: None,
-                faults: self.faults,
+                noted: self.noted,
             },
             _ => return None,
         };
@@ -194,7 +202,7 @@ impl<'f> Cursor<'f> {
 
     /// Notes a fault at `span`.
     pub fn note(&self, span: Span, kind: &SyntaxFault) -> Reported {
-        self.faults.borrow_mut().push(Fault::new(span, kind));
+        self.noted.borrow_mut().faults.push(Fault::new(span, kind));
         Reported(())
     }
 
@@ -256,24 +264,31 @@ impl Cursor<'_> {
         if is_reserved(&first) {
             return Err(self.note(self.span(), &SyntaxFault::ReservedName { name: first }));
         }
-        Ok(Name { text: first, span: self.advance() })
+        Ok(Name::new(first, self.advance()))
     }
 
     /// The rest of a name after its first word; `is_index` says whether the group ahead has a number of the name.
     pub fn dotted(&mut self, name: &mut Name, is_index: &dyn Fn(&Self) -> bool) -> Parsed<()> {
         let mut end = name.span;
+        let mut words = vec![name.span];
+        let first = self.at;
         loop {
             if is_index(self) {
                 end = self.span();
                 name.text += &self.index()?;
             } else if self.eat(".").is_some() {
                 let Some(segment) = self.word() else {
+                    self.noted.borrow_mut().unfinished.push(Name { words: Words(words), ..name.clone() });
                     return Err(self.unexpected("a component such as `x`"));
                 };
                 name.text.push('.');
                 name.text.push_str(segment);
                 end = self.advance();
+                words.push(end);
             } else {
+                if self.at > first {
+                    name.words = Words(words);
+                }
                 name.span = joined(name.span, end);
                 return Ok(());
             }

@@ -149,7 +149,7 @@ impl Cursor<'_> {
             return Err(self.unexpected("a component such as `.x`"));
         }
         let Some(arguments) = self.enter(Delimiter::Parenthesis, &GROUP) else {
-            return self.above(0, ExpressionKind::Name(name.text), span);
+            return self.above(0, ExpressionKind::Name(name), span);
         };
         if let Some((value, function)) = name.text.rsplit_once('.') {
             let instead = format!("{function}({value})");

@@ -11,7 +11,7 @@ use proc_macro2::{Delimiter, TokenStream};
 use crate::fault::{Fault, Staged};
 use crate::source::ast::{Graph, Source};
 use crate::source::drawing::Drawing;
-use cursor::{Cursor, Parsed, Place};
+use cursor::{Cursor, Noted, Parsed, Place};
 
 mod body;
 mod cursor;
@@ -50,14 +50,16 @@ pub fn parse(tokens: TokenStream) -> Staged<Source> {
 /// without items.
 #[must_use]
 pub fn parse_leniently(tokens: TokenStream) -> (Source, Vec<Fault>) {
-    let faults = RefCell::new(Vec::new());
+    let noted = RefCell::new(Noted::default());
     let mut source = Source::default();
-    let mut call = Cursor::new(tokens, &CALL, &faults);
+    let mut call = Cursor::new(tokens, &CALL, &noted);
     call.statements(|call| declaration(call, &mut source));
-    if source.graphs.is_empty() && source.parts.is_empty() && faults.borrow().is_empty() {
+    if source.graphs.is_empty() && source.parts.is_empty() && noted.borrow().faults.is_empty() {
         call.note(call.span(), &SyntaxFault::NoGraph);
     }
-    (source, faults.into_inner())
+    let Noted { faults, unfinished } = noted.into_inner();
+    source.unfinished = unfinished;
+    (source, faults)
 }
 
 /// `pub graph NAME { ... }`, `pub part NAME { ... }`

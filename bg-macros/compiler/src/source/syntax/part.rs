@@ -111,7 +111,7 @@ impl Cursor<'_> {
             text.push_str(&word);
             let end = self.advance();
             if !self.is("::") {
-                let name = Name { text, span: joined(start, end) };
+                let name = Name::new(text, joined(start, end));
                 return Ok(PartPath { name, written: Written(tokens) });
             }
         }
@@ -231,7 +231,7 @@ impl Cursor<'_> {
             self.advance();
             words.extend([operator.to_owned(), self.factor()?]);
         }
-        Ok(Name { text: words.join(" "), span: joined(start, self.last_span()) })
+        Ok(Name::new(words.join(" "), joined(start, self.last_span())))
     }
 
     /// `20` or `i`

@@ -44,7 +44,7 @@ impl Cursor<'_> {
         let Some(text) = self.word().map(str::to_owned) else { return Err(self.not_a_unit()) };
         let span = self.advance();
         let exponent = if self.eat("^").is_some() { self.unit_exponent()? } else { 1 };
-        Ok((Name { text, span }, sign * exponent))
+        Ok((Name::new(text, span), sign * exponent))
     }
 
     /// `2`, `-1`

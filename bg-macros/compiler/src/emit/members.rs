@@ -1,0 +1,153 @@
+//! What the names of things have after their dot, as an editor shows it.
+//!
+//! In: an item's kind. Out: its quantities with shape, unit and meaning: those of the language's reference. A test compiles
+//! a graph that observes each of them.
+
+use crate::source::ast::{ElementKind, Item, Joint, JointKind, JunctionKind};
+
+/// The shape of a quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    Scalar,
+    Vector,
+    Matrix,
+    /// As many components as the bond has.
+    OfBond,
+}
+
+/// A quantity: its name, shape and meaning.
+pub(super) type Member = (&'static str, Shape, &'static str);
+
+use Shape::{Matrix, OfBond, Scalar, Vector};
+
+/// Of a point of a body.
+pub(super) const POINT: [Member; 3] = [
+    ("position", Vector, "Place, inertial axes. Unit: m."),
+    ("velocity", Vector, "Velocity, inertial axes. Unit: m/s."),
+    ("arm", Vector, "From the centre of mass to the point, inertial axes. Unit: m."),
+];
+
+const BODY: [Member; 16] = [
+    ("position", Vector, "Place of the centre of mass, inertial axes. Unit: m."),
+    ("velocity", Vector, "Velocity of the centre of mass, inertial axes. Unit: m/s."),
+    ("orientation", Matrix, "Rotation matrix, body to inertial."),
+    ("x_axis", Vector, "The body's x axis, inertial axes."),
+    ("y_axis", Vector, "The body's y axis, inertial axes."),
+    ("z_axis", Vector, "The body's z axis, inertial axes."),
+    ("angular_velocity", Vector, "Angular velocity, inertial axes. Unit: rad/s."),
+    ("angle", Scalar, "Angle of the body's x axis about the inertial z, -pi to pi. Unit: rad."),
+    ("momentum", Vector, "Momentum, inertial axes. Unit: kg*m/s."),
+    ("angular_momentum", Vector, "Angular momentum about the centre of mass, inertial axes. Unit: kg*m^2/s."),
+    ("p", Vector, "Momentum, inertial axes. Unit: kg*m/s."),
+    ("h", Vector, "Angular momentum about the centre of mass, inertial axes. Unit: kg*m^2/s."),
+    ("kinetic_energy", Scalar, "Kinetic energy. Unit: J."),
+    ("mass", Scalar, "Mass. Unit: kg."),
+    ("center", Vector, "Centre of mass, the body's axes. Unit: m."),
+    ("tensor", Matrix, "Inertia about the centre of mass, the body's axes. Unit: kg*m^2."),
+];
+
+const FORCE: Member = ("force", Vector, "Force on the second body, inertial axes. Unit: N.");
+const GAP: Member = ("gap", Vector, "Second end minus first end, inertial axes. Unit: m.");
+const EFFORT: Member = ("effort", OfBond, "Effort of its bond, sign along the half arrow.");
+const FLOW: Member = ("flow", OfBond, "Flow of its bond, sign along the half arrow.");
+const POWER: Member = ("power", Scalar, "Power into it. Unit: W.");
+
+/// What there is after the item's name and a dot.
+pub(super) fn of(item: &Item) -> Vec<Member> {
+    match item {
+        Item::Body(_) => BODY.to_vec(),
+        Item::Joint(joint) => of_joint(joint),
+        Item::Spring(_) => vec![
+            ("force", Vector, "Force on the second end, inertial axes. Unit: N."),
+            ("distance", Scalar, "Distance of the two ends. Unit: m."),
+        ],
+        Item::Contact(_) => vec![FORCE, GAP, ("speed", Scalar, "Speed along the line. Unit: m/s.")],
+        Item::Drive(_) => vec![("power", Scalar, "Minus the power that it gives. Unit: W.")],
+        Item::Friction(_) => vec![EFFORT, POWER],
+        Item::Stop(_) => vec![EFFORT],
+        Item::Junction(junction) if junction.kind == JunctionKind::One => vec![FLOW],
+        Item::Junction(_) => vec![EFFORT],
+        Item::Element(element) => of_element(element.kind),
+        _ => Vec::new(),
+    }
+}
+
+fn of_joint(joint: &Joint) -> Vec<Member> {
+    let mut members = vec![FORCE];
+    if joint.kind != JointKind::Spherical {
+        members.push(("moment", Vector, "Moment on the second body, inertial axes. Unit: N*m."));
+    }
+    members.push(GAP);
+    if joint.kind.spin().is_some() {
+        members.push(("angle", Scalar, "Angle of the free rotation. Unit: rad."));
+        members.push(("speed", Scalar, "Speed of the free rotation. Unit: rad/s."));
+    }
+    if joint.kind.slide().is_some() {
+        members.push(("travel", Scalar, "Way of the free translation. Unit: m."));
+    }
+    members
+}
+
+fn of_element(kind: ElementKind) -> Vec<Member> {
+    let stored = match kind {
+        ElementKind::I => Some(("p", OfBond, "Momentum: the state of an I.")),
+        ElementKind::C => Some(("q", OfBond, "Displacement: the state of a C.")),
+        _ => None,
+    };
+    let energy = stored.map(|_| ("energy", Scalar, "Stored energy. Unit: J."));
+    [EFFORT, FLOW, POWER].into_iter().chain(stored).chain(energy).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::syntax::parse;
+    use crate::source::walk::{Met, walk};
+
+    /// A graph with each kind of thing that has members.
+    const GRAPH: &str = "
+        param soft: m/N = 1; param stiff: N*m = 1;
+        ground { point O = [0, 0, 0]; point P = [1, 0, 0]; }
+        body a { mass 1; inertia [1, 1, 1]; point end = [1, 0, 0]; }
+        body b { mass 1; inertia [1, 1, 1]; }
+        body c { mass 1; inertia [1, 1, 1]; }
+        body d { mass 1; inertia [1, 1, 1]; }
+        body e { mass 1; inertia [1, 1, 1]; }
+        body f { mass 1; inertia [1, 1, 1]; }
+        joint revolute: revolute z (ground.O -> a) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
+        joint prismatic: prismatic x (ground.O -> b) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
+        joint ball: spherical (ground.O -> c) { stiffness 1; damping 1; }
+        joint cylindrical: cylindrical x (ground.O -> d) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
+        joint cross: universal x y (ground.O -> e) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
+        joint weld: fixed (ground.O -> f) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
+        spring coil (ground.P -> a.end) { stiffness 1; damping 1; length 0.1; }
+        contact edge (a.end -> b along x) { y: C = soft, R = 1; }
+        drive motor on revolute torque = 1;
+        friction rub on prismatic { coulomb 1; }
+        stop end on prismatic { at most 1; stiffness 1; }
+        1 shaft: rotation; I wheel = 1; R loss = 1; C twist(q) = stiff * q; 0 twisted: rotation; I second = 1; 1 far: rotation;
+        shaft -> wheel; shaft -> loss; shaft -> twisted -> far; twisted -> twist; far -> second;";
+
+    #[test]
+    fn each_member_can_be_observed() {
+        let source = parse(format!("graph G {{ {GRAPH} }}").parse().expect("tokens")).expect("a graph");
+        let mut paths = vec!["a.end.position".to_owned(), "a.end.velocity".to_owned(), "a.end.arm".to_owned()];
+        assert_eq!(POINT.map(|(name, ..)| format!("a.end.{name}")).to_vec(), paths);
+        for item in &source.graphs[0].items {
+            walk(&mut item.clone(), &mut |met| {
+                if let Met::Declared(name) = met {
+                    paths.extend(of(item).iter().map(|(member, shape, _)| {
+                        // A component of each vector, so that its shape is seen.
+                        let component = if *shape == Vector { ".z" } else { "" };
+                        format!("{name}.{member}{component}")
+                    }));
+                }
+            });
+        }
+        assert!(paths.len() > 150, "{paths:?}");
+        let text = format!("graph G {{ {GRAPH} observe {{ {} }} }}", paths.join("; "));
+        let faults = parse(text.parse().expect("tokens")).and_then(|source| crate::pipeline::models(&source)).err();
+        let faults: Vec<String> = faults.into_iter().flatten().map(|fault| fault.to_string()).collect();
+        assert!(faults.is_empty(), "{}", faults.join("\n"));
+    }
+}
