@@ -17,7 +17,7 @@ fn value(slot: usize) -> Ident {
 /// steps, 80 s for 9400.
 const UNROLLED: usize = 2000;
 
-fn is_unrolled(elimination: &Elimination) -> bool {
+pub(super) fn is_unrolled(elimination: &Elimination) -> bool {
     elimination.factorisation.len() <= UNROLLED
 }
 

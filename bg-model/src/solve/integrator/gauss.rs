@@ -18,7 +18,7 @@ const LOST: f64 = 1e-3;
 /// [`Samples::Steps`](crate::simulation::Samples::Steps), or instants that are ends of steps.
 #[derive(Clone, Debug)]
 pub struct Gauss6<const N: usize> {
-    core: Collocation<N, 3, 1>,
+    pub(super) core: Collocation<N, 3, 1>,
     control: StepControl,
     /// What corrections of a fixed step are measured by: it has no tolerances.
     own: Scale<N>,

@@ -47,6 +47,7 @@ pub use rosenbrock::{Rodas5p, Ros2};
 pub use taylor::Taylor;
 pub(crate) use tolerances::rounding;
 pub use tolerances::{Absolute, Scale, Tolerances};
+pub(crate) use vectors::rate_in;
 
 /// A smooth flow: a system with its switches frozen. Only the rate has to be written; capabilities are those of a system
 /// without switches.

@@ -12,7 +12,7 @@ use super::{Flow, Method, Point, Scale, StepControl};
 /// Radau IIA with `S` stages and `P` = (S - 1) / 2 complex systems in each correction.
 #[derive(Clone, Debug)]
 pub struct Radau<const N: usize, const S: usize, const P: usize> {
-    core: Collocation<N, S, P>,
+    pub(super) core: Collocation<N, S, P>,
 }
 
 /// Radau IIA of order 5.

@@ -9,9 +9,11 @@
 //! needs no derivative: its error estimate makes it short.
 
 use nalgebra::SVector;
+use pulp::Arch;
 
 use super::carry::Carry;
 use super::tolerances::{index_of_largest, largest};
+use super::vectors::{Vectorised, attempt_in, rate_in};
 use super::{Bs5, Flow, Method, Point, Scale, StepControl, first_not_finite, is_finite};
 use crate::model::capability::Series;
 
@@ -36,6 +38,8 @@ pub struct Taylor<const N: usize> {
     /// The method that makes the step where the series is not of numbers, and whether it does.
     other: Bs5<N>,
     is_by_other: bool,
+    /// The machine's vectors.
+    pub(super) arch: Arch,
 }
 
 impl<const N: usize> Taylor<N> {
@@ -51,6 +55,7 @@ impl<const N: usize> Taylor<N> {
             carry: Carry::new(),
             other: Bs5::new(),
             is_by_other: false,
+            arch: Arch::new(),
         }
     }
 
@@ -67,6 +72,7 @@ impl<const N: usize> Taylor<N> {
 
     /// Expands the flow from `start` to the order that `relative` calls for, with the unit of time `h` (s). Without a
     /// series, which the driver refuses, the other method makes the step.
+    #[inline(always)]
     fn expand(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, relative: f64) {
         let series = flow.series();
         self.is_current = true;
@@ -124,6 +130,59 @@ impl<const N: usize> Default for Taylor<N> {
     }
 }
 
+/// Of a step that the other method makes, the norm is none.
+impl<const N: usize> Vectorised<N> for Taylor<N> {
+    #[inline(always)]
+    fn attempt_inlined(
+        &mut self,
+        flow: &impl Flow<N>,
+        start: &Point<N>,
+        h: f64,
+        scale: &Scale<N>,
+        end: &mut SVector<f64, N>,
+    ) -> f64 {
+        if !self.is_current {
+            self.expand(flow, start, h, scale.relative);
+        }
+        if self.is_by_other {
+            return f64::NAN;
+        }
+        let theta = h / self.unit;
+        let (change, slope) = self.sums(theta);
+        let mut weights = [0.0; N];
+        for i in 0..N {
+            let from = start.x.data.0[0][i];
+            let to = self.carry.add(i, from, change[i]);
+            end.data.0[0][i] = to;
+            weights[i] = 1.0 / scale.allowed(i, from, to);
+        }
+        // A coefficient that is no number leaves none at the end, so a step of numbers costs no more than this look.
+        if !is_finite(end) && self.series.iter().any(|coefficients| !is_finite(coefficients)) {
+            self.is_by_other = true;
+            return f64::NAN;
+        }
+        let order = self.order();
+        let (last, before) = (self.term(order, theta, &weights), self.term(order - 1, theta, &weights));
+        // The power only matters where the term before the last is larger.
+        let norm = if before > last {
+            let before = libm::pow(before, order as f64 / (order - 1) as f64);
+            if before > last { before } else { last }
+        } else {
+            last
+        };
+        if norm > 1.0 || norm.is_nan() {
+            return norm;
+        }
+        let mut rate = SVector::zeros();
+        rate_in(self.arch, flow, start.t + h, end, &mut rate);
+        let unit = self.unit;
+        let defect = theta
+            * largest::<N>(&std::array::from_fn(|i| ((unit * rate.data.0[0][i] - slope[i]) * weights[i]).abs()))
+            / slack(scale.relative);
+        if defect > 1.0 { defect } else { norm }
+    }
+}
+
 impl<const N: usize> Method<N> for Taylor<N> {
     fn name(&self) -> &'static str {
         "Taylor"
@@ -148,45 +207,8 @@ impl<const N: usize> Method<N> for Taylor<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        if !self.is_current {
-            self.expand(flow, start, h, scale.relative);
-        }
-        if self.is_by_other {
-            return self.other.attempt(flow, start, h, scale, end);
-        }
-        let theta = h / self.unit;
-        let (change, slope) = self.sums(theta);
-        let mut weights = [0.0; N];
-        for i in 0..N {
-            let from = start.x.data.0[0][i];
-            let to = self.carry.add(i, from, change[i]);
-            end.data.0[0][i] = to;
-            weights[i] = 1.0 / scale.allowed(i, from, to);
-        }
-        // A coefficient that is no number leaves none at the end, so a step of numbers costs no more than this look.
-        if !is_finite(end) && self.series.iter().any(|coefficients| !is_finite(coefficients)) {
-            self.is_by_other = true;
-            return self.other.attempt(flow, start, h, scale, end);
-        }
-        let order = self.order();
-        let (last, before) = (self.term(order, theta, &weights), self.term(order - 1, theta, &weights));
-        // The power only matters where the term before the last is larger.
-        let norm = if before > last {
-            let before = libm::pow(before, order as f64 / (order - 1) as f64);
-            if before > last { before } else { last }
-        } else {
-            last
-        };
-        if norm > 1.0 || norm.is_nan() {
-            return norm;
-        }
-        let mut rate = SVector::zeros();
-        flow.rate(start.t + h, end, &mut rate);
-        let unit = self.unit;
-        let defect = theta
-            * largest::<N>(&std::array::from_fn(|i| ((unit * rate.data.0[0][i] - slope[i]) * weights[i]).abs()))
-            / slack(scale.relative);
-        if defect > 1.0 { defect } else { norm }
+        let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
+        if self.is_by_other { self.other.attempt(flow, start, h, scale, end) } else { norm }
     }
 
     fn advance(&mut self) {

@@ -99,6 +99,7 @@ where
         self.system.second_order().map(|second_order| self.of(second_order))
     }
 
+    #[inline(always)]
     fn series(&self) -> Option<impl Series<f64, N, 0>> {
         self.system.series().map(|series| self.of(series))
     }
@@ -138,6 +139,7 @@ where
         self.system.width()
     }
 
+    #[inline(always)]
     fn expand(&self, t: f64, h: f64, _: &[bool; 0], rows: &mut [f64], series: &mut [SVector<f64, N>]) {
         count(self.counters.series_orders, (series.len() - 1) as u64);
         self.system.expand(t, h, self.negative, rows, series);

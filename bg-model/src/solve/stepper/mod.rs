@@ -3,10 +3,11 @@
 mod frozen;
 
 use nalgebra::SVector;
+use pulp::Arch;
 
 use crate::model::origin::Origin;
 use crate::model::system::System;
-use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_finite};
+use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_finite, rate_in};
 use crate::solve::statistics::Statistics;
 use frozen::Frozen;
 
@@ -29,6 +30,8 @@ pub(crate) struct Stepper<'a, Sys, M, const N: usize, const G: usize> {
     /// The size of the last attempt, s. More precise than the difference of the two times.
     pub h: f64,
     dense_is_ready: bool,
+    /// The machine's vectors.
+    arch: Arch,
 }
 
 impl<'a, Sys, M, const N: usize, const G: usize> Stepper<'a, Sys, M, N, G>
@@ -39,7 +42,8 @@ where
     pub fn new(system: &'a Sys, method: &'a mut M, scale: Scale<N>, start: Point<N>) -> Self {
         let statistics = Statistics::default();
         let negative = [false; G];
-        Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false }
+        let arch = Arch::new();
+        Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false, arch }
     }
 
     /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
@@ -94,9 +98,10 @@ where
 
     /// Evaluates the rate at the end of the step.
     pub fn evaluate_end(&mut self) {
+        let arch = self.arch;
         let (_, flow, _, end, _) = self.split();
         let Point { t, x, rate } = end;
-        flow.rate(*t, x, rate);
+        rate_in(arch, &flow, *t, x, rate);
     }
 
     /// Evaluates the rate at the start of the step, whose branches may be new.

@@ -123,7 +123,7 @@ impl Emission<'_> {
                 fn width(&self) -> usize {
                     #width
                 }
-                #[inline(never)]
+                #[cfg_attr(not(debug_assertions), inline(always))]
                 fn expand(&self, t: S, h: S, negative: &[bool; #g], rows: &mut [S], series: &mut [SVector<S, #n>]) {
                     #expansion
                 }

@@ -72,18 +72,24 @@ impl Emission<'_> {
         let (count, slots) = (self.model.jacobian.entries.len(), plan.slots);
         let (factorisation, substitution) =
             (elimination::factorisation(plan), elimination::substitution(plan, self.model.equations.states.len()));
+        // Unrolled, it is compiled for each of the vectors that a step may take; a table of steps gains nothing by that.
+        let inline = if elimination::is_unrolled(plan) {
+            quote!(#[cfg_attr(not(debug_assertions), inline(always))])
+        } else {
+            quote!(#[inline(never)])
+        };
         quote! {
             impl<S: Scalar> ::bg_model::capability::Elimination<S, #n> for Model<S> {
                 fn factors(&self) -> usize {
                     #slots
                 }
-                #[inline(never)]
+                #inline
                 fn eliminate<F: ::bg_model::linear::Field<S>>(&self, c: F, entries: &[S], factors: &mut [F]) -> bool {
                     let entries: &[S; #count] = entries.try_into().expect("one entry for each place");
                     let factors: &mut [F; #slots] = factors.try_into().expect("as many factors as are eliminated");
                     #factorisation
                 }
-                #[inline(never)]
+                #inline
                 fn substitute<F: ::bg_model::linear::Field<S>>(&self, factors: &[F], b: &mut [F; #n]) {
                     let factors: &[F; #slots] = factors.try_into().expect("as many factors as are eliminated");
                     #substitution

@@ -15,11 +15,13 @@ mod radau9;
 mod tableau;
 
 use nalgebra::{Complex, SVector};
+use pulp::Arch;
 
 use self::newton::{Convergence, Goal};
 pub(super) use self::radau9::RADAU9;
 pub(super) use self::tableau::{GAUSS6, RADAU5, Tableau};
 use super::tolerances::{index_of_largest, largest};
+use super::vectors::rate_in;
 use super::{Flow, Point, Scale, first_not_finite};
 use crate::solve::integrator::linear::{Factors, Jacobian};
 
@@ -65,6 +67,8 @@ pub(super) struct Collocation<const N: usize, const S: usize, const P: usize> {
     /// in `radau5.f` the second holds for these factors only: one from a tiny step would end the next iteration at once.
     contraction: f64,
     remainder: f64,
+    /// The machine's vectors.
+    pub arch: Arch,
 }
 
 impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
@@ -88,6 +92,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
             complex: std::array::from_fn(|_| Factors::new()),
             contraction: 0.0,
             remainder: 1.0,
+            arch: Arch::new(),
         }
     }
 
@@ -147,10 +152,10 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
             return true;
         }
         let tableau = self.tableau;
-        let mut is_regular = self.real.factor(flow, h * tableau.real.value, &self.jacobian);
+        let mut is_regular = self.real.factor(self.arch, flow, h * tableau.real.value, &self.jacobian);
         for (factors, mode) in self.complex.iter_mut().zip(&tableau.pairs) {
             let [re, im] = mode.value;
-            is_regular = is_regular && factors.factor(flow, Complex::new(h * re, h * im), &self.jacobian);
+            is_regular = is_regular && factors.factor(self.arch, flow, Complex::new(h * re, h * im), &self.jacobian);
         }
         self.factored = if is_regular { h } else { 0.0 };
         self.remainder = 1.0;
@@ -174,7 +179,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         let mut norm = self.filtered_defect(flow, start, h, scale, end, &start.rate);
         if norm > 1.0 && is_doubtful {
             let mut rate = SVector::zeros();
-            flow.rate(start.t, &(start.x + self.error), &mut rate);
+            rate_in(self.arch, flow, start.t, &(start.x + self.error), &mut rate);
             norm = self.filtered_defect(flow, start, h, scale, end, &rate);
         }
         norm
@@ -198,7 +203,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
             }
             *defect = real.value * (h * rate.data.0[0][i] - sum);
         }
-        self.real.solve(flow, &mut defect);
+        self.real.solve(self.arch, flow, &mut defect);
         self.error = SVector::from(defect);
         if !super::is_finite(&self.error) {
             return f64::NAN;

@@ -6,9 +6,11 @@
 //! and their constants are those of `radau5.f`.
 
 use nalgebra::{Complex, SVector};
+use pulp::NullaryFnOnce;
 
 use super::{Collocation, KEEP};
 use crate::solve::integrator::tolerances::largest;
+use crate::solve::integrator::vectors::rate_in;
 use crate::solve::integrator::{Flow, Point, Scale, is_finite};
 
 /// Corrections that shrink by less do not converge.
@@ -40,6 +42,24 @@ fn allowance(relative: f64) -> f64 {
     let loosest = if relative < 9e-4 { relative.sqrt() } else { 0.03 };
     let tightest = 10.0 * f64::EPSILON / relative;
     if loosest > tightest { loosest } else { tightest }
+}
+
+struct Correction<'a, F, const N: usize, const S: usize, const P: usize> {
+    core: &'a mut Collocation<N, S, P>,
+    flow: &'a F,
+    start: &'a Point<N>,
+    h: f64,
+    scale: &'a Scale<N>,
+}
+
+impl<F: Flow<N>, const N: usize, const S: usize, const P: usize> NullaryFnOnce for Correction<'_, F, N, S, P> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let Self { core, flow, start, h, scale } = self;
+        core.correct_inlined(flow, start, h, scale)
+    }
 }
 
 impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
@@ -103,7 +123,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
             for (i, x) in x.iter_mut().enumerate() {
                 *x = start.x.data.0[0][i] + self.z[j].data.0[0][i];
             }
-            flow.rate(start.t + c * h, &SVector::from(x), &mut self.f[j]);
+            rate_in(self.arch, flow, start.t + c * h, &SVector::from(x), &mut self.f[j]);
             if !is_finite(&self.f[j]) {
                 return false;
             }
@@ -113,6 +133,12 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
 
     /// Corrects the increments once. Gives the norm of the correction.
     fn correct(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
+        let arch = self.arch;
+        arch.dispatch(Correction { core: self, flow, start, h, scale })
+    }
+
+    #[inline(always)]
+    fn correct_inlined(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
         let tableau = self.tableau;
         let mut real = [0.0; N];
         let mut complex = [[Complex::new(0.0, 0.0); N]; P];
@@ -124,9 +150,9 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
                 complex[i] = Complex::new(dot(&mode.left[0], &residual), dot(&mode.left[1], &residual));
             }
         }
-        self.real.solve(flow, &mut real);
+        self.real.solve(self.arch, flow, &mut real);
         for (factors, complex) in self.complex.iter().zip(&mut complex) {
-            factors.solve(flow, complex);
+            factors.solve(self.arch, flow, complex);
         }
         let mut sizes = [0.0; N];
         for i in 0..N {

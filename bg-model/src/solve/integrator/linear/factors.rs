@@ -3,11 +3,14 @@
 //! In: a flow and its Jacobian. Out: factors made by the flow's own elimination where it has one and no pivot is too small,
 //! else by the dense one.
 
+use pulp::Arch;
+
 use super::Jacobian;
 use super::dense::Dense;
 use crate::model::capability::Elimination;
 use crate::model::linear::{Field, Sparsity};
 use crate::solve::integrator::Flow;
+use crate::solve::integrator::vectors::{eliminate_in, substitute_in};
 
 /// Factors of I - c J.
 #[derive(Clone, Debug)]
@@ -23,10 +26,10 @@ impl<F: Field<f64>, const N: usize> Factors<F, N> {
         Self { sparse: Vec::new(), dense: None, is_dense: false }
     }
 
-    /// Factors I - `c` J. Gives whether the matrix is regular.
-    pub fn factor(&mut self, flow: &impl Flow<N>, c: F, jacobian: &Jacobian<N>) -> bool {
+    /// Factors I - `c` J in the vectors `arch`. Gives whether the matrix is regular.
+    pub fn factor(&mut self, arch: Arch, flow: &impl Flow<N>, c: F, jacobian: &Jacobian<N>) -> bool {
         let elimination = flow.elimination().filter(|_| !jacobian.is_replaced);
-        self.is_dense = !elimination.is_some_and(|elimination| self.eliminate(elimination, c, jacobian));
+        self.is_dense = !elimination.is_some_and(|elimination| self.eliminate(arch, elimination, c, jacobian));
         flow.count_factorisation(self.is_dense && elimination.is_some());
         if !self.is_dense {
             return true;
@@ -36,17 +39,17 @@ impl<F: Field<f64>, const N: usize> Factors<F, N> {
     }
 
     /// Factors I - `c` J along the planned order. Gives whether no pivot is too small.
-    fn eliminate(&mut self, elimination: &impl Elimination<f64, N>, c: F, jacobian: &Jacobian<N>) -> bool {
+    fn eliminate(&mut self, arch: Arch, elimination: &impl Elimination<f64, N>, c: F, jacobian: &Jacobian<N>) -> bool {
         self.sparse.resize(elimination.factors(), F::real(0.0));
-        elimination.eliminate(c, &jacobian.entries, &mut self.sparse)
+        eliminate_in(arch, elimination, c, &jacobian.entries, &mut self.sparse)
     }
 
-    /// Replaces `b` by the solution y of (I - c J) y = b. To be called after [`Factors::factor`].
-    pub fn solve(&self, flow: &impl Flow<N>, b: &mut [F; N]) {
+    /// Replaces `b` by the solution y of (I - c J) y = b, in the vectors `arch`. To be called after [`Factors::factor`].
+    pub fn solve(&self, arch: Arch, flow: &impl Flow<N>, b: &mut [F; N]) {
         if let Some(dense) = self.dense.as_ref().filter(|_| self.is_dense) {
             dense.solve(b);
         } else if let Some(elimination) = flow.elimination() {
-            elimination.substitute(&self.sparse, b);
+            substitute_in(arch, elimination, &self.sparse, b);
         }
     }
 }

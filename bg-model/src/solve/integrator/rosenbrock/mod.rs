@@ -7,6 +7,7 @@ mod step;
 mod tableau;
 
 use nalgebra::SVector;
+use pulp::Arch;
 
 use super::tolerances::index_of_largest;
 use super::{Flow, Method, Point, Scale, StepControl, hermite};
@@ -20,13 +21,15 @@ pub struct Rodas5p<const N: usize> {
     stages: Stages<8, N>,
     /// The dense output's coefficients.
     dense: [SVector<f64, N>; 3],
+    /// The machine's vectors.
+    pub(super) arch: Arch,
 }
 
 impl<const N: usize> Rodas5p<N> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        Self { stages: Stages::new(), dense: [SVector::zeros(); 3] }
+        Self { stages: Stages::new(), dense: [SVector::zeros(); 3], arch: Arch::new() }
     }
 }
 
@@ -53,7 +56,7 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        match self.stages.evaluate(&RODAS5P, flow, start, h, scale) {
+        match self.stages.evaluate(self.arch, &RODAS5P, flow, start, h, scale) {
             None => f64::INFINITY,
             Some(false) => f64::NAN,
             Some(true) => {
@@ -104,13 +107,15 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
 pub struct Ros2<const N: usize> {
     step: f64,
     stages: Stages<2, N>,
+    /// The machine's vectors.
+    pub(super) arch: Arch,
 }
 
 impl<const N: usize> Ros2<N> {
     /// The method with steps of `step` (s); the driver refuses a step that is not positive and finite.
     #[must_use]
     pub fn new(step: f64) -> Self {
-        Self { step, stages: Stages::new() }
+        Self { step, stages: Stages::new(), arch: Arch::new() }
     }
 }
 
@@ -131,7 +136,7 @@ impl<const N: usize> Method<N> for Ros2<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        if self.stages.evaluate(&ROS2, flow, start, h, scale) != Some(true) {
+        if self.stages.evaluate(self.arch, &ROS2, flow, start, h, scale) != Some(true) {
             return f64::NAN;
         }
         *end = self.stages.end(&ROS2, start);

@@ -4,6 +4,7 @@
 //! `tableau`. The equations are multiplied by h gamma, so that the matrix is I - h gamma J.
 
 use nalgebra::SVector;
+use pulp::Arch;
 
 use super::tableau::Tableau;
 use crate::solve::integrator::linear::{Factors, Jacobian};
@@ -34,10 +35,11 @@ impl<const S: usize, const N: usize> Stages<S, N> {
         self.is_current = false;
     }
 
-    /// Evaluates all stages; gives whether they are numbers, or nothing where the matrix is singular or a derivative is no
+    /// Evaluates all stages, linear systems in the vectors `arch`; gives whether they are numbers, or nothing where the matrix is singular or a derivative is no
     /// number.
     pub fn evaluate(
         &mut self,
+        arch: Arch,
         tableau: &Tableau<S>,
         flow: &impl Flow<N>,
         start: &Point<N>,
@@ -53,7 +55,7 @@ impl<const S: usize, const N: usize> Stages<S, N> {
             return None;
         }
         let hg = h * tableau.gamma;
-        if !self.factors.factor(flow, hg, &self.jacobian) {
+        if !self.factors.factor(arch, flow, hg, &self.jacobian) {
             return None;
         }
         let mut rate = start.rate;
@@ -73,7 +75,7 @@ impl<const S: usize, const N: usize> Stages<S, N> {
                 b.data.0[0][n] = hg * (rate.data.0[0][n] + slope * self.jacobian.slope.data.0[0][n]);
             }
             add(&mut b, &tableau.cc[i][..i], &self.u, tableau.gamma);
-            self.factors.solve(flow, &mut b.data.0[0]);
+            self.factors.solve(arch, flow, &mut b.data.0[0]);
             self.u[i] = b;
         }
         Some(true)
