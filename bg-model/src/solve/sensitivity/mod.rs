@@ -44,7 +44,9 @@ use crate::model::description::Description;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::GradientIn;
-use crate::model::scalar::slopes::{self, Everywhere, Slopes, WIDTH};
+#[cfg(target_arch = "x86_64")]
+use crate::model::scalar::slopes::Avx2;
+use crate::model::scalar::slopes::{Everywhere, Slopes, WIDTH};
 use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
@@ -52,8 +54,8 @@ use crate::solve::simulation::{Observer, Switching};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
 
-/// The part of a parameter's value by which it is thought to change. Of more the error estimates would ask for shorter steps than
-/// the run's where stability limits these, and the errors of the slopes would be those of the run's steps all the same.
+/// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
+/// the slopes would no longer be the derivatives of these.
 const PART: f64 = 1.0 / 1024.0;
 
 /// What a run is differentiated by.
@@ -147,8 +149,8 @@ pub fn sensitivities<Me: Mechanism>(
     let values = (0..Me::Parameters::table().len()).map(|index| parameters.value(index)).collect();
     let following = Following { request, directions, values };
     #[cfg(target_arch = "x86_64")]
-    if slopes::Avx2::is_at_hand() {
-        return model.visit_lifted::<GradientIn<slopes::Avx2>, _>(following);
+    if Avx2::is_at_hand() {
+        return model.visit_lifted::<GradientIn<Avx2>, _>(following);
     }
     model.visit_lifted::<GradientIn<Everywhere>, _>(following)
 }
