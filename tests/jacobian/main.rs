@@ -2,7 +2,7 @@
 //!
 //! The derivatives are compared with those that dual numbers give of the same rate, column by column and along time, in
 //! both branches of every switch; a place outside the pattern must have none. The second derivatives are compared with those
-//! along the flow. The solutions are put back into the system.
+//! along the flow. The solutions are put back into the system. The rate that other numbers are given is that of `f64`.
 
 use bg_model::bond_graph;
 use bg_model::capability::{Elimination, Linearised, SecondOrder};
@@ -80,6 +80,10 @@ where
     A: System<f64, N, G>,
     B: System<Dual, N, G>,
 {
+    let (mut rate, mut inlined) = (SVector::zeros(), SVector::zeros());
+    model.rate(t, x, negative, &mut rate);
+    model.always_inlined_rate(t, x, negative, &mut inlined);
+    assert_eq!(rate, inlined, "the rate without pairs at {x:?}");
     let (_, found, slope) = jacobian(model, t, x, negative);
     let expected = differentiated(twin, t, x, negative);
     let opposite = differentiated(twin, t, x, &negative.map(|is_negative| !is_negative));

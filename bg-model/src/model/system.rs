@@ -31,6 +31,13 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         self.rate(t, x, negative, dx);
     }
 
+    /// As [`System::rate`], inlined whatever its length: where numbers are vectors of a machine that not every build is for, its
+    /// operations are calls elsewhere. By default as [`System::inlined_rate`].
+    #[inline(always)]
+    fn always_inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
+        self.inlined_rate(t, x, negative, dx);
+    }
+
     /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
     fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _guards: &mut SVector<S, G>) {}
 
@@ -45,6 +52,12 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before the rate at the
     /// new state is evaluated, and for each sample inside a step.
     fn project(&self, _t: S, _negative: &[bool; G], _x: &mut SVector<S, N>) {}
+
+    /// As [`System::project`], inlined as [`System::always_inlined_rate`] is. By default there is no difference.
+    #[inline(always)]
+    fn inlined_project(&self, t: S, negative: &[bool; G], x: &mut SVector<S, N>) {
+        self.project(t, negative, x);
+    }
 
     /// The first instant after `t` (s) at which a step must end, because the rate follows another law from there on: a kink
     /// of an input. The rate is continuous there. Infinity, as by default, where there is none.

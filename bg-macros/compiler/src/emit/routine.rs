@@ -69,6 +69,10 @@ pub fn operation(operation: &Operation, names: &Names, token: &dyn Fn(&Operand) 
     match operation {
         Operation::Add(left, right) => binary(token(left), quote! { + }, token(right)),
         Operation::Subtract(left, right) => binary(token(left), quote! { - }, token(right)),
+        Operation::Multiply(Operand::Number(factor), other) | Operation::Multiply(other, Operand::Number(factor)) => {
+            let (other, factor) = (token(other), number(*factor));
+            quote! { #other.times(#factor) }
+        }
         Operation::Multiply(left, right) => binary(token(left), quote! { * }, token(right)),
         Operation::Divide(left, right) => binary(token(left), quote! { / }, token(right)),
         Operation::Negate(only) => {
@@ -146,7 +150,7 @@ mod tests {
         assert_eq!(
             text,
             "let v0 = x0 * c [0] ; let v1 = x0 . atan2 (x1) ; let v2 = x1 . powf (v1) ; \
-             let v3 = S :: from_f64 (0.5f64) * v2 ; let v4 = if below { v0 } else { v3 } ; let v5 = - x0 ;"
+             let v3 = v2 . times (0.5f64) ; let v4 = if below { v0 } else { v3 } ; let v5 = - x0 ;"
         );
         assert_eq!(results, ["v4", "v5", "x0"]);
         assert_eq!(rendered(&program.constants).0, "let v0 = S :: from_f64 (1f64) / p ;");
@@ -176,6 +180,6 @@ mod tests {
         let x = pool.symbol(Symbol::State(0));
         let root = pool.scale(-2.5, x);
         let program = schedule(&mut pool, [Request { name: "rate", roots: &[root] }]);
-        assert_eq!(rendered(&program.routines[0]).0, "let v0 = x0 * S :: from_f64 (- 2.5f64) ;");
+        assert_eq!(rendered(&program.routines[0]).0, "let v0 = x0 . times (- 2.5f64) ;");
     }
 }

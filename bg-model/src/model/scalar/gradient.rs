@@ -1,95 +1,102 @@
-//! Numbers with their derivatives along several directions at once. Exact first derivatives by many parameters in one pass.
+//! Numbers with their derivatives along four directions at once. Exact first derivatives by many parameters in one pass.
 //!
-//! As [`Dual`](super::Dual) with [`Gradient::WIDTH`] slopes: the value is calculated once, the slopes side by side in vectors that
-//! every machine of its kind has. The values are those of `f64`, to the bit.
+//! As [`Dual`](super::Dual) with [`Gradient::WIDTH`] slopes: the value is calculated once, the slopes side by side in vectors. The
+//! values are those of `f64`, to the bit, whatever the vectors.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use wide::f64x2;
-
+use super::slopes::{Everywhere, Slopes, WIDTH};
 use super::{Both, Scalar};
 
-/// A value and its derivatives along some directions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gradient {
+/// A value and its derivatives along four directions, in vectors `V`.
+#[derive(Clone, Copy, Debug)]
+pub struct GradientIn<V> {
     /// The value.
     pub value: f64,
-    slopes: [f64x2; 2],
+    slopes: V,
 }
 
-impl Gradient {
-    /// The number of directions.
-    pub const WIDTH: usize = 4;
+/// A value and its derivatives along four directions.
+pub type Gradient = GradientIn<Everywhere>;
 
+impl<V> GradientIn<V> {
+    /// The number of directions.
+    pub const WIDTH: usize = WIDTH;
+}
+
+impl<V: Slopes> GradientIn<V> {
     /// `value` that changes by `slopes` along the directions.
     #[must_use]
     #[inline(always)]
-    pub fn new(value: f64, [a, b, c, d]: [f64; Self::WIDTH]) -> Self {
-        Self { value, slopes: [f64x2::new([a, b]), f64x2::new([c, d])] }
+    pub fn new(value: f64, slopes: [f64; WIDTH]) -> Self {
+        Self { value, slopes: V::new(slopes) }
     }
 
     /// The derivative along each direction.
     #[must_use]
     #[inline(always)]
-    pub fn slopes(self) -> [f64; Self::WIDTH] {
-        let [[a, b], [c, d]] = self.slopes.map(f64x2::to_array);
-        [a, b, c, d]
+    pub fn slopes(self) -> [f64; WIDTH] {
+        self.slopes.numbers()
     }
 
-    /// The number plus `weight` times another one: what sums of stages consist of.
-    #[must_use]
+    /// The number of this value and these derivatives.
     #[inline(always)]
-    pub fn plus(self, weight: f64, other: &Self) -> Self {
-        let ([a, b], [c, d], w) = (self.slopes, other.slopes, f64x2::splat(weight));
-        Self { value: self.value + weight * other.value, slopes: [a + w * c, b + w * d] }
+    pub(crate) fn of_parts(value: f64, slopes: V) -> Self {
+        Self { value, slopes }
+    }
+
+    /// The derivatives in their vectors.
+    #[inline(always)]
+    pub(crate) fn vectors(self) -> V {
+        self.slopes
     }
 
     /// A function of this number from its value and its derivative here.
     #[inline(always)]
     fn of(self, value: f64, derivative: f64) -> Self {
-        let ([a, b], d) = (self.slopes, f64x2::splat(derivative));
-        Self { value, slopes: [d * a, d * b] }
+        Self { value, slopes: self.slopes.times(derivative) }
     }
 
     /// A function of two numbers from its value and its derivatives here.
     #[inline(always)]
     fn of_both(value: f64, (of_a, a): (f64, Self), (of_b, b): (f64, Self)) -> Self {
-        let ([a, b], [c, d]) = (a.slopes, b.slopes);
-        let (of_a, of_b) = (f64x2::splat(of_a), f64x2::splat(of_b));
-        Self { value, slopes: [a * of_a + of_b * c, b * of_a + of_b * d] }
+        Self { value, slopes: a.slopes.times(of_a).plus(b.slopes.times(of_b)) }
     }
 }
 
-impl PartialOrd for Gradient {
+impl<V: Slopes> PartialEq for GradientIn<V> {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value && self.slopes() == other.slopes()
+    }
+}
+impl<V: Slopes> PartialOrd for GradientIn<V> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         self.value.partial_cmp(&other.value)
     }
 }
-impl Add for Gradient {
+impl<V: Slopes> Add for GradientIn<V> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.slopes, other.slopes);
-        Self { value: self.value + other.value, slopes: [a + c, b + d] }
+        Self { value: self.value + other.value, slopes: self.slopes.plus(other.slopes) }
     }
 }
-impl Sub for Gradient {
+impl<V: Slopes> Sub for GradientIn<V> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.slopes, other.slopes);
-        Self { value: self.value - other.value, slopes: [a - c, b - d] }
+        Self { value: self.value - other.value, slopes: self.slopes.minus(other.slopes) }
     }
 }
-impl Mul for Gradient {
+impl<V: Slopes> Mul for GradientIn<V> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
         Self::of_both(self.value * b.value, (b.value, self), (self.value, b))
     }
 }
-impl Div for Gradient {
+impl<V: Slopes> Div for GradientIn<V> {
     type Output = Self;
     #[inline(always)]
     fn div(self, b: Self) -> Self {
@@ -97,7 +104,7 @@ impl Div for Gradient {
         Self::of_both(value, (part, self), (-value * part, b))
     }
 }
-impl Neg for Gradient {
+impl<V: Slopes> Neg for GradientIn<V> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -105,16 +112,20 @@ impl Neg for Gradient {
     }
 }
 
-impl Scalar for Gradient {
+impl<V: Slopes> Scalar for GradientIn<V> {
     type Pair = Both<Self>;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
-        Self { value, slopes: [f64x2::splat(0.0); 2] }
+        Self { value, slopes: V::new([0.0; WIDTH]) }
     }
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self.value
+    }
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self.of(self.value * factor, factor)
     }
     fn sqrt(self) -> Self {
         let root = Scalar::sqrt(self.value);
@@ -160,7 +171,7 @@ impl Scalar for Gradient {
         let value = Scalar::powf(self.value, exponent.value);
         let by_base = exponent.value * Scalar::powf(self.value, exponent.value - 1.0);
         // A logarithm only where it counts: of a base below zero there is none.
-        if exponent.slopes() == [0.0; Self::WIDTH] {
+        if exponent.slopes() == [0.0; WIDTH] {
             return self.of(value, by_base);
         }
         Self::of_both(value, (by_base, self), (value * Scalar::ln(self.value), exponent))
@@ -171,18 +182,34 @@ impl Scalar for Gradient {
 mod tests {
     use super::*;
     use crate::model::scalar::Dual;
+    #[cfg(target_arch = "x86_64")]
+    use crate::model::scalar::slopes::Avx2;
     use crate::model::scalar::tests::everything;
 
-    #[test]
-    fn each_slope_is_that_of_a_dual_number_along_its_direction() {
+    fn agrees<V: Slopes>() -> Vec<[u64; 5]> {
+        let mut bits = Vec::new();
         for (x, y) in [(0.3, 0.9), (1.1, 0.4), (0.7, 1.3)] {
             let along = [[1.0, 0.0], [0.0, 1.0], [0.6, -0.8], [0.0, 0.0]];
-            let gradient = everything(Gradient::new(x, along.map(|d| d[0])), Gradient::new(y, along.map(|d| d[1])));
+            let gradient =
+                everything(GradientIn::<V>::new(x, along.map(|d| d[0])), GradientIn::new(y, along.map(|d| d[1])));
             assert_eq!(gradient.value.to_bits(), everything(x, y).to_bits());
             for (slope, [by_x, by_y]) in gradient.slopes().into_iter().zip(along) {
                 let dual = everything(Dual::new(x, by_x), Dual::new(y, by_y)).slope;
                 assert!((slope - dual).abs() < 1e-14 * (1.0 + dual.abs()), "{slope} {dual}");
             }
+            let [a, b, c, d] = gradient.slopes();
+            bits.push([gradient.value, a, b, c, d].map(f64::to_bits));
         }
+        bits
+    }
+
+    #[test]
+    fn each_slope_is_that_of_a_dual_number_along_its_direction_on_every_machine() {
+        let everywhere = agrees::<Everywhere>();
+        #[cfg(target_arch = "x86_64")]
+        if Avx2::is_at_hand() {
+            assert_eq!(everywhere, agrees::<Avx2>());
+        }
+        assert_eq!(everywhere.len(), 3);
     }
 }

@@ -11,6 +11,7 @@ mod double_double;
 mod dual;
 mod gradient;
 mod pair;
+pub(crate) mod slopes;
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -18,6 +19,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use gradient::Gradient;
+pub(crate) use gradient::GradientIn;
 pub use pair::{Both, Pair, PairOfDoubles};
 
 /// A real number that generated code can calculate with.
@@ -43,6 +45,12 @@ pub trait Scalar:
     fn from_f64(value: f64) -> Self;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
+    /// The number times `factor`.
+    #[must_use]
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self * Self::from_f64(factor)
+    }
     /// Square root.
     fn sqrt(self) -> Self;
     /// Sine of an angle in rad.
@@ -139,6 +147,6 @@ mod tests {
         let number = S::from_f64;
         let trigonometry = x.sin() * y.cos() + (x * y).tan() - (x * number(0.5)).asin() / (y * number(0.25)).acos();
         let growth = (x * y).exp() + (x + y).ln() * y.tanh() - x.powf(y) * x.powf(number(1.5)) + (-x).abs();
-        trigonometry + growth * x.atan2(y) + (x / y).sqrt()
+        trigonometry + growth * x.atan2(y) + (x / y).sqrt().times(0.75)
     }
 }

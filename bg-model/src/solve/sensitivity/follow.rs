@@ -5,36 +5,40 @@
 use nalgebra::SVector;
 
 use super::jump::jumped;
-use super::step::{Sloped, Stepper, WIDTH};
+use super::step::{Frozen, Sloped, Stepper};
 use super::{Direction, SensitivityError};
-use crate::model::scalar::{Gradient, Scalar};
+use crate::model::scalar::slopes::{Slopes, WIDTH};
+use crate::model::scalar::{GradientIn, Scalar};
 use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
 /// Some of the directions with the system in numbers that have slopes along them.
-pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
+pub(super) struct Follower<V, Li, const N: usize, const G: usize, const M: usize> {
     system: Li,
     /// The same with slopes of nothing.
     plain: Li,
     directions: Vec<Direction>,
-    stepper: Stepper<N>,
+    stepper: Stepper<V, N>,
     /// The last step: its start, its branches, the state there.
     start: f64,
     negative: [bool; G],
-    from: Sloped<N>,
+    from: Sloped<V, N>,
+    /// The state at a sample in it.
+    between: Sloped<V, N>,
     /// Where the run has come to.
     t: f64,
-    now: Sloped<N>,
+    now: Sloped<V, N>,
     has_begun: bool,
     error: Option<SensitivityError>,
     /// For each direction and output the derivatives at the samples.
     pub outputs: Vec<Vec<Vec<f64>>>,
 }
 
-impl<Li, const N: usize, const G: usize, const M: usize> Follower<Li, N, G, M>
+impl<V, Li, const N: usize, const G: usize, const M: usize> Follower<V, Li, N, G, M>
 where
-    Li: Model<Gradient, N, G, M>,
+    V: Slopes,
+    Li: Model<GradientIn<V>, N, G, M>,
 {
     /// From the start of a run at `t0` (s) and the state `x`; `sizes` are those of the directions.
     pub fn new(
@@ -43,14 +47,14 @@ where
         sizes: [f64; WIDTH],
         scale: Scale<N>,
         t0: f64,
-        x: Sloped<N>,
+        x: Sloped<V, N>,
     ) -> Self {
         let mut now = x;
         for (l, direction) in directions.iter().enumerate() {
             if let Direction::Start(state) = direction {
                 let mut slopes = now[*state].slopes();
                 slopes[l] += 1.0;
-                now[*state] = Gradient::new(now[*state].value, slopes);
+                now[*state] = GradientIn::new(now[*state].value, slopes);
             }
         }
         Self {
@@ -61,6 +65,7 @@ where
             start: t0,
             negative: [false; G],
             from: now,
+            between: now,
             t: t0,
             now,
             has_begun: false,
@@ -82,24 +87,17 @@ where
     pub fn check(&mut self) -> Result<(), SensitivityError> {
         self.error.take().map_or(Ok(()), Err)
     }
-
-    /// The state at the time `t` (s) in the last step, projected.
-    fn cross(&mut self, t: f64) -> Option<Sloped<N>> {
-        let Self { system, stepper, start, negative, from, .. } = self;
-        let mut x = stepper.cross(system, negative, *start, t, from)?;
-        system.project(Gradient::from_f64(t), negative, &mut x);
-        Some(x)
-    }
 }
 
-/// The slopes of `of` at the values `x`.
-fn at<const N: usize>(x: &SVector<f64, N>, of: &Sloped<N>) -> Sloped<N> {
-    SVector::from_fn(|i, _| Gradient::new(x[i], of[i].slopes()))
+/// The state `x` gets these values.
+fn set<V, const N: usize>(x: &mut Sloped<V, N>, values: &SVector<f64, N>) {
+    x.data.0[0].iter_mut().zip(&values.data.0[0]).for_each(|(x, &value)| x.value = value);
 }
 
-impl<Li, const N: usize, const G: usize, const M: usize> Observer<N, G> for Follower<Li, N, G, M>
+impl<V, Li, const N: usize, const G: usize, const M: usize> Observer<N, G> for Follower<V, Li, N, G, M>
 where
-    Li: Model<Gradient, N, G, M>,
+    V: Slopes,
+    Li: Model<GradientIn<V>, N, G, M>,
 {
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
         if self.error.is_some() {
@@ -110,16 +108,21 @@ where
                 self.error = Some(SensitivityError::ImpactAtStart);
                 return;
             }
-            self.system.project(Gradient::from_f64(t), negative, &mut self.now);
-            self.now = at(x, &self.now);
+            self.system.project(GradientIn::from_f64(t), negative, &mut self.now);
+            set(&mut self.now, x);
         }
-        let reached = if t == self.t { Some(self.now) } else { self.cross(t) };
-        let Some(reached) = reached else {
+        let Self { system, stepper, from, now, between, .. } = self;
+        let reached = if t == self.t {
+            now
+        } else if stepper.cross(&Frozen { system, negative: &self.negative }, self.start, t, from, between) {
+            between
+        } else {
             self.error = Some(SensitivityError::Inexact { t });
             return;
         };
-        let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
-        self.system.outputs(Gradient::from_f64(t), &at(x, &reached), negative, &mut outputs);
+        set(reached, x);
+        let mut outputs = SVector::repeat(GradientIn::from_f64(0.0));
+        system.outputs(GradientIn::from_f64(t), reached, negative, &mut outputs);
         for (l, columns) in self.outputs.iter_mut().enumerate() {
             columns.iter_mut().zip(&outputs).for_each(|(column, output)| column.push(output.slopes()[l]));
         }
@@ -129,10 +132,15 @@ where
         if self.error.is_some() {
             return;
         }
-        (self.start, self.negative, self.from) = (start.t, *negative, at(&start.x, &self.now));
-        match self.cross(end.t) {
-            Some(reached) => (self.t, self.now) = (end.t, at(&end.x, &reached)),
-            None => self.error = Some(SensitivityError::Inexact { t: start.t }),
+        (self.start, self.negative) = (start.t, *negative);
+        std::mem::swap(&mut self.from, &mut self.now);
+        let Self { system, stepper, from, now, .. } = self;
+        set(from, &start.x);
+        if stepper.cross(&Frozen { system, negative }, start.t, end.t, from, now) {
+            self.t = end.t;
+            set(now, &end.x);
+        } else {
+            self.error = Some(SensitivityError::Inexact { t: start.t });
         }
     }
 

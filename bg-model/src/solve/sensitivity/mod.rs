@@ -1,7 +1,7 @@
 //! Derivatives of a run by parameters and start values, exact to the accuracy of the run, through events.
 //!
 //! In: a [`Mechanism`], what is asked of a run, directions. Out: the run, with the derivative of each output at each sample along
-//! each direction. Method: the model calculates with numbers that have slopes ([`Gradient`]), beside the run itself, whose steps,
+//! each direction. Method: the model calculates with numbers that have slopes ([`Gradient`](crate::scalar::Gradient)), beside the run itself, whose steps,
 //! events and bytes are those without derivatives. The start pose, the rates, projections, guards, impacts and outputs are all
 //! differentiated; at events the slopes jump (`jump`).
 //!
@@ -43,7 +43,10 @@ use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
-use crate::model::scalar::Gradient;
+use crate::model::scalar::GradientIn;
+#[cfg(target_arch = "x86_64")]
+use crate::model::scalar::slopes::Avx2;
+use crate::model::scalar::slopes::{Everywhere, Slopes, WIDTH};
 use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
@@ -51,12 +54,9 @@ use crate::solve::simulation::{Observer, Switching};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
 
-/// How many directions are followed in one pass.
-const WIDTH: usize = Gradient::WIDTH;
-
-/// The part of a parameter's value by which it is thought to change. Of more the error estimates would ask for shorter steps than
-/// the run's where stability limits these, and the errors of the slopes would be those of the run's steps all the same.
-const PART: f64 = 1.0 / 32.0;
+/// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
+/// the slopes would no longer be the derivatives of these.
+const PART: f64 = 1.0 / 1024.0;
 
 /// What a run is differentiated by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,7 +147,12 @@ pub fn sensitivities<Me: Mechanism>(
 ) -> Result<Sensitivities, SensitivityError> {
     let parameters = model.parameters();
     let values = (0..Me::Parameters::table().len()).map(|index| parameters.value(index)).collect();
-    model.visit_lifted::<Gradient, _>(Following { request, directions, values })
+    let following = Following { request, directions, values };
+    #[cfg(target_arch = "x86_64")]
+    if Avx2::is_at_hand() {
+        return model.visit_lifted::<GradientIn<Avx2>, _>(following);
+    }
+    model.visit_lifted::<GradientIn<Everywhere>, _>(following)
 }
 
 /// What is done with the model.
@@ -168,31 +173,31 @@ impl Following<'_> {
     }
 
     /// The parameters with their slopes along these directions.
-    fn sloped(&self, directions: &[Direction]) -> Vec<Gradient> {
+    fn sloped<V: Slopes>(&self, directions: &[Direction]) -> Vec<GradientIn<V>> {
         let slope = |index: usize| {
             std::array::from_fn(|l| f64::from(u8::from(directions.get(l) == Some(&Direction::Parameter(index)))))
         };
-        self.values.iter().enumerate().map(|(index, &value)| Gradient::new(value, slope(index))).collect()
+        self.values.iter().enumerate().map(|(index, &value)| GradientIn::new(value, slope(index))).collect()
     }
 }
 
-impl LiftedVisitor<Gradient> for Following<'_> {
+impl<V: Slopes> LiftedVisitor<GradientIn<V>> for Following<'_> {
     type Output = Result<Sensitivities, SensitivityError>;
 
     fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
-        lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
+        lifted: impl Fn(&[GradientIn<V>]) -> Result<Li, ParameterError>,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
-        Li: Model<Gradient, N, G, M>,
+        Li: Model<GradientIn<V>, N, G, M>,
     {
         let Description { outputs, .. } = model.description();
         let start = model.start()?;
         let settings = self.request.settings(0.0);
         let scale = Scale::<N>::from(&settings.tolerances);
-        let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
+        let follower = |chunk: &[Direction]| -> Result<Follower<V, Li, N, G, M>, SensitivityError> {
             let both = [lifted(&self.sloped(chunk))?, lifted(&self.sloped(&[]))?];
             let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
             let x = both[0].start()?;

@@ -2,20 +2,20 @@
 //!
 //! In: the start of a step that a run has made, a rate that takes numbers with slopes. Out: the state at its end, with slopes.
 //! Method: DOP853 on the state with its slopes, which is the same method on S' = J S + df/dp with the exact J and df/dp of every
-//! stage. The step is divided into equal parts until the estimated error of the slopes is what is allowed: for a change of the
-//! direction by its size, what is allowed of the state (as in A. C. Hindmarsh and others, SUNDIALS, ACM TOMS 31 (2005), section 2.6).
+//! stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is. The step is divided into equal parts
+//! until the estimated error of the slopes is what is allowed: for a change of the direction by its size, what is allowed of the
+//! state (as in A. C. Hindmarsh and others, SUNDIALS, ACM TOMS 31 (2005), section 2.6).
 
 use nalgebra::SVector;
+use pulp::NullaryFnOnce;
 
-use crate::model::scalar::{Gradient, Scalar};
+use crate::model::scalar::slopes::{Slopes, WIDTH};
+use crate::model::scalar::{GradientIn, Scalar};
 use crate::model::system::System;
 use crate::solve::integrator::{DormandPrince, Row, Scale, Tableau};
 
-/// The directions that are followed at once.
-pub(super) const WIDTH: usize = Gradient::WIDTH;
-
 /// A state with slopes.
-pub(super) type Sloped<const N: usize> = SVector<Gradient, N>;
+pub(super) type Sloped<V, const N: usize> = SVector<GradientIn<V>, N>;
 
 /// The stages of a step.
 const STAGES: usize = DormandPrince::END;
@@ -26,40 +26,71 @@ const SMALL: f64 = 1.0 / 512.0;
 
 /// The method with its work space.
 #[derive(Debug)]
-pub(super) struct Stepper<const N: usize> {
-    k: Box<[Sloped<N>; STAGES]>,
+pub(super) struct Stepper<V, const N: usize> {
+    k: Box<Stages<V, N>>,
     /// The parts of the last step.
     parts: u32,
     /// What is allowed of a state.
     scale: Scale<N>,
     /// The size of each direction, in its unit.
-    sizes: [f64; WIDTH],
+    sizes: V,
 }
 
-impl<const N: usize> Stepper<N> {
+/// The rates of all stages: values and slopes apart, so that values fill vectors of their own.
+#[derive(Debug)]
+struct Stages<V, const N: usize> {
+    values: [[f64; N]; STAGES],
+    slopes: [[V; N]; STAGES],
+}
+
+/// A system in the branches of a step.
+#[derive(Debug)]
+pub(super) struct Frozen<'a, Sys, const G: usize> {
+    pub system: &'a Sys,
+    pub negative: &'a [bool; G],
+}
+
+impl<V: Slopes, const N: usize> Stepper<V, N> {
     pub fn new(scale: Scale<N>, sizes: [f64; WIDTH]) -> Self {
-        let k = Box::new([SVector::repeat(Gradient::from_f64(0.0)); STAGES]);
-        Self { k, parts: 1, scale, sizes }
+        let k = Box::new(Stages { values: [[0.0; N]; STAGES], slopes: [[V::new([0.0; WIDTH]); N]; STAGES] });
+        Self { k, parts: 1, scale, sizes: V::new(sizes) }
     }
 
-    /// The state at the time `to` (s), from `x` at `from`; none where the slopes stay too inexact or are not finite.
+    /// Writes the state at the time `to` (s), from `x` at `from`, into `end`, projected. Gives whether it did: not where the slopes
+    /// stay too inexact or are not finite.
     pub fn cross<Sys, const G: usize>(
         &mut self,
-        system: &Sys,
-        negative: &[bool; G],
+        frozen: &Frozen<Sys, G>,
         from: f64,
         to: f64,
-        x: &Sloped<N>,
-    ) -> Option<Sloped<N>>
+        x: &Sloped<V, N>,
+        end: &mut Sloped<V, N>,
+    ) -> bool
     where
-        Sys: System<Gradient, N, G>,
+        Sys: System<GradientIn<V>, N, G>,
+    {
+        V::vectorized(Crossing { stepper: self, frozen, from, to, x, end })
+    }
+
+    #[inline(always)]
+    fn crossed<Sys, const G: usize>(
+        &mut self,
+        frozen: &Frozen<Sys, G>,
+        from: f64,
+        to: f64,
+        x: &Sloped<V, N>,
+        end: &mut Sloped<V, N>,
+    ) -> bool
+    where
+        Sys: System<GradientIn<V>, N, G>,
     {
         while self.parts <= MOST_PARTS {
             let h = (to - from) / f64::from(self.parts);
-            let (mut reached, mut worst) = (*x, 0.0_f64);
+            end.copy_from(x);
+            let mut worst = 0.0_f64;
             for part in 0..self.parts {
                 let t = from + f64::from(part) * h;
-                let error = self.attempt(system, negative, t, h, &mut reached);
+                let error = self.attempt(frozen, t, h, end);
                 worst = if error <= worst { worst } else { error };
                 if worst.is_nan() || worst > 1.0 {
                     break;
@@ -69,85 +100,122 @@ impl<const N: usize> Stepper<N> {
                 if worst < SMALL && self.parts > 1 {
                     self.parts /= 2;
                 }
-                return Some(reached);
+                frozen.system.inlined_project(GradientIn::from_f64(to), frozen.negative, end);
+                return true;
             }
             self.parts *= 2;
         }
-        None
+        false
     }
 
     /// Replaces the state by that at the end of one part; gives the norm of its slopes' error.
-    fn attempt<Sys, const G: usize>(
-        &mut self,
-        system: &Sys,
-        negative: &[bool; G],
-        t: f64,
-        h: f64,
-        x: &mut Sloped<N>,
-    ) -> f64
+    #[inline(always)]
+    fn attempt<Sys, const G: usize>(&mut self, frozen: &Frozen<Sys, G>, t: f64, h: f64, x: &mut Sloped<V, N>) -> f64
     where
-        Sys: System<Gradient, N, G>,
+        Sys: System<GradientIn<V>, N, G>,
     {
-        for stage in 0..DormandPrince::END {
-            let mut state = *x;
+        let mut state = *x;
+        let mut rate = state;
+        for stage in 0..STAGES {
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage => move_by(&mut state, h, const { DormandPrince::A[$stage] }, &self.k), )*
+                        $( $stage => self.k.move_by(x, h, const { DormandPrince::A[$stage] }, &mut state), )*
                         _ => {}
                     }
                 };
             }
             written_out!(1 2 3 4 5 6 7 8 9 10 11);
-            let t = Gradient::new(t + DormandPrince::C[stage] * h, [0.0; WIDTH]);
-            system.rate(t, &state, negative, &mut self.k[stage]);
+            let t = GradientIn::from_f64(t + DormandPrince::C[stage] * h);
+            frozen.system.always_inlined_rate(t, &state, frozen.negative, &mut rate);
+            self.k.store(stage, &rate);
         }
-        let mut end = *x;
-        move_by(&mut end, h, DormandPrince::B, &self.k);
-        let error = self.error(h, x, &end);
-        *x = end;
+        self.k.move_by(x, h, DormandPrince::B, &mut state);
+        let error = self.error(h, x, &state);
+        x.copy_from(&state);
         error
     }
 
-    /// The norm of the slopes' error: DOP853's, of its two differences to embedded methods.
+    /// The norm of the slopes' error: DOP853's, of its two differences to embedded methods. Not a number where a slope is none.
     #[inline(always)]
-    fn error(&self, h: f64, start: &Sloped<N>, end: &Sloped<N>) -> f64 {
-        let (mut first, mut second) = ([0.0_f64; WIDTH], [0.0_f64; WIDTH]);
-        let larger = |largest: f64, part: f64| if part <= largest { largest } else { part };
+    fn error(&self, h: f64, start: &Sloped<V, N>, end: &Sloped<V, N>) -> f64 {
+        let none = self.sizes.filled(0.0);
+        let (mut first, mut second, mut watched) = (none, none, none);
         for i in 0..N {
             let (from, to) = (&start.data.0[0][i], &end.data.0[0][i]);
-            let error = combined(DormandPrince::ERROR, &self.k, i).slopes();
+            let error = self.k.slope(DormandPrince::ERROR, i);
             // The step's own mean slope, less that of the method of order 3.
-            let other = (*to - *from).plus(-h, &combined(DormandPrince::SECOND, &self.k, i)).slopes();
-            let (from, value, to) = (from.slopes(), to.value.abs(), to.slopes());
+            let other = to.vectors().minus(from.vectors()).minus(self.k.slope(DormandPrince::SECOND, i).times(h));
+            let changed = from.vectors().abs().max(to.vectors().abs()).times_each(self.sizes);
             let (absolute, relative) = (self.scale.absolute.data.0[0][i], self.scale.relative);
-            for l in 0..WIDTH {
-                let changed = self.sizes[l] * larger(from[l].abs(), to[l].abs());
-                let part = self.sizes[l] / (absolute + relative * larger(changed, value));
-                first[l] = larger(first[l], (error[l] * part).abs());
-                second[l] = larger(second[l], (other[l] * part).abs() / h.abs());
-            }
+            let size = changed.max(self.sizes.filled(to.value.abs())).times(relative);
+            let part = self.sizes.over_each(self.sizes.filled(absolute).plus(size));
+            first = first.max(error.abs().times_each(part));
+            second = second.max(other.abs().times_each(part));
+            watched = watched.plus(other.minus(other));
         }
-        let [first, second] = [first, second].map(|of| of.into_iter().fold(0.0, larger));
+        if watched.numbers() != [0.0; WIDTH] {
+            return f64::NAN;
+        }
+        let [first, second] = [first, second].map(|of| of.numbers().into_iter().fold(0.0, f64::max));
+        let second = second / h.abs();
         let both = first * first + 0.01 * second * second;
         if both == 0.0 { 0.0 } else { h.abs() * first * first / both.sqrt() }
     }
 }
 
-/// Moves the state `x` by `h` times a combination of the stages, summed in their order.
-#[inline(always)]
-fn move_by<const N: usize>(x: &mut Sloped<N>, h: f64, row: Row, k: &[Sloped<N>; STAGES]) {
-    for (i, x) in x.data.0[0].iter_mut().enumerate() {
-        *x = x.plus(h, &combined(row, k, i));
+impl<V: Slopes, const N: usize> Stages<V, N> {
+    #[inline(always)]
+    fn store(&mut self, stage: usize, rate: &Sloped<V, N>) {
+        for (i, rate) in rate.data.0[0].iter().enumerate() {
+            self.values[stage][i] = rate.value;
+            self.slopes[stage][i] = rate.vectors();
+        }
+    }
+
+    /// Writes the state `x`, moved by `h` times a combination of the stages, into `moved`.
+    #[inline(always)]
+    fn move_by(&self, x: &Sloped<V, N>, h: f64, row: Row, moved: &mut Sloped<V, N>) {
+        let mut values = [0.0; N];
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = row.iter().fold(0.0, |sum, &(stage, weight)| sum + weight * self.values[stage][i]);
+        }
+        for (i, moved) in moved.data.0[0].iter_mut().enumerate() {
+            let x = &x.data.0[0][i];
+            let slopes = x.vectors().plus(self.slope(row, i).times(h));
+            *moved = GradientIn::of_parts(x.value + h * values[i], slopes);
+        }
+    }
+
+    /// The slopes of entry `i` of a combination of the stages, summed in their order.
+    #[inline(always)]
+    fn slope(&self, row: Row, i: usize) -> V {
+        let (&(stage, weight), others) = row.split_first().expect("a combination has a stage");
+        let first = self.slopes[stage][i].times(weight);
+        others.iter().fold(first, |sum, &(stage, weight)| sum.plus(self.slopes[stage][i].times(weight)))
     }
 }
 
-/// Entry `i` of a combination of the stages.
-#[inline(always)]
-fn combined<const N: usize>(row: Row, k: &[Sloped<N>; STAGES], i: usize) -> Gradient {
-    let mut sum = Gradient::from_f64(0.0);
-    for &(stage, weight) in row {
-        sum = sum.plus(weight, &k[stage].data.0[0][i]);
+/// A step, to be compiled for vectors.
+struct Crossing<'a, V, Sys, const N: usize, const G: usize> {
+    stepper: &'a mut Stepper<V, N>,
+    frozen: &'a Frozen<'a, Sys, G>,
+    from: f64,
+    to: f64,
+    x: &'a Sloped<V, N>,
+    end: &'a mut Sloped<V, N>,
+}
+
+impl<V, Sys, const N: usize, const G: usize> NullaryFnOnce for Crossing<'_, V, Sys, N, G>
+where
+    V: Slopes,
+    Sys: System<GradientIn<V>, N, G>,
+{
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let Self { stepper, frozen, from, to, x, end } = self;
+        stepper.crossed(frozen, from, to, x, end)
     }
-    sum
 }

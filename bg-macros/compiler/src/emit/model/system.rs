@@ -3,12 +3,22 @@
 //! In: the programs of the running model. Out: `System` for the model.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::super::items::identifier;
 use super::{Emission, Shape};
 use crate::expr::Id;
 use crate::program::Routine;
+
+/// The attribute of functions that are inlined where they are called, in release builds.
+#[derive(Clone, Copy)]
+pub(super) struct Inlined;
+
+impl ToTokens for Inlined {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        tokens.extend(quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
+    }
+}
 
 impl Emission<'_> {
     pub(super) fn system(&self) -> TokenStream {
@@ -34,32 +44,50 @@ impl Emission<'_> {
         }
     }
 
+    /// The rate, in pairs where that pays; without them where it is inlined for other numbers than `f64`.
     fn rate(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
         let running = &self.model.programs.running;
-        let (body, rates) = self.with_pairs(&running.rate, running.paired_rate.as_ref(), "constant");
-        // The unknowns of iterations come after the rates.
-        let rates = &rates[..self.model.equations.states.len()];
         let arguments = quote!(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], dx: &mut SVector<S, #n>);
-        let body = quote!(#body dx.data.0 = [[#(#rates),*]];);
-        self.inline().map_or_else(
-            || quote!(fn rate(#arguments) { #body }),
-            |inline| {
-                quote! {
-                    fn rate(#arguments) {
-                        ::bg_model::system::System::inlined_rate(self, t, x, negative, dx);
-                    }
-                    #inline
-                    fn inlined_rate(#arguments) { #body }
+        let function = |name: TokenStream, inline: Option<Inlined>, (body, rates): (TokenStream, Vec<TokenStream>)| {
+            // The unknowns of iterations come after the rates.
+            let rates = &rates[..self.model.equations.states.len()];
+            quote! {
+                #inline
+                fn #name(#arguments) {
+                    #body
+                    dx.data.0 = [[#(#rates),*]];
                 }
-            },
-        )
+            }
+        };
+        let calling = |name: TokenStream, inline: Option<Inlined>, called: TokenStream| {
+            quote! {
+                #inline
+                fn #name(#arguments) {
+                    ::bg_model::system::System::#called(self, t, x, negative, dx);
+                }
+            }
+        };
+        let always = function(quote!(always_inlined_rate), Some(Inlined), self.function(&running.rate));
+        let Some(paired) = &running.paired_rate else {
+            let rate = calling(quote!(rate), None, quote!(always_inlined_rate));
+            let inlined =
+                self.inline().map(|inline| calling(quote!(inlined_rate), Some(inline), quote!(always_inlined_rate)));
+            return quote!(#rate #inlined #always);
+        };
+        let body = self.with_pairs(&running.rate, Some(paired), "constant");
+        if !running.is_inlined() {
+            let rate = function(quote!(rate), None, body);
+            return quote!(#rate #always);
+        }
+        let (rate, inlined) =
+            (calling(quote!(rate), None, quote!(inlined_rate)), function(quote!(inlined_rate), Some(Inlined), body));
+        quote!(#rate #inlined #always)
     }
 
     /// The attribute of rates, and of forces, that are inlined into a step.
-    pub(super) fn inline(&self) -> Option<TokenStream> {
-        let is_inlined = self.model.programs.running.is_inlined();
-        is_inlined.then(|| quote!(#[cfg_attr(not(debug_assertions), inline(always))]))
+    pub(super) fn inline(&self) -> Option<Inlined> {
+        self.model.programs.running.is_inlined().then_some(Inlined)
     }
 
     fn guards(&self) -> TokenStream {
@@ -79,8 +107,13 @@ impl Emission<'_> {
         let (running, equations) = (&self.model.programs.running, &self.model.equations);
         let pose = self.projection(&running.project, &equations.projections);
         let momenta = self.projection(&running.settle, &equations.settled);
+        let inline = Inlined;
         quote! {
             fn project(&self, t: S, negative: &[bool; #g], state: &mut SVector<S, #n>) {
+                ::bg_model::system::System::inlined_project(self, t, negative, state);
+            }
+            #inline
+            fn inlined_project(&self, t: S, negative: &[bool; #g], state: &mut SVector<S, #n>) {
                 #pose
                 #momenta
             }
