@@ -172,12 +172,14 @@ impl<'c> Meaning<'c> {
         });
         let mentions = scope.mentions.iter().filter(|path| own.is_field_of(path).is_none());
         let mentions = mentions.map(|path| self.mention(scope, path).0).filter(|words| !words.is_empty());
+        // Out of the modules of the names.
+        let up = quote!(super);
         let of = |which: &'static str| {
             let paths = scope.mentions.iter().filter(|path| own.is_field_of(path) == Some(which));
             let words: Vec<Ident> = paths.map(|path| placed(&path[0].0, path[0].1)).collect();
             let (function, of) =
                 (identifier(&which.to_lowercase()), format_ident!("{}{which}", model?.source.name.text));
-            (!words.is_empty()).then(|| quote!(fn #function(of: &super::super::super::#of) { #(let _ = of.#words;)* }))
+            (!words.is_empty()).then(|| quote!(fn #function(of: &#up::#up::#up::#of) { #(let _ = of.#words;)* }))
         };
         let (parameters, inputs) = (of(PARAMETERS), of(INPUTS));
         quote! {
