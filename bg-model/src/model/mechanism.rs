@@ -33,8 +33,8 @@ pub trait Mechanism: Clone {
     /// Hands the model, calculating in `S`, to `visitor`.
     fn visit<S: Scalar, V: ModelVisitor<S>>(&self, visitor: V) -> V::Output;
 
-    /// Hands the model to `visitor`, and with it what makes the same model of parameters in `S`.
-    fn visit_lifted<S: Scalar, V: LiftedVisitor<S>>(&self, visitor: V) -> V::Output;
+    /// Hands the model to `visitor`, and with it what makes the same model of parameters in `S` and in `T`.
+    fn visit_lifted<S: Scalar, T: Scalar, V: LiftedVisitor<S, T>>(&self, visitor: V) -> V::Output;
 }
 
 /// A mechanism with the models of its graph: of the literal model with all scenes, of a scene with itself alone. In a graph
@@ -71,20 +71,23 @@ pub trait ModelVisitor<S: Scalar> {
         Mo: Model<S, N, G, M> + Clone + 'static;
 }
 
-/// Something to do with a model and with the same model of other numbers, such as dual ones.
-pub trait LiftedVisitor<S: Scalar> {
+/// Something to do with a model and with the same model of two other kinds of numbers, such as dual ones. Of each kind only what the
+/// visitor calls is compiled.
+pub trait LiftedVisitor<S: Scalar, T: Scalar> {
     /// What results.
     type Output;
 
-    /// Is handed the model, and a function that makes it of a value in `S` for each parameter, in the order of their table.
-    fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
+    /// Is handed the model, and functions that make it of a value in `S`, and in `T`, for each parameter, in the order of their table.
+    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
         lifted: impl Fn(&[S]) -> Result<Li, ParameterError>,
+        other: impl Fn(&[T]) -> Result<Ot, ParameterError>,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M> + Clone + 'static,
-        Li: Model<S, N, G, M> + 'static;
+        Li: Model<S, N, G, M> + 'static,
+        Ot: Model<T, N, G, M> + 'static;
 }
 
 /// Something to do with a mechanism, whatever its type.

@@ -46,6 +46,12 @@ impl<V: Slopes> GradientIn<V> {
         Self { value, slopes }
     }
 
+    /// The same number in other vectors.
+    #[inline(always)]
+    pub(crate) fn among<W: Slopes>(self) -> GradientIn<W> {
+        GradientIn::new(self.value, self.slopes())
+    }
+
     /// The derivatives in their vectors.
     #[inline(always)]
     pub(crate) fn vectors(self) -> V {

@@ -13,6 +13,9 @@ pub const WIDTH: usize = 4;
 
 /// Four derivatives.
 pub trait Slopes: Copy + Debug + 'static {
+    /// Whether operations are instructions only where they are inlined into code compiled for them, by [`vectorized`](Slopes::vectorized).
+    const MUST_BE_INLINED: bool;
+
     /// These.
     fn new(slopes: [f64; WIDTH]) -> Self;
     /// As numbers.
@@ -41,6 +44,8 @@ pub trait Slopes: Copy + Debug + 'static {
     /// The larger one of each; what is not a number may be lost.
     #[must_use]
     fn max(self, other: Self) -> Self;
+    /// Whether the machine at hand has such vectors; if not, no such numbers can be made.
+    fn is_at_hand() -> bool;
     /// Calls `of`, compiled for these vectors where it is inlined.
     fn vectorized<F: NullaryFnOnce>(of: F) -> F::Output;
 }
@@ -49,6 +54,8 @@ pub trait Slopes: Copy + Debug + 'static {
 pub type Everywhere = [f64x2; WIDTH / 2];
 
 impl Slopes for Everywhere {
+    const MUST_BE_INLINED: bool = false;
+
     #[inline(always)]
     fn new([a, b, c, d]: [f64; WIDTH]) -> Self {
         [f64x2::new([a, b]), f64x2::new([c, d])]
@@ -90,11 +97,21 @@ impl Slopes for Everywhere {
     fn max(self, other: Self) -> Self {
         [self[0].fast_max(other[0]), self[1].fast_max(other[1])]
     }
+    fn is_at_hand() -> bool {
+        true
+    }
     #[inline(always)]
     fn vectorized<F: NullaryFnOnce>(of: F) -> F::Output {
         of.call()
     }
 }
+
+/// The fastest that a machine of this kind may have.
+#[cfg(target_arch = "x86_64")]
+pub type Fastest = Avx2;
+/// The fastest that a machine of this kind may have.
+#[cfg(not(target_arch = "x86_64"))]
+pub type Fastest = Everywhere;
 
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;
@@ -117,11 +134,6 @@ mod avx2 {
     }
 
     impl Avx2 {
-        /// Whether the machine at hand has such vectors.
-        pub fn is_at_hand() -> bool {
-            V3::is_available()
-        }
-
         #[inline(always)]
         fn machine() -> V3 {
             V3::try_new().expect("slopes are kept in such vectors where the machine has them")
@@ -140,6 +152,8 @@ mod avx2 {
     }
 
     impl Slopes for Avx2 {
+        const MUST_BE_INLINED: bool = true;
+
         #[inline(always)]
         fn new(slopes: [f64; WIDTH]) -> Self {
             Self { all: pulp::cast(slopes), machine: Self::machine() }
@@ -179,6 +193,9 @@ mod avx2 {
         #[inline(always)]
         fn max(self, other: Self) -> Self {
             self.with(self.machine.avx._mm256_max_pd(self.all, other.all))
+        }
+        fn is_at_hand() -> bool {
+            V3::is_available()
         }
         #[inline(always)]
         fn vectorized<F: NullaryFnOnce>(of: F) -> F::Output {

@@ -53,17 +53,19 @@ struct Differences {
     accuracy: Accuracy,
 }
 
-impl LiftedVisitor<DoubleDouble> for Differences {
+impl LiftedVisitor<DoubleDouble, DoubleDouble> for Differences {
     type Output = Result<Vec<f64>, DifferencesError>;
 
-    fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
+    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
         self,
         _: &Mo,
         lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
+        _: impl Fn(&[DoubleDouble]) -> Result<Ot, ParameterError>,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
         Li: Model<DoubleDouble, N, G, M>,
+        Ot: Model<DoubleDouble, N, G, M>,
     {
         let number = DoubleDouble::from_f64;
         let span = Span { t0: 0.0, t_end: self.t };

@@ -5,63 +5,60 @@
 use nalgebra::SVector;
 
 use super::jump::jumped;
-use super::step::{Frozen, Sloped, Stepper};
+use super::step::{Sloped, Steps};
 use super::{Direction, SensitivityError};
-use crate::model::scalar::slopes::{Slopes, WIDTH};
-use crate::model::scalar::{GradientIn, Scalar};
+use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;
-use crate::solve::integrator::{Point, Scale};
+use crate::solve::integrator::Point;
 use crate::solve::simulation::{Observer, Switching};
 
 /// Some of the directions with the system in numbers that have slopes along them.
-pub(super) struct Follower<V, Li, const N: usize, const G: usize, const M: usize> {
+pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
     system: Li,
     /// The same with slopes of nothing.
     plain: Li,
     directions: Vec<Direction>,
-    stepper: Stepper<V, N>,
+    steps: Box<dyn Steps<N, G>>,
     /// The last step: its start, its branches, the state there.
     start: f64,
     negative: [bool; G],
-    from: Sloped<V, N>,
+    from: Sloped<N>,
     /// The state at a sample in it.
-    between: Sloped<V, N>,
+    between: Sloped<N>,
     /// Where the run has come to.
     t: f64,
-    now: Sloped<V, N>,
+    now: Sloped<N>,
     has_begun: bool,
     error: Option<SensitivityError>,
     /// For each direction and output the derivatives at the samples.
     pub outputs: Vec<Vec<Vec<f64>>>,
 }
 
-impl<V, Li, const N: usize, const G: usize, const M: usize> Follower<V, Li, N, G, M>
+impl<Li, const N: usize, const G: usize, const M: usize> Follower<Li, N, G, M>
 where
-    V: Slopes,
-    Li: Model<GradientIn<V>, N, G, M>,
+    Li: Model<Gradient, N, G, M>,
 {
-    /// From the start of a run at `t0` (s) and the state `x`; `sizes` are those of the directions.
+    /// From the start of a run at `t0` (s) and the state `x`; `steps` are those of the same system.
     pub fn new(
         [system, plain]: [Li; 2],
+        steps: Box<dyn Steps<N, G>>,
         directions: &[Direction],
-        sizes: [f64; WIDTH],
-        scale: Scale<N>,
         t0: f64,
-        x: Sloped<V, N>,
+        x: Sloped<N>,
     ) -> Self {
         let mut now = x;
         for (l, direction) in directions.iter().enumerate() {
             if let Direction::Start(state) = direction {
                 let mut slopes = now[*state].slopes();
                 slopes[l] += 1.0;
-                now[*state] = GradientIn::new(now[*state].value, slopes);
+                now[*state] = Gradient::new(now[*state].value, slopes);
             }
         }
         Self {
             system,
             plain,
             directions: directions.to_vec(),
-            stepper: Stepper::new(scale, sizes),
+            steps,
             start: t0,
             negative: [false; G],
             from: now,
@@ -90,14 +87,13 @@ where
 }
 
 /// The state `x` gets these values.
-fn set<V, const N: usize>(x: &mut Sloped<V, N>, values: &SVector<f64, N>) {
+fn set<const N: usize>(x: &mut Sloped<N>, values: &SVector<f64, N>) {
     x.data.0[0].iter_mut().zip(&values.data.0[0]).for_each(|(x, &value)| x.value = value);
 }
 
-impl<V, Li, const N: usize, const G: usize, const M: usize> Observer<N, G> for Follower<V, Li, N, G, M>
+impl<Li, const N: usize, const G: usize, const M: usize> Observer<N, G> for Follower<Li, N, G, M>
 where
-    V: Slopes,
-    Li: Model<GradientIn<V>, N, G, M>,
+    Li: Model<Gradient, N, G, M>,
 {
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
         if self.error.is_some() {
@@ -108,21 +104,21 @@ where
                 self.error = Some(SensitivityError::ImpactAtStart);
                 return;
             }
-            self.system.project(GradientIn::from_f64(t), negative, &mut self.now);
+            self.system.project(Gradient::from_f64(t), negative, &mut self.now);
             set(&mut self.now, x);
         }
-        let Self { system, stepper, from, now, between, .. } = self;
+        let Self { system, steps, from, now, between, .. } = self;
         let reached = if t == self.t {
             now
-        } else if stepper.cross(&Frozen { system, negative: &self.negative }, self.start, t, from, between) {
+        } else if steps.cross(&self.negative, self.start, t, from, between) {
             between
         } else {
             self.error = Some(SensitivityError::Inexact { t });
             return;
         };
         set(reached, x);
-        let mut outputs = SVector::repeat(GradientIn::from_f64(0.0));
-        system.outputs(GradientIn::from_f64(t), reached, negative, &mut outputs);
+        let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
+        system.outputs(Gradient::from_f64(t), reached, negative, &mut outputs);
         for (l, columns) in self.outputs.iter_mut().enumerate() {
             columns.iter_mut().zip(&outputs).for_each(|(column, output)| column.push(output.slopes()[l]));
         }
@@ -134,9 +130,9 @@ where
         }
         (self.start, self.negative) = (start.t, *negative);
         std::mem::swap(&mut self.from, &mut self.now);
-        let Self { system, stepper, from, now, .. } = self;
+        let Self { steps, from, now, .. } = self;
         set(from, &start.x);
-        if stepper.cross(&Frozen { system, negative }, start.t, end.t, from, now) {
+        if steps.cross(negative, start.t, end.t, from, now) {
             self.t = end.t;
             set(now, &end.x);
         } else {

@@ -43,16 +43,15 @@ use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
-use crate::model::scalar::GradientIn;
-#[cfg(target_arch = "x86_64")]
-use crate::model::scalar::slopes::Avx2;
-use crate::model::scalar::slopes::{Everywhere, Slopes, WIDTH};
+use crate::model::scalar::{Gradient, GradientIn};
+use crate::model::scalar::slopes::{Fastest, Slopes, WIDTH};
 use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
 use crate::solve::simulation::{Observer, Switching};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
+use step::{Stepper, Steps};
 
 /// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
 /// the slopes would no longer be the derivatives of these.
@@ -148,11 +147,7 @@ pub fn sensitivities<Me: Mechanism>(
     let parameters = model.parameters();
     let values = (0..Me::Parameters::table().len()).map(|index| parameters.value(index)).collect();
     let following = Following { request, directions, values };
-    #[cfg(target_arch = "x86_64")]
-    if Avx2::is_at_hand() {
-        return model.visit_lifted::<GradientIn<Avx2>, _>(following);
-    }
-    model.visit_lifted::<GradientIn<Everywhere>, _>(following)
+    model.visit_lifted::<Gradient, GradientIn<Fastest>, _>(following)
 }
 
 /// What is done with the model.
@@ -181,27 +176,34 @@ impl Following<'_> {
     }
 }
 
-impl<V: Slopes> LiftedVisitor<GradientIn<V>> for Following<'_> {
+impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
     type Output = Result<Sensitivities, SensitivityError>;
 
-    fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
+    fn visit<Mo, Li, Fa, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
-        lifted: impl Fn(&[GradientIn<V>]) -> Result<Li, ParameterError>,
+        lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
+        fastest: impl Fn(&[GradientIn<Fastest>]) -> Result<Fa, ParameterError>,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
-        Li: Model<GradientIn<V>, N, G, M>,
+        Li: Model<Gradient, N, G, M> + 'static,
+        Fa: Model<GradientIn<Fastest>, N, G, M> + 'static,
     {
         let Description { outputs, .. } = model.description();
         let start = model.start()?;
         let settings = self.request.settings(0.0);
         let scale = Scale::<N>::from(&settings.tolerances);
-        let follower = |chunk: &[Direction]| -> Result<Follower<V, Li, N, G, M>, SensitivityError> {
+        let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
             let both = [lifted(&self.sloped(chunk))?, lifted(&self.sloped(&[]))?];
             let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
+            let steps: Box<dyn Steps<N, G>> = if Fastest::is_at_hand() {
+                Box::new(Stepper::new(fastest(&self.sloped(chunk))?, scale.clone(), sizes))
+            } else {
+                Box::new(Stepper::new(lifted(&self.sloped(chunk))?, scale.clone(), sizes))
+            };
             let x = both[0].start()?;
-            Ok(Follower::new(both, chunk, sizes, scale.clone(), 0.0, x))
+            Ok(Follower::new(both, steps, chunk, 0.0, x))
         };
         let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);

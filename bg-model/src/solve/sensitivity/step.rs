@@ -5,17 +5,21 @@
 //! stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is. The step is divided into equal parts
 //! until the estimated error of the slopes is what is allowed: for a change of the direction by its size, what is allowed of the
 //! state (as in A. C. Hindmarsh and others, SUNDIALS, ACM TOMS 31 (2005), section 2.6).
+//!
+//! A step has vectors of its own: those of the machine, in which nothing else is calculated. All around it is [`Gradient`].
 
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
 use crate::model::scalar::slopes::{Slopes, WIDTH};
-use crate::model::scalar::{GradientIn, Scalar};
+use crate::model::scalar::{Gradient, GradientIn, Scalar};
 use crate::model::system::System;
 use crate::solve::integrator::{DormandPrince, Row, Scale, Tableau};
 
 /// A state with slopes.
-pub(super) type Sloped<V, const N: usize> = SVector<GradientIn<V>, N>;
+pub(super) type Sloped<const N: usize> = SVector<Gradient, N>;
+/// The same in the vectors of a step.
+type SlopedIn<V, const N: usize> = SVector<GradientIn<V>, N>;
 
 /// The stages of a step.
 const STAGES: usize = DormandPrince::END;
@@ -24,9 +28,17 @@ const MOST_PARTS: u32 = 1 << 16;
 /// Errors below this let the next step have half as many parts: a twofold step errs 2^8 times as much.
 const SMALL: f64 = 1.0 / 512.0;
 
+/// Steps of a system, whatever its vectors.
+pub(super) trait Steps<const N: usize, const G: usize> {
+    /// Writes the state at the time `to` (s), from `x` at `from`, into `end`, projected, in the branches `negative`. Gives whether it
+    /// did: not where the slopes stay too inexact or are not finite.
+    fn cross(&mut self, negative: &[bool; G], from: f64, to: f64, x: &Sloped<N>, end: &mut Sloped<N>) -> bool;
+}
+
 /// The method with its work space.
 #[derive(Debug)]
-pub(super) struct Stepper<V, const N: usize> {
+pub(super) struct Stepper<V, Sys, const N: usize> {
+    system: Sys,
     k: Box<Stages<V, N>>,
     /// The parts of the last step.
     parts: u32,
@@ -43,54 +55,31 @@ struct Stages<V, const N: usize> {
     slopes: [[V; N]; STAGES],
 }
 
-/// A system in the branches of a step.
-#[derive(Debug)]
-pub(super) struct Frozen<'a, Sys, const G: usize> {
-    pub system: &'a Sys,
-    pub negative: &'a [bool; G],
-}
-
-impl<V: Slopes, const N: usize> Stepper<V, N> {
-    pub fn new(scale: Scale<N>, sizes: [f64; WIDTH]) -> Self {
+impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
+    pub fn new(system: Sys, scale: Scale<N>, sizes: [f64; WIDTH]) -> Self {
         let k = Box::new(Stages { values: [[0.0; N]; STAGES], slopes: [[V::new([0.0; WIDTH]); N]; STAGES] });
-        Self { k, parts: 1, scale, sizes: V::new(sizes) }
-    }
-
-    /// Writes the state at the time `to` (s), from `x` at `from`, into `end`, projected. Gives whether it did: not where the slopes
-    /// stay too inexact or are not finite.
-    pub fn cross<Sys, const G: usize>(
-        &mut self,
-        frozen: &Frozen<Sys, G>,
-        from: f64,
-        to: f64,
-        x: &Sloped<V, N>,
-        end: &mut Sloped<V, N>,
-    ) -> bool
-    where
-        Sys: System<GradientIn<V>, N, G>,
-    {
-        V::vectorized(Crossing { stepper: self, frozen, from, to, x, end })
+        Self { system, k, parts: 1, scale, sizes: V::new(sizes) }
     }
 
     #[inline(always)]
-    fn crossed<Sys, const G: usize>(
+    fn crossed<const G: usize>(
         &mut self,
-        frozen: &Frozen<Sys, G>,
+        negative: &[bool; G],
         from: f64,
         to: f64,
-        x: &Sloped<V, N>,
-        end: &mut Sloped<V, N>,
+        x: &Sloped<N>,
+        end: &mut Sloped<N>,
     ) -> bool
     where
         Sys: System<GradientIn<V>, N, G>,
     {
         while self.parts <= MOST_PARTS {
             let h = (to - from) / f64::from(self.parts);
-            end.copy_from(x);
+            let mut state: SlopedIn<V, N> = x.map(GradientIn::among);
             let mut worst = 0.0_f64;
             for part in 0..self.parts {
                 let t = from + f64::from(part) * h;
-                let error = self.attempt(frozen, t, h, end);
+                let error = self.attempt(negative, t, h, &mut state);
                 worst = if error <= worst { worst } else { error };
                 if worst.is_nan() || worst > 1.0 {
                     break;
@@ -100,7 +89,13 @@ impl<V: Slopes, const N: usize> Stepper<V, N> {
                 if worst < SMALL && self.parts > 1 {
                     self.parts /= 2;
                 }
-                frozen.system.inlined_project(GradientIn::from_f64(to), frozen.negative, end);
+                let to = GradientIn::from_f64(to);
+                if V::MUST_BE_INLINED {
+                    self.system.inlined_project(to, negative, &mut state);
+                } else {
+                    self.system.project(to, negative, &mut state);
+                }
+                *end = state.map(GradientIn::among);
                 return true;
             }
             self.parts *= 2;
@@ -110,7 +105,7 @@ impl<V: Slopes, const N: usize> Stepper<V, N> {
 
     /// Replaces the state by that at the end of one part; gives the norm of its slopes' error.
     #[inline(always)]
-    fn attempt<Sys, const G: usize>(&mut self, frozen: &Frozen<Sys, G>, t: f64, h: f64, x: &mut Sloped<V, N>) -> f64
+    fn attempt<const G: usize>(&mut self, negative: &[bool; G], t: f64, h: f64, x: &mut SlopedIn<V, N>) -> f64
     where
         Sys: System<GradientIn<V>, N, G>,
     {
@@ -127,7 +122,11 @@ impl<V: Slopes, const N: usize> Stepper<V, N> {
             }
             written_out!(1 2 3 4 5 6 7 8 9 10 11);
             let t = GradientIn::from_f64(t + DormandPrince::C[stage] * h);
-            frozen.system.always_inlined_rate(t, &state, frozen.negative, &mut rate);
+            if V::MUST_BE_INLINED {
+                self.system.always_inlined_rate(t, &state, negative, &mut rate);
+            } else {
+                self.system.rate(t, &state, negative, &mut rate);
+            }
             self.k.store(stage, &rate);
         }
         self.k.move_by(x, h, DormandPrince::B, &mut state);
@@ -138,7 +137,7 @@ impl<V: Slopes, const N: usize> Stepper<V, N> {
 
     /// The norm of the slopes' error: DOP853's, of its two differences to embedded methods. Not a number where a slope is none.
     #[inline(always)]
-    fn error(&self, h: f64, start: &Sloped<V, N>, end: &Sloped<V, N>) -> f64 {
+    fn error(&self, h: f64, start: &SlopedIn<V, N>, end: &SlopedIn<V, N>) -> f64 {
         let none = self.sizes.filled(0.0);
         let (mut first, mut second, mut watched) = (none, none, none);
         for i in 0..N {
@@ -166,7 +165,7 @@ impl<V: Slopes, const N: usize> Stepper<V, N> {
 
 impl<V: Slopes, const N: usize> Stages<V, N> {
     #[inline(always)]
-    fn store(&mut self, stage: usize, rate: &Sloped<V, N>) {
+    fn store(&mut self, stage: usize, rate: &SlopedIn<V, N>) {
         for (i, rate) in rate.data.0[0].iter().enumerate() {
             self.values[stage][i] = rate.value;
             self.slopes[stage][i] = rate.vectors();
@@ -175,7 +174,7 @@ impl<V: Slopes, const N: usize> Stages<V, N> {
 
     /// Writes the state `x`, moved by `h` times a combination of the stages, into `moved`.
     #[inline(always)]
-    fn move_by(&self, x: &Sloped<V, N>, h: f64, row: Row, moved: &mut Sloped<V, N>) {
+    fn move_by(&self, x: &SlopedIn<V, N>, h: f64, row: Row, moved: &mut SlopedIn<V, N>) {
         let mut values = [0.0; N];
         for (i, value) in values.iter_mut().enumerate() {
             *value = row.iter().fold(0.0, |sum, &(stage, weight)| sum + weight * self.values[stage][i]);
@@ -196,14 +195,24 @@ impl<V: Slopes, const N: usize> Stages<V, N> {
     }
 }
 
+impl<V, Sys, const N: usize, const G: usize> Steps<N, G> for Stepper<V, Sys, N>
+where
+    V: Slopes,
+    Sys: System<GradientIn<V>, N, G>,
+{
+    fn cross(&mut self, negative: &[bool; G], from: f64, to: f64, x: &Sloped<N>, end: &mut Sloped<N>) -> bool {
+        V::vectorized(Crossing { stepper: self, negative, from, to, x, end })
+    }
+}
+
 /// A step, to be compiled for vectors.
 struct Crossing<'a, V, Sys, const N: usize, const G: usize> {
-    stepper: &'a mut Stepper<V, N>,
-    frozen: &'a Frozen<'a, Sys, G>,
+    stepper: &'a mut Stepper<V, Sys, N>,
+    negative: &'a [bool; G],
     from: f64,
     to: f64,
-    x: &'a Sloped<V, N>,
-    end: &'a mut Sloped<V, N>,
+    x: &'a Sloped<N>,
+    end: &'a mut Sloped<N>,
 }
 
 impl<V, Sys, const N: usize, const G: usize> NullaryFnOnce for Crossing<'_, V, Sys, N, G>
@@ -215,7 +224,7 @@ where
 
     #[inline(always)]
     fn call(self) -> bool {
-        let Self { stepper, frozen, from, to, x, end } = self;
-        stepper.crossed(frozen, from, to, x, end)
+        let Self { stepper, negative, from, to, x, end } = self;
+        stepper.crossed(negative, from, to, x, end)
     }
 }

@@ -43,11 +43,14 @@ pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
                 let model = Model::<S>::in_scalar(self.parameters.clone() #own);
                 visitor.visit(&model.expect("a model was made with these parameters before"))
             }
-            fn visit_lifted<S: Scalar, V: ::bg_model::mechanism::LiftedVisitor<S>>(&self, visitor: V) -> V::Output {
-                visitor.visit(self, |values: &[S]| {
-                    let values = values.try_into().expect("a value for each parameter");
-                    Model::<S>::lifted(values #own)
-                })
+            fn visit_lifted<S: Scalar, T: Scalar, V: ::bg_model::mechanism::LiftedVisitor<S, T>>(
+                &self, visitor: V,
+            ) -> V::Output {
+                visitor.visit(
+                    self,
+                    |values: &[S]| Model::<S>::lifted(values.try_into().expect("a value for each parameter") #own),
+                    |values: &[T]| Model::<T>::lifted(values.try_into().expect("a value for each parameter") #own),
+                )
             }
         }
     }
