@@ -14,7 +14,7 @@ use bg_model::mechanism::Mechanism;
 use bg_model::nalgebra::{DMatrix, DVector};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::run::Request;
-use bg_model::sensitivity::{Direction, SensitivityError, sensitivities};
+use bg_model::sensitivity::{Direction, Sensitivities, SensitivityError, sensitivities};
 use bg_model::simulation::Samples;
 use thiserror::Error;
 
@@ -148,14 +148,35 @@ pub fn identify<Me: Mechanism>(
     variables: &[Variable],
     mut told: impl FnMut(&[f64], f64),
 ) -> Result<Identified, IdentifyError> {
+    let directions: Vec<Direction> =
+        variables.iter().map(|of| Direction::parameter::<Me>(of.info.name)).collect::<Result<_, _>>()?;
+    let run = |request: &Request, values: &[f64]| {
+        let mut parameters = model.parameters().clone();
+        for (of, &value) in variables.iter().zip(values) {
+            parameters.set(of.info.name, value)?;
+        }
+        sensitivities(&Me::make(parameters, &model.inputs())?, request, &directions)
+    };
+    fitted(&run, request, data, variables, &mut told)
+}
+
+/// A run with derivatives by the variables, of their values.
+type Run<'a> = dyn Fn(&Request, &[f64]) -> Result<Sensitivities, SensitivityError> + 'a;
+
+/// As [`identify`], whatever the model's type.
+fn fitted(
+    run: &Run,
+    request: &Request,
+    data: &Data,
+    variables: &[Variable],
+    told: &mut dyn FnMut(&[f64], f64),
+) -> Result<Identified, IdentifyError> {
     let count = data.count();
     if count <= variables.len() {
         return Err(IdentifyError::TooFew { values: count, parameters: variables.len() });
     }
     let t_end = *data.times.last().expect("there are values");
     let request = Request { samples: Samples::At(data.times.clone()), t_end, ..request.clone() };
-    let directions: Vec<Direction> =
-        variables.iter().map(|of| Direction::parameter::<Me>(of.info.name)).collect::<Result<_, _>>()?;
     let inner = |value: fn(&Variable) -> f64| {
         DVector::from_iterator(variables.len(), variables.iter().map(|of| of.inner(value(of))))
     };
@@ -168,12 +189,7 @@ pub fn identify<Me: Mechanism>(
         let mut latest = Vec::new();
         let evaluate = |x: &DVector<f64>| -> Result<fit::Linear, SensitivityError> {
             let values: Vec<f64> = variables.iter().zip(x).map(|(of, &x)| of.outer(x)).collect();
-            let mut parameters = model.parameters().clone();
-            for (of, &value) in variables.iter().zip(&values) {
-                parameters.set(of.info.name, value)?;
-            }
-            let changed = Me::make(parameters, &model.inputs())?;
-            let found = sensitivities(&changed, &request, &directions)?;
+            let found = run(&request, &values)?;
             let (mut residuals, mut slopes) = (Vec::with_capacity(count), Vec::with_capacity(count * values.len()));
             for (column, noise) in data.columns.iter().zip(&noise) {
                 let of_model = &found.trajectory.columns[column.output].values;

@@ -7,11 +7,10 @@
 //! Runge-Kutta method. Where joints are rigid, p loses what they hold, as by an impulse, and closes the gaps q by p
 //! such that the flows are -q.
 
-use bg_model::nalgebra::{DMatrix, DVector, SVector};
-use bg_model::scalar::Dual;
-use bg_model::system::Model;
+use bg_model::nalgebra::{DMatrix, DVector};
+use bg_model::scalar::{Gradient, Scalar};
 
-use super::plant::{branches, held};
+use super::sloped::Sloped;
 
 /// Singular values below this part of the largest entry are of rows that follow from others.
 const FOLLOWS: f64 = 1e-10;
@@ -31,17 +30,10 @@ pub(super) struct Carry {
 }
 
 /// The state that the move leads to from `x`.
-pub(super) fn carried<Mo, const N: usize, const G: usize, const M: usize>(
-    model: &Mo,
-    t: f64,
-    x: &DVector<f64>,
-    carry: &Carry,
-) -> DVector<f64>
-where
-    Mo: Model<Dual, N, G, M>,
-{
+pub(super) fn carried(model: &dyn Sloped, t: f64, x: &DVector<f64>, carry: &Carry) -> DVector<f64> {
     let momenta: DVector<f64> = x.zip_map(&mask(&carry.momenta), |value, is| value * is);
-    let kinematics = Kinematics::<Mo, N, G, M> { model, t, carry, negative: branches(model, t, &dual(x, &(x * 0.0))) };
+    let negative = model.branches(t, &still(x));
+    let kinematics = Kinematics { model, t: Gradient::from_f64(t), carry, negative };
     let mut place = x - &momenta;
     let gaps = kinematics.gaps(&place);
     let h = 1.0 / carry.steps as f64;
@@ -57,40 +49,35 @@ where
     kinematics.fitting(place + momenta + added)
 }
 
-struct Kinematics<'a, Mo, const N: usize, const G: usize, const M: usize> {
-    model: &'a Mo,
-    t: f64,
+struct Kinematics<'a> {
+    model: &'a dyn Sloped,
+    t: Gradient,
     carry: &'a Carry,
-    negative: [bool; G],
+    negative: Vec<bool>,
 }
 
-impl<Mo, const N: usize, const G: usize, const M: usize> Kinematics<'_, Mo, N, G, M>
-where
-    Mo: Model<Dual, N, G, M>,
-{
+impl Kinematics<'_> {
     /// d/ds of all states but momenta, which are zero at `place`.
     fn slope(&self, place: &DVector<f64>, gaps: &DVector<f64>) -> DVector<f64> {
-        let t = Dual::new(self.t, 0.0);
         let mut push = self.carry.push.clone();
-        if let Some(held) = held(self.model, t, &dual(place, &push), &self.negative) {
-            let flows = DVector::from_iterator(held.flows.len(), held.flows.iter().map(|flow| flow.slope));
+        if let Some(held) = self.model.held(self.t, &along(place, &push), &self.negative) {
+            let flows = DVector::from_iterator(held.flows.len(), held.flows.iter().map(|flow| flow.slopes()[0]));
             push -= held.moves * solved(held.matrix, &(flows + gaps));
         }
-        let mut rates = SVector::repeat(Dual::new(0.0, 0.0));
-        self.model.rate(t, &dual(place, &push), &self.negative, &mut rates);
-        let stays = &self.carry.stays;
-        DVector::from_fn(N, |state, _| if stays[state] { 0.0 } else { rates[state].slope + self.carry.add[state] })
+        let rates = self.model.rates(self.t, &along(place, &push), &self.negative);
+        let moved = |state: usize| rates[state].slopes()[0] + self.carry.add[state];
+        DVector::from_fn(place.len(), |state, _| if self.carry.stays[state] { 0.0 } else { moved(state) })
     }
 
     /// The gaps of the rigid motions; none without rigid joints.
     fn gaps(&self, place: &DVector<f64>) -> DVector<f64> {
-        let held = held(self.model, Dual::new(self.t, 0.0), &dual(place, &(place * 0.0)), &self.negative);
+        let held = self.model.held(self.t, &still(place), &self.negative);
         held.map_or(DVector::zeros(0), |held| held.gaps)
     }
 
     /// The state with momenta that rigid joints allow.
     fn fitting(&self, x: DVector<f64>) -> DVector<f64> {
-        let Some(held) = held(self.model, Dual::new(self.t, 0.0), &dual(&x, &(&x * 0.0)), &self.negative) else {
+        let Some(held) = self.model.held(self.t, &still(&x), &self.negative) else {
             return x;
         };
         let flows = DVector::from_iterator(held.flows.len(), held.flows.iter().map(|flow| flow.value));
@@ -98,9 +85,8 @@ where
     }
 
     fn projected(&self, x: &DVector<f64>) -> DVector<f64> {
-        let mut projected = dual(x, &(x * 0.0));
-        self.model.project(Dual::new(self.t, 0.0), &self.negative, &mut projected);
-        DVector::from_fn(N, |state, _| projected[state].value)
+        let projected = self.model.projected(self.t, &still(x), &self.negative);
+        DVector::from_iterator(x.len(), projected.iter().map(|state| state.value))
     }
 }
 
@@ -111,8 +97,14 @@ fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
     solution.unwrap_or_else(|_| DVector::repeat(right.len(), f64::NAN))
 }
 
-fn dual<const N: usize>(x: &DVector<f64>, along: &DVector<f64>) -> SVector<Dual, N> {
-    SVector::from_fn(|state, _| Dual::new(x[state], along[state]))
+/// The state, changing along one direction.
+fn along(x: &DVector<f64>, direction: &DVector<f64>) -> Vec<Gradient> {
+    x.iter().zip(direction).map(|(&x, &along)| Gradient::new(x, [along; Gradient::WIDTH])).collect()
+}
+
+/// The state, which does not change.
+fn still(x: &DVector<f64>) -> Vec<Gradient> {
+    x.iter().map(|&x| Gradient::from_f64(x)).collect()
 }
 
 /// 1 where true, 0 where not.

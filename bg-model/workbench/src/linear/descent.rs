@@ -50,7 +50,7 @@ impl Local {
     /// The plant near the state `x` with momenta that leave all else as it is: none, of a mechanism at rest. Gives that
     /// state, too. In the search for a steady motion idle coordinates may go on changing.
     pub fn settled(
-        plant: &dyn Plant,
+        plant: &Plant,
         t: f64,
         x: &DVector<f64>,
         steady: bool,
@@ -71,11 +71,11 @@ impl Local {
     }
 
     /// The plant near state `x`.
-    pub fn at(plant: &dyn Plant, t: f64, x: &DVector<f64>, steady: bool) -> Result<Self, LinearError> {
-        let description = plant.description();
+    pub fn at(plant: &Plant, t: f64, x: &DVector<f64>, steady: bool) -> Result<Self, LinearError> {
+        let description = plant.description;
         let here = plant.derivatives(x);
         check_rates(description, &here, t)?;
-        let inputs = plant.by_inputs(x)?;
+        let inputs = plant.by_inputs(x);
         check_derivatives(description, &here, &inputs, t)?;
         let manifold = Manifold::at(plant, x, &here, &inputs);
         let Balanced { matrix: jacobian, scales } =
@@ -148,7 +148,7 @@ impl Local {
     }
 
     /// The state after a straight step in balanced coordinates.
-    pub fn moved(&self, plant: &dyn Plant, x: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
+    pub fn moved(&self, plant: &Plant, x: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
         plant.carried(x, &self.manifold.carry(&step.component_mul(&self.scales), x))
     }
 }

@@ -17,7 +17,7 @@ use super::coordinates::{Coordinate, Role};
 use super::descent::{Local, Stability};
 use super::error::LinearError;
 use super::manifold::Drift;
-use super::plant::{Frozen, Plant};
+use super::plant::Plant;
 use super::text::{counted, short};
 
 /// How many steps are made before the search ends.
@@ -62,17 +62,19 @@ impl Equilibrium {
 /// [`LinearError::NoEquilibrium`] names what still changes; [`LinearError::NotFinite`] and [`LinearError::BadRate`] a
 /// rate that has no derivative or no value on the way.
 pub fn equilibrium<Me: Mechanism>(mechanism: &Me, t: f64, guess: &[f64]) -> Result<Equilibrium, LinearError> {
-    let plant = Frozen::at(mechanism, t)?;
-    let guess = DVector::from_column_slice(guess);
-    let rest = search(&plant, t, &guess, false);
+    found(&Plant::at(mechanism, t)?, t, &DVector::from_column_slice(guess))
+}
+
+fn found(plant: &Plant, t: f64, guess: &DVector<f64>) -> Result<Equilibrium, LinearError> {
+    let rest = search(plant, t, guess, false);
     match rest {
-        Err(LinearError::NoEquilibrium { .. }) => search(&plant, t, &guess, true).or(rest),
+        Err(LinearError::NoEquilibrium { .. }) => search(plant, t, guess, true).or(rest),
         _ => rest,
     }
 }
 
 /// The search from `guess`: for rest, or for a steady motion.
-fn search(plant: &dyn Plant, t: f64, guess: &DVector<f64>, steady: bool) -> Result<Equilibrium, LinearError> {
+fn search(plant: &Plant, t: f64, guess: &DVector<f64>, steady: bool) -> Result<Equilibrium, LinearError> {
     let mut x = guess.clone();
     let mut seen = Seen::default();
     let mut pace = Pace::default();
@@ -148,7 +150,7 @@ impl Pace {
 
 /// The state after Newton's step, where that is short and brings the equilibrium nearer: the simplified correction
 /// after it is smaller than the step, in the measure of poses or of all balanced coordinates.
-fn newton(plant: &dyn Plant, local: &Local, x: &DVector<f64>) -> Option<DVector<f64>> {
+fn newton(plant: &Plant, local: &Local, x: &DVector<f64>) -> Option<DVector<f64>> {
     let step = local.direction(None)?;
     let length = local.length(&step, x);
     if length > NEAR {
@@ -162,7 +164,7 @@ fn newton(plant: &dyn Plant, local: &Local, x: &DVector<f64>) -> Option<DVector<
 
 /// The same equilibrium to rounding: Newton steps while each halves the rates.
 fn polished(
-    plant: &dyn Plant,
+    plant: &Plant,
     t: f64,
     mut x: DVector<f64>,
     mut local: Local,

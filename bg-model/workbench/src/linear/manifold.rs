@@ -64,8 +64,8 @@ pub(super) struct Manifold {
 
 impl Manifold {
     /// The directions at state `x`, where the derivatives are `here` and `inputs`.
-    pub fn at(plant: &dyn Plant, x: &DVector<f64>, here: &Derivatives, inputs: &ByInputs) -> Self {
-        let description = plant.description();
+    pub fn at(plant: &Plant, x: &DVector<f64>, here: &Derivatives, inputs: &ByInputs) -> Self {
+        let description = plant.description;
         let at_rest = at_rest(description, x);
         let rest = if at_rest == *x { here.clone() } else { plant.derivatives(&at_rest) };
         let all = Coordinates::at(description, x, &rest.rates_by_state);

@@ -40,6 +40,7 @@ mod modes;
 mod npz;
 mod plant;
 mod response;
+mod sloped;
 mod state_space;
 mod text;
 

@@ -3,7 +3,7 @@
 //!
 //! In: a mechanism, a time at which its inputs are held, a state. Out: the four matrices, names and units of what they
 //! are between, the operating point, the modes.
-//! Method: exact derivatives by dual numbers, in the independent coordinates of `manifold`.
+//! Method: exact derivatives by numbers with slopes, in the independent coordinates of `manifold`.
 //!
 //! At a state that is no equilibrium the same matrices describe the motion relative to that of the model for a short
 //! time only; where orientations change there, eigenvalues depend on the coordinates that are taken for them.
@@ -16,7 +16,7 @@ use serde::{Serialize, Serializer};
 use super::error::LinearError;
 use super::manifold::{LeftOut, Manifold};
 use super::modes::{Mode, modes};
-use super::plant::{ByInputs, Derivatives, Frozen, Plant};
+use super::plant::{ByInputs, Derivatives, Plant};
 
 /// A name with its unit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -80,18 +80,20 @@ pub struct StateSpace {
 /// # Errors
 /// [`LinearError::NotFinite`], [`LinearError::BadRate`] name a rate without a derivative or a value.
 pub fn linearise<Me: Mechanism>(mechanism: &Me, t: f64, x: &[f64]) -> Result<StateSpace, LinearError> {
-    let plant = Frozen::at(mechanism, t)?;
-    let x = DVector::from_column_slice(x);
-    let description = plant.description();
-    let here = plant.derivatives(&x);
+    linearised(&Plant::at(mechanism, t)?, t, &DVector::from_column_slice(x))
+}
+
+fn linearised(plant: &Plant, t: f64, x: &DVector<f64>) -> Result<StateSpace, LinearError> {
+    let description = plant.description;
+    let here = plant.derivatives(x);
     check_rates(description, &here, t)?;
-    let inputs = plant.by_inputs(&x)?;
+    let inputs = plant.by_inputs(x);
     check_derivatives(description, &here, &inputs, t)?;
-    let manifold = Manifold::at(&plant, &x, &here, &inputs);
+    let manifold = Manifold::at(plant, x, &here, &inputs);
     let named = |name: &str, unit: &str| Named { name: name.to_owned(), unit: unit.to_owned() };
     let states: Vec<Named> = manifold.coordinates.iter().map(|k| named(&k.name, k.unit)).collect();
     let a = &manifold.chart * &here.rates_by_state * &manifold.tangent;
-    let point = description.states.iter().zip(&x).zip(&here.rates);
+    let point = description.states.iter().zip(x).zip(&here.rates);
     Ok(StateSpace {
         model: description.name.to_owned(),
         t,
