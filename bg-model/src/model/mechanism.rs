@@ -33,7 +33,7 @@ pub trait Mechanism: Clone {
     /// Hands the model, calculating in `S`, to `visitor`.
     fn visit<S: Scalar, V: ModelVisitor<S>>(&self, visitor: V) -> V::Output;
 
-    /// Hands the model to `visitor`, and with it what makes the same model of parameters in `S` and in `T`.
+    /// Hands the model to `visitor`, and with it what makes the same model of parameters in `S`, and that one in `T`.
     fn visit_lifted<S: Scalar, T: Scalar, V: LiftedVisitor<S, T>>(&self, visitor: V) -> V::Output;
 }
 
@@ -71,18 +71,19 @@ pub trait ModelVisitor<S: Scalar> {
         Mo: Model<S, N, G, M> + Clone + 'static;
 }
 
-/// Something to do with a model and with the same model of two other kinds of numbers, such as dual ones. Of each kind only what the
-/// visitor calls is compiled.
+/// Something to do with a model and with the same model of other numbers, such as dual ones, whose values may be carried over to a second
+/// kind. Of each kind only what the visitor calls is compiled.
 pub trait LiftedVisitor<S: Scalar, T: Scalar> {
     /// What results.
     type Output;
 
-    /// Is handed the model, and functions that make it of a value in `S`, and in `T`, for each parameter, in the order of their table.
+    /// Is handed the model, a function that makes it of a value in `S` for each parameter, in the order of their table, and one that
+    /// carries all its numbers over to `T`.
     fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
         lifted: impl Fn(&[S]) -> Result<Li, ParameterError>,
-        other: impl Fn(&[T]) -> Result<Ot, ParameterError>,
+        in_numbers: impl Fn(&Li, fn(S) -> T) -> Ot,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M> + Clone + 'static,

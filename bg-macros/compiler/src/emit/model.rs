@@ -144,7 +144,8 @@ impl Emission<'_> {
         let (kept_argument, kept_value) = (shared.owned(), shared.value());
         let construction = self.construction(has_inputs);
         let (pose, reactions) = (self.pose(), self.reactions());
-        let Tables { values, functions, lets, .. } = tables;
+        let (input_copied, kept_copied) = (has_inputs.then(|| quote!(inputs: self.inputs.clone(),)), shared.copied());
+        let Tables { values, functions, lets, moved, .. } = tables;
         let Shape { n, g, m, p } = &self.shape;
         quote! {
             impl Model {
@@ -200,6 +201,12 @@ impl Emission<'_> {
                 fn made(parameters: Parameters, values: [S; #p] #input_argument #kept_argument) -> Self {
                     #lets
                     Self { parameters, values, #input_value #kept_value #values }
+                }
+
+                /// The same in numbers that `of` makes of these.
+                fn in_numbers<T: Scalar>(&self, of: fn(S) -> T) -> Model<T> {
+                    #moved
+                    Model { parameters: self.parameters.clone(), values: self.values.map(of), #input_copied #kept_copied #values }
                 }
 
                 /// The parameters.

@@ -60,7 +60,7 @@ impl LiftedVisitor<DoubleDouble, DoubleDouble> for Differences {
         self,
         _: &Mo,
         lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
-        _: impl Fn(&[DoubleDouble]) -> Result<Ot, ParameterError>,
+        _: impl Fn(&Li, fn(DoubleDouble) -> DoubleDouble) -> Ot,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,

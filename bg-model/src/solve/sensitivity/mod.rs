@@ -43,8 +43,8 @@ use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
-use crate::model::scalar::{Gradient, GradientIn};
 use crate::model::scalar::slopes::{Fastest, Slopes, WIDTH};
+use crate::model::scalar::{Gradient, GradientIn};
 use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
@@ -168,11 +168,11 @@ impl Following<'_> {
     }
 
     /// The parameters with their slopes along these directions.
-    fn sloped<V: Slopes>(&self, directions: &[Direction]) -> Vec<GradientIn<V>> {
+    fn sloped(&self, directions: &[Direction]) -> Vec<Gradient> {
         let slope = |index: usize| {
             std::array::from_fn(|l| f64::from(u8::from(directions.get(l) == Some(&Direction::Parameter(index)))))
         };
-        self.values.iter().enumerate().map(|(index, &value)| GradientIn::new(value, slope(index))).collect()
+        self.values.iter().enumerate().map(|(index, &value)| Gradient::new(value, slope(index))).collect()
     }
 }
 
@@ -183,7 +183,7 @@ impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
         self,
         model: &Mo,
         lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
-        fastest: impl Fn(&[GradientIn<Fastest>]) -> Result<Fa, ParameterError>,
+        in_numbers: impl Fn(&Li, fn(Gradient) -> GradientIn<Fastest>) -> Fa,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
@@ -195,15 +195,15 @@ impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
         let settings = self.request.settings(0.0);
         let scale = Scale::<N>::from(&settings.tolerances);
         let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
-            let both = [lifted(&self.sloped(chunk))?, lifted(&self.sloped(&[]))?];
+            let system = lifted(&self.sloped(chunk))?;
             let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
             let steps: Box<dyn Steps<N, G>> = if Fastest::is_at_hand() {
-                Box::new(Stepper::new(fastest(&self.sloped(chunk))?, scale.clone(), sizes))
+                Box::new(Stepper::new(in_numbers(&system, Gradient::among), scale.clone(), sizes))
             } else {
                 Box::new(Stepper::new(lifted(&self.sloped(chunk))?, scale.clone(), sizes))
             };
-            let x = both[0].start()?;
-            Ok(Follower::new(both, steps, chunk, 0.0, x))
+            let x = system.start()?;
+            Ok(Follower::new([system, lifted(&self.sloped(&[]))?], steps, chunk, 0.0, x))
         };
         let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);

@@ -49,12 +49,7 @@ pub(super) struct Stability {
 impl Local {
     /// The plant near the state `x` with momenta that leave all else as it is: none, of a mechanism at rest. Gives that
     /// state, too. In the search for a steady motion idle coordinates may go on changing.
-    pub fn settled(
-        plant: &Plant,
-        t: f64,
-        x: &DVector<f64>,
-        steady: bool,
-    ) -> Result<(Self, DVector<f64>), LinearError> {
+    pub fn settled(plant: &Plant, t: f64, x: &DVector<f64>, steady: bool) -> Result<(Self, DVector<f64>), LinearError> {
         let moving = Self::at(plant, t, x, steady)?;
         let is_momentum = |k: &usize| moving.manifold.coordinates[*k].role == Role::Momentum;
         let (p, q): (Vec<usize>, Vec<usize>) = (0..moving.scales.len()).partition(is_momentum);

@@ -49,7 +49,7 @@ pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
                 visitor.visit(
                     self,
                     |values: &[S]| Model::<S>::lifted(values.try_into().expect("a value for each parameter") #own),
-                    |values: &[T]| Model::<T>::lifted(values.try_into().expect("a value for each parameter") #own),
+                    Model::<S>::in_numbers,
                 )
             }
         }

@@ -30,6 +30,11 @@ impl Shared {
         self.where_any(|_| quote!(kept,))
     }
 
+    /// Its value in another model of the same parameters.
+    pub fn copied(&self) -> Option<TokenStream> {
+        self.where_any(|_| quote!(kept: self.kept,))
+    }
+
     /// The argument of a function that calculates constants.
     pub fn argument(&self) -> Option<TokenStream> {
         self.where_any(|rows| quote!(, kept: &[f64; #rows]))

@@ -28,6 +28,8 @@ pub(super) struct Tables {
     pub(super) values: TokenStream,
     pub(super) functions: TokenStream,
     pub(super) lets: TokenStream,
+    /// The `let`s for the same tables in other numbers.
+    pub(super) moved: TokenStream,
     pub(super) has_pairs: bool,
 }
 
@@ -70,6 +72,7 @@ impl Emission<'_> {
         let shared = self.shared();
         let (pass, argument) = (shared.pass(), shared.argument());
         made.lets.extend(quote!(let #field = Self::#function(&values #pass);));
+        made.moved.extend(quote!(let #field = self.#field.map(of);));
         made.functions.extend(quote! {
             #[doc = #doc]
             fn #function(parameters: &[S; #parameters] #argument) -> [S; #count] {
@@ -90,7 +93,7 @@ impl Emission<'_> {
         let body = self.with_names(|names| pairs::constants(paired, names));
         made.has_pairs = true;
         made.fields.extend(quote!(#pair_field: [#scalar::Pair; #pairs],));
-        made.values.extend(quote!(#pair_field: Self::#pair_field(&#field),));
+        made.values.extend(quote!(#pair_field: Model::#pair_field(&#field),));
         made.functions.extend(quote! {
             /// Pairs of them.
             fn #pair_field(c: &[S; #count]) -> [S::Pair; #pairs] {
