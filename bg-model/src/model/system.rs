@@ -134,6 +134,20 @@ pub fn branches_by_sign<S: Scalar, const G: usize>(
     (negative, value)
 }
 
+/// The branches of the switches at time `t` (s) and state `x`.
+pub fn branches<S: Scalar, const N: usize, const G: usize>(
+    system: &impl System<S, N, G>,
+    t: f64,
+    x: &SVector<S, N>,
+) -> [bool; G] {
+    let guards = |negative: &[bool; G]| {
+        let mut guards = SVector::repeat(S::from_f64(0.0));
+        system.guards(S::from_f64(t), x, negative, &mut guards);
+        guards
+    };
+    branches_by_sign(system.first_branches(), guards).0
+}
+
 /// Power that crosses the boundary of a model, W.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Powers<S> {

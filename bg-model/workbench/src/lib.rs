@@ -110,7 +110,7 @@ pub mod tables;
 
 pub mod extras;
 pub mod inputs;
-pub mod linear;
+pub use bg_analysis::linear;
 pub mod live;
 pub mod page;
 pub mod parameters;

@@ -20,8 +20,8 @@ use crate::Program;
 use crate::figures::FigureError;
 use crate::figures::fit::fit;
 use crate::files::{FileError, RunFolder, console};
-use crate::identify::data::{Data, pair};
-use crate::identify::{Identified, Variable, identify as identified, report};
+use crate::identify::data::{pair, read_file};
+use crate::identify::{Data, Identified, Variable, identify as identified, report};
 use crate::inputs;
 use crate::output::OutputError;
 use crate::parameters::{self, Chosen};
@@ -87,7 +87,7 @@ pub fn identify<Me: Scenes>(program: &Program<Me>, arguments: &IdentifyArguments
         [] => Vec::new(),
         names => observed(scene, names, "--output")?.into_iter().map(|(place, _)| place).collect(),
     };
-    let data = Data::read_file(&arguments.data, outputs, &named, &only)?;
+    let data = read_file(&arguments.data, outputs, &named, &only)?;
     let folder = RunFolder::claim(&arguments.out, &files(&data, scene))?;
     let request = integration(arguments, &data)?;
     let fitting = Fitting { scene, scenes: &program.scenes, chosen: &chosen, request, data: &data, variables };

@@ -6,32 +6,11 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use bg_analysis::identify::{Data, Measured};
 use bg_model::description::OutputInfo;
 use thiserror::Error;
 
 use crate::parameters::nearest;
-
-/// A measured column.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
-    /// Its name in the file.
-    pub name: String,
-    /// The output that it measures: its place in the model's description.
-    pub output: usize,
-    /// A value for each instant, in the output's unit; none in gaps.
-    pub values: Vec<Option<f64>>,
-}
-
-/// What was measured.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Data {
-    /// The instants, s, ascending.
-    pub times: Vec<f64>,
-    /// The columns that measure outputs.
-    pub columns: Vec<Measured>,
-    /// The names of the others.
-    pub ignored: Vec<String>,
-}
 
 /// A file that is no measurement.
 #[derive(Debug, Error)]
@@ -84,90 +63,81 @@ pub enum DataError {
     },
 }
 
-impl Data {
-    /// How many values there are.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.columns.iter().map(|column| column.values.iter().flatten().count()).sum()
-    }
+/// Reads the file at `path`: columns of the names of `outputs` are these, others are what `named` says, in pairs of column and
+/// output; with `only` no other columns are used.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn read_file(
+    path: &Path,
+    outputs: &'static [OutputInfo],
+    named: &[(String, usize)],
+    only: &[usize],
+) -> Result<Data, Unusable> {
+    let unusable = |fault| Unusable { path: path.to_owned(), fault };
+    let file = std::fs::File::open(path).map_err(|fault| unusable(csv::Error::from(fault).into()))?;
+    read(file, outputs, named, only).map_err(unusable)
+}
 
-    /// Reads the file at `path`: columns of the names of `outputs` are these, others are what `named` says, in pairs of column and
-    /// output; with `only` no other columns are used.
-    ///
-    /// # Errors
-    /// [`Unusable`].
-    pub fn read_file(
-        path: &Path,
-        outputs: &'static [OutputInfo],
-        named: &[(String, usize)],
-        only: &[usize],
-    ) -> Result<Self, Unusable> {
-        let unusable = |fault| Unusable { path: path.to_owned(), fault };
-        let file = std::fs::File::open(path).map_err(|fault| unusable(csv::Error::from(fault).into()))?;
-        Self::read(file, outputs, named, only).map_err(unusable)
+/// The same of what is read.
+///
+/// # Errors
+/// [`DataError`].
+pub fn read(
+    reader: impl Read,
+    outputs: &'static [OutputInfo],
+    named: &[(String, usize)],
+    only: &[usize],
+) -> Result<Data, DataError> {
+    let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(reader);
+    let header: Vec<String> = csv.headers()?.iter().map(str::to_owned).collect();
+    if header.first().map(String::as_str) != Some("t") {
+        return Err(DataError::NoTime);
     }
-
-    /// The same of what is read.
-    ///
-    /// # Errors
-    /// [`DataError`].
-    pub fn read(
-        reader: impl Read,
-        outputs: &'static [OutputInfo],
-        named: &[(String, usize)],
-        only: &[usize],
-    ) -> Result<Self, DataError> {
-        let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(reader);
-        let header: Vec<String> = csv.headers()?.iter().map(str::to_owned).collect();
-        if header.first().map(String::as_str) != Some("t") {
-            return Err(DataError::NoTime);
-        }
-        if let Some((name, _)) = named.iter().find(|(name, _)| !header[1..].contains(name)) {
-            let near = header[1..].iter().map(|known| (strsim::jaro_winkler(name, known), known));
-            let near = near.filter(|(similarity, _)| *similarity > 0.7).max_by(|a, b| a.0.total_cmp(&b.0));
-            return Err(DataError::NoColumn { name: name.clone(), near: near.map(|(_, name)| name.clone()) });
-        }
-        let output_of = |name: &String| {
-            let said = named.iter().find(|(column, _)| column == name).map(|(_, output)| *output);
-            said.or_else(|| outputs.iter().position(|output| output.name == name))
+    if let Some((name, _)) = named.iter().find(|(name, _)| !header[1..].contains(name)) {
+        let near = header[1..].iter().map(|known| (strsim::jaro_winkler(name, known), known));
+        let near = near.filter(|(similarity, _)| *similarity > 0.7).max_by(|a, b| a.0.total_cmp(&b.0));
+        return Err(DataError::NoColumn { name: name.clone(), near: near.map(|(_, name)| name.clone()) });
+    }
+    let output_of = |name: &String| {
+        let said = named.iter().find(|(column, _)| column == name).map(|(_, output)| *output);
+        said.or_else(|| outputs.iter().position(|output| output.name == name))
+    };
+    let is_used = |output: &usize| only.is_empty() || only.contains(output);
+    let places: Vec<Option<usize>> = header[1..].iter().map(|name| output_of(name).filter(is_used)).collect();
+    let column = |(name, output): (&String, &Option<usize>)| {
+        output.map(|output| Measured { name: name.clone(), output, values: Vec::new() })
+    };
+    let mut columns: Vec<Option<Measured>> = header[1..].iter().zip(&places).map(column).collect();
+    let mut times: Vec<f64> = Vec::new();
+    for (index, record) in csv.records().enumerate() {
+        // Line 1 is the header, so record 0 stands in line 2.
+        let line = index + 2;
+        let record = record?;
+        let number = |field: &str| {
+            let number = field.parse::<f64>();
+            number.map_err(|_| DataError::NotANumber { field: field.to_owned(), line })
         };
-        let is_used = |output: &usize| only.is_empty() || only.contains(output);
-        let places: Vec<Option<usize>> = header[1..].iter().map(|name| output_of(name).filter(is_used)).collect();
-        let column = |(name, output): (&String, &Option<usize>)| {
-            output.map(|output| Measured { name: name.clone(), output, values: Vec::new() })
-        };
-        let mut columns: Vec<Option<Measured>> = header[1..].iter().zip(&places).map(column).collect();
-        let mut times: Vec<f64> = Vec::new();
-        for (index, record) in csv.records().enumerate() {
-            // Line 1 is the header, so record 0 stands in line 2.
-            let line = index + 2;
-            let record = record?;
-            let number = |field: &str| {
-                let number = field.parse::<f64>();
-                number.map_err(|_| DataError::NotANumber { field: field.to_owned(), line })
-            };
-            let mut fields = record.iter();
-            let t = number(fields.next().unwrap_or_default())?;
-            if !(t >= 0.0 && t.is_finite() && times.last().is_none_or(|&last| t > last)) {
-                return Err(DataError::Order { t, line });
-            }
-            times.push(t);
-            for (column, field) in columns.iter_mut().zip(fields) {
-                if let Some(column) = column {
-                    let value =
-                        if field.is_empty() { None } else { Some(number(field)?).filter(|value| value.is_finite()) };
-                    column.values.push(value);
-                }
+        let mut fields = record.iter();
+        let t = number(fields.next().unwrap_or_default())?;
+        if !(t >= 0.0 && t.is_finite() && times.last().is_none_or(|&last| t > last)) {
+            return Err(DataError::Order { t, line });
+        }
+        times.push(t);
+        for (column, field) in columns.iter_mut().zip(fields) {
+            if let Some(column) = column {
+                let value =
+                    if field.is_empty() { None } else { Some(number(field)?).filter(|value| value.is_finite()) };
+                column.values.push(value);
             }
         }
-        let ignored =
-            header[1..].iter().zip(&columns).filter(|(_, column)| column.is_none()).map(|(name, _)| name.clone());
-        let data = Self { ignored: ignored.collect(), times, columns: columns.into_iter().flatten().collect() };
-        if data.count() == 0 {
-            return Err(DataError::NothingMeasured(header[1..].join(", ")));
-        }
-        Ok(data)
     }
+    let ignored = header[1..].iter().zip(&columns).filter(|(_, column)| column.is_none()).map(|(name, _)| name.clone());
+    let data = Data { ignored: ignored.collect(), times, columns: columns.into_iter().flatten().collect() };
+    if data.count() == 0 {
+        return Err(DataError::NothingMeasured(header[1..].join(", ")));
+    }
+    Ok(data)
 }
 
 /// The output that a `NAME=OUTPUT` names; the text of what is wrong with it.
@@ -196,7 +166,7 @@ mod tests {
 
     fn read(text: &str, named: &[(&str, usize)]) -> Result<Data, String> {
         let named: Vec<(String, usize)> = named.iter().map(|(name, output)| ((*name).to_owned(), *output)).collect();
-        Data::read(text.as_bytes(), &OUTPUTS, &named, &[]).map_err(|fault| fault.to_string())
+        super::read(text.as_bytes(), &OUTPUTS, &named, &[]).map_err(|fault| fault.to_string())
     }
 
     #[test]

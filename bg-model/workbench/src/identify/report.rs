@@ -4,8 +4,7 @@
 
 use bg_model::description::OutputInfo;
 
-use super::Identified;
-use super::data::Data;
+use super::{Data, Identified};
 use crate::tables::table;
 
 /// Correlations above this are pointed out.

@@ -19,6 +19,9 @@ const PROFILE: [(&str, &str); 4] = [
     ("CARGO_PROFILE_RELEASE_STRIP", "true"),
 ];
 
+/// This repository's own release builds do without optimisation where a module does not.
+const WORKBENCH: &str = "profile.release.package.bg-workbench.opt-level = 3";
+
 /// Where the module is from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Module {
@@ -111,6 +114,7 @@ fn built(model: usize) -> Result<PathBuf, ModuleError> {
     let cargo = tool("CARGO", "cargo");
     let mut build = Command::new(&cargo);
     build.args(["build", "--release", "--target", TARGET, "--message-format=json-render-diagnostics"]);
+    build.args(["--config", WORKBENCH]);
     build.args([if is_example { "--example" } else { "--bin" }, name]);
     build.envs(PROFILE).env("BG_LIVE_MODEL", model.to_string());
     if let Some(package) = std::env::var_os("CARGO_MANIFEST_DIR") {

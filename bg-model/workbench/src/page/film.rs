@@ -9,11 +9,10 @@ use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::nalgebra::{Matrix3, Rotation3, SVector, UnitQuaternion};
 use bg_model::run::Trajectory;
 use bg_model::simulation::{Column, Part};
-use bg_model::system::Model;
+use bg_model::system::{Model, branches};
 
 use super::animation::{Animation, BodyTrack, JointTrack, NamedPoint, Shape, Solid};
 use super::picture::{BondSeries, Picture};
-use crate::linear::branches;
 
 /// What is shown of a run, by its columns.
 pub struct Film {

@@ -7,9 +7,7 @@ use bg_model::capability::Joints;
 use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::nalgebra::{DMatrix, DVector, SVector};
 use bg_model::scalar::{Gradient, Scalar};
-use bg_model::system::Model;
-
-use super::plant::branches;
+use bg_model::system::{Model, branches};
 
 /// What one evaluation gives.
 pub(super) struct Look {

@@ -7,10 +7,9 @@
 use bg_model::description::{Description, StateKind};
 use bg_model::input::Input;
 use bg_model::mechanism::Mechanism;
-use bg_model::nalgebra::{DMatrix, DVector, SVector};
+use bg_model::nalgebra::{DMatrix, DVector};
 use bg_model::parameters::ParameterError;
 use bg_model::scalar::{Gradient, Scalar};
-use bg_model::system::{Model, branches_by_sign};
 
 use super::carry::{Carry, carried};
 use super::sloped::{Sloped, sloped};
@@ -110,23 +109,6 @@ fn held(values: &[f64], growing: Option<usize>) -> Vec<Input> {
         if growing == Some(k) { Input::with_rate(move |_| value, |_| 1.0) } else { Input::constant(value) }
     };
     values.iter().enumerate().map(input).collect()
-}
-
-/// The branches of the switches at time `t` (s) and state `x`.
-pub(crate) fn branches<S: Scalar, Mo, const N: usize, const G: usize, const M: usize>(
-    model: &Mo,
-    t: f64,
-    x: &SVector<S, N>,
-) -> [bool; G]
-where
-    Mo: Model<S, N, G, M>,
-{
-    let guards = |negative: &[bool; G]| {
-        let mut guards = SVector::repeat(S::from_f64(0.0));
-        model.guards(S::from_f64(t), x, negative, &mut guards);
-        guards
-    };
-    branches_by_sign(model.first_branches(), guards).0
 }
 
 /// The states as numbers of which these change, each along a direction of its own.

@@ -49,7 +49,6 @@ pub use equilibrium::{Equilibrium, equilibrium};
 pub use error::LinearError;
 pub use manifold::LeftOut;
 pub use modes::{Mode, Part};
-pub(crate) use plant::branches;
 pub use response::{Response, logarithmic};
 pub use state_space::{Named, PointState, StateSpace, linearise};
 pub use text::{responses_csv, responses_json};

@@ -1,0 +1,342 @@
+//! Identification: the parameters with which a model comes nearest to what was measured.
+//!
+//! In: a model, measured columns, which parameters may change. Out: their values with confidence intervals and correlations, what
+//! the data do not say, residuals. Method: least squares ([`fit()`]) on exact derivatives
+//! ([`bg_model::sensitivity`]). A residual counts in parts of its column's noise, which is what the column's residuals come to:
+//! the fit is repeated until that settles. A parameter that is positive is fitted by its logarithm.
+
+mod data;
+pub mod fit;
+
+use bg_model::description::ParameterInfo;
+use bg_model::mechanism::Mechanism;
+use bg_model::nalgebra::{DMatrix, DVector};
+use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::run::Request;
+use bg_model::sensitivity::{Direction, Sensitivities, SensitivityError, sensitivities};
+use bg_model::simulation::Samples;
+use thiserror::Error;
+
+pub use data::{Data, Measured};
+use fit::{Fitted, fit};
+
+/// A parameter that may change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// The parameter.
+    pub info: &'static ParameterInfo,
+    /// Where it starts, in its unit.
+    pub start: f64,
+    /// Its bounds, in its unit.
+    pub lower: f64,
+    /// As above.
+    pub upper: f64,
+}
+
+impl Variable {
+    /// Whether it is fitted by its logarithm: it starts above zero, and cannot come below.
+    #[must_use]
+    pub fn is_logarithmic(&self) -> bool {
+        self.lower >= 0.0 && self.start > 0.0
+    }
+
+    /// What is fitted, for a value of the parameter.
+    fn inner(&self, value: f64) -> f64 {
+        if self.is_logarithmic() { value.ln() } else { value }
+    }
+
+    fn outer(&self, inner: f64) -> f64 {
+        if self.is_logarithmic() { inner.exp() } else { inner }
+    }
+
+    /// The derivative of the parameter by what is fitted.
+    fn slope(&self, value: f64) -> f64 {
+        if self.is_logarithmic() { value } else { 1.0 }
+    }
+
+    /// What steps of it are measured with.
+    fn size(&self) -> f64 {
+        if self.is_logarithmic() || self.start == 0.0 { 1.0 } else { self.start.abs() }
+    }
+}
+
+/// An identification that did not come about.
+#[derive(Debug, Error)]
+pub enum IdentifyError {
+    /// The run with the start values has failed.
+    #[error("with the start values: {0}")]
+    Start(SensitivityError),
+    /// A parameter cannot have a value.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// There are fewer values than parameters.
+    #[error("{values} measured values do not determine {parameters} parameters; fit fewer with --fit")]
+    TooFew {
+        /// How many values were measured.
+        values: usize,
+        /// How many parameters may change.
+        parameters: usize,
+    },
+}
+
+/// What was found of one parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Which.
+    pub variable: Variable,
+    /// The value found, in its unit.
+    pub value: f64,
+    /// The ends of the interval that has the true value with 95 % confidence, where the model and normal noise hold; none where the
+    /// data do not determine it.
+    pub interval: Option<[f64; 2]>,
+    /// Whether it is at a bound.
+    pub is_held: bool,
+}
+
+/// A measured column beside the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// The place of its output in the model's description.
+    pub output: usize,
+    /// The model's values at all instants, in the output's unit.
+    pub model: Vec<f64>,
+    /// Its noise: the root of the mean square of its residuals, in the output's unit.
+    pub noise: f64,
+}
+
+/// What an identification found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identified {
+    /// The parameters.
+    pub estimates: Vec<Estimate>,
+    /// The correlation of the errors of each two of them; not a number where the data do not determine them.
+    pub correlations: DMatrix<f64>,
+    /// Combinations of parameters that the data do not determine: each with the parts of their sizes by which they change together,
+    /// the largest first.
+    pub undetermined: Vec<Vec<(&'static str, f64)>>,
+    /// The columns of the data with the model's values.
+    pub columns: Vec<Column>,
+    /// Runs with derivatives that it took.
+    pub evaluations: usize,
+    /// Whether the fit has converged.
+    pub has_converged: bool,
+}
+
+/// Most runs of one fit, and fits for the noise to settle.
+const EVALUATIONS: usize = 60;
+const FITS: usize = 4;
+/// A change of a column's noise by less than this part is none.
+const SETTLED: f64 = 0.02;
+/// Noise below this part of a column's size is rounding and the run's own error.
+const EXACT: f64 = 1e-9;
+/// Singular values of the derivatives, each column of length one, below this part of the largest: the data do not determine what is
+/// along them.
+const SAME: f64 = 1e-7;
+/// The part of a parameter in a combination above which it is named.
+const NAMED: f64 = 0.1;
+
+/// Fits the `variables` of `model`, whose other parameters stay, to `data`; `request` says how runs are integrated. `told` is told
+/// of each run the parameters' values and the root of the mean square of residuals in parts of the noise.
+///
+/// # Errors
+/// [`IdentifyError`].
+pub fn identify<Me: Mechanism>(
+    model: &Me,
+    request: &Request,
+    data: &Data,
+    variables: &[Variable],
+    mut told: impl FnMut(&[f64], f64),
+) -> Result<Identified, IdentifyError> {
+    let directions: Vec<Direction> =
+        variables.iter().map(|of| Direction::parameter::<Me>(of.info.name)).collect::<Result<_, _>>()?;
+    let run = |request: &Request, values: &[f64]| {
+        let mut parameters = model.parameters().clone();
+        for (of, &value) in variables.iter().zip(values) {
+            parameters.set(of.info.name, value)?;
+        }
+        sensitivities(&Me::make(parameters, &model.inputs())?, request, &directions)
+    };
+    fitted(&run, request, data, variables, &mut told)
+}
+
+/// A run with derivatives by the variables, of their values.
+type Run<'a> = dyn Fn(&Request, &[f64]) -> Result<Sensitivities, SensitivityError> + 'a;
+
+/// As [`identify`], whatever the model's type.
+fn fitted(
+    run: &Run,
+    request: &Request,
+    data: &Data,
+    variables: &[Variable],
+    told: &mut dyn FnMut(&[f64], f64),
+) -> Result<Identified, IdentifyError> {
+    let count = data.count();
+    if count <= variables.len() {
+        return Err(IdentifyError::TooFew { values: count, parameters: variables.len() });
+    }
+    let t_end = *data.times.last().expect("there are values");
+    let request = Request { samples: Samples::At(data.times.clone()), t_end, ..request.clone() };
+    let inner = |value: fn(&Variable) -> f64| {
+        DVector::from_iterator(variables.len(), variables.iter().map(|of| of.inner(value(of))))
+    };
+    let bounds = [inner(|of| of.lower), inner(|of| of.upper)];
+    let sizes = DVector::from_iterator(variables.len(), variables.iter().map(Variable::size));
+    let sizes_of_columns: Vec<f64> = data.columns.iter().map(|column| spread(&column.values)).collect();
+    let mut noise = sizes_of_columns.clone();
+    let (mut start, mut evaluations, mut models) = (inner(|of| of.start), 0, Vec::new());
+    for round in 0.. {
+        let mut latest = Vec::new();
+        let evaluate = |x: &DVector<f64>| -> Result<fit::Linear, SensitivityError> {
+            let values: Vec<f64> = variables.iter().zip(x).map(|(of, &x)| of.outer(x)).collect();
+            let found = run(&request, &values)?;
+            let (mut residuals, mut slopes) = (Vec::with_capacity(count), Vec::with_capacity(count * values.len()));
+            for (column, noise) in data.columns.iter().zip(&noise) {
+                let of_model = &found.trajectory.columns[column.output].values;
+                for (k, measured) in column.values.iter().enumerate() {
+                    let Some(measured) = measured else { continue };
+                    residuals.push((of_model[k] - measured) / noise);
+                    let slope = |l: usize| found.of(l, column.output)[k] * variables[l].slope(values[l]) / noise;
+                    slopes.extend((0..values.len()).map(slope));
+                }
+            }
+            let residuals = DVector::from_vec(residuals);
+            told(&values, residuals.norm() / (count as f64).sqrt());
+            latest.push((x.clone(), found.trajectory.recording.columns));
+            let slopes = DMatrix::from_row_slice(count, values.len(), &slopes);
+            Ok((residuals, slopes))
+        };
+        let fitted =
+            fit(&start, [&bounds[0], &bounds[1]], &sizes, EVALUATIONS, evaluate).map_err(IdentifyError::Start)?;
+        evaluations += fitted.evaluations;
+        if let Some((_, columns)) = latest.into_iter().rev().find(|(x, _)| *x == fitted.x) {
+            models = columns;
+        }
+        start.copy_from(&fitted.x);
+        let found = noise_of(data, &models, &sizes_of_columns);
+        let is_settled = found.iter().zip(&noise).all(|(found, noise)| (found - noise).abs() <= SETTLED * noise);
+        if is_settled || round + 1 == FITS {
+            let columns = data.columns.iter().zip(found).map(|(column, noise)| Column {
+                output: column.output,
+                model: models[column.output].values.clone(),
+                noise,
+            });
+            return Ok(identified(variables, &fitted, columns.collect(), evaluations));
+        }
+        noise = found;
+    }
+    unreachable!("the last of several fits is given")
+}
+
+/// The root of the mean square of what a column is off its mean; of a constant one its size, or 1.
+fn spread(values: &[Option<f64>]) -> f64 {
+    let values: Vec<f64> = values.iter().flatten().copied().collect();
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().fold(0.0, |sum, value| sum + value) / count;
+    let square = values.iter().fold(0.0, |sum, value| sum + (value - mean) * (value - mean)) / count;
+    let size = values.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+    match (square.sqrt(), size) {
+        (spread, size) if spread > EXACT * size => spread,
+        (_, size) if size > 0.0 => size,
+        _ => 1.0,
+    }
+}
+
+/// The noise of each column: what its residuals come to.
+fn noise_of(data: &Data, models: &[bg_model::simulation::Column], sizes: &[f64]) -> Vec<f64> {
+    let of = |(column, size): (&Measured, &f64)| {
+        let of_model = &models[column.output].values;
+        let residuals = column.values.iter().zip(of_model).filter_map(|(value, model)| Some(model - (*value)?));
+        let (sum, count) = residuals.fold((0.0, 0), |(sum, count), residual| (sum + residual * residual, count + 1));
+        (sum / f64::from(count.max(1))).sqrt().max(EXACT * size)
+    };
+    data.columns.iter().zip(sizes).map(of).collect()
+}
+
+/// What a fit says of the parameters.
+fn identified(variables: &[Variable], fitted: &Fitted, columns: Vec<Column>, evaluations: usize) -> Identified {
+    let (rows, parameters) = fitted.jacobian.shape();
+    let names = |part: &(usize, f64)| (variables[part.0].info.name, part.1);
+    let norms: Vec<f64> = fitted.jacobian.column_iter().map(|column| column.norm()).collect();
+    let scaled =
+        DMatrix::from_fn(
+            rows,
+            parameters,
+            |row, k| if norms[k] > 0.0 { fitted.jacobian[(row, k)] / norms[k] } else { 0.0 },
+        );
+    let svd = scaled.svd(false, true);
+    let largest = svd.singular_values.max();
+    let right = svd.v_t.as_ref().expect("it was asked for");
+    let is_weak = |k: &usize| svd.singular_values[*k] <= SAME * largest;
+    // In parts of the variables' sizes, the largest 1; nothing of those that move no residual at all, which come by themselves.
+    let parts = |row: usize| {
+        let part = |k: usize| if norms[k] > 0.0 { right[(row, k)] / (norms[k] * variables[k].size()) } else { 0.0 };
+        let mut parts: Vec<(usize, f64)> = (0..parameters).map(|k| (k, part(k))).collect();
+        parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let largest = parts[0].1;
+        parts.iter_mut().for_each(|(_, part)| *part /= largest);
+        parts.retain(|(_, part)| part.abs() >= NAMED);
+        parts
+    };
+    let is_of_others = |row: &usize| (0..parameters).any(|k| norms[k] > 0.0 && right[(*row, k)].abs() > SAME);
+    let without_influence = (0..parameters).filter(|&k| norms[k] == 0.0).map(|k| vec![(k, 1.0)]);
+    let combined = (0..svd.singular_values.len()).filter(is_weak).filter(is_of_others).map(parts);
+    let undetermined: Vec<Vec<(usize, f64)>> = without_influence.chain(combined).collect();
+    let is_undetermined = |k: usize| undetermined.iter().flatten().any(|(named, _)| *named == k);
+    let freedom = (rows - parameters) as f64;
+    let variance = fitted.residuals.norm_squared() / freedom;
+    let covariance = DMatrix::from_fn(parameters, parameters, |i, j| {
+        let strong = (0..svd.singular_values.len()).filter(|k| !is_weak(k));
+        let sum = strong.fold(0.0, |sum, k| {
+            sum + right[(k, i)] * right[(k, j)] / (svd.singular_values[k] * svd.singular_values[k])
+        });
+        variance * sum / (norms[i] * norms[j])
+    });
+    let quantile = student(freedom);
+    let estimates = variables.iter().enumerate().map(|(k, variable)| {
+        let off = quantile * covariance[(k, k)].sqrt();
+        let ends = [fitted.x[k] - off, fitted.x[k] + off].map(|end| variable.outer(end));
+        let interval =
+            (!is_undetermined(k) && !fitted.held[k] && ends.iter().all(|end| end.is_finite())).then_some(ends);
+        Estimate { variable: variable.clone(), value: variable.outer(fitted.x[k]), interval, is_held: fitted.held[k] }
+    });
+    let correlation = |i: usize, j: usize| {
+        if is_undetermined(i) || is_undetermined(j) {
+            f64::NAN
+        } else {
+            covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt()
+        }
+    };
+    Identified {
+        estimates: estimates.collect(),
+        correlations: DMatrix::from_fn(parameters, parameters, correlation),
+        undetermined: undetermined.iter().map(|parts| parts.iter().map(names).collect()).collect(),
+        columns,
+        evaluations,
+        has_converged: fitted.has_converged,
+    }
+}
+
+/// The number that a variable of Student's distribution with so many degrees of freedom stays below in magnitude with 95 %:
+/// expansion 26.7.5 of Abramowitz and Stegun, Handbook of Mathematical Functions (1964); within 1e-3 from 5 degrees on.
+fn student(freedom: f64) -> f64 {
+    const NORMAL: f64 = 1.959_963_984_540_054;
+    let x = NORMAL;
+    let odd = |power: i32| x.powi(power);
+    let first = (odd(3) + x) / 4.0;
+    let second = (5.0 * odd(5) + 16.0 * odd(3) + 3.0 * x) / 96.0;
+    let third = (3.0 * odd(7) + 19.0 * odd(5) + 17.0 * odd(3) - 15.0 * x) / 384.0;
+    let fourth = (79.0 * odd(9) + 776.0 * odd(7) + 1482.0 * odd(5) - 1920.0 * odd(3) - 945.0 * x) / 92160.0;
+    x + (first + (second + (third + fourth / freedom) / freedom) / freedom) / freedom
+}
+
+#[cfg(test)]
+mod tests {
+    use super::student;
+
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (freedom, quantile) in [(5.0, 2.5706), (10.0, 2.2281), (30.0, 2.0423), (1e9, 1.95996)] {
+            assert!((student(freedom) - quantile).abs() < 1e-3, "{freedom}: {}", student(freedom));
+        }
+    }
+}

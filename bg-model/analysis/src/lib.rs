@@ -1,0 +1,5 @@
+#![doc = include_str!("../README.md")]
+
+pub mod identify;
+pub mod linear;
+pub mod thinning;
