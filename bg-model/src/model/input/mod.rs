@@ -6,10 +6,11 @@
 mod spline;
 mod table;
 
-use std::fmt;
-use std::sync::Arc;
+use alloc::sync::Arc;
+use core::fmt;
 
 use crate::model::scalar::Scalar;
+use crate::model::scalar::double::root;
 pub use table::{Table, TableError};
 
 /// A real function of time (s).
@@ -145,7 +146,7 @@ pub(crate) fn reach(t: f64) -> f64 {
 /// `t`.
 fn distance(t: f64) -> f64 {
     let size = t.abs();
-    f64::EPSILON.sqrt() * if size > 1.0 { size } else { 1.0 }
+    root(f64::EPSILON) * if size > 1.0 { size } else { 1.0 }
 }
 
 /// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences

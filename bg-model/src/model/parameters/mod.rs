@@ -2,6 +2,10 @@
 
 pub(crate) mod serialized;
 
+use alloc::borrow::ToOwned;
+use alloc::string::String;
+use alloc::string::ToString;
+
 use thiserror::Error;
 
 use crate::model::description::{ParameterInfo, Range};
@@ -96,8 +100,8 @@ impl Range {
     }
 }
 
-impl std::fmt::Display for Range {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for Range {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str("a finite number")?;
         if self.lower.is_finite() {
             write!(f, ", {} {}", if self.lower_included { "at least" } else { "above" }, self.lower)?;

@@ -3,7 +3,7 @@
 //! In: nothing. Out: the operations on them that numbers with slopes need, in the vectors that every machine of its kind has and in
 //! those of AVX2. Each product and each sum is rounded alone, in the same order: the results are the same to the bit.
 
-use std::fmt::Debug;
+use core::fmt::Debug;
 
 use pulp::NullaryFnOnce;
 use wide::f64x2;
@@ -96,13 +96,13 @@ impl Slopes for Everywhere {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
 pub use avx2::Avx2;
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
 mod avx2 {
-    use std::arch::x86_64::__m256d;
-    use std::fmt;
+    use core::arch::x86_64::__m256d;
+    use core::fmt;
 
     use pulp::NullaryFnOnce;
     use pulp::x86::V3;

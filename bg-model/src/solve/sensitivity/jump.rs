@@ -10,8 +10,9 @@ use nalgebra::SVector;
 
 use super::step::Sloped;
 use crate::model::reactions::Collision;
+use crate::model::scalar::Scalar;
+use crate::model::scalar::gradient::GradientIn;
 use crate::model::scalar::slopes::{Slopes, WIDTH};
-use crate::model::scalar::{GradientIn, Scalar};
 use crate::model::system::System;
 use crate::solve::simulation::Switching;
 

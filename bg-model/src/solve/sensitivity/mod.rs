@@ -43,7 +43,7 @@ use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
-use crate::model::scalar::GradientIn;
+use crate::model::scalar::gradient::GradientIn;
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::slopes::Avx2;
 use crate::model::scalar::slopes::{Everywhere, Slopes, WIDTH};

@@ -9,8 +9,9 @@
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
+use crate::model::scalar::Scalar;
+use crate::model::scalar::gradient::GradientIn;
 use crate::model::scalar::slopes::{Slopes, WIDTH};
-use crate::model::scalar::{GradientIn, Scalar};
 use crate::model::system::System;
 use crate::solve::integrator::{DormandPrince, Row, Scale, Tableau};
 
@@ -145,8 +146,8 @@ impl<V: Slopes, const N: usize> Stepper<V, N> {
             let (from, to) = (&start.data.0[0][i], &end.data.0[0][i]);
             let error = self.k.slope(DormandPrince::ERROR, i);
             // The step's own mean slope, less that of the method of order 3.
-            let other = to.vectors().minus(from.vectors()).minus(self.k.slope(DormandPrince::SECOND, i).times(h));
-            let changed = from.vectors().abs().max(to.vectors().abs()).times_each(self.sizes);
+            let other = to.slopes.minus(from.slopes).minus(self.k.slope(DormandPrince::SECOND, i).times(h));
+            let changed = from.slopes.abs().max(to.slopes.abs()).times_each(self.sizes);
             let (absolute, relative) = (self.scale.absolute.data.0[0][i], self.scale.relative);
             let size = changed.max(self.sizes.filled(to.value.abs())).times(relative);
             let part = self.sizes.over_each(self.sizes.filled(absolute).plus(size));
@@ -169,7 +170,7 @@ impl<V: Slopes, const N: usize> Stages<V, N> {
     fn store(&mut self, stage: usize, rate: &Sloped<V, N>) {
         for (i, rate) in rate.data.0[0].iter().enumerate() {
             self.values[stage][i] = rate.value;
-            self.slopes[stage][i] = rate.vectors();
+            self.slopes[stage][i] = rate.slopes;
         }
     }
 
@@ -182,8 +183,8 @@ impl<V: Slopes, const N: usize> Stages<V, N> {
         }
         for (i, moved) in moved.data.0[0].iter_mut().enumerate() {
             let x = &x.data.0[0][i];
-            let slopes = x.vectors().plus(self.slope(row, i).times(h));
-            *moved = GradientIn::of_parts(x.value + h * values[i], slopes);
+            let slopes = x.slopes.plus(self.slope(row, i).times(h));
+            *moved = GradientIn { value: x.value + h * values[i], slopes };
         }
     }
 
