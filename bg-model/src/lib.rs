@@ -79,6 +79,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Without `std`
+//!
+//! With `default-features = false` the crate needs an allocator only. It lacks the modules `extended`, `run` and `sensitivity`. A start that
+//! closes joints, and algebraic loops that are not linear, agree with those of `std` to rounding; all else has the same bits.
+//!
 //! # Conventions
 //!
 //! SI units. Power is positive along the half arrow. A guard below zero calls for the first branch of its `if`;

@@ -4,7 +4,6 @@ pub(crate) mod serialized;
 
 use alloc::borrow::ToOwned;
 use alloc::string::String;
-use alloc::string::ToString;
 
 use thiserror::Error;
 
@@ -68,8 +67,8 @@ pub enum ParameterError {
         value: f64,
         /// The parameter's unit.
         unit: &'static str,
-        /// The range in words.
-        range: String,
+        /// What is allowed.
+        range: Range,
     },
     /// A value that the parameters give cannot be, such as a mass that is not above 0.
     #[error(transparent)]
@@ -82,12 +81,7 @@ fn check(parameter: &ParameterInfo, value: f64) -> Result<(), ParameterError> {
     if parameter.range.contains(value) {
         return Ok(());
     }
-    Err(ParameterError::OutOfRange {
-        name: parameter.name,
-        value,
-        unit: parameter.unit,
-        range: parameter.range.to_string(),
-    })
+    Err(ParameterError::OutOfRange { name: parameter.name, value, unit: parameter.unit, range: parameter.range })
 }
 
 impl Range {
