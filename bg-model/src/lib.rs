@@ -81,8 +81,8 @@
 //!
 //! # Without `std`
 //!
-//! With `default-features = false` the crate needs an allocator only. It lacks the modules `extended`, `run` and `sensitivity`. A start that
-//! closes joints, and algebraic loops that are not linear, agree with those of `std` to rounding; all else has the same bits.
+//! With `default-features = false` the crate needs an allocator only, and lacks the modules `extended`, `run` and `sensitivity`. A run has the
+//! same bits; a start that closes joints, and algebraic loops that are not linear, are the same to rounding.
 //!
 //! # Conventions
 //!

@@ -1,9 +1,12 @@
-//! The program of a Cortex-M4F: what `main` prints on a desktop, and then in lines that begin with `#` what it took.
+//! A Cortex-M4F: its allocator, its clock, its stack, the desktop on which QEMU runs.
 //!
 //! Counted are instructions in QEMU with `-icount shift=0`, where each takes a nanosecond: SysTick counts 25 million ticks in a
 //! second, one for 40 instructions.
 
-#![expect(unsafe_code, reason = "the stack is filled with a pattern through a pointer, and read")]
+#![expect(
+    unsafe_code,
+    reason = "the heap is a place in memory; the stack is filled with a pattern through a pointer, and read"
+)]
 
 use core::fmt::Write;
 use core::ptr;
@@ -14,16 +17,13 @@ use cortex_m::register::msp;
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hio;
 use embedded_alloc::LlffHeap;
-use motor_observer::Fault;
 use panic_semihosting as _;
+
+use crate::Fault;
 
 #[global_allocator]
 static HEAP: LlffHeap = LlffHeap::empty();
 
-/// Room for what is made at the start, bytes.
-const HEAP_SIZE: usize = 1024;
-/// Samples of a run.
-const SAMPLES: u32 = 2000;
 /// Instructions in a tick.
 const INSTRUCTIONS: u32 = 40;
 /// What fills the stack before anything has been there.
@@ -31,27 +31,27 @@ const PATTERN: u32 = 0xbead_bead;
 /// How much of the stack below the present end is left as it is, bytes: the frame that paints.
 const MARGIN: u32 = 256;
 
-#[cortex_m_rt::entry]
-fn main() -> ! {
+/// Runs a program with a heap of so many bytes, says what it has taken of heap and stack, and ends QEMU.
+pub fn program(heap: usize, of: impl FnOnce(&mut Host) -> Result<(), Fault>) -> ! {
     let top = msp::read();
-    paint(top - MARGIN);
-    // SAFETY: it is called once, before anything is allocated.
-    unsafe {
-        embedded_alloc::init!(HEAP, HEAP_SIZE);
-    }
-    let outcome = run();
-    if outcome.is_ok() {
-        let stack = top - untouched();
-        let _ = writeln!(Host, "# stack {stack} bytes");
-    }
-    debug::exit(if outcome.is_ok() { EXIT_SUCCESS } else { EXIT_FAILURE });
+    // Statics, the heap, then what is free, up to the stack, which grows downwards.
+    let start = cortex_m_rt::heap_start();
+    let free = start.wrapping_byte_add(heap);
+    paint(free, top - MARGIN);
+    // SAFETY: it is called once, before anything is allocated; nothing else is in this memory.
+    unsafe { HEAP.init(start as usize, heap) };
+    let outcome = of(&mut Host);
+    let (used, stack) = (HEAP.used(), top - untouched(free));
+    let is_good = outcome.is_ok() && writeln!(Host, "# heap {used} bytes\n# stack {stack} bytes").is_ok();
+    debug::exit(if is_good { EXIT_SUCCESS } else { EXIT_FAILURE });
     loop {
         cortex_m::asm::wfi();
     }
 }
 
 /// The desktop on which QEMU runs.
-struct Host;
+#[derive(Debug)]
+pub struct Host;
 
 impl Write for Host {
     fn write_str(&mut self, text: &str) -> core::fmt::Result {
@@ -60,43 +60,53 @@ impl Write for Host {
     }
 }
 
-fn run() -> Result<(), Fault> {
-    let mut clock = cortex_m::Peripherals::take().ok_or(Fault::Taken)?.SYST;
-    clock.set_clock_source(SystClkSource::Core);
-    clock.set_reload(0x00ff_ffff);
-    clock.clear_current();
-    clock.enable_counter();
-    let (mut double, mut single) = (0, 0);
-    motor_observer::report::<f64>(&mut Host, SAMPLES, |step| double = double.max(ticks(step)))?;
-    motor_observer::report::<f32>(&mut Host, SAMPLES, |step| single = single.max(ticks(step)))?;
-    writeln!(Host, "# longest step {} instructions in f64, {} in f32", double * INSTRUCTIONS, single * INSTRUCTIONS)?;
-    writeln!(Host, "# heap {} bytes", HEAP.used())?;
-    Ok(())
+/// How long something takes.
+#[derive(Debug)]
+pub struct Clock {
+    longest: u32,
 }
 
-/// The ticks that something takes.
-fn ticks(step: &mut dyn FnMut()) -> u32 {
-    let before = SYST::get_current();
-    step();
-    // It counts down, 24 bits.
-    before.wrapping_sub(SYST::get_current()) & 0x00ff_ffff
+impl Clock {
+    /// A clock that runs.
+    pub fn start() -> Self {
+        // SAFETY: nothing but this type has to do with SysTick.
+        let mut clock = unsafe { cortex_m::Peripherals::steal() }.SYST;
+        clock.set_clock_source(SystClkSource::Core);
+        clock.set_reload(0x00ff_ffff);
+        clock.enable_counter();
+        Self { longest: 0 }
+    }
+
+    /// Calls something.
+    pub fn time(&mut self, step: &mut dyn FnMut()) {
+        let before = SYST::get_current();
+        step();
+        // It counts down, 24 bits.
+        let ticks = before.wrapping_sub(SYST::get_current()) & 0x00ff_ffff;
+        self.longest = self.longest.max(ticks);
+    }
+
+    /// The most that a call has taken, instructions.
+    pub fn longest(&self) -> u32 {
+        self.longest * INSTRUCTIONS
+    }
 }
 
-/// Fills the stack up to an address.
+/// Fills memory from one address up to another.
 #[inline(never)]
-fn paint(end: u32) {
-    let mut word = cortex_m_rt::heap_start();
+fn paint(from: *mut u32, end: u32) {
+    let mut word = from;
     while (word as u32) < end {
-        // SAFETY: from the end of all statics up to the stack's present end no object is; nothing else runs.
+        // SAFETY: from the end of the heap up to the stack's present end no object is; nothing else runs.
         unsafe { ptr::write_volatile(word, PATTERN) };
         word = word.wrapping_add(1);
     }
 }
 
-/// The first address above which something has been on the stack.
+/// The first address from this one on where something has been.
 #[inline(never)]
-fn untouched() -> u32 {
-    let mut word = cortex_m_rt::heap_start();
+fn untouched(from: *mut u32) -> u32 {
+    let mut word = from;
     // SAFETY: memory of the controller, which was written before; the loop ends at the stack that is in use.
     while unsafe { ptr::read_volatile(word) } == PATTERN {
         word = word.wrapping_add(1);

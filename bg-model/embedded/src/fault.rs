@@ -27,7 +27,4 @@ pub enum Fault {
     /// A place that takes no text.
     #[error(transparent)]
     Text(#[from] fmt::Error),
-    /// A part of the controller that is in use.
-    #[error("a part of the controller is in use")]
-    Taken,
 }

@@ -7,8 +7,11 @@
 #![no_std]
 
 mod bench;
+#[cfg(target_os = "none")]
+pub mod board;
 mod estimator;
 mod fault;
+mod methods;
 
 use core::fmt::Write;
 
@@ -18,6 +21,7 @@ use bg_model::scalar::Scalar;
 pub use bench::{Bench, Measured};
 pub use estimator::Estimator;
 pub use fault::Fault;
+pub use methods::methods;
 
 /// Samples in a second.
 pub const RATE: f64 = 1000.0;

@@ -17,8 +17,8 @@ const STATICS: u64 = 2 * 1024;
 const STACK: u64 = 1024;
 const INSTRUCTIONS: [u64; 2] = [40_000, 1_600];
 
-/// The program for the controller; none where the compiler has not the target.
-fn program() -> Option<PathBuf> {
+/// A program for the controller; none where the compiler has not the target.
+fn program(name: &str) -> Option<PathBuf> {
     let libraries =
         Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output().expect("rustc");
     let libraries = String::from_utf8(libraries.stdout).expect("a path");
@@ -28,9 +28,9 @@ fn program() -> Option<PathBuf> {
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder");
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--quiet", "--locked", "--release", "--target", TARGET, "--target-dir"]).arg(folder);
-    assert!(cargo.current_dir(env!("CARGO_MANIFEST_DIR")).status().expect("cargo").success());
-    Some(folder.join(TARGET).join("release/motor-observer"))
+    cargo.args(["build", "--quiet", "--locked", "--release", "--bin", name, "--target", TARGET, "--target-dir"]);
+    assert!(cargo.arg(folder).current_dir(env!("CARGO_MANIFEST_DIR")).status().expect("cargo").success());
+    Some(folder.join(TARGET).join("release").join(name))
 }
 
 /// What the program prints; none where there is no QEMU.
@@ -52,26 +52,35 @@ fn numbers(line: &str) -> Vec<u64> {
     line.split(' ').filter_map(|word| word.parse().ok()).collect()
 }
 
-#[test]
-fn a_controller_has_the_bits_of_a_desktop() {
-    let Some(program) = program() else { return };
-    let Some(text) = printed(&program) else { return };
+/// Asserts that a program prints on the controller what it prints on this desktop, so many lines; gives what it says besides, or none
+/// where it cannot be run.
+fn compared(name: &str, desktop: &str, lines: usize) -> Option<Vec<String>> {
+    let text = printed(&program(name)?)?;
     let (costs, bits): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| line.starts_with('#'));
-    let desktop = Command::new(env!("CARGO_BIN_EXE_motor-observer")).output().expect("the desktop's program").stdout;
-    let desktop = String::from_utf8(desktop).expect("a text");
+    let desktop = String::from_utf8(Command::new(desktop).output().expect("a program").stdout).expect("a text");
     assert_eq!(bits, desktop.lines().collect::<Vec<_>>());
-    assert_eq!(bits.len(), 20);
-
+    assert_eq!(bits.len(), lines);
     println!("{}", costs.join("\n"));
-    let [longest, heap, stack] = costs[..] else { panic!("{costs:?}") };
-    assert!(numbers(longest).iter().zip(INSTRUCTIONS).all(|(&found, most)| found > 0 && found <= most), "{longest}");
-    assert_eq!(numbers(heap), [0]);
-    assert!(numbers(stack)[0] <= STACK, "{stack}");
+    Some(costs.into_iter().map(str::to_owned).collect())
+}
+
+#[test]
+fn the_observer_has_the_bits_of_a_desktop_on_a_controller() {
+    let Some(costs) = compared("motor-observer", env!("CARGO_BIN_EXE_motor-observer"), 20) else { return };
+    let [longest, heap, stack] = &costs[..] else { panic!("{costs:?}") };
+    let [longest, heap, stack] = [longest, heap, stack].map(|line| numbers(line));
+    assert!(longest.iter().zip(INSTRUCTIONS).all(|(&found, most)| found > 0 && found <= most), "{longest:?}");
+    assert!(heap == [0] && stack[0] <= STACK, "{heap:?} {stack:?}");
+}
+
+#[test]
+fn every_method_has_the_bits_of_a_desktop_on_a_controller() {
+    compared("methods", env!("CARGO_BIN_EXE_methods"), 13);
 }
 
 #[test]
 fn flash_and_statics_are_small() {
-    let Some(program) = program() else { return };
+    let Some(program) = program("motor-observer") else { return };
     let bytes = std::fs::read(program).expect("the program");
     let file = object::File::parse(&*bytes).expect("an ELF file");
     // What is loaded is in flash, the values that statics begin with too.
