@@ -26,14 +26,15 @@ use crate::solve::integrator::rk4;
 ///
 /// bond_graph! {
 ///     graph Tank {
+///         param capacity: m^3/Pa = 1e-6, above 0;
 ///         input inflow: m^3/s;
-///         Sf pump = inflow; 0 base: hydraulic; C tank = 1e-6; R drain = 1e7;
+///         Sf pump = inflow; 0 base: hydraulic; C tank = capacity; R drain = 1e7;
 ///         pump -> base; base -> tank; base -> drain;
 ///         observe { pressure: Pa = base.effort; }
 ///     }
 /// }
 ///
-/// let mut tank = Tank::new(TankParameters {}, TankInputs::default())?;
+/// let mut tank = Tank::new(TankParameters::default(), TankInputs::default())?;
 /// let mut run = FixedStep::<f64, { Tank::STATES }, { Tank::SWITCHES }>::new(&tank, &tank.start()?, 0.0, 0.01)?;
 /// for sample in 0..100 {
 ///     tank.inputs_mut().inflow = Input::constant(if sample < 50 { 1e-4 } else { 0.0 });
