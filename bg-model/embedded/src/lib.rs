@@ -136,7 +136,7 @@ pub fn report<S: Scalar>(
         let mut outcome = Ok(());
         around(&mut || outcome = estimator.sample(&measured));
         outcome?;
-        if sample % (samples / 10) == 0 {
+        if sample % (samples / 10).max(1) == 0 {
             write!(out, "{sample:5}")?;
             for state in estimator.state() {
                 write!(out, " {:016x}", state.to_f64().to_bits())?;
