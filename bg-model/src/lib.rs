@@ -13,6 +13,7 @@
 //! | get the start state, loops closed | [`system::Model::start`] |
 //! | run it, get columns by name | [`run::Simulation`] |
 //! | run it without allocations, with an observer | [`simulation::integrate`] with a method of [`integrator`], [`simulation::Settings`] |
+//! | move it on by one step at a time, each at the same cost, as on a controller | [`fixed_step::FixedStep`] |
 //! | end it where a condition passes through zero | [`simulation::integrate_until`] |
 //! | end it from its observer | [`simulation::Observer::is_done`] |
 //! | know why it ended | [`simulation::Ended`] of [`simulation::Finish`] |
@@ -78,11 +79,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Without `std`
+//!
+//! With `default-features = false` the crate needs an allocator only, and lacks the modules `extended`, `run` and `sensitivity`. A run has the
+//! same bits; a start that closes joints, and algebraic loops that are not linear, are the same to rounding.
+//!
 //! # Conventions
 //!
 //! SI units. Power is positive along the half arrow. A guard below zero calls for the first branch of its `if`;
 //! `negative[k]` says that switch `k` is in it. Nothing is allocated inside a step. Sums have a fixed order and elementary
 //! functions come from `libm`, so debug and release builds give the same bytes.
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
 
 #[macro_use]
 mod sentence;
@@ -97,7 +107,9 @@ pub use model::{
     assembly, capability, description, drawing, holding, input, linear, mechanism, parameters, requirement, scalar,
     series, system,
 };
-pub use solve::{extended, failure, integrator, run, sensitivity, simulation, statistics};
+#[cfg(feature = "std")]
+pub use solve::{extended, run, sensitivity};
+pub use solve::{failure, fixed_step, integrator, simulation, statistics};
 
 pub use bg_macros::bond_graph;
 pub use nalgebra;

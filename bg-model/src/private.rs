@@ -3,6 +3,8 @@
 //! Generated code calls besides: the public traits, tables and errors of this crate, the arithmetic of series, nalgebra and
 //! serde.
 
+pub use alloc::vec;
+
 pub use bg_macros::picture;
 
 pub use crate::model::iteration::{Equations, newton};

@@ -6,9 +6,9 @@
 /// Lets `Debug` of a type say what its `Display` says.
 macro_rules! debug_is_display {
     ($name:ident $(<$(const $parameter:ident: $of:ty),+>)?) => {
-        impl $(<$(const $parameter: $of),+>)? std::fmt::Debug for $name $(<$($parameter),+>)? {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                std::fmt::Display::fmt(self, f)
+        impl $(<$(const $parameter: $of),+>)? core::fmt::Debug for $name $(<$($parameter),+>)? {
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                core::fmt::Display::fmt(self, f)
             }
         }
     };

@@ -25,7 +25,7 @@ const FLOORS: [&[&str]; 15] = [
     &["model::reactions", "model::mechanism"],
     &["solve::statistics"],
     &["solve::integrator", "solve::finish"],
-    &["solve::stepper", "solve::failure"],
+    &["solve::stepper", "solve::failure", "solve::fixed_step"],
     &["solve::event"],
     &["solve::simulation"],
     &["solve::extended"],

@@ -5,14 +5,32 @@ mod machines;
 
 use bg_fmi::variables::Kind;
 use bg_fmi::{Exported, Instance, Interface, Of, Packing, Version, model_description, token};
+use bg_model::bond_graph;
 use bg_model::input::Input;
-use bg_model::mechanism::Mechanism;
+use bg_model::mechanism::{Mechanism, ModelVisitor};
+use bg_model::nalgebra::SVector;
 use bg_model::run::Simulation;
+use bg_model::scalar::{DoubleDouble, Scalar};
+use bg_model::system::{Model, branches_by_sign};
 use machines::{Ball, Pendulum, Shaker};
 
 static PENDULUM: Of<Pendulum> = Of::NEW;
 static BALL: Of<Ball> = Of::NEW;
 static SHAKER: Of<Shaker> = Of::NEW;
+static TIMED: Of<Timed> = Of::NEW;
+
+bond_graph! {
+    /// A mass whose force depends on an input, on a state and on the time.
+    graph Timed {
+        param stiffness: N/m = 200, above 0;
+        param unit: N = 1;
+        input force: N;
+        1 motion: translation; I inertia = 2; C spring = stiffness start 0.1;
+        MSe push = force * (2 + sin(7 * t)) + 1e3 * cos(5 * t) + force * force * tanh(3 * motion.flow) / unit;
+        push -> motion -> inertia; motion -> spring;
+        observe { x: m = spring.q; power: W = force * motion.flow; push: N = push.effort }
+    }
+}
 
 /// The value reference of a variable: they count through time, parameters, inputs, outputs, states, derivatives.
 fn reference(model: &dyn Exported, kind: Kind) -> u32 {
@@ -235,6 +253,81 @@ fn derivatives_are_those_of_differences() {
             }
         }
     }
+}
+
+/// Rates and outputs at time `t` (s) and state `x`, state `moved` of them by so much more.
+struct Values<'a> {
+    t: f64,
+    x: &'a [f64],
+    moved: Option<(usize, f64)>,
+}
+
+impl ModelVisitor<DoubleDouble> for Values<'_> {
+    type Output = Vec<DoubleDouble>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<DoubleDouble, N, G, M> + Clone + 'static,
+    {
+        let (t, zero) = (DoubleDouble::from_f64(self.t), DoubleDouble::from_f64(0.0));
+        let mut x = SVector::<DoubleDouble, N>::from_fn(|row, _| DoubleDouble::from_f64(self.x[row]));
+        let guards = |negative: &[bool; G]| {
+            let mut guards = SVector::repeat(zero);
+            model.guards(t, &x, negative, &mut guards);
+            guards
+        };
+        let (negative, _) = branches_by_sign(model.first_branches(), guards);
+        if let Some((row, by)) = self.moved {
+            x[row] = x[row] + DoubleDouble::from_f64(by);
+        }
+        let (mut rates, mut outputs) = (SVector::<_, N>::repeat(zero), SVector::<_, M>::repeat(zero));
+        model.rate(t, &x, &negative, &mut rates);
+        model.outputs(t, &x, &negative, &mut outputs);
+        rates.iter().chain(outputs.iter()).copied().collect()
+    }
+}
+
+/// Holds all derivatives of a unit that was driven by `force` against central differences in double-double arithmetic.
+fn derivatives_to_ten_digits<Me: Mechanism>(model: &'static dyn Exported, force: f64) {
+    let mut instance = begun(model, Interface::ModelExchange, 1e-9);
+    let (n, d) = (instance.state_count(), model.description());
+    (0..d.inputs.len()).for_each(|input| set(&mut instance, model, Kind::Input(input), force));
+    exchanged(&mut instance, 0.21, 1e-3);
+    let (t, mut x) = (get(&mut instance, model, Kind::Time), vec![0.0; n]);
+    instance.states(&mut x).unwrap();
+    let unknowns = (0..n).map(Kind::Derivative).chain((0..d.outputs.len()).map(Kind::Output));
+    let unknowns: Vec<u32> = unknowns.map(|kind| reference(model, kind)).collect();
+    let values = |moved: Option<(usize, f64)>, force: f64| {
+        let inputs = vec![Input::constant(force); d.inputs.len()];
+        Me::make(Me::Parameters::default(), &inputs).unwrap().visit(Values { t, x: &x, moved })
+    };
+    let mut largest: f64 = 0.0;
+    for known in (0..n).map(Kind::State).chain((0..d.inputs.len()).map(Kind::Input)) {
+        let mut column = vec![0.0; unknowns.len()];
+        instance.directional(&unknowns, &[reference(model, known)], &[1.0], &mut column).unwrap();
+        // Of a state a step whose square is beyond doubles; what depends on an input is a parabola, whose differences are exact.
+        let (h, [ahead, behind]) = match known {
+            Kind::State(row) => (1e-10, [1e-10, -1e-10].map(|by| values(Some((row, by)), force))),
+            _ => (0.5, [0.5, -0.5].map(|by| values(None, force + by))),
+        };
+        let differences: Vec<f64> =
+            ahead.iter().zip(&behind).map(|(&a, &b)| ((a - b) / DoubleDouble::from_f64(2.0 * h)).to_f64()).collect();
+        let size = differences.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+        largest = largest.max(size);
+        for (row, (exact, difference)) in column.iter().zip(&differences).enumerate() {
+            let allowed = 1e-10 * difference.abs().max(1e-4 * size);
+            assert!((exact - difference).abs() <= allowed, "{known:?} {row}: {exact} {difference} {size}");
+        }
+    }
+    assert!(largest >= 1.0, "{largest}");
+}
+
+#[test]
+fn derivatives_have_ten_digits() {
+    derivatives_to_ten_digits::<Pendulum>(&PENDULUM, 0.0);
+    derivatives_to_ten_digits::<Ball>(&BALL, 3.0);
+    derivatives_to_ten_digits::<Shaker>(&SHAKER, 30.0);
+    derivatives_to_ten_digits::<Timed>(&TIMED, 30.0);
 }
 
 #[test]

@@ -3,6 +3,10 @@
 //! In: the guessed coordinates and a function that gives the gaps of the joints. Out: the nearest coordinates, to first
 //! order, at which the gaps vanish to rounding, or the joints that stay open. Method: see `nearest`.
 
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
 use nalgebra::{DVector, SVector};
 use thiserror::Error;
 
@@ -40,8 +44,8 @@ pub struct OpenGap {
     pub size: f64,
 }
 
-impl std::fmt::Display for OpenGap {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for OpenGap {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(f, "`{}` by {:.2e} {}{}", self.gap.joint, self.size, self.gap.unit, self.gap.direction())
     }
 }
@@ -102,7 +106,7 @@ fn also_torn(others: &[Slipping]) -> String {
     if others.is_empty() {
         return String::new();
     }
-    let names: Vec<String> = others.iter().map(Slipping::to_string).collect();
+    let names: Vec<String> = others.iter().map(ToString::to_string).collect();
     format!("; also {}", names.join(", "))
 }
 
@@ -116,7 +120,7 @@ fn also_open(others: &[OpenGap]) -> String {
     if others.is_empty() {
         return String::new();
     }
-    let names: Vec<String> = others.iter().map(OpenGap::to_string).collect();
+    let names: Vec<String> = others.iter().map(ToString::to_string).collect();
     format!("; also open: {}", names.join(", "))
 }
 

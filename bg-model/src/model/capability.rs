@@ -4,7 +4,7 @@
 //! a system lacks is `None` of the type [`Absent`], which has no values: an absent capability cannot be called, and the
 //! compiler removes the code that would call it.
 
-use std::ops::Range;
+use core::ops::Range;
 
 use nalgebra::SVector;
 

@@ -209,6 +209,33 @@ pub struct OperationCount {
 }
 
 impl OperationCount {
+    /// No operation.
+    pub const NONE: Self = Self { additions: 0, multiplications: 0, divisions: 0, functions: 0, choices: 0 };
+
+    /// These and others.
+    #[must_use]
+    pub const fn plus(self, other: Self) -> Self {
+        Self {
+            additions: self.additions + other.additions,
+            multiplications: self.multiplications + other.multiplications,
+            divisions: self.divisions + other.divisions,
+            functions: self.functions + other.functions,
+            choices: self.choices + other.choices,
+        }
+    }
+
+    /// So many times these.
+    #[must_use]
+    pub const fn times(self, factor: usize) -> Self {
+        Self {
+            additions: self.additions * factor,
+            multiplications: self.multiplications * factor,
+            divisions: self.divisions * factor,
+            functions: self.functions * factor,
+            choices: self.choices * factor,
+        }
+    }
+
     /// All operations.
     #[must_use]
     pub const fn total(&self) -> usize {

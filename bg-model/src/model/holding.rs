@@ -2,6 +2,10 @@
 //!
 //! In: nothing. Out: the tables that generated code fills, and the sentences of joints that are torn apart or hold the same.
 
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
 /// The largest relative flow of a joint that fits, in the flow's unit (m/s or rad/s).
 pub const FITTING: f64 = 1e-9;
 
@@ -111,8 +115,8 @@ pub struct Slipping {
     pub is_rigid: bool,
 }
 
-impl std::fmt::Display for Slipping {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for Slipping {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Slip { joint, direction, unit } = self.slip;
         let how = match unit {
             "m/s" => "is torn apart at",
@@ -127,8 +131,8 @@ impl std::fmt::Display for Slipping {
 /// A number to five digits.
 struct Short(f64);
 
-impl std::fmt::Display for Short {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for Short {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let rounded = format!("{:.4e}", self.0).parse::<f64>().unwrap_or(self.0);
         write!(f, "{rounded:?}")
     }
@@ -145,8 +149,8 @@ pub struct Redundancy {
     pub others: Vec<&'static str>,
 }
 
-impl std::fmt::Display for Redundancy {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for Redundancy {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Self { joint, directions, others } = self;
         let space = if directions.is_empty() { "" } else { " " };
         let directions = format!("{space}{}", directions.join(", "));

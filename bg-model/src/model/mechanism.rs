@@ -3,6 +3,8 @@
 //! In: parameters and inputs by name. Out: the model, handed with its numbers to a visitor. What is generic over a
 //! [`Mechanism`] needs no const generics, and only what a visitor calls is compiled.
 
+use alloc::vec::Vec;
+
 use crate::model::description::Description;
 use crate::model::input::Input;
 use crate::model::parameters::{ParameterError, Parameters};

@@ -5,6 +5,8 @@
 //! Method: Gauss-Newton with a pseudo-inverse step (least norm, so coordinates that no residual depends on stay where they
 //! are), damped as Levenberg and Marquardt do where the plain step does not shrink the residuals.
 
+use alloc::vec::Vec;
+
 use nalgebra::{DMatrix, DVector, SVector};
 
 use crate::model::scalar::Scalar;
@@ -60,7 +62,7 @@ pub fn lifted<S: Scalar, const U: usize>(
         return plain;
     }
     let moved = guess.map(beyond);
-    let mut lifted: [S; U] = std::array::from_fn(|k| plain[k] + moved[k]);
+    let mut lifted: [S; U] = core::array::from_fn(|k| plain[k] + moved[k]);
     let mut left: Vec<S> = residual(&lifted).into_iter().map(beyond).collect();
     if moved.iter().chain(&left).all(|&value| value == zero) {
         return plain;

@@ -3,6 +3,10 @@
 //! In: a model's table of requirements and the values of their scalars. Out: nothing, or the first that does not hold. What
 //! numbers alone decide, the compiler has decided.
 
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
 use thiserror::Error;
 
 /// One thing that is asked of a value.

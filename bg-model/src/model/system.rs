@@ -2,6 +2,8 @@
 //!
 //! In: nothing. Out: the traits that `bond_graph!` implements and that a hand-written system can implement as well.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
 use crate::model::assembly::AssemblyError;
@@ -126,8 +128,8 @@ pub fn branches_by_sign<S: Scalar, const G: usize>(
     for round in 0..=G {
         value = guards(&negative);
         let stays = |k: usize| round > 0 && negative[k] && value[k].to_f64() == 0.0;
-        let next = std::array::from_fn(|k| value[k].to_f64() < 0.0 || stays(k));
-        if std::mem::replace(&mut negative, next) == next {
+        let next = core::array::from_fn(|k| value[k].to_f64() < 0.0 || stays(k));
+        if core::mem::replace(&mut negative, next) == next {
             break;
         }
     }

@@ -2,6 +2,11 @@
 //!
 //! In: what the driver found. Out: the cause with its time, step, state and value, and the last good point.
 
+use alloc::borrow::ToOwned;
+use alloc::boxed::Box;
+use alloc::format;
+use alloc::string::String;
+
 use thiserror::Error;
 
 use crate::model::holding::{Redundancy, Slipping};
@@ -150,8 +155,8 @@ pub enum Quantity {
     Guard,
 }
 
-impl std::fmt::Display for Quantity {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::State => "the value",
             Self::Rate => "the rate",

@@ -1,6 +1,6 @@
 //! Statistics: what a run has cost.
 
-use std::fmt;
+use core::fmt;
 
 /// Counts of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -41,8 +41,8 @@ impl Statistics {
         10 * self.rounded > self.steps
     }
 
-    /// Adds what another part of the run has cost.
-    pub(crate) fn add(&mut self, more: &Self) {
+    /// Adds what another part of a run has cost.
+    pub fn add(&mut self, more: &Self) {
         self.smallest_step = match (self.steps, more.steps) {
             (_, 0) => self.smallest_step,
             (0, _) => more.smallest_step,

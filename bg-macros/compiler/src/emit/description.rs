@@ -13,7 +13,7 @@ use crate::program::Counts;
 use crate::source::mechanism::{self, Part};
 use crate::system::equations::{Origin, StateEquations};
 
-/// The `Description` literal; `PARAMETERS` is the parameter struct's table.
+/// The `Description` literal; `PARAMETERS` is the table of the parameters.
 pub(super) fn description(model: &Compiled, costs: &[(&str, Counts)]) -> TokenStream {
     let (causal, equations) = (&model.derived.causal, &model.equations);
     let graph = &causal.graph;

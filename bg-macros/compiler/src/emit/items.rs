@@ -144,6 +144,18 @@ impl Given<'_> {
         })
     }
 
+    /// The function of the model that hands out the inputs, where there are any.
+    pub(super) fn inputs_mut(&self) -> Option<TokenStream> {
+        (!self.inputs.is_empty()).then(|| {
+            quote! {
+                /// The inputs, to be given anew between steps.
+                pub fn inputs_mut(&mut self) -> &mut Inputs {
+                    &mut self.inputs
+                }
+            }
+        })
+    }
+
     fn parameter_names(&self) -> impl Iterator<Item = Ident> {
         self.parameters.iter().map(|parameter| identifier(&parameter.name.text))
     }
@@ -173,6 +185,8 @@ impl Given<'_> {
         let index: Vec<Literal> = (0..names.len()).map(Literal::usize_unsuffixed).collect();
         let count = Literal::usize_unsuffixed(names.len());
         quote! {
+            const PARAMETERS: &[::bg_model::description::ParameterInfo] = &[#(#table,)*];
+
             impl Default for Parameters {
                 fn default() -> Self {
                     Self { #(#names: #defaults,)* }
@@ -191,8 +205,7 @@ impl Given<'_> {
 
             impl ::bg_model::parameters::Parameters for Parameters {
                 fn table() -> &'static [::bg_model::description::ParameterInfo] {
-                    const TABLE: &[::bg_model::description::ParameterInfo] = &[#(#table,)*];
-                    TABLE
+                    PARAMETERS
                 }
                 fn value(&self, index: usize) -> f64 {
                     match index { #(#index => self.#names,)* _ => f64::NAN }

@@ -73,7 +73,7 @@ impl Emission<'_> {
         let costs = self.costs();
         let tables = self.tables(&given.scalar());
         let definition = self.definition(&given, &costs, &tables);
-        let items = given.items(&definition, &self.code(&costs, &tables));
+        let items = given.items(&definition, &self.code(&given, &costs, &tables));
         let scenes =
             given.scenes(!self.model.is_scene, &self.model.scenes.iter().map(String::as_str).collect::<Vec<_>>());
         quote!(#items #scenes)
@@ -104,9 +104,9 @@ impl Emission<'_> {
     }
 
     /// What the model's struct implements.
-    fn code(&self, costs: &[(&str, Counts)], tables: &Tables) -> TokenStream {
+    fn code(&self, given: &Given, costs: &[(&str, Counts)], tables: &Tables) -> TokenStream {
         let description = description::description(self.model, costs);
-        let constructors = self.constructors(tables);
+        let constructors = self.constructors(given, tables);
         let (system, capabilities, model) = (self.system(), self.capabilities(), self.model());
         let mechanism = self.mechanism();
         let import_pair = tables.has_pairs.then(|| {
@@ -119,11 +119,7 @@ impl Emission<'_> {
             #import_pair
             use ::bg_model::nalgebra::SVector;
 
-            static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
-                ::std::sync::LazyLock::new(|| {
-                    let PARAMETERS = <Parameters as ::bg_model::parameters::Parameters>::table();
-                    #description
-                });
+            static DESCRIPTION: ::bg_model::description::Description = #description;
 
             #constructors
             #system
@@ -134,7 +130,8 @@ impl Emission<'_> {
     }
 
     /// The model's own functions, and those that its traits call.
-    fn constructors(&self, tables: &Tables) -> TokenStream {
+    fn constructors(&self, given: &Given, tables: &Tables) -> TokenStream {
+        let inputs_mut = given.inputs_mut();
         let has_inputs = !self.model.derived.causal.graph.inputs.is_empty();
         let input_argument = has_inputs.then(|| quote!(, inputs: Inputs));
         let input_value = has_inputs.then(|| quote!(inputs,));
@@ -213,6 +210,8 @@ impl Emission<'_> {
                 pub fn parameters(&self) -> &Parameters {
                     &self.parameters
                 }
+
+                #inputs_mut
 
                 #functions
 

@@ -57,19 +57,18 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
     let has_inputs = !inputs.is_empty();
     let argument = has_inputs.then(|| quote!(, inputs: Inputs));
     let value = has_inputs.then(|| quote!(inputs,));
+    let inputs_mut = given.inputs_mut();
     let definition = quote! {
         #[derive(Clone, Debug)]
         #[allow(missing_docs, dead_code)]
         pub struct #name<#scalar = ::core::primitive::f64> { #fields scalar: ::core::marker::PhantomData<#scalar> }
     };
     let fields: Vec<_> = inputs.iter().map(|input| identifier(&input.name.text)).collect();
-    let (mechanism, count) = (mechanism::of(&fields), parameters.len());
+    let (mechanism, count) = (mechanism::of(&fields, &quote!(::core::unreachable!("{WHY}"))), parameters.len());
     let code = quote! {
         use ::bg_model::scalar::Scalar;
         use ::bg_model::nalgebra::SVector;
         const WHY: &str = "the graph has faults";
-        static DESCRIPTION: ::std::sync::LazyLock<::bg_model::description::Description> =
-            ::std::sync::LazyLock::new(|| ::core::unreachable!("{WHY}"));
 
         impl Model {
             pub const STATES: usize = 1;
@@ -95,6 +94,7 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
             pub fn parameters(&self) -> &Parameters {
                 &self.parameters
             }
+            #inputs_mut
         }
         impl<S: Scalar> ::bg_model::system::System<S, 1, 0> for Model<S> {
             fn rate(&self, t: S, x: &SVector<S, 1>, negative: &[bool; 0], dx: &mut SVector<S, 1>) {

@@ -20,7 +20,7 @@ impl Cell {
     }
 }
 
-/// The values of all inputs, each in its unit, and their rates, which are 0 but where derivatives by the inputs are asked for.
+/// The values of all inputs, each in its unit, and how fast they change along the direction in which derivatives are asked for.
 #[derive(Clone, Debug)]
 pub struct Signals {
     cells: Arc<[(Cell, Cell)]>,
@@ -39,7 +39,7 @@ impl Signals {
         self.cells[index].0.set(value);
     }
 
-    pub fn set_rate(&self, index: usize, value: f64) {
+    pub fn set_along(&self, index: usize, value: f64) {
         self.cells[index].1.set(value);
     }
 
@@ -50,8 +50,8 @@ impl Signals {
     /// What a model reads them by.
     pub fn inputs(&self) -> Vec<Input> {
         let input = |index: usize| {
-            let (of_value, of_rate) = (self.cells.clone(), self.cells.clone());
-            Input::with_rate(move |_| of_value[index].0.get(), move |_| of_rate[index].1.get())
+            let (of_value, along) = (self.cells.clone(), self.cells.clone());
+            Input::with_tangent(move |_| of_value[index].0.get(), move |_| along[index].1.get())
         };
         (0..self.cells.len()).map(input).collect()
     }

@@ -1,8 +1,8 @@
 //! Exact derivatives of a model along a direction, without the numbers of its states in its type.
 //!
 //! In: a time, a state, branches, how fast states and inputs are to change. Out: how fast rates, outputs and guards change with
-//! them. Method: dual numbers along the states, and along time for inputs, which are made to grow with time; nothing else in a
-//! model depends on time.
+//! them. Method: dual numbers along the states, and along time for inputs, whose tangents are the direction; what changes with time by
+//! itself is taken away again.
 
 use bg_model::mechanism::ModelVisitor;
 use bg_model::nalgebra::SVector;
@@ -11,10 +11,6 @@ use bg_model::system::Model;
 
 use super::machine::Machine;
 use super::signals::Signals;
-
-/// Directions are as much smaller as rates of inputs must be so that a model which reads these does not see them. A power of two:
-/// what is linear in it loses nothing.
-const SMALL: f64 = f64::from_bits((1023 - 200) << 52);
 
 /// How fast rates, outputs and guards change along a direction.
 #[derive(Clone, Debug, Default)]
@@ -49,32 +45,48 @@ impl ModelVisitor<Dual> for InDuals {
 #[derive(Clone)]
 struct OfModel<Mo, const N: usize, const G: usize, const M: usize>(Mo);
 
-impl<Mo, const N: usize, const G: usize, const M: usize> Slopes for OfModel<Mo, N, G, M>
+impl<Mo, const N: usize, const G: usize, const M: usize> OfModel<Mo, N, G, M>
 where
-    Mo: Model<Dual, N, G, M> + Clone + 'static,
+    Mo: Model<Dual, N, G, M>,
 {
-    fn along(&self, machine: &dyn Machine, signals: &Signals, states: &[f64], inputs: &[f64]) -> Along {
+    /// Along `states` and so much time.
+    fn changes(&self, machine: &dyn Machine, states: &[f64], time: f64) -> Along {
         let Self(model) = self;
         let (x, branches) = (machine.states(), machine.branches());
-        let x: SVector<Dual, N> = SVector::from_fn(|row, _| Dual::new(x[row], SMALL * states[row]));
+        let (t, x) = (Dual::new(machine.time(), time), SVector::from_fn(|row, _| Dual::new(x[row], states[row])));
         let negative: [bool; G] = std::array::from_fn(|index| branches[index]);
-        let is_driven = inputs.iter().any(|&slope| slope != 0.0);
-        let t = Dual::new(machine.time(), if is_driven { 1.0 } else { 0.0 });
-        let grow = |by: f64| inputs.iter().enumerate().for_each(|(index, slope)| signals.set_rate(index, by * slope));
         let zero = Dual::new(0.0, 0.0);
         let (mut rates, mut outputs, mut guards) =
             (SVector::<Dual, N>::repeat(zero), SVector::<Dual, M>::repeat(zero), SVector::<Dual, G>::repeat(zero));
-        grow(SMALL);
         model.rate(t, &x, &negative, &mut rates);
         model.outputs(t, &x, &negative, &mut outputs);
         model.guards(t, &x, &negative, &mut guards);
-        grow(0.0);
-        let slopes = |values: &[Dual]| values.iter().map(|value| value.slope / SMALL).collect();
+        let slopes = |values: &[Dual]| values.iter().map(|value| value.slope).collect();
         Along {
             rates: slopes(rates.as_slice()),
             outputs: slopes(outputs.as_slice()),
             guards: slopes(guards.as_slice()),
         }
+    }
+}
+
+impl<Mo, const N: usize, const G: usize, const M: usize> Slopes for OfModel<Mo, N, G, M>
+where
+    Mo: Model<Dual, N, G, M> + Clone + 'static,
+{
+    fn along(&self, machine: &dyn Machine, signals: &Signals, states: &[f64], inputs: &[f64]) -> Along {
+        let is_driven = inputs.iter().any(|&slope| slope != 0.0);
+        inputs.iter().enumerate().for_each(|(index, &slope)| signals.set_along(index, slope));
+        let mut along = self.changes(machine, states, if is_driven { 1.0 } else { 0.0 });
+        (0..inputs.len()).for_each(|index| signals.set_along(index, 0.0));
+        if is_driven {
+            let alone = self.changes(machine, &vec![0.0; states.len()], 1.0);
+            let less = |of: &mut Vec<f64>, by: &[f64]| of.iter_mut().zip(by).for_each(|(of, by)| *of -= by);
+            less(&mut along.rates, &alone.rates);
+            less(&mut along.outputs, &alone.outputs);
+            less(&mut along.guards, &alone.guards);
+        }
+        along
     }
 
     fn twin(&self) -> Box<dyn Slopes> {

@@ -14,6 +14,8 @@
 //! | 9 | switch k, step a, step b | a where switch k is negative, else b |
 //! | 10 | index k | reaction k of the rigid joints |
 
+use alloc::vec::Vec;
+
 use crate::model::scalar::Scalar;
 
 /// The steps and what is wanted of them.
@@ -61,7 +63,7 @@ impl Tape {
 }
 
 struct Reader<'a> {
-    words: std::slice::Iter<'a, u32>,
+    words: core::slice::Iter<'a, u32>,
     numbers: &'a [f64],
     /// The values of the steps so far.
     steps: Vec<f64>,
@@ -209,7 +211,7 @@ mod tests {
         };
         let mut values = Vec::new();
         tape.evaluate(&moment, &mut values);
-        assert_eq!(values, [-3.0, 30.0, 10.0, -5.0, 2.25, std::f64::consts::FRAC_PI_4, -5.0]);
+        assert_eq!(values, [-3.0, 30.0, 10.0, -5.0, 2.25, core::f64::consts::FRAC_PI_4, -5.0]);
         values.clear();
         tape.evaluate(&Moment { negative: &[true, false], ..moment }, &mut values);
         assert_eq!(values[6], 2.25);

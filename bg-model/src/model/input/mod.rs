@@ -6,10 +6,11 @@
 mod spline;
 mod table;
 
-use std::fmt;
-use std::sync::Arc;
+use alloc::sync::Arc;
+use core::fmt;
 
 use crate::model::scalar::Scalar;
+use crate::model::scalar::double::root;
 pub use table::{Table, TableError};
 
 /// A real function of time (s).
@@ -31,6 +32,7 @@ enum Law {
     Constant(f64),
     Function(OfTime),
     FunctionAndRate(OfTime, OfTime),
+    FunctionAndTangent(OfTime, OfTime),
     Table(Arc<Table>),
 }
 
@@ -52,6 +54,15 @@ impl Input {
         rate: impl Fn(f64) -> f64 + Send + Sync + 'static,
     ) -> Self {
         Self { law: Law::FunctionAndRate(Arc::new(value), Arc::new(rate)) }
+    }
+
+    /// `value` at time t (s), at rest; what `t` has beyond the `f64` nearest to it enters times `along`, in the input's unit per s. In dual
+    /// numbers whose time has the slope 1 so are derivatives by the input, without a rate that the model could read.
+    pub fn with_tangent(
+        value: impl Fn(f64) -> f64 + Send + Sync + 'static,
+        along: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self { law: Law::FunctionAndTangent(Arc::new(value), Arc::new(along)) }
     }
 
     /// The rows of `table` and what is in between; outside, the value of the nearest row.
@@ -84,7 +95,7 @@ impl Input {
         match &self.law {
             Law::Constant(value) => S::from_f64(*value),
             Law::Function(value) => S::from_f64(value(t.to_f64())),
-            Law::FunctionAndRate(value, rate) => {
+            Law::FunctionAndRate(value, rate) | Law::FunctionAndTangent(value, rate) => {
                 let nearest = t.to_f64();
                 S::from_f64(value(nearest)) + S::from_f64(rate(nearest)) * (t - S::from_f64(nearest))
             }
@@ -96,7 +107,7 @@ impl Input {
     /// its rate, and of a table, where it jumps that of the time after `t`.
     pub fn rate<S: Scalar>(&self, t: S) -> Option<S> {
         match &self.law {
-            Law::Constant(_) => Some(S::from_f64(0.0)),
+            Law::Constant(_) | Law::FunctionAndTangent(..) => Some(S::from_f64(0.0)),
             Law::Function(_) => None,
             Law::FunctionAndRate(_, rate) => Some(S::from_f64(rate(t.to_f64()))),
             Law::Table(table) => Some(table.rate(t)),
@@ -109,7 +120,9 @@ impl Input {
     pub fn next_break(&self, t: f64) -> f64 {
         match &self.law {
             Law::Table(table) => table.next_break(t),
-            Law::Constant(_) | Law::Function(_) | Law::FunctionAndRate(..) => f64::INFINITY,
+            Law::Constant(_) | Law::Function(_) | Law::FunctionAndRate(..) | Law::FunctionAndTangent(..) => {
+                f64::INFINITY
+            }
         }
     }
 }
@@ -145,7 +158,7 @@ pub(crate) fn reach(t: f64) -> f64 {
 /// `t`.
 fn distance(t: f64) -> f64 {
     let size = t.abs();
-    f64::EPSILON.sqrt() * if size > 1.0 { size } else { 1.0 }
+    root(f64::EPSILON) * if size > 1.0 { size } else { 1.0 }
 }
 
 /// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences
@@ -177,6 +190,7 @@ impl fmt::Debug for Input {
             Law::Constant(value) => write!(f, "Input::constant({value:?})"),
             Law::Function(_) => f.write_str("Input::function(..)"),
             Law::FunctionAndRate(..) => f.write_str("Input::with_rate(..)"),
+            Law::FunctionAndTangent(..) => f.write_str("Input::with_tangent(..)"),
             Law::Table(table) => write!(f, "Input::table({} rows)", table.times().len()),
         }
     }
@@ -185,6 +199,7 @@ impl fmt::Debug for Input {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::scalar::Dual;
 
     #[test]
     fn default_is_zero_and_a_number_is_a_constant() {
@@ -207,6 +222,13 @@ mod tests {
         let input = Input::with_rate(|t| t * t, |t| 2.0 * t);
         assert_eq!(input.value(0.1), 0.1 * 0.1);
         assert_eq!(input.rate(0.1), Some(0.2));
+    }
+
+    #[test]
+    fn a_tangent_is_no_rate() {
+        let input = Input::with_tangent(|_| 3.0, |_| 5.0);
+        assert_eq!(input.value(Dual::new(0.1, 1.0)), Dual::new(3.0, 5.0));
+        assert_eq!((input.rate(0.1), input.slope(0.1)), (Some(0.0), 0.0));
     }
 
     #[test]
@@ -239,6 +261,7 @@ mod tests {
         assert_eq!(format!("{:?}", Input::from(1.0)), "Input::constant(1.0)");
         assert_eq!(format!("{:?}", Input::function(|t| t)), "Input::function(..)");
         assert_eq!(format!("{:?}", Input::with_rate(|t| t, |_| 1.0)), "Input::with_rate(..)");
+        assert_eq!(format!("{:?}", Input::with_tangent(|t| t, |_| 1.0)), "Input::with_tangent(..)");
         let table = Table::linear(&[0.0, 1.0, 2.0], &[0.0; 3]).unwrap();
         assert_eq!(format!("{:?}", Input::table(table)), "Input::table(3 rows)");
     }

@@ -5,6 +5,9 @@
 //! SciPy's `CubicSpline` has them. The matrix has three diagonals; elimination without row exchanges, as each pivot is
 //! at least the length of an interval: below the first row it stays dominant.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 /// The rates of the spline through `values` at `times`, which ascend: two or more.
 pub(super) fn slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
     let rows = times.len();

@@ -4,6 +4,8 @@
 //! law changes; or why the rows are no table. Of both kinds a value is continuous; the rate of a line, and of every
 //! table at its two ends, jumps.
 
+use alloc::vec::Vec;
+
 use thiserror::Error;
 
 use super::spline;

@@ -7,6 +7,7 @@
 use nalgebra::SVector;
 
 use crate::model::scalar::Scalar;
+use crate::model::scalar::double::root;
 
 /// Writes df/dx into `entries`, column by column, and df/dt into `slope`. Evaluates the rate `N` + 2 times.
 pub(crate) fn differences<S: Scalar, const N: usize>(
@@ -18,7 +19,7 @@ pub(crate) fn differences<S: Scalar, const N: usize>(
 ) {
     let increment = |value: S| {
         let size = value.to_f64().abs();
-        let (usual, least) = ((f64::EPSILON * if size > 1e-5 { size } else { 1e-5 }).sqrt(), 1e-12 * size);
+        let (usual, least) = (root(f64::EPSILON * if size > 1e-5 { size } else { 1e-5 }), 1e-12 * size);
         S::from_f64(if usual > least { usual } else { least })
     };
     let zero = S::from_f64(0.0);

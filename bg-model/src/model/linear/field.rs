@@ -1,6 +1,6 @@
 //! What the elimination calculates with: real numbers, and complex ones for the methods of Radau and Gauss.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use nalgebra::Complex;
 

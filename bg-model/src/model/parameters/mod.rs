@@ -2,6 +2,9 @@
 
 pub(crate) mod serialized;
 
+use alloc::borrow::ToOwned;
+use alloc::string::String;
+
 use thiserror::Error;
 
 use crate::model::description::{ParameterInfo, Range};
@@ -64,8 +67,8 @@ pub enum ParameterError {
         value: f64,
         /// The parameter's unit.
         unit: &'static str,
-        /// The range in words.
-        range: String,
+        /// What is allowed.
+        range: Range,
     },
     /// A value that the parameters give cannot be, such as a mass that is not above 0.
     #[error(transparent)]
@@ -78,12 +81,7 @@ fn check(parameter: &ParameterInfo, value: f64) -> Result<(), ParameterError> {
     if parameter.range.contains(value) {
         return Ok(());
     }
-    Err(ParameterError::OutOfRange {
-        name: parameter.name,
-        value,
-        unit: parameter.unit,
-        range: parameter.range.to_string(),
-    })
+    Err(ParameterError::OutOfRange { name: parameter.name, value, unit: parameter.unit, range: parameter.range })
 }
 
 impl Range {
@@ -96,8 +94,8 @@ impl Range {
     }
 }
 
-impl std::fmt::Display for Range {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for Range {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str("a finite number")?;
         if self.lower.is_finite() {
             write!(f, ", {} {}", if self.lower_included { "at least" } else { "above" }, self.lower)?;

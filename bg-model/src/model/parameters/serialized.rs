@@ -3,8 +3,10 @@
 //! In: the names of a parameter struct. Out: what `Serialize` and `Deserialize` of a generated struct do. Unknown and repeated
 //! names are refused, missing ones keep their defaults.
 
-use std::fmt;
-use std::marker::PhantomData;
+use alloc::string::String;
+use alloc::vec;
+use core::fmt;
+use core::marker::PhantomData;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::ser::{SerializeStruct, Serializer};
@@ -57,7 +59,7 @@ impl<'de, P: Parameters> Visitor<'de> for Fields<P> {
         let mut parameters = P::default();
         let mut is_read = vec![false; self.names.len()];
         while let Some(index) = map.next_key_seed(Name(self.names))? {
-            if std::mem::replace(&mut is_read[index], true) {
+            if core::mem::replace(&mut is_read[index], true) {
                 return Err(A::Error::duplicate_field(self.names[index]));
             }
             parameters.set_value(index, map.next_value()?);

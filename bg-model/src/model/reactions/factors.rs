@@ -4,6 +4,9 @@
 //! is the squared sine of the angle between row i of the constraints and the plane of those before it, in the metric of
 //! the inverse masses.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::{Redundancy, Slip};
 use crate::model::scalar::Scalar;
 
@@ -211,7 +214,7 @@ mod tests {
     fn rows_that_follow_are_named_with_those_they_follow_from() {
         let slips = [slip("a", "in x"), slip("b", "in y"), slip("c", "in x"), slip("d", "in z"), slip("c", "in y")];
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 2.0]);
-        let twice: [f64; 3] = std::array::from_fn(|k| 0.1 * x[k] + 0.3 * y[k]);
+        let twice: [f64; 3] = core::array::from_fn(|k| 0.1 * x[k] + 0.3 * y[k]);
         let factors = Factors::of(&triangle(&[x, y, twice, z, y]));
         let expected = Redundancy { joint: "c", directions: vec!["in x", "in y"], others: vec!["a", "b"] };
         let found = factors.redundancy(&slips, &[false; 5]).unwrap();

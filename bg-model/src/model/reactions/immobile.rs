@@ -5,6 +5,8 @@
 //! Joints hold as many independent motions as there are momenta: no motion is left. That is no fault where a source gives a
 //! flow, nor of bodies each of which one joint fixes, such as a frame.
 
+use alloc::vec::Vec;
+
 use super::Hold;
 use super::factors::Factors;
 use crate::model::scalar::Scalar;

@@ -11,6 +11,9 @@
 //! complementarity problem, Opsearch 11 (1974), whose choice of the last ends. Impulses of dry friction are none: what it
 //! can hold is bounded.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
 use super::factors::{DISTINCT, Factors};
@@ -273,7 +276,7 @@ impl<S: Scalar> Collision<S> {
             let is_out = self.is_out(row);
             self.part[row] = if is_out { S::from_f64(0.0) } else { self.after[row] - self.target[row] };
         }
-        let mut factors = std::mem::replace(&mut self.factors, Factors::new(0));
+        let mut factors = core::mem::replace(&mut self.factors, Factors::new(0));
         factors
             .factor_where(self.matrix(&self.after), |row, pivot, entry| self.is_out(row) || pivot <= DISTINCT * entry);
         factors.solve(&mut self.part);

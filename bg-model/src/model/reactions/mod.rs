@@ -14,6 +14,9 @@ mod impact;
 mod shared;
 mod watch;
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use nalgebra::{DVector, SVector};
 
 use crate::model::assembly::AssemblyError;

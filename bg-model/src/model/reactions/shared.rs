@@ -7,6 +7,8 @@
 //! instant only. So what follows at the start has to follow in poses near it as well: the mechanism is moved a little, with
 //! velocities that its joints allow, and closed again.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
 use super::factors::Factors;

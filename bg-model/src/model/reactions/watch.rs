@@ -5,6 +5,8 @@
 //! that is made from rates alone goes over it. One whose equations need the rates' derivatives, which grow without bound
 //! there, may come so near that the joints no longer say which way the mechanism goes on.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
 use super::factors::Factors;
@@ -99,7 +101,7 @@ impl LoopWatch {
         let Self { hold, factors, dropped, was_near } = self;
         factors.factor_where(hold.matrix(), |row, pivot, entry| dropped[row] || pivot <= NEAR * entry);
         let found = (0..dropped.len()).find(|&row| factors.follows(row) && !dropped[row]);
-        let is_creeping = std::mem::replace(was_near, found.is_some());
+        let is_creeping = core::mem::replace(was_near, found.is_some());
         found.filter(|_| is_creeping).map(|row| factors.shared(hold.held.rigid, &[row]))
     }
 }

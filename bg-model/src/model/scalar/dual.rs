@@ -1,7 +1,7 @@
 //! Dual numbers: a value and its derivative along one direction. Exact first derivatives of generated code.
 
-use std::cmp::Ordering;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use core::cmp::Ordering;
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Both, Scalar};
 

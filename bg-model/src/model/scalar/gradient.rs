@@ -3,8 +3,8 @@
 //! As [`Dual`](super::Dual) with [`Gradient::WIDTH`] slopes: the value is calculated once, the slopes side by side in vectors. The
 //! values are those of `f64`, to the bit, whatever the vectors.
 
-use std::cmp::Ordering;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use core::cmp::Ordering;
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::slopes::{Everywhere, Slopes, WIDTH};
 use super::{Both, Scalar};
@@ -14,7 +14,8 @@ use super::{Both, Scalar};
 pub struct GradientIn<V> {
     /// The value.
     pub value: f64,
-    slopes: V,
+    /// The derivatives in their vectors.
+    pub(crate) slopes: V,
 }
 
 /// A value and its derivatives along four directions.
@@ -38,24 +39,6 @@ impl<V: Slopes> GradientIn<V> {
     #[inline(always)]
     pub fn slopes(self) -> [f64; WIDTH] {
         self.slopes.numbers()
-    }
-
-    /// The number of this value and these derivatives.
-    #[inline(always)]
-    pub(crate) fn of_parts(value: f64, slopes: V) -> Self {
-        Self { value, slopes }
-    }
-
-    /// The same number in other vectors.
-    #[inline(always)]
-    pub(crate) fn among<W: Slopes>(self) -> GradientIn<W> {
-        GradientIn::new(self.value, self.slopes())
-    }
-
-    /// The derivatives in their vectors.
-    #[inline(always)]
-    pub(crate) fn vectors(self) -> V {
-        self.slopes
     }
 
     /// A function of this number from its value and its derivative here.

@@ -3,23 +3,25 @@
 //! | type | for |
 //! |---|---|
 //! | `f64` | runs |
+//! | `f32` | controllers whose floating-point unit has no more |
 //! | [`DoubleDouble`] | reference solutions, about 31 digits |
 //! | [`Dual`] | exact first derivatives along one direction |
 //! | [`Gradient`] | the same along several at once |
 
+pub(crate) mod double;
 mod double_double;
 mod dual;
-mod gradient;
+pub(crate) mod gradient;
 mod pair;
+mod single;
 pub(crate) mod slopes;
 
-use std::fmt::Debug;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use core::fmt::Debug;
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use gradient::Gradient;
-pub(crate) use gradient::GradientIn;
 pub use pair::{Both, Pair, PairOfDoubles};
 
 /// A real number that generated code can calculate with.
@@ -90,7 +92,7 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        f64::sqrt(self)
+        double::root(self)
     }
     #[inline]
     fn sin(self) -> Self {

@@ -3,8 +3,8 @@
 //! In: two numbers. Out: the same operations on both, each rounded as if it were alone. Pairs of `f64` are vectors of the
 //! machine where it has them in every build; elsewhere, and for other scalars, one number is done after the other.
 
-use std::fmt::Debug;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use core::fmt::Debug;
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use wide::f64x2;
 

@@ -3,7 +3,7 @@
 //! In: nothing. Out: the operations on them that numbers with slopes need, in the vectors that every machine of its kind has and in
 //! those of AVX2. Each product and each sum is rounded alone, in the same order: the results are the same to the bit.
 
-use std::fmt::Debug;
+use core::fmt::Debug;
 
 use pulp::NullaryFnOnce;
 use wide::f64x2;
@@ -106,20 +106,13 @@ impl Slopes for Everywhere {
     }
 }
 
-/// The fastest that a machine of this kind may have.
-#[cfg(target_arch = "x86_64")]
-pub type Fastest = Avx2;
-/// The fastest that a machine of this kind may have.
-#[cfg(not(target_arch = "x86_64"))]
-pub type Fastest = Everywhere;
-
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
 pub use avx2::Avx2;
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
 mod avx2 {
-    use std::arch::x86_64::__m256d;
-    use std::fmt;
+    use core::arch::x86_64::__m256d;
+    use core::fmt;
 
     use pulp::NullaryFnOnce;
     use pulp::x86::V3;

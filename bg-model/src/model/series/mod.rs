@@ -56,7 +56,7 @@ pub fn inner_products<S: Scalar, const P: usize, const W: usize>(rows: &[[S; W]]
     at = passes::<S, 2, P, W>(inner, at, &mut sums);
     passes::<S, 1, P, W>(inner, at, &mut sums);
     // Else the sums stand side by side in the order in which they are read, and what they are made of has to be put in that order.
-    std::hint::black_box(&mut sums);
+    core::hint::black_box(&mut sums);
     sums
 }
 

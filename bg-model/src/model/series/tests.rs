@@ -10,7 +10,7 @@ fn coefficients<const W: usize>(
     operation: impl Fn(&mut [[f64; W]], usize, f64) -> f64,
 ) -> [f64; ORDERS] {
     let mut rows = [[0.0; W]; ORDERS];
-    std::array::from_fn(|k| operation(&mut rows, k, operand.get(k).copied().unwrap_or(0.0)))
+    core::array::from_fn(|k| operation(&mut rows, k, operand.get(k).copied().unwrap_or(0.0)))
 }
 
 /// The value of a polynomial.
@@ -72,7 +72,8 @@ fn products_and_quotients_undo_each_other() {
 fn inner_products_leave_out_the_ends() {
     // Nineteen products: a full pass, and three sums of their own.
     const P: usize = 19;
-    let rows: [[f64; 2 * P]; 6] = std::array::from_fn(|j| std::array::from_fn(|i| libm::sin((7 * i + 31 * j) as f64)));
+    let rows: [[f64; 2 * P]; 6] =
+        core::array::from_fn(|j| core::array::from_fn(|i| libm::sin((7 * i + 31 * j) as f64)));
     for k in 1..=6 {
         let found: [f64; P] = inner_products(&rows[..k]);
         for (i, found) in found.into_iter().enumerate() {
@@ -98,7 +99,7 @@ fn the_angle_of_a_turning_point_is_the_angle_turned() {
 fn a_power_with_a_changing_exponent() {
     // (1 + t)^t = exp(t ln(1 + t)).
     let mut rows = [[0.0; 6]; ORDERS];
-    let series: [f64; ORDERS] = std::array::from_fn(|k| {
+    let series: [f64; ORDERS] = core::array::from_fn(|k| {
         let time = if k == 1 { 1.0 } else { 0.0 };
         let (base, exponent) = (constant(k, 1.0) + time, time);
         power(&mut rows, k, 0, base, exponent)

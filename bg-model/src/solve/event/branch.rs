@@ -36,7 +36,7 @@ impl<const G: usize> Watch<G> {
             stepper.negative = *negative;
             stepper.guards(start.t, &start.x)
         });
-        stepper.negative = std::array::from_fn(|k| stepper.negative[k] || clear[k]);
+        stepper.negative = core::array::from_fn(|k| stepper.negative[k] || clear[k]);
         clear
     }
 
@@ -51,7 +51,7 @@ impl<const G: usize> Watch<G> {
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
-        let undecided: [bool; G] = std::array::from_fn(|k| self.start.value[k] == 0.0 && !known[k]);
+        let undecided: [bool; G] = core::array::from_fn(|k| self.start.value[k] == 0.0 && !known[k]);
         if undecided.contains(&true) {
             self.choose(stepper, &undecided, [false; G], step);
         }
@@ -93,7 +93,7 @@ impl<const G: usize> Watch<G> {
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
-        let flipped = std::array::from_fn(|k| stepper.negative[k] != switches[k]);
+        let flipped = core::array::from_fn(|k| stepper.negative[k] != switches[k]);
         self.choose(stepper, &switches, flipped, step);
         for _ in 0..G {
             self.read_start(stepper, step);
@@ -134,7 +134,7 @@ impl<const G: usize> Watch<G> {
             if !wrong.contains(&true) {
                 return;
             }
-            stepper.negative = std::array::from_fn(|k| stepper.negative[k] != wrong[k]);
+            stepper.negative = core::array::from_fn(|k| stepper.negative[k] != wrong[k]);
             stepper.evaluate_start();
         }
     }
@@ -155,7 +155,7 @@ impl<const G: usize> Watch<G> {
             return *switches;
         }
         let signs = self.probe(stepper, switches, step);
-        std::array::from_fn(|k| switches[k] && signs[k].is_some_and(|negative| negative != stepper.negative[k]))
+        core::array::from_fn(|k| switches[k] && signs[k].is_some_and(|negative| negative != stepper.negative[k]))
     }
 
     /// Whether the guards of `switches` are negative a little later under the present branches, by steps that are small

@@ -75,7 +75,7 @@ impl<const G: usize> Watch<G> {
 
     /// The guards that are on the wrong side at the end of the step or may have been in it.
     fn suspects(&self, negative: [bool; G], middle: &SVector<f64, G>, h: f64) -> [bool; G] {
-        std::array::from_fn(|k| {
+        core::array::from_fn(|k| {
             let is_wrong = clearance(self.end.value[k], negative[k]) < -self.end.noise[k];
             is_wrong || self.is_near(k, negative[k], middle[k], h)
         })
@@ -120,7 +120,7 @@ impl<const G: usize> Watch<G> {
             *value = step.dense_guards(part as f64 / PARTS as f64);
         }
         values[PARTS] = self.end.value;
-        std::array::from_fn(|k| if suspects[k] { self.course(step, k, &values) } else { Course::Clear })
+        core::array::from_fn(|k| if suspects[k] { self.course(step, k, &values) } else { Course::Clear })
     }
 
     /// The course of guard `k`, whose values at the parts of the step are known.

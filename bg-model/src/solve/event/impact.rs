@@ -124,7 +124,7 @@ impl<const G: usize> Watch<G> {
         let (start, negative) = (stepper.start, stepper.negative);
         // Where all that remembers is in its first branch guards are places of stops and flows of frictions.
         let first = system.first_branches();
-        stepper.negative = std::array::from_fn(|k| negative[k] || first[k]);
+        stepper.negative = core::array::from_fn(|k| negative[k] || first[k]);
         let place = stepper.guards(start.t, &start.x);
         let noise = self.noise(stepper, start.t, &start.x, &place);
         let allowed = allowed(stepper, &place);
@@ -169,5 +169,5 @@ where
     let start = stepper.start;
     let off = SVector::from_fn(|i, _| start.x[i] + stepper.scale.allowed(i, start.x[i], 0.0));
     let displaced = stepper.guards(start.t, &off);
-    std::array::from_fn(|k| (displaced[k] - value[k]).abs())
+    core::array::from_fn(|k| (displaced[k] - value[k]).abs())
 }

@@ -103,7 +103,7 @@ impl<const G: usize> Watch<G> {
         value: &SVector<f64, G>,
     ) -> [bool; G] {
         let noise = self.noise_after(step, value);
-        std::array::from_fn(|k| {
+        core::array::from_fn(|k| {
             let is_on_course = matches!(courses[k], Course::Crosses(_));
             let is_wrong = clearance(value[k], step.negative()[k]) < -noise[k];
             let is_concerned = k == first || is_wrong || (is_on_course && value[k].abs() <= noise[k]);

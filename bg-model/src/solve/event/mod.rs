@@ -93,7 +93,7 @@ impl<const G: usize> Watch<G> {
         let end = *step.end();
         let value = step.guards(end.t, &end.x);
         let noise = self.noise(step, end.t, &end.x, &value);
-        std::array::from_fn(|k| switches[k] && value[k].abs() <= noise[k])
+        core::array::from_fn(|k| switches[k] && value[k].abs() <= noise[k])
     }
 
     /// Reads the guards at the start of the step, where the rate is known.
@@ -124,7 +124,7 @@ fn read<const N: usize, const G: usize>(
     const AHEAD: f64 = 1e-6;
     let ahead = AHEAD * h;
     let value = step.guards(t, x);
-    let x_ahead = SVector::from(std::array::from_fn(|i| x.data.0[0][i] + rate.data.0[0][i] * ahead));
+    let x_ahead = SVector::from(core::array::from_fn(|i| x.data.0[0][i] + rate.data.0[0][i] * ahead));
     let slope = (step.guards(t + ahead, &x_ahead) - value) / ahead;
     Reading { value, slope, noise: [0.0; G] }
 }

@@ -8,6 +8,7 @@ use nalgebra::SVector;
 
 use super::Watch;
 use super::guarded::Guarded;
+use crate::model::scalar::double;
 
 /// How far rounding displaces a sum of some terms, in parts of the largest: the weights of methods go up to 30.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -25,13 +26,13 @@ impl<const G: usize> Watch<G> {
         value: &SVector<f64, G>,
     ) -> [f64; G] {
         let (start, h) = (*step.start(), step.size());
-        let moves: [f64; N] = std::array::from_fn(|i| {
+        let moves: [f64; N] = core::array::from_fn(|i| {
             ROUNDING * irregular(i + 1) * (larger(start.x[i].abs(), x[i].abs()) + (h * start.rate[i]).abs())
         });
         let wait = ROUNDING * larger(start.t.abs(), t.abs());
         let mut displaced = |by: f64| step.guards(t + by * wait, &SVector::from_fn(|i, _| x[i] + by * moves[i]));
         let (ahead, back) = (displaced(1.0), displaced(-1.0));
-        std::array::from_fn(|k| {
+        core::array::from_fn(|k| {
             let (ahead, back) = ((ahead[k] - value[k]).abs(), (back[k] - value[k]).abs());
             let change = if ahead < back { ahead } else { back };
             // No number beside the point says nothing about it.
@@ -60,7 +61,7 @@ impl<const G: usize> Watch<G> {
 /// section 6.4).
 fn irregular(number: usize) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let fraction = (number as f64 * GOLDEN).fract();
+    let fraction = double::fraction(number as f64 * GOLDEN);
     if fraction < 0.5 { -0.5 - fraction } else { fraction }
 }
 

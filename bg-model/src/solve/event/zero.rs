@@ -81,7 +81,7 @@ mod tests {
     fn a_bad_guess_and_slope_are_made_up_for() {
         for slope in [f64::NAN, 0.0, 1.0, -1e9, -1e-9] {
             let (at, _) = zero(0.0, 1.0, 2.0, slope, EXACT, |x| libm::cos(1.5 * x * x * x + 0.5));
-            assert!((at - libm::cbrt((std::f64::consts::FRAC_PI_2 - 0.5) / 1.5)).abs() < 1e-15, "{slope}: {at}");
+            assert!((at - libm::cbrt((core::f64::consts::FRAC_PI_2 - 0.5) / 1.5)).abs() < 1e-15, "{slope}: {at}");
         }
     }
 

@@ -3,6 +3,8 @@
 //! In: one of the methods. Out: its steps. Only the one type reaches the driver, so a program that offers many methods
 //! compiles the driver once for each model and not once for each pair.
 
+use alloc::boxed::Box;
+
 use nalgebra::SVector;
 
 use super::hand_on::hand_on;

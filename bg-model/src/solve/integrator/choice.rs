@@ -3,8 +3,10 @@
 //! In: a name and, for methods with a fixed step, the step. Out: the method. A program that reads names from a command line
 //! or a file needs nothing else.
 
-use std::fmt;
-use std::str::FromStr;
+use alloc::borrow::ToOwned;
+use alloc::string::String;
+use core::fmt;
+use core::str::FromStr;
 
 use thiserror::Error;
 

@@ -21,7 +21,7 @@ mod linear;
 mod nystrom;
 mod partitioned;
 mod radau;
-mod rk4;
+pub(crate) mod rk4;
 mod rosenbrock;
 mod taylor;
 mod tolerances;

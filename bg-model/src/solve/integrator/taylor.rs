@@ -8,6 +8,8 @@
 //! kink, or a jump, inside the step. Where there is no series, as at the zero of a square root, BS5 makes the step, which
 //! needs no derivative: its error estimate makes it short.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 use pulp::Arch;
 
@@ -104,13 +106,13 @@ impl<const N: usize> Taylor<N> {
     #[inline(always)]
     fn term(&self, k: usize, theta: f64, weights: &[f64; N]) -> f64 {
         let power = if theta == 1.0 { 1.0 } else { libm::pow(theta, k as f64) };
-        power * largest::<N>(&std::array::from_fn(|i| (self.series[k].data.0[0][i] * weights[i]).abs()))
+        power * largest::<N>(&core::array::from_fn(|i| (self.series[k].data.0[0][i] * weights[i]).abs()))
     }
 }
 
 /// The order for a relative tolerance, even: by measurement on the hacksaw, where two more or less cost some percent.
 fn order_for(relative: f64) -> usize {
-    let half = (2.9 - 0.625 * libm::log10(relative)).round();
+    let half = libm::round(2.9 - 0.625 * libm::log10(relative));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 4 to 15")]
     let half = half.clamp(4.0, 15.0) as usize;
     2 * half
@@ -177,7 +179,7 @@ impl<const N: usize> Vectorised<N> for Taylor<N> {
         rate_in(self.arch, flow, start.t + h, end, &mut rate);
         let unit = self.unit;
         let defect = theta
-            * largest::<N>(&std::array::from_fn(|i| ((unit * rate.data.0[0][i] - slope[i]) * weights[i]).abs()))
+            * largest::<N>(&core::array::from_fn(|i| ((unit * rate.data.0[0][i] - slope[i]) * weights[i]).abs()))
             / slack(scale.relative);
         if defect > 1.0 { defect } else { norm }
     }

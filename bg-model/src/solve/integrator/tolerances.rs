@@ -5,6 +5,7 @@
 use nalgebra::SVector;
 
 use super::{Flow, Point};
+use crate::model::scalar::double::fraction;
 
 /// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +79,7 @@ impl<const N: usize> Scale<N> {
     /// The largest `|v_i|` divided by the allowed error at state `x`.
     #[must_use]
     pub fn norm(&self, v: &SVector<f64, N>, x: &SVector<f64, N>) -> f64 {
-        largest::<N>(&std::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i], 0.0)))
+        largest::<N>(&core::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i], 0.0)))
     }
 }
 
@@ -104,7 +105,7 @@ pub(crate) fn rounding<const N: usize>(flow: &impl Flow<N>, start: &Point<N>) ->
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let mut largest = SVector::zeros();
     for pattern in 0..PATTERNS {
-        let sign = |i: usize| if (GOLDEN * (PATTERNS * i + pattern) as f64).fract() < 0.5 { 1.0 } else { -1.0 };
+        let sign = |i: usize| if fraction(GOLDEN * (PATTERNS * i + pattern) as f64) < 0.5 { 1.0 } else { -1.0 };
         let rounded = SVector::from_fn(|i, _| start.x[i] * (1.0 + sign(i) * f64::EPSILON));
         let mut rate = SVector::zeros();
         flow.rate(start.t, &rounded, &mut rate);

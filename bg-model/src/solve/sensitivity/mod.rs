@@ -43,15 +43,16 @@ use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
-use crate::model::scalar::slopes::{Fastest, Slopes, WIDTH};
-use crate::model::scalar::{Gradient, GradientIn};
+use crate::model::scalar::Gradient;
+use crate::model::scalar::gradient::GradientIn;
+use crate::model::scalar::slopes::{Slopes, WIDTH};
 use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
 use crate::solve::simulation::{Observer, Switching};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
-use step::{Stepper, Steps};
+use step::{Fastest, Stepper, Steps, among};
 
 /// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
 /// the slopes would no longer be the derivatives of these.
@@ -198,7 +199,7 @@ impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
             let system = lifted(&self.sloped(chunk))?;
             let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
             let steps: Box<dyn Steps<N, G>> = if Fastest::is_at_hand() {
-                Box::new(Stepper::new(in_numbers(&system, Gradient::among), scale.clone(), sizes))
+                Box::new(Stepper::new(in_numbers(&system, among), scale.clone(), sizes))
             } else {
                 Box::new(Stepper::new(lifted(&self.sloped(chunk))?, scale.clone(), sizes))
             };

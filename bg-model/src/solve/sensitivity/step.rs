@@ -11,8 +11,13 @@
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
+use crate::model::scalar::gradient::GradientIn;
+#[cfg(target_arch = "x86_64")]
+use crate::model::scalar::slopes::Avx2;
+#[cfg(not(target_arch = "x86_64"))]
+use crate::model::scalar::slopes::Everywhere;
 use crate::model::scalar::slopes::{Slopes, WIDTH};
-use crate::model::scalar::{Gradient, GradientIn, Scalar};
+use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::System;
 use crate::solve::integrator::{DormandPrince, Row, Scale, Tableau};
 
@@ -20,6 +25,19 @@ use crate::solve::integrator::{DormandPrince, Row, Scale, Tableau};
 pub(super) type Sloped<const N: usize> = SVector<Gradient, N>;
 /// The same in the vectors of a step.
 type SlopedIn<V, const N: usize> = SVector<GradientIn<V>, N>;
+
+/// The fastest vectors that a machine of this kind may have.
+#[cfg(target_arch = "x86_64")]
+pub(super) type Fastest = Avx2;
+/// The fastest vectors that a machine of this kind may have.
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) type Fastest = Everywhere;
+
+/// The same number in other vectors.
+#[inline(always)]
+pub(super) fn among<V: Slopes, W: Slopes>(number: GradientIn<V>) -> GradientIn<W> {
+    GradientIn::new(number.value, number.slopes())
+}
 
 /// The stages of a step.
 const STAGES: usize = DormandPrince::END;
@@ -75,7 +93,7 @@ impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
     {
         while self.parts <= MOST_PARTS {
             let h = (to - from) / f64::from(self.parts);
-            let mut state: SlopedIn<V, N> = x.map(GradientIn::among);
+            let mut state: SlopedIn<V, N> = x.map(among);
             let mut worst = 0.0_f64;
             for part in 0..self.parts {
                 let t = from + f64::from(part) * h;
@@ -95,7 +113,7 @@ impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
                 } else {
                     self.system.project(to, negative, &mut state);
                 }
-                *end = state.map(GradientIn::among);
+                *end = state.map(among);
                 return true;
             }
             self.parts *= 2;
@@ -144,8 +162,8 @@ impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
             let (from, to) = (&start.data.0[0][i], &end.data.0[0][i]);
             let error = self.k.slope(DormandPrince::ERROR, i);
             // The step's own mean slope, less that of the method of order 3.
-            let other = to.vectors().minus(from.vectors()).minus(self.k.slope(DormandPrince::SECOND, i).times(h));
-            let changed = from.vectors().abs().max(to.vectors().abs()).times_each(self.sizes);
+            let other = to.slopes.minus(from.slopes).minus(self.k.slope(DormandPrince::SECOND, i).times(h));
+            let changed = from.slopes.abs().max(to.slopes.abs()).times_each(self.sizes);
             let (absolute, relative) = (self.scale.absolute.data.0[0][i], self.scale.relative);
             let size = changed.max(self.sizes.filled(to.value.abs())).times(relative);
             let part = self.sizes.over_each(self.sizes.filled(absolute).plus(size));
@@ -168,7 +186,7 @@ impl<V: Slopes, const N: usize> Stages<V, N> {
     fn store(&mut self, stage: usize, rate: &SlopedIn<V, N>) {
         for (i, rate) in rate.data.0[0].iter().enumerate() {
             self.values[stage][i] = rate.value;
-            self.slopes[stage][i] = rate.vectors();
+            self.slopes[stage][i] = rate.slopes;
         }
     }
 
@@ -181,8 +199,8 @@ impl<V: Slopes, const N: usize> Stages<V, N> {
         }
         for (i, moved) in moved.data.0[0].iter_mut().enumerate() {
             let x = &x.data.0[0][i];
-            let slopes = x.vectors().plus(self.slope(row, i).times(h));
-            *moved = GradientIn::of_parts(x.value + h * values[i], slopes);
+            let slopes = x.slopes.plus(self.slope(row, i).times(h));
+            *moved = GradientIn { value: x.value + h * values[i], slopes };
         }
     }
 

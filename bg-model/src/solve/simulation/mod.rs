@@ -14,6 +14,8 @@ mod run;
 mod sampling;
 mod settings;
 
+use alloc::boxed::Box;
+
 use nalgebra::SVector;
 
 pub use observer::{EachSample, EachStep, Observer, Switching};

@@ -4,6 +4,8 @@
 //! known of the guards, the size of the next step and what the method keeps; only where the system has changed in between is
 //! the start looked at anew, and then too the size of the step stays.
 
+use alloc::boxed::Box;
+
 use nalgebra::SVector;
 
 use super::observer::Observer;

@@ -26,7 +26,7 @@ const HOLD: f64 = 1.2;
 /// The part of a stabilised control that looks at the step before.
 const DAMPING: f64 = 0.4;
 /// The least logarithm of an error norm that is taken for that of the step before, which is that of 0.01.
-const LEAST: f64 = -2.0 * std::f64::consts::LN_10;
+const LEAST: f64 = -2.0 * core::f64::consts::LN_10;
 /// A step that would leave less than this part of itself to the end, or to a break, is stretched to it.
 const STRETCH: f64 = 0.01;
 /// A part of a fixed step that rounding may make: such a sliver is no step.

@@ -3,6 +3,12 @@
 //! In: a model and what is to be recorded of it. Out: an observer, and after the run a table: a value for each sample in every
 //! column, with the names and units of the model's description.
 
+use alloc::borrow::ToOwned;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 use thiserror::Error;
 

@@ -1,5 +1,7 @@
 //! What a run is asked for, and the check that it can be done.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
 use crate::model::scalar::Scalar;

@@ -3,8 +3,8 @@
 //! In: a system, the branches of its switches, the statistics of the run. Out: a [`Flow`], and capabilities of a system
 //! without switches.
 
-use std::cell::Cell;
-use std::ops::Range;
+use core::cell::Cell;
+use core::ops::Range;
 
 use nalgebra::SVector;
 

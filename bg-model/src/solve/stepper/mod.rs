@@ -2,6 +2,8 @@
 
 mod frozen;
 
+use alloc::vec;
+
 use nalgebra::SVector;
 use pulp::Arch;
 
@@ -141,7 +143,7 @@ where
         let way = self.h.max(at_least);
         let ahead = (1..=PARTS).map(|part| way * f64::from(part) / f64::from(PARTS));
         let on_the_way = ahead.map(|ahead| (t + ahead, x + rate * ahead));
-        let mut points = std::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
+        let mut points = core::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
         points.find_map(|(t, x)| is_finite(&x).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())
     }
 

@@ -11,12 +11,14 @@ use super::Emission;
 
 impl Emission<'_> {
     pub(super) fn mechanism(&self) -> TokenStream {
-        of(&self.model.derived.causal.graph.inputs.iter().map(|input| identifier(&input.name.text)).collect::<Vec<_>>())
+        let inputs = &self.model.derived.causal.graph.inputs;
+        let inputs: Vec<_> = inputs.iter().map(|input| identifier(&input.name.text)).collect();
+        of(&inputs, &quote!(&DESCRIPTION))
     }
 }
 
-/// The implementation for a model with these inputs.
-pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
+/// The implementation for a model with these inputs and this description.
+pub(in super::super) fn of(inputs: &[Ident], description: &TokenStream) -> TokenStream {
     let places = (0..inputs.len()).map(Literal::usize_unsuffixed);
     let has_inputs = !inputs.is_empty();
     let made = has_inputs.then(|| quote!(, Inputs { #(#inputs: inputs.get(#places).cloned().unwrap_or_default(),)* }));
@@ -26,7 +28,7 @@ pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
             type Parameters = Parameters;
 
             fn describe() -> &'static ::bg_model::description::Description {
-                &DESCRIPTION
+                #description
             }
             fn make(parameters: Parameters, inputs: &[::bg_model::input::Input])
                 -> Result<Self, ::bg_model::parameters::ParameterError>
@@ -36,8 +38,8 @@ pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
             fn parameters(&self) -> &Parameters {
                 &self.parameters
             }
-            fn inputs(&self) -> ::std::vec::Vec<::bg_model::input::Input> {
-                ::std::vec![#(self.inputs.#inputs.clone()),*]
+            fn inputs(&self) -> ::bg_model::__private::vec::Vec<::bg_model::input::Input> {
+                ::bg_model::__private::vec![#(self.inputs.#inputs.clone()),*]
             }
             fn visit<S: Scalar, V: ::bg_model::mechanism::ModelVisitor<S>>(&self, visitor: V) -> V::Output {
                 let model = Model::<S>::in_scalar(self.parameters.clone() #own);

@@ -51,11 +51,11 @@ impl Emission<'_> {
         let inputs: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         quote! {
             fn shown(
-                &self, t: f64, x: &SVector<f64, #n>, negative: &[bool; #g], values: &mut ::std::vec::Vec<f64>,
+                &self, t: f64, x: &SVector<f64, #n>, negative: &[bool; #g], values: &mut ::bg_model::__private::vec::Vec<f64>,
             ) {
                 #reactions
                 #iterated
-                let parameters: ::std::vec::Vec<f64> = (0..DESCRIPTION.parameters.len())
+                let parameters: ::bg_model::__private::vec::Vec<f64> = (0..DESCRIPTION.parameters.len())
                     .map(|index| ::bg_model::parameters::Parameters::value(&self.parameters, index))
                     .collect();
                 DESCRIPTION.drawing.tape.evaluate(

@@ -121,8 +121,8 @@ impl Emission<'_> {
     pub(super) fn redundant(&self) -> Option<TokenStream> {
         self.shared().where_any(|_| {
             quote! {
-                fn redundant(&self) -> ::std::vec::Vec<::bg_model::holding::Redundancy> {
-                    let Ok(pose) = self.pose() else { return ::std::vec::Vec::new() };
+                fn redundant(&self) -> ::bg_model::__private::vec::Vec<::bg_model::holding::Redundancy> {
+                    let Ok(pose) = self.pose() else { return ::bg_model::__private::vec::Vec::new() };
                     ::bg_model::__private::redundant(self, &pose)
                 }
             }

@@ -169,7 +169,7 @@ pub(super) fn lifted() -> TokenStream {
     quote! {
         let guess = Self::guesses(&self.values, &::core::array::from_fn(|_| S::from_f64(0.0)));
         let unknowns = ::bg_model::__private::lifted(guess, unknowns, |unknowns| {
-            ::std::vec::Vec::from(Self::gaps(&self.values, unknowns))
+            ::bg_model::__private::vec::Vec::from(Self::gaps(&self.values, unknowns))
         });
     }
 }

@@ -6,12 +6,13 @@
 
 use super::{DoubleDouble, two_product};
 use crate::model::scalar::Scalar;
+use crate::model::scalar::double::modulo;
 
 /// pi/2 as a sum of four.
 const HALF_PI: [f64; 4] =
-    [std::f64::consts::FRAC_PI_2, 6.123233995736766e-17, -1.4973849048591698e-33, 5.562271104316826e-50];
+    [core::f64::consts::FRAC_PI_2, 6.123233995736766e-17, -1.4973849048591698e-33, 5.562271104316826e-50];
 /// ln 2 as a sum of three.
-const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.3190468138462996e-17, 5.707708438416212e-34];
+const LN_2: [f64; 3] = [core::f64::consts::LN_2, 2.3190468138462996e-17, 5.707708438416212e-34];
 /// Terms of a series below this part of its sum are left out.
 const NEGLIGIBLE: f64 = 1e-34;
 /// More terms than any series here takes.
@@ -21,7 +22,7 @@ const ONE: DoubleDouble = DoubleDouble { high: 1.0, low: 0.0 };
 
 /// `x` less the nearest multiple of `modulus`, and the multiple.
 fn reduced(x: DoubleDouble, modulus: &[f64]) -> (DoubleDouble, f64) {
-    let multiple = (x.high / modulus[0]).round();
+    let multiple = libm::round(x.high / modulus[0]);
     (modulus.iter().fold(x, |rest, part| rest - two_product(multiple, *part)), multiple)
 }
 
@@ -44,7 +45,7 @@ pub fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let square = -(angle * angle);
     let sin = series(angle, |k| square / DoubleDouble::from(2.0 * k * (2.0 * k + 1.0)));
     let cos = series(ONE, |k| square / DoubleDouble::from((2.0 * k - 1.0) * 2.0 * k));
-    match quarters.rem_euclid(4.0) {
+    match modulo(quarters, 4.0) {
         1.0 => (cos, -sin),
         2.0 => (-sin, -cos),
         3.0 => (-cos, sin),
@@ -70,8 +71,8 @@ pub fn atan2(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
 
 /// e^x - 1 for |x| < 1: the series at x / 512, squared nine times.
 fn small_exp_minus_one(x: DoubleDouble) -> DoubleDouble {
-    const SQUARINGS: i32 = 9;
-    let part = x.scaled(2.0_f64.powi(-SQUARINGS));
+    const SQUARINGS: u32 = 9;
+    let part = x.scaled(1.0 / f64::from(1_u32 << SQUARINGS));
     let first = series(part, |k| part / DoubleDouble::from(k + 1.0));
     (0..SQUARINGS).fold(first, |value, _| value.scaled(2.0) + value * value)
 }
@@ -84,7 +85,7 @@ pub fn exp(x: DoubleDouble) -> DoubleDouble {
     let (rest, doublings) = reduced(x, &LN_2);
     let value = ONE + small_exp_minus_one(rest);
     // In two halves: 2^doublings alone may leave the range of `f64`.
-    let half = (doublings / 2.0).floor();
+    let half = libm::floor(doublings / 2.0);
     value.scaled(libm::exp2(half)).scaled(libm::exp2(doublings - half))
 }
 
@@ -104,8 +105,8 @@ pub fn ln(x: DoubleDouble) -> DoubleDouble {
         return DoubleDouble::from(near);
     }
     // Newton's step for e^y = x, with x in the middle of its range.
-    let exponent = (near / LN_2[0]).round();
-    let half = (exponent / 2.0).floor();
+    let exponent = libm::round(near / LN_2[0]);
+    let half = libm::floor(exponent / 2.0);
     let mantissa = x.scaled(libm::exp2(-half)).scaled(libm::exp2(half - exponent));
     let near = DoubleDouble::from(libm::log(mantissa.high));
     let of_mantissa = near + (mantissa * exp(-near) - ONE);
@@ -130,7 +131,7 @@ pub fn tanh(x: DoubleDouble) -> DoubleDouble {
 /// `x` to the power `y`: whole powers up to 64 by multiplication, others of a positive `x` by e^(y ln x).
 pub fn powf(x: DoubleDouble, y: DoubleDouble) -> DoubleDouble {
     const WHOLE: f64 = 64.0;
-    let is_whole = y.low == 0.0 && y.high == y.high.trunc();
+    let is_whole = y.low == 0.0 && y.high == libm::trunc(y.high);
     if is_whole && y.high.abs() <= WHOLE {
         let power = (0..y.high.abs() as u32).fold(ONE, |power, _| power * x);
         return if y.high < 0.0 { ONE / power } else { power };
@@ -140,5 +141,5 @@ pub fn powf(x: DoubleDouble, y: DoubleDouble) -> DoubleDouble {
     }
     let size = if is_whole { x.abs() } else { x };
     let power = exp(y * ln(size));
-    if x.high < 0.0 && y.high.rem_euclid(2.0) == 1.0 { -power } else { power }
+    if x.high < 0.0 && modulo(y.high, 2.0) == 1.0 { -power } else { power }
 }

@@ -17,9 +17,9 @@
 
 mod elementary;
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Both, Scalar};
+use super::{Both, Scalar, double};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
@@ -157,7 +157,7 @@ impl Scalar for DoubleDouble {
         if self.high == 0.0 {
             return self;
         }
-        let root = self.high.sqrt();
+        let root = double::root(self.high);
         let square = two_product(root, root);
         let rest = ((self.high - square.high) - square.low) + self.low;
         fast_two_sum(root, rest / (2.0 * root))

@@ -1,6 +1,6 @@
 //! Which method makes the steps, from when on and why.
 
-use std::fmt;
+use core::fmt;
 
 /// A change of method.
 #[derive(Clone, Copy, Debug, PartialEq)]

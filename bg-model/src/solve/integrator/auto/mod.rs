@@ -10,6 +10,8 @@
 mod change;
 mod race;
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
 pub use self::change::{Change, Reason};
@@ -300,7 +302,7 @@ impl<const N: usize> Auto<N> {
         let mut end = start.x;
         self.partitioned.restart();
         self.implicit.restart();
-        let longer = std::iter::successors(Some(h), |h| Some(2.0 * h)).take(DOUBLINGS);
+        let longer = core::iter::successors(Some(h), |h| Some(2.0 * h)).take(DOUBLINGS);
         let is_met = |h: &f64| self.partitioned.attempt(flow, start, *h, scale, &mut end) <= 1.0 && is_finite(&end);
         let longest = longer.take_while(is_met).last().unwrap_or(h);
         let h = Kind::Implicit.worth(Kind::Partitioned, N) * longest;

@@ -190,7 +190,7 @@ impl<const N: usize> Method<N> for Race<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        if std::mem::take(&mut self.is_fresh) {
+        if core::mem::take(&mut self.is_fresh) {
             self.turn(flow.second_order().is_some());
         }
         self.h = h;

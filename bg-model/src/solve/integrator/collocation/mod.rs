@@ -89,7 +89,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
             is_fresh: false,
             factored: 0.0,
             real: Factors::new(),
-            complex: std::array::from_fn(|_| Factors::new()),
+            complex: core::array::from_fn(|_| Factors::new()),
             contraction: 0.0,
             remainder: 1.0,
             arch: Arch::new(),
@@ -105,7 +105,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
 
     /// The last attempt is the step before from now on.
     pub fn advance(&mut self) {
-        std::mem::swap(&mut self.before, &mut self.z);
+        core::mem::swap(&mut self.before, &mut self.z);
         self.step_before = self.h;
         self.attempts = Attempts::None;
         self.is_fresh = false;
@@ -208,7 +208,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         if !super::is_finite(&self.error) {
             return f64::NAN;
         }
-        largest::<N>(&std::array::from_fn(|i| self.scaled_error(i, start, scale, end)))
+        largest::<N>(&core::array::from_fn(|i| self.scaled_error(i, start, scale, end)))
     }
 
     fn scaled_error(&self, i: usize, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> f64 {

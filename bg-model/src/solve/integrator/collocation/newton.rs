@@ -9,6 +9,7 @@ use nalgebra::{Complex, SVector};
 use pulp::NullaryFnOnce;
 
 use super::{Collocation, KEEP};
+use crate::model::scalar::double::root;
 use crate::solve::integrator::tolerances::largest;
 use crate::solve::integrator::vectors::rate_in;
 use crate::solve::integrator::{Flow, Point, Scale, is_finite};
@@ -39,7 +40,7 @@ pub(super) enum Convergence {
 
 /// What corrections are compared with, in units of the tolerances.
 fn allowance(relative: f64) -> f64 {
-    let loosest = if relative < 9e-4 { relative.sqrt() } else { 0.03 };
+    let loosest = if relative < 9e-4 { root(relative) } else { 0.03 };
     let tightest = 10.0 * f64::EPSILON / relative;
     if loosest > tightest { loosest } else { tightest }
 }
@@ -92,7 +93,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
             }
             if done > 1 && !is_near {
                 let ratio = size / size_before;
-                self.contraction = if done == 2 { ratio } else { (ratio * ratio_before).sqrt() };
+                self.contraction = if done == 2 { ratio } else { root(ratio * ratio_before) };
                 ratio_before = ratio;
                 if self.contraction >= SLOWEST {
                     return Convergence::Fails;
@@ -143,8 +144,8 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         let mut real = [0.0; N];
         let mut complex = [[Complex::new(0.0, 0.0); N]; P];
         for i in 0..N {
-            let f: [f64; S] = std::array::from_fn(|j| h * self.f[j].data.0[0][i]);
-            let residual: [f64; S] = std::array::from_fn(|j| dot(&tableau.a[j], &f) - self.z[j].data.0[0][i]);
+            let f: [f64; S] = core::array::from_fn(|j| h * self.f[j].data.0[0][i]);
+            let residual: [f64; S] = core::array::from_fn(|j| dot(&tableau.a[j], &f) - self.z[j].data.0[0][i]);
             real[i] = dot(&tableau.real.left, &residual);
             for (complex, mode) in complex.iter_mut().zip(&tableau.pairs) {
                 complex[i] = Complex::new(dot(&mode.left[0], &residual), dot(&mode.left[1], &residual));

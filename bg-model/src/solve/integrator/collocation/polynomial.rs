@@ -16,7 +16,7 @@ impl<const S: usize, const P: usize> Tableau<S, P> {
     /// The increments' weights at the part `theta` of the step: Lagrange's polynomials over zero and the nodes.
     pub(super) fn weights(&self, theta: f64) -> [f64; S] {
         let c = &self.c;
-        std::array::from_fn(|j| {
+        core::array::from_fn(|j| {
             let others = (0..S).filter(|k| *k != j);
             others.fold(theta / c[j], |weight, k| weight * ((theta - c[k]) / (c[j] - c[k])))
         })
@@ -43,7 +43,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         let end = self.tableau.weights(1.0);
         for (j, c) in self.tableau.c.iter().enumerate() {
             let ahead = self.tableau.weights(1.0 + c * ratio);
-            let weights = std::array::from_fn(|k| ahead[k] - end[k]);
+            let weights = core::array::from_fn(|k| ahead[k] - end[k]);
             for i in 0..N {
                 self.z[j].data.0[0][i] = combine(&weights, &self.before, i);
             }

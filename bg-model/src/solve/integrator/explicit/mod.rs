@@ -14,8 +14,8 @@ mod order;
 #[cfg(test)]
 mod vectors;
 
-use std::marker::PhantomData;
-use std::ops::Range;
+use core::marker::PhantomData;
+use core::ops::Range;
 
 use nalgebra::SVector;
 use pulp::Arch;
@@ -29,6 +29,7 @@ use super::dense::{FROM_ENDS, Polynomial};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
+use crate::model::scalar::double::root;
 
 /// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
 /// for.
@@ -207,7 +208,7 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
 
     /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
     fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
-        std::array::from_fn(|i| (combine(row, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs())
+        core::array::from_fn(|i| (combine(row, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs())
     }
 
     /// Writes the state at the end of the step and gives the norm of its error.
@@ -241,8 +242,8 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         completed.correct(&mut first, |i| difference[i], allowed);
         let first = largest(&first);
         if !T::START.is_empty() {
-            difference = std::array::from_fn(|i| combine(T::START, &self.k, i));
-            let mut start: [f64; N] = std::array::from_fn(|i| (difference[i] / allowed(i)).abs());
+            difference = core::array::from_fn(|i| combine(T::START, &self.k, i));
+            let mut start: [f64; N] = core::array::from_fn(|i| (difference[i] / allowed(i)).abs());
             completed.correct(&mut start, |i| difference[i], allowed);
             let start = AT_START * largest(&start);
             return h.abs() * if start > first { start } else { first };
@@ -253,7 +254,7 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         let second = largest(&second);
         let both = first * first + 0.01 * second * second;
         // Both differences vanish exactly at a state of rest.
-        if both == 0.0 { 0.0 } else { h.abs() * first * first / both.sqrt() }
+        if both == 0.0 { 0.0 } else { h.abs() * first * first / root(both) }
     }
 }
 
@@ -311,13 +312,15 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         let left = |difference: &dyn Fn(usize) -> f64| {
             let mut other = SVector::from_fn(|i, _| end[i] - h * difference(i));
             project(&mut other);
-            largest::<N>(&std::array::from_fn(|i| (reached[i] - other[i]).abs() / scale.allowed(i, start.x[i], end[i])))
+            largest::<N>(&core::array::from_fn(|i| {
+                (reached[i] - other[i]).abs() / scale.allowed(i, start.x[i], end[i])
+            }))
         };
         let first = left(&|i| combine(T::ERROR, &self.k, i));
         if !T::SECOND.is_empty() {
             let second = left(&|i| combine(T::B, &self.k, i) - combine(T::SECOND, &self.k, i));
             let both = first * first + 0.01 * second * second;
-            return Some(if both == 0.0 { 0.0 } else { first * first / both.sqrt() });
+            return Some(if both == 0.0 { 0.0 } else { first * first / root(both) });
         }
         if T::LATE.is_empty() || first > 1.0 {
             return Some(first);

@@ -54,7 +54,7 @@ fn trees<T: Tableau>(largest: usize) -> Vec<Tree> {
         for branches in found {
             let density = branches.iter().map(|(tree, _)| trees[*tree].density).product::<f64>() * nodes as f64;
             let of = |i: usize, &(tree, method): &(usize, usize)| dot(&a[method][i], &trees[tree].weight);
-            let weight = std::array::from_fn(|i| branches.iter().map(|branch| of(i, branch)).product());
+            let weight = core::array::from_fn(|i| branches.iter().map(|branch| of(i, branch)).product());
             trees.push(Tree { branches, nodes, density, weight });
         }
     }
@@ -101,7 +101,7 @@ fn order<T: Tableau>(b: &Stages, theta: f64) -> usize {
 /// The orders of the step and of its embedded methods.
 fn orders<T: Tableau>() -> [usize; 3] {
     let (b, difference) = (full(T::B), full(T::ERROR));
-    let embedded = std::array::from_fn(|i| b[i] - difference[i]);
+    let embedded = core::array::from_fn(|i| b[i] - difference[i]);
     [order::<T>(&b, 1.0), order::<T>(&embedded, 1.0), order::<T>(&full(T::SECOND), 1.0)]
 }
 
@@ -110,7 +110,7 @@ fn dense_order<T: Tableau>() -> usize {
     let (b, end) = (full(T::B), full(&[(T::END, 1.0)]));
     let weights = |theta: f64| {
         let start = full(&[(0, 1.0)]);
-        std::array::from_fn(|i| {
+        core::array::from_fn(|i| {
             let first = start[i] - b[i];
             let mut coefficients = vec![b[i], first, b[i] - end[i] - first];
             coefficients.extend(T::DENSE.iter().map(|row| full(row)[i]));
@@ -165,7 +165,7 @@ fn the_steps_and_their_companions_have_their_orders() {
 #[test]
 fn the_late_companion_of_bs5_has_its_order() {
     let (b, difference) = (full(BogackiShampine::B), full(BogackiShampine::LATE));
-    let embedded: Stages = std::array::from_fn(|i| b[i] + difference[i]);
+    let embedded: Stages = core::array::from_fn(|i| b[i] + difference[i]);
     assert_eq!(order::<BogackiShampine>(&embedded, 1.0), 4);
 }
 

@@ -3,6 +3,9 @@
 //! In: a matrix, row by row. Out: its factors L U with the exchanges, and solutions. Source: Golub, Van Loan, Matrix
 //! Computations, 4th edition, algorithm 3.4.1.
 
+use alloc::boxed::Box;
+use alloc::vec;
+
 use crate::model::linear::Field;
 
 /// Factors of a matrix of `N` rows.

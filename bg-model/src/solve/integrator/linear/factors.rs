@@ -3,6 +3,8 @@
 //! In: a flow and its Jacobian. Out: factors made by the flow's own elimination where it has one and no pivot is too small,
 //! else by the dense one.
 
+use alloc::vec::Vec;
+
 use pulp::Arch;
 
 use super::Jacobian;

@@ -5,6 +5,8 @@
 //! states, differences for all. An implicit method only needs a Jacobian that makes its iteration converge; of a Rosenbrock
 //! method the error estimate shows what is amiss.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
 use crate::model::linear::{Sparsity, differences};

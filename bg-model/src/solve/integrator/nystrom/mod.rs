@@ -13,7 +13,7 @@ mod tableau;
 #[cfg(test)]
 mod trees;
 
-use std::ops::Range;
+use core::ops::Range;
 
 use nalgebra::SVector;
 use pulp::Arch;
@@ -25,6 +25,7 @@ use super::{Flow, Method, Point, Scale, StepControl};
 use crate::model::capability::SecondOrder;
 #[cfg(test)]
 use crate::model::scalar::Scalar;
+use crate::model::scalar::double::power;
 use ring::Ring;
 use tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES};
 
@@ -191,7 +192,7 @@ impl<const N: usize> Method<N> for Nystrom<N> {
     ) -> f64 {
         self.second = states_of_second_order(flow);
         self.ring.follow(flow, start, &self.second);
-        let reach = (h * self.ring.frequency / tableau::REACH).powi(tableau::ERROR_ORDER as i32);
+        let reach = power(h * self.ring.frequency / tableau::REACH, tableau::ERROR_ORDER as u32);
         if reach > 1.0 {
             return reach;
         }

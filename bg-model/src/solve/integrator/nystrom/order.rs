@@ -153,7 +153,7 @@ fn an_undamped_oscillation_hardly_grows() {
 fn the_dense_output_of_the_momenta_has_order_4() {
     let weights = |theta: f64| -> [f64; STAGES + 1] {
         let end = |stage: usize| FIRST[END].get(stage).copied().unwrap_or(0.0);
-        std::array::from_fn(|stage| {
+        core::array::from_fn(|stage| {
             let first = f64::from(stage == 0) - end(stage);
             let third = end(stage) - f64::from(stage == STAGES) - first;
             let inner = third + (1.0 - theta) * (DENSE[0][stage] + theta * DENSE[1][stage]);

@@ -5,11 +5,12 @@
 //! Shampine, J. G. Verwer, Journal of Computational and Applied Mathematics 88 (1998), 315-326). Stiff joints turn with the links, so
 //! one rate in so many steps keeps up with them.
 
-use std::ops::Range;
+use core::ops::Range;
 
 use nalgebra::SVector;
 
 use crate::model::capability::SecondOrder;
+use crate::model::scalar::double::{fraction, root};
 use crate::solve::integrator::{Flow, Point};
 
 /// Steps after a restart that each iterate once.
@@ -66,7 +67,7 @@ impl<const N: usize> Ring<N> {
             |x: &SVector<f64, N>| SVector::<f64, N>::from_fn(|i, _| if states.contains(&i) { x[i] } else { 0.0 });
         if self.steps == 0 || self.direction.amax() == 0.0 {
             // What rang before the branch changed, and a share of everything else.
-            let any = SVector::<f64, N>::from_fn(|i, _| 1.0 + (GOLDEN * i as f64).fract());
+            let any = SVector::<f64, N>::from_fn(|i, _| 1.0 + fraction(GOLDEN * i as f64));
             self.direction = (self.direction + masked(&any).normalize()).normalize();
         }
         let size = DISPLACEMENT * masked(&point.x).amax().max(DISPLACEMENT);
@@ -79,7 +80,7 @@ impl<const N: usize> Ring<N> {
         let change = masked(&(moved - second));
         let stiffness = change.norm() / size;
         if stiffness.is_finite() {
-            self.frequency = stiffness.sqrt();
+            self.frequency = root(stiffness);
             self.direction = if stiffness > 0.0 { change.normalize() } else { SVector::zeros() };
         }
     }

@@ -2,6 +2,8 @@
 //!
 //! In: a flow and a step. Out: the states of the stages with their implicit part.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 use pulp::Arch;
 
@@ -154,15 +156,15 @@ impl<const N: usize> Complete<N> for Block<N> {
             let mut more = [0.0; LANES];
             for &(earlier, weight) in KennedyCarpenter::MORE[stage] {
                 let part = &before[earlier * groups + group];
-                more = std::array::from_fn(|lane| more[lane] + weight * part[lane]);
+                more = core::array::from_fn(|lane| more[lane] + weight * part[lane]);
             }
             (0..LANES).for_each(|lane| off[lane] += *h * more[lane] - (from[group][lane] + c * change[group][lane]));
         }
         inverse.times(off, solved);
         for (group, states) in states.chunks(LANES).enumerate() {
             let solved = solved[group];
-            behind[group] = std::array::from_fn(|lane| (solved[lane] - off[group][lane]) * reciprocal);
-            let line: Lanes = std::array::from_fn(|lane| from[group][lane] + c * change[group][lane]);
+            behind[group] = core::array::from_fn(|lane| (solved[lane] - off[group][lane]) * reciprocal);
+            let line: Lanes = core::array::from_fn(|lane| from[group][lane] + c * change[group][lane]);
             states.iter().enumerate().for_each(|(lane, &state)| x[state] = line[lane] + solved[lane]);
         }
     }

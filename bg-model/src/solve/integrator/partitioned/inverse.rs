@@ -3,6 +3,8 @@
 //! In: a matrix B and a number. Out: the inverse of I - number B, and products with it. Nothing here depends on a system, so it is
 //! compiled once, for the vectors of every machine and for those of this one.
 
+use alloc::vec::Vec;
+
 use pulp::{Arch, NullaryFnOnce};
 
 /// Numbers of states side by side.
@@ -95,15 +97,15 @@ fn invert(groups: usize, columns: &mut [Lanes], exchanges: &mut [usize]) -> bool
         }
         let (above, rest) = columns.split_at_mut(k * groups);
         let (pivot, below) = rest.split_at_mut(groups);
-        let reciprocal = 1.0 / std::mem::replace(&mut pivot[group][lane], 1.0);
+        let reciprocal = 1.0 / core::mem::replace(&mut pivot[group][lane], 1.0);
         if !reciprocal.is_finite() {
             return false;
         }
         pivot.as_flattened_mut().iter_mut().for_each(|entry| *entry *= reciprocal);
         for column in above.chunks_exact_mut(groups).chain(below.chunks_exact_mut(groups)) {
-            let factor = std::mem::take(&mut column[group][lane]);
+            let factor = core::mem::take(&mut column[group][lane]);
             for (entries, of_pivot) in column.iter_mut().zip(&*pivot) {
-                *entries = std::array::from_fn(|lane| entries[lane] - factor * of_pivot[lane]);
+                *entries = core::array::from_fn(|lane| entries[lane] - factor * of_pivot[lane]);
             }
         }
     }
@@ -147,7 +149,7 @@ fn rows<const GROUPS: usize>(columns: &[Lanes], vector: &[Lanes], first: usize, 
     for (column, entry) in columns.chunks_exact(vector.len()).zip(vector.as_flattened()) {
         let groups = &column[first..first + GROUPS];
         for (sum, group) in sums.iter_mut().zip(groups) {
-            *sum = std::array::from_fn(|lane| sum[lane] + group[lane] * entry);
+            *sum = core::array::from_fn(|lane| sum[lane] + group[lane] * entry);
         }
     }
     product.copy_from_slice(&sums);
@@ -160,7 +162,7 @@ mod tests {
     /// A matrix of `n` rows whose entry in each row and column `entry` gives.
     fn stored(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Lanes> {
         let groups = n.div_ceil(LANES);
-        let lanes = |k: usize| std::array::from_fn(|lane| (k % groups * LANES + lane, k / groups));
+        let lanes = |k: usize| core::array::from_fn(|lane| (k % groups * LANES + lane, k / groups));
         let entry = |(row, column)| if row < n { entry(row, column) } else { 0.0 };
         (0..n * groups).map(|k| lanes(k).map(entry)).collect()
     }

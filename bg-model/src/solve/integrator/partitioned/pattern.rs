@@ -2,10 +2,13 @@
 //!
 //! In: a Jacobian and a step. Out: the states, and where their block of the Jacobian is.
 
-use std::borrow::Cow;
+use alloc::borrow::Cow;
+use alloc::vec;
+use alloc::vec::Vec;
 
 use crate::model::capability::SecondOrder;
 use crate::model::linear::Sparsity;
+use crate::model::scalar::double::power;
 use crate::solve::integrator::Flow;
 use crate::solve::integrator::linear::Jacobian;
 
@@ -61,7 +64,7 @@ impl Pattern {
         damped.clear();
         damped.resize(n, false);
         let before = |state: usize| states.binary_search(&state).is_ok();
-        let (strong, weak) = ((STIFF / h).powi(2), (WEAK / h).powi(2));
+        let (strong, weak) = (power(STIFF / h, 2), power(WEAK / h, 2));
         let dampers = || mirrored.iter().map(|&(one, other)| (places[one], entries[one] * entries[other]));
         for ((row, column), product) in dampers() {
             if product > strong || (product > KEPT * strong && before(row) && before(column)) {

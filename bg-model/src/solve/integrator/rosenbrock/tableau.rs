@@ -128,7 +128,7 @@ pub(super) const RODAS5P_DENSE: [[f64; 8]; 3] = [
 ];
 
 /// 1 - 1 / sqrt 2, with which the method below is L-stable.
-const GAMMA2: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+const GAMMA2: f64 = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
 
 /// ROS2 of order 2, L-stable: J. G. Verwer, E. J. Spee, J. G. Blom, W. Hundsdorfer, A second-order Rosenbrock method
 /// applied to photochemical dispersion problems, SIAM Journal on Scientific Computing 20 (1999) 1456, equation (2.3),

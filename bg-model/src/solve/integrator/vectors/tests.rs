@@ -30,7 +30,7 @@ impl Row {
     /// The rates, with the cubes of the stretches and the parts of the displacements that a quotient gives.
     #[inline(always)]
     fn rates(x: &[f64; N], cubes: &[f64; M], quotients: &[f64; M]) -> [f64; N] {
-        std::array::from_fn(|k| match k {
+        core::array::from_fn(|k| match k {
             0..M => {
                 let force = |i: usize| if i < M { 30.0 * Self::stretch(x, i) + 7.0 * cubes[i] } else { 0.0 };
                 force(k + 1) - force(k) - quotients[k]
@@ -44,8 +44,8 @@ impl System<f64, N, 0> for Row {
     #[inline(always)]
     fn rate(&self, _t: f64, x: &SVector<f64, N>, _negative: &[bool; 0], dx: &mut SVector<f64, N>) {
         let [x] = &x.data.0;
-        let cubes = std::array::from_fn(|i| Self::stretch(x, i) * Self::stretch(x, i) * Self::stretch(x, i));
-        dx.data.0 = [Self::rates(x, &cubes, &std::array::from_fn(|i| x[i] / (1.5 + x[M + i])))];
+        let cubes = core::array::from_fn(|i| Self::stretch(x, i) * Self::stretch(x, i) * Self::stretch(x, i));
+        dx.data.0 = [Self::rates(x, &cubes, &core::array::from_fn(|i| x[i] / (1.5 + x[M + i])))];
     }
 
     fn linearised(&self) -> Option<&impl Linearised<f64, N, 0>> {
@@ -68,7 +68,7 @@ impl Series<f64, N, 0> for Row {
         for k in 0..series.len() - 1 {
             let [x] = series[k].data.0;
             let inner = if k > 0 { inner_products::<f64, PRODUCTS, PLACES>(&rows[..k]) } else { [0.0; PRODUCTS] };
-            let stretches: [f64; M] = std::array::from_fn(|i| Self::stretch(&x, i));
+            let stretches: [f64; M] = core::array::from_fn(|i| Self::stretch(&x, i));
             let mut lefts = [0.0; PRODUCTS];
             let mut rights = [0.0; PRODUCTS];
             let mut products = [0.0; PRODUCTS];
@@ -80,7 +80,7 @@ impl Series<f64, N, 0> for Row {
             }
             store(&mut rows[k], 0, lefts);
             store(&mut rows[k], PRODUCTS, rights);
-            let quotients = std::array::from_fn(|i| {
+            let quotients = core::array::from_fn(|i| {
                 let divisor = if k == 0 { 1.5 + x[M + i] } else { x[M + i] };
                 quotient(&mut rows[..=k], k, 2 * PRODUCTS + 2 * i, x[i], divisor)
             });
