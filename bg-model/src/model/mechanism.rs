@@ -76,10 +76,12 @@ pub trait LiftedVisitor<S: Scalar> {
     /// What results.
     type Output;
 
-    /// Is handed the model, and a function that makes it of a value in `S` for each parameter, in the order of their table.
+    /// Is handed the model, a function that makes it of other values of its parameters, and one that makes it of a value in `S` for
+    /// each; both in the order of their table.
     fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
+        other: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[S]) -> Result<Li, ParameterError>,
     ) -> Self::Output
     where

@@ -18,7 +18,7 @@ pub struct Names<'a> {
     pub symbol: &'a dyn Fn(Symbol) -> TokenStream,
     /// An entry of the constant table.
     pub constant: &'a dyn Fn(u32) -> TokenStream,
-    /// The `bool` that says whether a switch's guard is negative.
+    /// What says whether a switch's guard is negative.
     pub switch: &'a dyn Fn(u32) -> TokenStream,
 }
 
@@ -87,7 +87,7 @@ pub fn operation(operation: &Operation, names: &Names, token: &dyn Fn(&Operand) 
         }
         Operation::Select { switch, negative, positive } => {
             let (switch, negative, positive) = ((names.switch)(*switch), token(negative), token(positive));
-            quote! { if #switch { #negative } else { #positive } }
+            quote! { S::select(#switch, #negative, #positive) }
         }
     }
 }

@@ -8,8 +8,8 @@
 //! kink, or a jump, inside the step. Where there is no series, as at the zero of a square root, BS5 makes the step, which
 //! needs no derivative: its error estimate makes it short.
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::carry::Carry;
 use super::tolerances::{index_of_largest, largest};

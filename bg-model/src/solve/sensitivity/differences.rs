@@ -59,6 +59,7 @@ impl LiftedVisitor<DoubleDouble> for Differences {
     fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
         self,
         _: &Mo,
+        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
     ) -> Self::Output
     where

@@ -187,6 +187,7 @@ impl<V: Slopes> LiftedVisitor<GradientIn<V>> for Following<'_> {
     fn visit<Mo, Li, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
+        _other: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[GradientIn<V>]) -> Result<Li, ParameterError>,
     ) -> Self::Output
     where

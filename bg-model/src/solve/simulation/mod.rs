@@ -5,6 +5,7 @@
 //! instants only ([`crate::system::System`]); a step never runs over such an instant.
 
 mod cause;
+pub(crate) mod lanes;
 mod observer;
 mod ongoing;
 mod pace;

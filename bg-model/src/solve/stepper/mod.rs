@@ -2,8 +2,8 @@
 
 mod frozen;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use crate::model::origin::Origin;
 use crate::model::system::System;

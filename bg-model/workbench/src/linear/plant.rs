@@ -237,7 +237,7 @@ where
 }
 
 /// The branches of the switches at time `t` (s) and state `x`.
-pub(crate) fn branches<S: Scalar, Mo, const N: usize, const G: usize, const M: usize>(
+pub(crate) fn branches<S: Scalar<Switch = bool>, Mo, const N: usize, const G: usize, const M: usize>(
     model: &Mo,
     t: f64,
     x: &SVector<S, N>,

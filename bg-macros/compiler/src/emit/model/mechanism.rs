@@ -44,10 +44,15 @@ pub(in super::super) fn of(inputs: &[Ident]) -> TokenStream {
                 visitor.visit(&model.expect("a model was made with these parameters before"))
             }
             fn visit_lifted<S: Scalar, V: ::bg_model::mechanism::LiftedVisitor<S>>(&self, visitor: V) -> V::Output {
-                visitor.visit(self, |values: &[S]| {
+                let other = |values: &[f64]| {
+                    let values = values.try_into().expect("a value for each parameter");
+                    Model::<f64>::lifted(values #own)
+                };
+                let lifted = |values: &[S]| {
                     let values = values.try_into().expect("a value for each parameter");
                     Model::<S>::lifted(values #own)
-                })
+                };
+                visitor.visit(self, other, lifted)
             }
         }
     }

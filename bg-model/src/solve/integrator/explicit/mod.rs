@@ -17,8 +17,8 @@ mod vectors;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;

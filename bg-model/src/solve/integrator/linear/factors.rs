@@ -3,7 +3,7 @@
 //! In: a flow and its Jacobian. Out: factors made by the flow's own elimination where it has one and no pivot is too small,
 //! else by the dense one.
 
-use pulp::Arch;
+use crate::solve::integrator::Arch;
 
 use super::Jacobian;
 use super::dense::Dense;

@@ -2,8 +2,8 @@
 //!
 //! In: a flow and a step. Out: the states of the stages with their implicit part.
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::inverse::{Inverse, LANES, Lanes};
 use super::pattern::Pattern;

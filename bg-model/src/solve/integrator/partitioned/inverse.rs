@@ -3,7 +3,9 @@
 //! In: a matrix B and a number. Out: the inverse of I - number B, and products with it. Nothing here depends on a system, so it is
 //! compiled once, for the vectors of every machine and for those of this one.
 
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
+
+use crate::solve::integrator::Arch;
 
 /// Numbers of states side by side.
 pub(super) const LANES: usize = 4;
