@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(
             text,
             "let v0 = x0 * c [0] ; let v1 = x0 . atan2 (x1) ; let v2 = x1 . powf (v1) ; \
-             let v3 = v2 . times (0.5f64) ; let v4 = if below { v0 } else { v3 } ; let v5 = - x0 ;"
+             let v3 = v2 . times (0.5f64) ; let v4 = S :: select (below , v0 , v3) ; let v5 = - x0 ;"
         );
         assert_eq!(results, ["v4", "v5", "x0"]);
         assert_eq!(rendered(&program.constants).0, "let v0 = S :: from_f64 (1f64) / p ;");

@@ -118,10 +118,11 @@ pub(crate) fn rate_in<const N: usize>(
     x: &SVector<f64, N>,
     dx: &mut SVector<f64, N>,
 ) {
-    match arch {
+    if matches!(arch, Arch::Scalar) {
         // The function that there is anyway.
-        Arch::Scalar => flow.rate(t, x, dx),
-        _ => arch.dispatch(Rate { flow, t, x, dx }),
+        flow.rate(t, x, dx);
+    } else {
+        arch.dispatch(Rate { flow, t, x, dx });
     }
 }
 
