@@ -32,6 +32,37 @@ bond_graph! {
         scenes only;
         scene Arms { expect planar; }
     }
+    /// A rod on a hinge that does not give, with a brake.
+    graph Pendulum {
+        param angle: rad = 0.4; param friction: N*m*s/rad = 0.05; param spin: rad/s = 1; param gravity: m/s^2 = 9.81;
+        gravity [0, -gravity, 0];
+        ground { point pivot = [0, 0, 0]; }
+        body rod {
+            cuboid [0.6, 0.03, 0.03] density 7850; point end = [-0.3, 0, 0]; start end at [0, 0, 0]; start turned rotation_z(angle);
+            start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin];
+        }
+        joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
+        drive brake on pin torque = -friction * pin.speed;
+        observe { angle: rad = rod.angle; force: N = pin.force.y }
+        scenes only;
+        scene Pendulum { expect planar; }
+    }
+    /// A slider and a crank of rigid joints, whose loop the assembly closes.
+    graph Crank {
+        param angle: rad = 1; param spin: rad/s = -8; param drag: N*s/m = 2;
+        ground { point O = [0, 0, 0]; }
+        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin]; }
+        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.3, 0, 0]; point c = [0.3, 0, 0]; start b at [0.2 * cos(angle), 0.2 * sin(angle), 0]; start turned rotation_z(guess(-0.3)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
+        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0]; start velocity [guess(0), guess(0), 0]; }
+        joint pin_o: revolute z (ground.O -> crank.a) { rigid; }
+        joint pin_a: revolute z (crank.b -> link.b) { rigid; }
+        joint pin_b: revolute z (link.c -> slider) { rigid; }
+        joint guide: prismatic x (ground.O -> slider) { rigid; }
+        drive load on guide force = -drag * slider.velocity.x;
+        observe { x: m = guide.travel; angle: rad = crank.angle }
+        scenes only;
+        scene Crank { expect planar; }
+    }
     /// A ball that falls on a floor.
     graph Ball {
         param mass: kg = 2, above 0; param height: m = 1.25; param give: 1 = 0.8;
@@ -141,6 +172,13 @@ fn stiff_joints_hold_each_run_to_its_own_step() {
 }
 
 #[test]
+fn what_rigid_joints_hold_is_projected_for_each_run() {
+    let model = Pendulum::new(PendulumParameters::default()).unwrap();
+    let swept = [("angle", [-1.5, 1.5]), ("spin", [-3.0, 3.0]), ("friction", [0.0, 0.5])];
+    assert_eq!(compared(&model, &request(3.0, 1e-7), &swept).1, 0);
+}
+
+#[test]
 fn impacts_and_friction_that_sticks_are_those_of_each_run() {
     let (ball, belt) = (Ball::new(BallParameters::default()).unwrap(), Belt::new(BeltParameters::default()).unwrap());
     let (runs, failed) = compared(&ball, &request(1.5, 1e-6), &[("height", [0.5, 2.0]), ("give", [0.3, 0.9])]);
@@ -179,6 +217,8 @@ fn what_cannot_be_side_by_side_is_made_one_after_the_other() {
     for request in other {
         assert_eq!(compared(&block, &request, &swept).1, 0);
     }
+    let crank = Crank::new(CrankParameters::default()).unwrap();
+    assert_eq!(compared(&crank, &request(0.3, 1e-6), &[("spin", [-9.0, 9.0])]).1, 0);
     let square = Square::new(SquareParameters::default()).unwrap();
     assert_eq!(compared(&square, &request(1.0, 1e-6), &[("unit", [1.0, 5.0])]).1, 0);
 }
