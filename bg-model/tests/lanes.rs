@@ -5,7 +5,7 @@ use bg_model::input::Input;
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::Parameters;
-use bg_model::run::{LaneError, Request, RunError, Simulation, Trajectory, in_lanes};
+use bg_model::run::{LaneError, Request, Simulation, Trajectory, in_lanes};
 use bg_model::simulation::Samples;
 use bg_model::statistics::Statistics;
 
@@ -104,20 +104,24 @@ bond_graph! {
     }
 }
 
-/// What a run gives: samples, events, counts, the last states; or why it gives nothing.
-fn told<E: ToString>(run: &Result<Trajectory, E>) -> Result<(Vec<u64>, Vec<u64>, Statistics, Vec<u64>), String> {
+/// The bits of samples, of events and of the last states, and the counts.
+type Told = ([Vec<u64>; 3], Statistics);
+
+/// What a run gives, or why it gives nothing.
+fn told<E: ToString>(run: &Result<Trajectory, E>) -> Result<Told, String> {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     let run = run.as_ref().map_err(ToString::to_string)?;
     let columns = run.columns.iter().flat_map(|column| bits(&column.values));
     let last: Vec<f64> = run.last.states.iter().map(|(_, value)| *value).collect();
-    Ok((bits(&run.times).into_iter().chain(columns).collect(), bits(&run.events), run.statistics, bits(&last)))
+    let samples = bits(&run.times).into_iter().chain(columns).collect();
+    Ok(([samples, bits(&run.events), bits(&last)], run.statistics))
 }
 
 fn single<Me: Mechanism>(model: &Me, request: &Request, values: &[f64]) -> Result<Trajectory, LaneError> {
     let mut parameters = model.parameters().clone();
     values.iter().enumerate().for_each(|(index, &value)| parameters.set_value(index, value));
     let model = Me::make(parameters, &model.inputs())?;
-    Ok(Simulation::of(&model, request.clone()).run().map_err(RunError::from)?)
+    Ok(Simulation::of(&model, request.clone()).run()?)
 }
 
 /// Makes runs with values of these parameters between two ends, side by side and each by itself; gives what the runs give and how

@@ -405,6 +405,9 @@ mod tests {
         Lanes::each(|lane| KINDS[(from + lane) % KINDS.len()])
     }
 
+    /// What is expected of two numbers.
+    type OfTwo = fn(f64, f64) -> f64;
+
     fn same(of: f64, expected: f64) -> bool {
         of.to_bits() == expected.to_bits() || of.is_nan() && expected.is_nan()
     }
@@ -414,7 +417,7 @@ mod tests {
             return;
         }
         for (a, b) in (0..9).flat_map(|a| (0..9).map(move |b| (numbers::<V>(a), numbers::<V>(b)))) {
-            let results: [(Lanes<V>, fn(f64, f64) -> f64); 9] = [
+            let results: [(Lanes<V>, OfTwo); 9] = [
                 (a + b, |a, b| a + b),
                 (a - b, |a, b| a - b),
                 (a * b, |a, b| a * b),
