@@ -236,11 +236,15 @@ macro_rules! functions {
 }
 impl Scalar for Counted {
     type Pair = Both<Self>;
+    type Switch = bool;
     fn from_f64(value: f64) -> Self {
         Self(value)
     }
     fn to_f64(self) -> f64 {
         self.0
+    }
+    fn select(switch: bool, negative: Self, positive: Self) -> Self {
+        if switch { negative } else { positive }
     }
     functions! { sqrt sin cos tan asin acos exp ln tanh abs }
     fn atan2(self, x: Self) -> Self {

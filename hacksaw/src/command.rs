@@ -31,6 +31,8 @@ pub fn program() -> Program<Hacksaw> {
         .extras(Paper);
     #[cfg(not(target_arch = "wasm32"))]
     let program = program.cases(case::cases(), &["paper", "full-offset", "rigid"]);
+    #[cfg(all(feature = "lanes", not(target_arch = "wasm32")))]
+    let program = program.lanes();
     program
 }
 

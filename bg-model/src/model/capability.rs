@@ -21,7 +21,14 @@ pub trait Linearised<S: Scalar, const N: usize, const G: usize> {
 
     /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`. With unknowns beside the states,
     /// df/dt is that of the rates with what the unknowns change in it.
-    fn jacobian(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S], slope: &mut SVector<S, N>);
+    fn jacobian(
+        &self,
+        t: S,
+        x: &SVector<S, N>,
+        negative: &[S::Switch; G],
+        entries: &mut [S],
+        slope: &mut SVector<S, N>,
+    );
 
     /// An elimination made for the sparsity; none by default.
     #[inline]
@@ -54,7 +61,7 @@ pub trait SecondOrder<S: Scalar, const N: usize, const G: usize> {
 
     /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second
     /// derivatives: what the rate and then [`SecondOrder::second_derivatives`] give, to rounding.
-    fn forces(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>);
+    fn forces(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);
 }
 
 /// A system that knows the Taylor series of its states.
@@ -65,7 +72,7 @@ pub trait Series<S: Scalar, const N: usize, const G: usize> {
     /// Writes the Taylor series of the states from time `t` (s) on: `series[0]` is the state there, `series[k]` becomes the
     /// coefficient of the k-th power of (time - `t`) / `h`, which has the state's unit. `rows` has at least
     /// [`Series::width`] numbers for each `k` but the last.
-    fn expand(&self, t: S, h: S, negative: &[bool; G], rows: &mut [S], series: &mut [SVector<S, N>]);
+    fn expand(&self, t: S, h: S, negative: &[S::Switch; G], rows: &mut [S], series: &mut [SVector<S, N>]);
 }
 
 /// A system whose joints hold motions.
@@ -80,7 +87,7 @@ pub trait Joints<S: Scalar, const N: usize, const G: usize> {
 
     /// Writes the relative flows of these motions, and what the reactions of rigid joints change, into `entries`: in the order
     /// and of the length of [`Held`].
-    fn hold(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S]);
+    fn hold(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]);
 }
 
 /// A system with stops that give back a part of the speed with which something hits them.
@@ -95,7 +102,7 @@ pub trait Impacts<S: Scalar, const N: usize, const G: usize> {
 
     /// Writes what an impact at time `t` (s) and state `x` is calculated from into `entries`: in the order and of the length of
     /// [`Stops`].
-    fn impact(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], entries: &mut [S]);
+    fn impact(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]);
 }
 
 /// A capability that is not there.
@@ -103,7 +110,7 @@ pub trait Impacts<S: Scalar, const N: usize, const G: usize> {
 pub enum Absent {}
 
 impl<S: Scalar, const N: usize, const G: usize> Linearised<S, N, G> for Absent {
-    fn jacobian(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut [S], _: &mut SVector<S, N>) {
+    fn jacobian(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut [S], _: &mut SVector<S, N>) {
         match *self {}
     }
 }
@@ -127,7 +134,7 @@ impl<S: Scalar, const N: usize, const G: usize> SecondOrder<S, N, G> for Absent 
     fn second_derivatives(&self, _: &SVector<S, N>, _: &mut SVector<S, N>) {
         match *self {}
     }
-    fn forces(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut SVector<S, N>) {
+    fn forces(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut SVector<S, N>) {
         match *self {}
     }
 }
@@ -136,7 +143,7 @@ impl<S: Scalar, const N: usize, const G: usize> Series<S, N, G> for Absent {
     fn width(&self) -> usize {
         match *self {}
     }
-    fn expand(&self, _: S, _: S, _: &[bool; G], _: &mut [S], _: &mut [SVector<S, N>]) {
+    fn expand(&self, _: S, _: S, _: &[S::Switch; G], _: &mut [S], _: &mut [SVector<S, N>]) {
         match *self {}
     }
 }
@@ -145,7 +152,7 @@ impl<S: Scalar, const N: usize, const G: usize> Joints<S, N, G> for Absent {
     fn held(&self) -> Held {
         match *self {}
     }
-    fn hold(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut [S]) {
+    fn hold(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut [S]) {
         match *self {}
     }
 }
@@ -154,7 +161,7 @@ impl<S: Scalar, const N: usize, const G: usize> Impacts<S, N, G> for Absent {
     fn stops(&self) -> Stops {
         match *self {}
     }
-    fn impact(&self, _: S, _: &SVector<S, N>, _: &[bool; G], _: &mut [S]) {
+    fn impact(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut [S]) {
         match *self {}
     }
 }

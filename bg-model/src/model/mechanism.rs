@@ -79,11 +79,12 @@ pub trait LiftedVisitor<S: Scalar, T: Scalar> {
     /// What results.
     type Output;
 
-    /// Is handed the model, a function that makes it of a value in `S` for each parameter, in the order of their table, and one that
-    /// carries all its numbers over to `T`.
+    /// Is handed the model, a function that makes it of other values of its parameters, one that makes it of a value in `S` for each, both
+    /// in the order of their table, and one that carries all numbers of such a model over to `T`.
     fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
+        other: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[S]) -> Result<Li, ParameterError>,
         in_numbers: impl Fn(&Li, fn(S) -> T) -> Ot,
     ) -> Self::Output

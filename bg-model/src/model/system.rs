@@ -24,24 +24,24 @@ use crate::model::scalar::Scalar;
 pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`. `negative[k]` says that switch `k` is in the branch of its
     /// negative guard. Allocates nothing.
-    fn rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>);
+    fn rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);
 
     /// As [`System::rate`], for the stages of explicit steps, where a run spends its time: a generated model has its rate inlined
     /// here. All else calls `rate`, so that it is compiled once. By default there is no difference.
     #[inline(always)]
-    fn inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
+    fn inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
         self.rate(t, x, negative, dx);
     }
 
     /// As [`System::rate`], inlined whatever its length: where numbers are vectors of a machine that not every build is for, its
     /// operations are calls elsewhere. By default as [`System::inlined_rate`].
     #[inline(always)]
-    fn always_inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], dx: &mut SVector<S, N>) {
+    fn always_inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
         self.inlined_rate(t, x, negative, dx);
     }
 
     /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
-    fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G], _guards: &mut SVector<S, G>) {}
+    fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G], _guards: &mut SVector<S, G>) {}
 
     /// The branches from which the search for those at the start of a run begins: each guard's sign under them decides, again
     /// until nothing changes. All positive by default; a switch whose guard depends on its own branch, as that of dry friction
@@ -53,11 +53,11 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal orientations,
     /// closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before the rate at the
     /// new state is evaluated, and for each sample inside a step.
-    fn project(&self, _t: S, _negative: &[bool; G], _x: &mut SVector<S, N>) {}
+    fn project(&self, _t: S, _negative: &[S::Switch; G], _x: &mut SVector<S, N>) {}
 
     /// As [`System::project`], inlined as [`System::always_inlined_rate`] is. By default there is no difference.
     #[inline(always)]
-    fn inlined_project(&self, t: S, negative: &[bool; G], x: &mut SVector<S, N>) {
+    fn inlined_project(&self, t: S, negative: &[S::Switch; G], x: &mut SVector<S, N>) {
         self.project(t, negative, x);
     }
 
@@ -65,6 +65,12 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// of an input. The rate is continuous there. Infinity, as by default, where there is none.
     fn next_break(&self, _t: f64) -> f64 {
         f64::INFINITY
+    }
+
+    /// Whether numbers of several runs side by side give in each place what a run gives by itself, and faster: not where something is
+    /// found by iteration, where an input is more than a number, or where the rate is too long to be inlined.
+    fn runs_in_lanes(&self) -> bool {
+        true
     }
 
     /// The name of state `index`, for messages.
@@ -79,7 +85,7 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
 
     /// The first input or element, in the order of evaluation, whose value at time `t` (s) and state `x` is not finite; asked for
     /// where a run stops. By default none is known.
-    fn not_finite(&self, _t: S, _x: &SVector<S, N>, _negative: &[bool; G]) -> Option<Origin> {
+    fn not_finite(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G]) -> Option<Origin> {
         None
     }
 
@@ -137,7 +143,7 @@ pub fn branches_by_sign<S: Scalar, const G: usize>(
 }
 
 /// The branches of the switches at time `t` (s) and state `x`.
-pub fn branches<S: Scalar, const N: usize, const G: usize>(
+pub fn branches<S: Scalar<Switch = bool>, const N: usize, const G: usize>(
     system: &impl System<S, N, G>,
     t: f64,
     x: &SVector<S, N>,
@@ -189,15 +195,15 @@ pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: Syst
     }
 
     /// Writes the observed outputs, in the order of `description().outputs`.
-    fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[bool; G], y: &mut SVector<S, M>);
+    fn outputs(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], y: &mut SVector<S, M>);
 
     /// The energy in all storage elements, J.
-    fn stored_energy(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> S;
+    fn stored_energy(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G]) -> S;
 
     /// Appends what pictures show to `values`: poses, forces of joints, effort and flow of bonds, at the places that
     /// `description().drawing` names. Nothing by default. Allocates; for pictures, not for steps.
     fn shown(&self, _t: f64, _x: &SVector<f64, N>, _negative: &[bool; G], _values: &mut Vec<f64>) {}
 
     /// The powers over the model's boundary, W: d(stored)/dt = supplied - dissipated.
-    fn powers(&self, t: S, x: &SVector<S, N>, negative: &[bool; G]) -> Powers<S>;
+    fn powers(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G]) -> Powers<S>;
 }

@@ -94,7 +94,7 @@ pub struct NotFinite {
 
 debug_is_display!(NotFinite);
 
-impl<S: Scalar, const N: usize, const G: usize> FixedStep<S, N, G> {
+impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G> {
     /// A run of `system` from `start` at time `t0` (s), in steps of `step` (s). The branches are those that the signs of the guards
     /// call for.
     ///

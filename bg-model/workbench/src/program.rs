@@ -9,6 +9,8 @@ use bg_model::mechanism::Scenes;
 use crate::extras::{Extras, Plain};
 use crate::precision::case::Case;
 use crate::scenes::{Scene, scenes};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::sweep::lanes::Many;
 
 /// A program of the mechanism `Me`.
 pub struct Program<Me> {
@@ -18,6 +20,9 @@ pub struct Program<Me> {
     pub(crate) cases: Vec<Case>,
     pub(crate) measured: Vec<String>,
     pub(crate) extras: Box<dyn Extras>,
+    /// What makes runs side by side, if the program has it.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) lanes: Option<Many>,
     mechanism: PhantomData<Me>,
 }
 
@@ -51,7 +56,17 @@ impl<Me: Scenes> Program<Me> {
         };
         let (scene, cases) = (own.name.clone(), Case::of_scenes(&scenes, 1.0));
         let measured = vec![scene.clone()];
-        Self { texts, scene, scenes, cases, measured, extras: Box::new(Plain), mechanism: PhantomData }
+        Self {
+            texts,
+            scene,
+            scenes,
+            cases,
+            measured,
+            extras: Box::new(Plain),
+            #[cfg(not(target_arch = "wasm32"))]
+            lanes: None,
+            mechanism: PhantomData,
+        }
     }
 
     /// What `--help` says first; else the documentation of the graph.
@@ -92,6 +107,15 @@ impl<Me: Scenes> Program<Me> {
     #[must_use]
     pub fn extras(mut self, extras: impl Extras + 'static) -> Self {
         self.extras = Box::new(extras);
+        self
+    }
+
+    /// Lets `sweep` make runs by the method `nystrom` side by side, eight at a time on a machine with AVX-512, four with AVX2; what
+    /// they give is the same to the bit. It is compiled for each model twice, so a program has it only if it asks for it.
+    #[cfg(not(target_arch = "wasm32"))]
+    #[must_use]
+    pub fn lanes(mut self) -> Self {
+        self.lanes = Some(crate::sweep::lanes::many::<Me>);
         self
     }
 

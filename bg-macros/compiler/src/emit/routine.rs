@@ -18,7 +18,7 @@ pub struct Names<'a> {
     pub symbol: &'a dyn Fn(Symbol) -> TokenStream,
     /// An entry of the constant table.
     pub constant: &'a dyn Fn(u32) -> TokenStream,
-    /// The `bool` that says whether a switch's guard is negative.
+    /// What says whether a switch's guard is negative.
     pub switch: &'a dyn Fn(u32) -> TokenStream,
 }
 
@@ -87,7 +87,7 @@ pub fn operation(operation: &Operation, names: &Names, token: &dyn Fn(&Operand) 
         }
         Operation::Select { switch, negative, positive } => {
             let (switch, negative, positive) = ((names.switch)(*switch), token(negative), token(positive));
-            quote! { if #switch { #negative } else { #positive } }
+            quote! { S::select(#switch, #negative, #positive) }
         }
     }
 }
@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(
             text,
             "let v0 = x0 * c [0] ; let v1 = x0 . atan2 (x1) ; let v2 = x1 . powf (v1) ; \
-             let v3 = v2 . times (0.5f64) ; let v4 = if below { v0 } else { v3 } ; let v5 = - x0 ;"
+             let v3 = v2 . times (0.5f64) ; let v4 = S :: select (below , v0 , v3) ; let v5 = - x0 ;"
         );
         assert_eq!(results, ["v4", "v5", "x0"]);
         assert_eq!(rendered(&program.constants).0, "let v0 = S :: from_f64 (1f64) / p ;");

@@ -97,7 +97,7 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
             #inputs_mut
         }
         impl<S: Scalar> ::bg_model::system::System<S, 1, 0> for Model<S> {
-            fn rate(&self, t: S, x: &SVector<S, 1>, negative: &[bool; 0], dx: &mut SVector<S, 1>) {
+            fn rate(&self, t: S, x: &SVector<S, 1>, negative: &[S::Switch; 0], dx: &mut SVector<S, 1>) {
                 ::core::unreachable!("{WHY}")
             }
         }
@@ -108,13 +108,13 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
             fn start(&self) -> Result<SVector<S, 1>, ::bg_model::assembly::AssemblyError> {
                 ::core::unreachable!("{WHY}")
             }
-            fn outputs(&self, t: S, x: &SVector<S, 1>, negative: &[bool; 0], y: &mut SVector<S, 1>) {
+            fn outputs(&self, t: S, x: &SVector<S, 1>, negative: &[S::Switch; 0], y: &mut SVector<S, 1>) {
                 ::core::unreachable!("{WHY}")
             }
-            fn stored_energy(&self, t: S, x: &SVector<S, 1>, negative: &[bool; 0]) -> S {
+            fn stored_energy(&self, t: S, x: &SVector<S, 1>, negative: &[S::Switch; 0]) -> S {
                 ::core::unreachable!("{WHY}")
             }
-            fn powers(&self, t: S, x: &SVector<S, 1>, negative: &[bool; 0]) -> ::bg_model::system::Powers<S> {
+            fn powers(&self, t: S, x: &SVector<S, 1>, negative: &[S::Switch; 0]) -> ::bg_model::system::Powers<S> {
                 ::core::unreachable!("{WHY}")
             }
         }

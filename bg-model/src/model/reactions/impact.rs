@@ -62,7 +62,7 @@ pub(crate) struct Collision<S> {
     outcome: Vec<After>,
 }
 
-impl<S: Scalar> Collision<S> {
+impl<S: Scalar<Switch = bool>> Collision<S> {
     /// Room for the impacts of a system.
     pub fn new<I, const N: usize, const G: usize>(impacts: &I) -> Self
     where

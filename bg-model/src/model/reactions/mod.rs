@@ -50,8 +50,13 @@ impl<S: Scalar> Hold<S> {
         Self { held, entries: vec![S::from_f64(0.0); held.entries()] }
     }
 
-    fn read<J, const N: usize, const G: usize>(&mut self, joints: &J, t: S, x: &SVector<S, N>, negative: &[bool; G])
-    where
+    fn read<J, const N: usize, const G: usize>(
+        &mut self,
+        joints: &J,
+        t: S,
+        x: &SVector<S, N>,
+        negative: &[S::Switch; G],
+    ) where
         J: Joints<S, N, G>,
     {
         joints.hold(t, x, negative, &mut self.entries);
@@ -113,7 +118,7 @@ where
     };
     let read = |x: &SVector<S, N>| {
         let mut hold = Hold::new(held);
-        hold.read(system, S::from_f64(0.0), x, &branches(system, x));
+        hold.read(system, S::from_f64(0.0), x, &branches(system, x).map(S::Switch::from));
         hold
     };
     let mut values = speeds.map(|place| unknowns[place]);
@@ -168,7 +173,7 @@ where
 {
     let guards = |negative: &[bool; G]| {
         let mut guards = SVector::from([S::from_f64(0.0); G]);
-        system.guards(S::from_f64(0.0), x, negative, &mut guards);
+        system.guards(S::from_f64(0.0), x, &negative.map(S::Switch::from), &mut guards);
         guards
     };
     branches_by_sign(system.first_branches(), guards).0

@@ -132,7 +132,7 @@ pub fn share<J, S, const N: usize, const G: usize>(
     joints: &J,
     t: S,
     x: &SVector<S, N>,
-    negative: &[bool; G],
+    negative: &[S::Switch; G],
     reactions: &mut [S],
 ) where
     J: Joints<S, N, G>,
@@ -175,7 +175,7 @@ where
 {
     let (held, dropped) = (system.held(), dropped(system));
     let mut hold = Hold::new(held);
-    hold.read(system, S::from_f64(0.0), x, &branches(system, x));
+    hold.read(system, S::from_f64(0.0), x, &branches(system, x).map(S::Switch::from));
     let factors = Factors::without(hold.matrix(), &dropped);
     let mut rows: Vec<usize> = (0..dropped.len()).filter(|&row| dropped[row]).collect();
     let mut found = Vec::new();

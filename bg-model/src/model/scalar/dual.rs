@@ -66,12 +66,17 @@ impl<S: Scalar> Neg for Dual<S> {
 
 impl<S: Scalar> Scalar for Dual<S> {
     type Pair = Both<Self>;
+    type Switch = S::Switch;
 
     fn from_f64(value: f64) -> Self {
         Self::new(S::from_f64(value), S::from_f64(0.0))
     }
     fn to_f64(self) -> f64 {
         self.value.to_f64()
+    }
+    fn select(switch: S::Switch, negative: Self, positive: Self) -> Self {
+        let select = |negative, positive| S::select(switch, negative, positive);
+        Self::new(select(negative.value, positive.value), select(negative.slope, positive.slope))
     }
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();

@@ -103,6 +103,7 @@ impl<V: Slopes> Neg for GradientIn<V> {
 
 impl<V: Slopes> Scalar for GradientIn<V> {
     type Pair = Both<Self>;
+    type Switch = bool;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
@@ -115,6 +116,10 @@ impl<V: Slopes> Scalar for GradientIn<V> {
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self.of(self.value * factor, factor)
+    }
+    #[inline(always)]
+    fn select(switch: bool, negative: Self, positive: Self) -> Self {
+        if switch { negative } else { positive }
     }
     fn sqrt(self) -> Self {
         let root = Scalar::sqrt(self.value);

@@ -12,6 +12,8 @@ pub(crate) mod double;
 mod double_double;
 mod dual;
 pub(crate) mod gradient;
+#[cfg(feature = "std")]
+pub(crate) mod lanes;
 mod pair;
 mod single;
 pub(crate) mod slopes;
@@ -42,17 +44,28 @@ pub trait Scalar:
 {
     /// Two such numbers, calculated with at once.
     type Pair: Pair<Self>;
+    /// Whether the guard of a switch is negative: for numbers side by side, of each.
+    type Switch: Copy + Debug + From<bool>;
 
     /// The number nearest to `value`.
     fn from_f64(value: f64) -> Self;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
+    /// The number nearest to `value`, where there is a number already: for numbers in vectors of a machine that is cheaper.
+    #[must_use]
+    #[inline(always)]
+    fn alike(self, value: f64) -> Self {
+        Self::from_f64(value)
+    }
     /// The number times `factor`.
     #[must_use]
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self * Self::from_f64(factor)
     }
+    /// `negative` where `switch` is, else `positive`.
+    #[must_use]
+    fn select(switch: Self::Switch, negative: Self, positive: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Sine of an angle in rad.
@@ -75,12 +88,19 @@ pub trait Scalar:
     fn tanh(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
+    /// The larger number; `other` where one of them is none.
+    #[must_use]
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
     /// `self` to the real power `exponent`.
     fn powf(self, exponent: Self) -> Self;
 }
 
 impl Scalar for f64 {
     type Pair = PairOfDoubles;
+    type Switch = bool;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
@@ -89,6 +109,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self
+    }
+    #[inline(always)]
+    fn select(switch: bool, negative: Self, positive: Self) -> Self {
+        if switch { negative } else { positive }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

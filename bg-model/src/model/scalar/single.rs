@@ -7,6 +7,7 @@ use super::{Both, Scalar};
 
 impl Scalar for f32 {
     type Pair = Both<f32>;
+    type Switch = bool;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
@@ -15,6 +16,10 @@ impl Scalar for f32 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         f64::from(self)
+    }
+    #[inline(always)]
+    fn select(switch: bool, negative: Self, positive: Self) -> Self {
+        if switch { negative } else { positive }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

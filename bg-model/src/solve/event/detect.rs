@@ -10,12 +10,15 @@ use super::guarded::Guarded;
 use super::minimum::minimum;
 use super::noise::larger;
 use super::{Crossing, Reading, Watch, check_finite, clearance, read};
+use crate::model::scalar::Scalar;
 use crate::solve::integrator::hermite;
 
 /// The number of parts of a step at whose ends the dense output is looked at.
 const PARTS: usize = 8;
 /// A clearance below this part of its variation in the step is looked at closely.
 const NEAR: f64 = 0.5;
+/// The least clearance of an enclosing course, in parts of its variation, that needs no look at the course itself.
+pub(super) const FAR: f64 = 1.01 * NEAR;
 /// Halvings of the distance to the start of the step on the search for a point on the right side.
 const HALVINGS: usize = 40;
 
@@ -37,6 +40,15 @@ pub(super) enum Course {
     WrongFromStart,
     /// It crosses here first.
     Crosses(Bracket),
+}
+
+/// Bernstein's coefficients of the quartic through a guard's clearances at both ends and in the `middle` of a step, and its
+/// changes in a step at the rates there: they enclose it.
+#[inline(always)]
+pub(super) fn enclosing<S: Scalar>([from, to]: [S; 2], middle: S, [leaving, arriving]: [S; 2]) -> [S; 5] {
+    let (leave, arrive) = (from + leaving.times(0.25), to - arriving.times(0.25));
+    let bend = (middle.times(16.0) - from - to - (leave + arrive).times(4.0)) / from.alike(6.0);
+    [from, leave, bend, arrive, to]
 }
 
 impl<const G: usize> Watch<G> {
@@ -73,6 +85,34 @@ impl<const G: usize> Watch<G> {
         Ok(self.first_crossing(step, &courses))
     }
 
+    /// Takes over a step of size `h` (s) at whose ends and in whose `middle` all guards keep to their sides; gives whether they do,
+    /// which counts three evaluations, as [`Watch::inspect`] does. Nothing changes where they may not.
+    #[cfg(feature = "std")]
+    pub fn pass(
+        &mut self,
+        negative: [bool; G],
+        end: [SVector<f64, G>; 2],
+        middle: &SVector<f64, G>,
+        h: f64,
+        is_clear: bool,
+    ) -> bool {
+        let [value, slope] = end;
+        self.end = Reading { value, slope, noise: [0.0; G] };
+        // What is known to be noisy at the start changes the question.
+        let is_clear = is_clear && self.start.noise == [0.0; G];
+        if !is_clear && (check_finite(&value).is_err() || self.suspects(negative, middle, h).contains(&true)) {
+            return false;
+        }
+        self.advance();
+        true
+    }
+
+    /// The guards' values and slopes (per s) at the start of the step.
+    #[cfg(feature = "std")]
+    pub fn at_start(&self) -> [SVector<f64, G>; 2] {
+        [self.start.value, self.start.slope]
+    }
+
     /// The guards that are on the wrong side at the end of the step or may have been in it.
     fn suspects(&self, negative: [bool; G], middle: &SVector<f64, G>, h: f64) -> [bool; G] {
         core::array::from_fn(|k| {
@@ -92,13 +132,10 @@ impl<const G: usize> Watch<G> {
         let bulge = 16.0 * (middle - 0.5 * (from + to) - 0.125 * (leaving - arriving));
         // Comparisons, not `f64::min`: its optimised form was seen to drop an end.
         let smaller = |a: f64, b: f64| if b < a { b } else { a };
-        // Bernstein's coefficients enclose the quartic: far from zero that settles it.
-        let (leave, arrive) = (from + 0.25 * leaving, to - 0.25 * arriving);
-        let bend = (16.0 * middle - from - to - 4.0 * (leave + arrive)) / 6.0;
-        let enclosing = [from, leave, bend, arrive, to];
+        let enclosing = enclosing([from, to], middle, [leaving, arriving]);
         let low = enclosing.into_iter().fold(f64::INFINITY, smaller);
         let high = enclosing.into_iter().fold(f64::NEG_INFINITY, larger);
-        if low > 1.01 * NEAR * (high - low) {
+        if low > FAR * (high - low) {
             return false;
         }
         let quartic = |part: f64| {

@@ -12,6 +12,8 @@ mod condition;
 mod detect;
 mod guarded;
 mod impact;
+#[cfg(feature = "std")]
+mod lanes;
 mod locate;
 mod minimum;
 mod noise;
@@ -22,10 +24,14 @@ use nalgebra::SVector;
 pub(crate) use condition::{Condition, Located, Never, Stop};
 use guarded::Guarded;
 pub(crate) use impact::Struck;
+#[cfg(feature = "std")]
+pub(crate) use lanes::{Readings, Steps};
 
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;
 const INSTANT: f64 = 1e-12;
+/// The part of a step for the difference that gives a guard's derivative: it keeps nine digits and its truncation error is as small.
+const AHEAD: f64 = 1e-6;
 /// A guard's sign is taken for certain above this multiple of its rounding error.
 const CERTAIN: f64 = 16.0;
 
@@ -120,8 +126,6 @@ fn read<const N: usize, const G: usize>(
     rate: &SVector<f64, N>,
     h: f64,
 ) -> Reading<G> {
-    // Of the step; the difference keeps nine digits and its truncation error is as small.
-    const AHEAD: f64 = 1e-6;
     let ahead = AHEAD * h;
     let value = step.guards(t, x);
     let x_ahead = SVector::from(core::array::from_fn(|i| x.data.0[0][i] + rate.data.0[0][i] * ahead));

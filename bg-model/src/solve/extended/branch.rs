@@ -16,7 +16,7 @@ const CERTAIN: f64 = 16.0;
 
 impl<S, Sys, const N: usize, const G: usize> Run<'_, S, Sys, N, G>
 where
-    S: Scalar,
+    S: Scalar<Switch = bool>,
     Sys: System<S, N, G>,
 {
     /// Projects the start and chooses the branches there.

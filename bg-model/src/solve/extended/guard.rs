@@ -142,7 +142,7 @@ pub fn clearance<S: Scalar>(value: S, negative: bool) -> S {
 
 impl<S, Sys, const N: usize, const G: usize> Run<'_, S, Sys, N, G>
 where
-    S: Scalar,
+    S: Scalar<Switch = bool>,
     Sys: System<S, N, G>,
 {
     /// Shortens the step of size `h` (s) to `crossing`, or to one that turns out to be earlier; gives the step, which is

@@ -108,7 +108,7 @@ pub fn integrate<S, Sys, const N: usize, const G: usize>(
     mut observe: impl FnMut(S, &SVector<S, N>, &[bool; G]),
 ) -> Result<Finish<S, N, G>, Fault>
 where
-    S: Scalar,
+    S: Scalar<Switch = bool>,
     Sys: System<S, N, G>,
 {
     check(span, accuracy, instants)?;
@@ -162,7 +162,7 @@ struct Run<'a, S, Sys, const N: usize, const G: usize> {
 
 impl<'a, S, Sys, const N: usize, const G: usize> Run<'a, S, Sys, N, G>
 where
-    S: Scalar,
+    S: Scalar<Switch = bool>,
     Sys: System<S, N, G>,
 {
     fn new(system: &'a Sys, start: &SVector<S, N>, span: Span, accuracy: Accuracy) -> Self {

@@ -20,7 +20,7 @@ fn span(t_end: f64) -> Span {
 /// x'' = -w^2 x with w = 1 where x is positive, and 2 where it is negative.
 struct Lopsided;
 
-impl<S: Scalar> System<S, 2, 1> for Lopsided {
+impl<S: Scalar<Switch = bool>> System<S, 2, 1> for Lopsided {
     fn rate(&self, _: S, x: &SVector<S, 2>, negative: &[bool; 1], dx: &mut SVector<S, 2>) {
         dx[0] = x[1];
         dx[1] = -x[0] * S::from_f64(if negative[0] { 4.0 } else { 1.0 });
@@ -33,7 +33,7 @@ impl<S: Scalar> System<S, 2, 1> for Lopsided {
 /// A planet at 1 - e from a sun of mass 1.
 struct Kepler;
 
-impl<S: Scalar> System<S, 4, 0> for Kepler {
+impl<S: Scalar<Switch = bool>> System<S, 4, 0> for Kepler {
     fn rate(&self, _: S, x: &SVector<S, 4>, _: &[bool; 0], dx: &mut SVector<S, 4>) {
         let square = x[0] * x[0] + x[1] * x[1];
         let cube = square * square.sqrt();
@@ -49,7 +49,7 @@ fn growth(t: DoubleDouble, x: &SVector<DoubleDouble, 1>, dx: &mut SVector<Double
 /// x counts the time with a watch that runs twice as fast where its guard is negative; the guard is a function of time.
 struct Timer<F>(F);
 
-impl<S: Scalar, F: Fn(S) -> S> System<S, 1, 1> for Timer<F> {
+impl<S: Scalar<Switch = bool>, F: Fn(S) -> S> System<S, 1, 1> for Timer<F> {
     fn rate(&self, _: S, _: &SVector<S, 1>, negative: &[bool; 1], dx: &mut SVector<S, 1>) {
         dx[0] = S::from_f64(if negative[0] { 2.0 } else { 1.0 });
     }
@@ -94,7 +94,7 @@ fn an_oscillator_is_followed_to_25_digits() {
 /// A system with its switch left in the positive branch.
 struct Frozen<Sys>(Sys);
 
-impl<S: Scalar, Sys: System<S, 2, 1>> System<S, 2, 0> for Frozen<Sys> {
+impl<S: Scalar<Switch = bool>, Sys: System<S, 2, 1>> System<S, 2, 0> for Frozen<Sys> {
     fn rate(&self, t: S, x: &SVector<S, 2>, _: &[bool; 0], dx: &mut SVector<S, 2>) {
         self.0.rate(t, x, &[false], dx);
     }

@@ -53,6 +53,14 @@ macro_rules! inside {
     };
 }
 
+impl<const N: usize> AnyMethod<N> {
+    /// The method that runs side by side are made by.
+    #[cfg(feature = "std")]
+    pub(crate) fn nystrom(&mut self) -> Option<&mut Nystrom<N>> {
+        if let Self::Nystrom(method) = self { Some(method) } else { None }
+    }
+}
+
 impl<const N: usize> Method<N> for AnyMethod<N> {
     hand_on!(inside);
 

@@ -6,19 +6,26 @@
 use nalgebra::SVector;
 
 use super::Point;
+use crate::model::scalar::Scalar;
 
 /// Writes the state at `start` plus the part `theta` (0 to 1) of the step of size `h` (s) into `x`.
 pub(crate) fn hermite<const N: usize>(start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-    let rest = 1.0 - theta;
-    let bulge = theta * (theta - 1.0);
     let (from, to) = (&start.x.data.0[0], &end.x.data.0[0]);
     let (from_rate, to_rate) = (&start.rate.data.0[0], &end.rate.data.0[0]);
     let out = &mut x.data.0[0];
     for i in 0..N {
-        let chord = to[i] - from[i];
-        let bend = (1.0 - 2.0 * theta) * chord + (theta - 1.0) * h * from_rate[i] + theta * h * to_rate[i];
-        out[i] = rest * from[i] + theta * to[i] + bulge * bend;
+        out[i] = between(h, theta, [from[i], to[i]], [from_rate[i], to_rate[i]]);
     }
+}
+
+/// The same of one state, whose values and rates at both ends are given.
+#[inline(always)]
+pub(crate) fn between<S: Scalar>(h: S, theta: f64, [from, to]: [S; 2], [from_rate, to_rate]: [S; 2]) -> S {
+    let rest = 1.0 - theta;
+    let bulge = theta * (theta - 1.0);
+    let chord = to - from;
+    let bend = chord.times(1.0 - 2.0 * theta) + h.times(theta - 1.0) * from_rate + h.times(theta) * to_rate;
+    from.times(rest) + to.times(theta) + bend.times(bulge)
 }
 
 #[cfg(test)]

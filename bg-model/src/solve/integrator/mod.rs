@@ -38,8 +38,12 @@ pub use explicit::{
     BogackiShampine, Bs5, CalvoFrancoMontijanoRandez, Cfmr7, Dop853, DormandPrince, Explicit, Row, Tableau,
 };
 pub use gauss::Gauss6;
+#[cfg(feature = "std")]
+pub(crate) use hermite::between;
 pub(crate) use hermite::hermite;
 pub use nystrom::Nystrom;
+#[cfg(feature = "std")]
+pub(crate) use nystrom::{Begin, NystromInLanes, Side};
 pub use partitioned::Ark5;
 pub use radau::{Radau, Radau5, Radau9};
 pub use rk4::Rk4;
@@ -47,7 +51,7 @@ pub use rosenbrock::{Rodas5p, Ros2};
 pub use taylor::Taylor;
 pub(crate) use tolerances::rounding;
 pub use tolerances::{Absolute, Scale, Tolerances};
-pub(crate) use vectors::rate_in;
+pub(crate) use vectors::{Arch, rate_in};
 
 /// A smooth flow: a system with its switches frozen. Only the rate has to be written; capabilities are those of a system
 /// without switches.

@@ -10,8 +10,8 @@
 
 use alloc::vec::Vec;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::carry::Carry;
 use super::tolerances::{index_of_largest, largest};

@@ -5,6 +5,7 @@
 use nalgebra::SVector;
 
 use super::{Flow, Point};
+use crate::model::scalar::Scalar;
 use crate::model::scalar::double::fraction;
 
 /// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`.
@@ -66,9 +67,8 @@ impl<const N: usize> Scale<N> {
     /// The allowed error of state `i` between the values `a` and `b`.
     #[inline(always)]
     #[must_use]
-    pub fn allowed(&self, i: usize, a: f64, b: f64) -> f64 {
-        let (a, b) = (a.abs(), b.abs());
-        self.absolute.data.0[0][i] + self.relative * if a > b { a } else { b }
+    pub fn allowed<S: Scalar>(&self, i: usize, a: S, b: S) -> S {
+        a.alike(self.absolute.data.0[0][i]) + a.abs().larger(b.abs()).times(self.relative)
     }
 
     /// The state at `start` whose rate is the largest part of its allowed error.

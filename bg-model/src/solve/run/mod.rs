@@ -8,17 +8,20 @@
 mod clock;
 mod ending;
 mod instants;
+mod lanes;
 mod request;
 mod state;
 mod trajectory;
 
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 use clock::Clock;
 use nalgebra::SVector;
 
 pub use ending::{Ending, Sample, Unconditional, When};
 pub use instants::sample_times;
+pub use lanes::{LaneError, in_lanes};
 pub use request::Request;
 pub use state::{State, StateError};
 pub use trajectory::{Stopped, Trajectory};
@@ -29,6 +32,8 @@ use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::mechanism::{Mechanism, ModelVisitor};
 use crate::model::system::Model;
+use crate::solve::failure::Cause;
+use crate::solve::finish::Finish;
 use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason};
 use crate::solve::simulation::{Observer, Part, Recorder, Samples, Span, Switching};
 use crate::solve::statistics::Statistics;
@@ -263,19 +268,61 @@ impl<E: Ending> Integration<'_, E> {
     {
         let Self { request, start, each_step, ending } = self;
         let clock = Clock::started();
-        let Description { name, states, .. } = model.description();
         let (t0, start) = Start { start: start.as_ref() }.vector(model)?;
         let mut method: AnyMethod<N> = request.method.method(request.fixed_step);
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
-        let told = Told { each_step, is_done: false };
-        let mut observer = (Recorder::new(model, &request.parts), (told, Another(another)));
+        let mut observer = observer(model, &request.parts, each_step, another);
         let span = Span { t0, t_end: request.t_end };
         let (finish, cause) = match ending.integrate(model, &mut method, &start, span, &settings, &mut observer) {
             Ok(finish) => (finish, None),
             Err(failure) => (*failure.last, Some(failure.cause)),
         };
-        let mut recorder = observer.0;
+        let methods = std::iter::once(first).chain(method.changes().iter().copied()).collect();
+        Made { finish, cause, methods, wall: clock.elapsed() }.concluded(model, observer.0, request)
+    }
+}
+
+/// Who is told of a run: what records it, what hands its steps on, another one.
+type Observers<'a, 'b, 'c, Mo, const N: usize, const G: usize, const M: usize> =
+    (Recorder<'a, Mo, N, G, M>, (Told<'b>, Another<'c, N, G>));
+
+fn observer<'a, 'b, 'c, Mo, const N: usize, const G: usize, const M: usize>(
+    model: &'a Mo,
+    parts: &[Part],
+    each_step: EachStep<'b>,
+    another: Option<&'c mut dyn Observer<N, G>>,
+) -> Observers<'a, 'b, 'c, Mo, N, G, M>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    (Recorder::new(model, parts), (Told { each_step, is_done: false }, Another(another)))
+}
+
+/// A run that has been made.
+struct Made<const N: usize, const G: usize> {
+    finish: Finish<N, G>,
+    /// Why it failed.
+    cause: Option<Cause>,
+    /// The methods that made its steps, the first from its start.
+    methods: Vec<Change>,
+    wall: Duration,
+}
+
+impl<const N: usize, const G: usize> Made<N, G> {
+    /// What it gives.
+    fn concluded<Mo, const M: usize>(
+        self,
+        model: &Mo,
+        mut recorder: Recorder<'_, Mo, N, G, M>,
+        request: Request,
+    ) -> Result<Trajectory, RunError>
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        let Self { finish, cause, methods, wall } = self;
+        let Description { name, states, .. } = model.description();
+        let starts_at_zero = methods.first().is_some_and(|first| first.t == 0.0);
         // The end of a run that was stopped is none of the instants that were listed before it.
         let is_sampled = recorder.recording.times.last().is_some_and(|&t| t >= finish.t);
         if matches!(request.samples, Samples::Every(_)) && cause.is_none() && !is_sampled {
@@ -285,10 +332,10 @@ impl<E: Ending> Integration<'_, E> {
             recording: recorder.recording,
             ended: finish.ended,
             statistics: finish.statistics,
-            methods: std::iter::once(first).chain(method.changes().iter().copied()).collect(),
-            wall: clock.elapsed(),
+            methods,
+            wall,
             redundant: model.redundant(),
-            impulse_energy: if t0 == 0.0 { model.impulse_energy().unwrap_or(0.0) } else { 0.0 },
+            impulse_energy: if starts_at_zero { model.impulse_energy().unwrap_or(0.0) } else { 0.0 },
             last: State::new(name, states, finish.t, finish.x.as_slice()),
             request,
         };

@@ -59,6 +59,7 @@ impl LiftedVisitor<DoubleDouble, DoubleDouble> for Differences {
     fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
         self,
         _: &Mo,
+        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
         _: impl Fn(&Li, fn(DoubleDouble) -> DoubleDouble) -> Ot,
     ) -> Self::Output

@@ -183,6 +183,7 @@ impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
     fn visit<Mo, Li, Fa, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
+        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
         in_numbers: impl Fn(&Li, fn(Gradient) -> GradientIn<Fastest>) -> Fa,
     ) -> Self::Output

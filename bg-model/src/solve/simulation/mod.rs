@@ -5,6 +5,8 @@
 //! instants only ([`crate::system::System`]); a step never runs over such an instant.
 
 mod cause;
+#[cfg(feature = "std")]
+pub(crate) mod lanes;
 mod observer;
 mod ongoing;
 mod pace;

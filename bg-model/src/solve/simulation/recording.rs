@@ -150,6 +150,12 @@ where
         let columns = parts.iter().flat_map(|part| part.columns(model.description())).collect();
         Self { model, parts: parts.to_vec(), row: Vec::new(), recording: Recording::new(columns) }
     }
+
+    /// The model.
+    #[cfg(feature = "std")]
+    pub(crate) const fn model(&self) -> &'a Mo {
+        self.model
+    }
 }
 
 impl<Mo, const N: usize, const G: usize, const M: usize> Observer<N, G> for Recorder<'_, Mo, N, G, M>

@@ -25,7 +25,7 @@ pub(super) struct RoundingWatch {
 impl RoundingWatch {
     /// None where the tolerances are far above rounding.
     pub fn new(relative: f64) -> Option<Self> {
-        (relative <= LOOSEST).then(Self::default)
+        may_matter(relative).then(Self::default)
     }
 
     /// Counts an accepted step before it is taken over.
@@ -43,6 +43,11 @@ impl RoundingWatch {
         }
         stepper.statistics.rounded += u64::from(self.is_above);
     }
+}
+
+/// Whether this relative tolerance may be below what rounding makes of a step's error.
+pub(super) fn may_matter(relative: f64) -> bool {
+    relative <= LOOSEST
 }
 
 /// An implicit method damps what rounding does, and Taylor series take no differences of rates.

@@ -17,7 +17,7 @@ use crate::solve::integrator::{Method, StepControl, is_finite};
 use crate::solve::stepper::Stepper;
 
 /// The norm of a projection above which it is looked at more closely. It is below 2 where a step errs by as much as is allowed.
-const MOVED: f64 = 10.0;
+pub(super) const MOVED: f64 = 10.0;
 /// How often a sample is projected at most.
 const PROJECTIONS: usize = 6;
 /// How much less another projection moves, at most, where the first one has led to the motion's own branch: about the error
@@ -25,17 +25,17 @@ const PROJECTIONS: usize = 6;
 const AGAIN: f64 = 0.05;
 
 /// A run under way.
-pub(super) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
+pub(crate) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
     pub stepper: Stepper<'a, Sys, M, N, G>,
     pub pace: Pace,
     /// What was not finite at the end of a longer step from the present start.
     pub faulty: Option<Faulty>,
     pub watch: Watch<G>,
     condition: C,
-    sampling: Sampling<'a>,
-    span: Span,
-    attempts: u64,
-    limit: u64,
+    pub sampling: Sampling<'a>,
+    pub span: Span,
+    pub attempts: u64,
+    pub limit: u64,
     /// Of joints that close loops, where there are any.
     loops: Option<LoopWatch>,
     /// Of impacts on stops, where there are any.
@@ -118,44 +118,47 @@ where
     /// Makes steps until the run ends; gives why it does.
     pub fn advance_to_end(&mut self, observer: &mut impl Observer<N, G>) -> Result<Ended, Cause> {
         self.sample(observer, self.span.t0);
-        while self.stepper.start.t < self.span.t_end {
-            self.try_steps()?;
-            let crossing = match self.watch.inspect(&mut self.stepper) {
-                Ok(crossing) => crossing,
-                Err(guard) => {
-                    self.retreat(Faulty::Guard(guard))?;
-                    continue;
-                }
-            };
-            if crossing.as_ref().is_some_and(|crossing| crossing.is_at_start) {
-                if self.change_branches(crossing, observer)? {
-                    return Ok(self.end_at_start(observer));
-                }
-                continue;
-            }
-            let h = self.stepper.h;
-            match self.condition.inspect(&mut self.stepper, crossing.is_some()) {
-                Err(value) => self.retreat(Faulty::Condition(value))?,
-                Ok(Some(Stop::AtStart)) => return Ok(self.end_at_start(observer)),
-                Ok(Some(Stop::AtEnd)) => {
-                    let crossing = if self.stepper.h == h { crossing } else { self.still_crossing(crossing) };
-                    self.end_span(self.stepper.end.t);
-                    self.accept(observer)?;
-                    self.change_branches(crossing, observer)?;
-                    return Ok(Ended::ByCondition);
-                }
-                Ok(None) => {
-                    let is_done = self.accept(observer)?;
-                    if self.change_branches(crossing, observer)? {
-                        return Ok(self.end_at_start(observer));
-                    }
-                    if is_done {
-                        return Ok(Ended::ByObserver);
-                    }
-                }
+        loop {
+            if let Some(ended) = self.advance(observer)? {
+                return Ok(ended);
             }
         }
-        Ok(Ended::AtEnd)
+    }
+
+    /// Makes a step, or finds another branch at its start; gives why the run ends, if it does.
+    #[inline]
+    pub fn advance(&mut self, observer: &mut impl Observer<N, G>) -> Result<Option<Ended>, Cause> {
+        if self.stepper.start.t >= self.span.t_end {
+            return Ok(Some(Ended::AtEnd));
+        }
+        self.try_steps()?;
+        let crossing = match self.watch.inspect(&mut self.stepper) {
+            Ok(crossing) => crossing,
+            Err(guard) => return self.retreat(Faulty::Guard(guard)).map(|()| None),
+        };
+        if crossing.as_ref().is_some_and(|crossing| crossing.is_at_start) {
+            let jumps = self.change_branches(crossing, observer)?;
+            return Ok(jumps.then(|| self.end_at_start(observer)));
+        }
+        let h = self.stepper.h;
+        match self.condition.inspect(&mut self.stepper, crossing.is_some()) {
+            Err(value) => self.retreat(Faulty::Condition(value)).map(|()| None),
+            Ok(Some(Stop::AtStart)) => Ok(Some(self.end_at_start(observer))),
+            Ok(Some(Stop::AtEnd)) => {
+                let crossing = if self.stepper.h == h { crossing } else { self.still_crossing(crossing) };
+                self.end_span(self.stepper.end.t);
+                self.accept(observer)?;
+                self.change_branches(crossing, observer)?;
+                Ok(Some(Ended::ByCondition))
+            }
+            Ok(None) => {
+                let is_done = self.accept(observer)?;
+                if self.change_branches(crossing, observer)? {
+                    return Ok(Some(self.end_at_start(observer)));
+                }
+                Ok(is_done.then_some(Ended::ByObserver))
+            }
+        }
     }
 
     /// Tries steps until one satisfies the tolerances; its end is projected and the rate there is known.
@@ -220,7 +223,7 @@ where
 
     /// The first instant after `t` (s) and before the end, by more than rounding, at which the system has a step end;
     /// infinity where there is none.
-    fn next_break(&self, t: f64) -> f64 {
+    pub fn next_break(&self, t: f64) -> f64 {
         let latest = self.span.t_end - self.pace.least(self.span.t_end);
         let mut last = t;
         loop {
@@ -270,7 +273,7 @@ where
     }
 
     /// Gives the samples up to the end of the step at `t`.
-    fn sample(&mut self, observer: &mut impl Observer<N, G>, t: f64) {
+    pub fn sample(&mut self, observer: &mut impl Observer<N, G>, t: f64) {
         while let Some(instant) = self.sampling.next_up_to(t) {
             if instant >= t {
                 observer.sample(t, &self.stepper.end.x, &self.stepper.negative);

@@ -33,6 +33,12 @@ impl<'a> Sampling<'a> {
         Some(instant)
     }
 
+    /// Whether there is an instant up to `t` (s).
+    #[cfg(feature = "std")]
+    pub fn is_due(&self, t: f64) -> bool {
+        self.instant(t).is_some_and(|instant| instant <= t)
+    }
+
     fn instant(&self, t: f64) -> Option<f64> {
         match self.samples {
             _ if self.ended => None,

@@ -4,8 +4,8 @@ mod frozen;
 
 use alloc::vec;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use crate::model::origin::Origin;
 use crate::model::system::System;

@@ -11,12 +11,14 @@
 //! | [`wanted`] | what is kept of a run |
 //! | [`recipe`] | whether two sweeps are the same |
 //! | [`runs`] | the runs of a shard, as tables |
+//! | [`lanes`] | the same runs side by side |
 //! | [`folder`] | which shards there are |
 //! | [`parquet`] | tables as Parquet files |
 //! | [`shown`] | what a folder has |
 
 pub mod design;
 pub mod folder;
+pub mod lanes;
 pub mod parquet;
 pub mod plan;
 pub mod recipe;
@@ -130,22 +132,36 @@ pub fn sweep<Me: Scenes>(
     told: Told<'_>,
 ) -> Result<Outcome, SweepError> {
     let job = Job::new(program, plan, folder.recipe());
+    let scenes = &program.scenes;
+    if let Some(many) = program.lanes.filter(|_| lanes::may_gain(plan)) {
+        let (scene, inputs, request) = (plan.scene, &plan.chosen.inputs[..], &plan.request);
+        let asked = lanes::Asked { scene, scenes, inputs, request };
+        let make = |numbers: &[usize]| job.runs_by(numbers, |values| many(asked, values));
+        return all(&job, folder, share, threads, told, (lanes::TOGETHER, &make));
+    }
     let making = Making {
         plan,
-        scenes: &program.scenes,
-        then: |run: runs::Run<'_>| all(&job, folder, share, threads, told, run),
+        scenes,
+        then: |run: runs::Run<'_>| {
+            let make =
+                |numbers: &[usize]| job.runs_by(numbers, |values| values.iter().map(|values| run(values)).collect());
+            all(&job, folder, share, threads, told, (1, &make))
+        },
     };
     Me::model(plan.scene.index, making)
 }
 
-/// The same, for models whose runs `run` makes.
+/// Makes the runs of these numbers.
+type Make<'a> = &'a (dyn Fn(&[usize]) -> Vec<Done> + Sync);
+
+/// The same, for models of which a thread makes so many runs at once.
 fn all(
     job: &Job<'_>,
     folder: &Folder,
     share: Share,
     threads: usize,
     told: Told<'_>,
-    run: runs::Run<'_>,
+    (together, make): (usize, Make<'_>),
 ) -> Result<Outcome, SweepError> {
     let own: Vec<usize> = (0..job.shards()).filter(|&shard| share.has(shard)).collect();
     let left: Vec<usize> = own.iter().copied().filter(|&shard| !folder.has(shard, job.has_trajectories())).collect();
@@ -157,14 +173,16 @@ fn all(
     told(found, total);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
     let finished = AtomicUsize::new(found);
-    let one = |&number: &usize| {
-        let done = told(finished.load(Ordering::Relaxed), total).then(|| job.run(number, run))?;
-        told(1 + finished.fetch_add(1, Ordering::Relaxed), total).then_some(done)
+    let some = |numbers: &[usize]| {
+        let done = told(finished.load(Ordering::Relaxed), total).then(|| make(numbers))?;
+        let count = numbers.len();
+        told(count + finished.fetch_add(count, Ordering::Relaxed), total).then_some(done)
     };
     for shards in left.chunks((RUNS_OF_A_THREAD * pool.current_num_threads()).div_ceil(runs)) {
         let numbers: Vec<usize> = shards.iter().flat_map(|&shard| job.runs_of(shard)).collect();
-        let done: Option<Vec<Done>> = pool.install(|| numbers.par_iter().with_max_len(1).map(one).collect());
-        let Some(done) = done else { return Ok(outcome) };
+        let parts = || numbers.par_chunks(together).with_max_len(1).map(some).collect::<Option<Vec<Vec<Done>>>>();
+        let Some(parts) = pool.install(parts) else { return Ok(outcome) };
+        let done: Vec<Done> = parts.into_iter().flatten().collect();
         outcome.failed += done.iter().filter(|done| !done.failure.is_empty()).count();
         outcome.made_runs += done.len();
         let mut rest = done.into_iter();

@@ -121,12 +121,23 @@ impl<'a> Job<'a> {
         !self.wanted.trajectories.is_empty()
     }
 
-    /// Makes run `number` by `run`.
-    pub fn run(&self, number: usize, run: Run<'_>) -> Done {
+    /// Makes the runs of these numbers by `many`, which is handed the values of all parameters in each.
+    pub fn runs_by(&self, numbers: &[usize], many: impl Fn(&[Vec<f64>]) -> Vec<Result<Outcome, String>>) -> Vec<Done> {
+        let values: Vec<Vec<f64>> = numbers.iter().map(|&number| self.values(number)).collect();
+        many(&values).into_iter().map(|outcome| self.done(outcome)).collect()
+    }
+
+    /// The values of all parameters in run `number`.
+    fn values(&self, number: usize) -> Vec<f64> {
         let mut values = self.base.clone();
         self.swept.iter().zip(self.design.values(number)).for_each(|(&index, value)| values[index] = value);
+        values
+    }
+
+    /// What is kept of a run.
+    fn done(&self, outcome: Result<Outcome, String>) -> Done {
         let width = self.wanted.reductions.len() + self.wanted.event_times;
-        let Outcome { run, failure } = match run(&values) {
+        let Outcome { run, failure } = match outcome {
             Ok(outcome) => outcome,
             Err(failure) => {
                 let numbers = vec![f64::NAN; width];

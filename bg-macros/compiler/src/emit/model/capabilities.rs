@@ -61,13 +61,14 @@ impl Emission<'_> {
         let states = &self.model.second_order.states;
         let [first, behind] = [states.start, states.end].map(Literal::usize_unsuffixed);
         let indices = states.clone().map(Literal::usize_unsuffixed);
-        let forces = self.forces();
+        let (forces, inline) = (self.forces(), self.inline());
         Some(quote! {
             impl<S: Scalar> ::bg_model::capability::SecondOrder<S, #n, #g> for Model<S> {
                 #[inline(always)]
                 fn states(&self) -> ::core::ops::Range<usize> {
                     #first..#behind
                 }
+                #inline
                 fn second_derivatives(&self, x: &SVector<S, #n>, dx: &mut SVector<S, #n>) {
                     let [r] = dx.data.0;
                     #body
@@ -96,7 +97,7 @@ impl Emission<'_> {
         });
         Some(quote! {
             #inline
-            fn forces(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], dx: &mut SVector<S, #n>) {
+            fn forces(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], dx: &mut SVector<S, #n>) {
                 #body
             }
         })
@@ -124,7 +125,7 @@ impl Emission<'_> {
                     #width
                 }
                 #[cfg_attr(not(debug_assertions), inline(always))]
-                fn expand(&self, t: S, h: S, negative: &[bool; #g], rows: &mut [S], series: &mut [SVector<S, #n>]) {
+                fn expand(&self, t: S, h: S, negative: &[S::Switch; #g], rows: &mut [S], series: &mut [SVector<S, #n>]) {
                     #expansion
                 }
             }

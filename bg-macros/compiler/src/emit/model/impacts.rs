@@ -37,7 +37,7 @@ impl Emission<'_> {
                 }
                 #kept
                 #[inline(never)]
-                fn impact(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], entries: &mut [S]) {
+                fn impact(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]) {
                     #body
                     entries.copy_from_slice(&[#(#entries),*]);
                 }

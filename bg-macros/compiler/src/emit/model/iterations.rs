@@ -15,7 +15,8 @@ impl Emission<'_> {
             return (None, quote!(&[]));
         }
         let found = quote! {
-            let found = self.found(S::from_f64(t), &x.map(S::from_f64).data.0[0], negative).map(|found| found.to_f64());
+            let switches = negative.map(S::Switch::from);
+            let found = self.found(S::from_f64(t), &x.map(S::from_f64).data.0[0], &switches).map(|found| found.to_f64());
         };
         (Some(found), quote!(&found))
     }
@@ -47,7 +48,7 @@ impl Emission<'_> {
         (count > 0).then(|| {
             quote! {
                 impl<S: Scalar> Model<S> {
-                    fn loops(&self, t: S, x: &[S; #n], negative: &[bool; #g], found: &[S; #count]) -> [S; #length] {
+                    fn loops(&self, t: S, x: &[S; #n], negative: &[S::Switch; #g], found: &[S; #count]) -> [S; #length] {
                         let c = &self.constants;
                         #inputs
                         #states
@@ -56,7 +57,7 @@ impl Emission<'_> {
                     }
                     /// What the unknowns of algebraic loops are, nearly; not numbers where that is not found.
                     #[inline(never)]
-                    fn found(&self, t: S, x: &[S; #n], negative: &[bool; #g]) -> [S; #count] {
+                    fn found(&self, t: S, x: &[S; #n], negative: &[S::Switch; #g]) -> [S; #count] {
                         let mut found = [S::from_f64(0.0); #count];
                         #groups
                         found

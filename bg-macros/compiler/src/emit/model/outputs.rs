@@ -35,7 +35,7 @@ impl Emission<'_> {
         let (body, outputs) = self.function(&self.model.programs.running.outputs);
         let reactions = self.with_reactions();
         quote! {
-            fn outputs(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], y: &mut SVector<S, #m>) {
+            fn outputs(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], y: &mut SVector<S, #m>) {
                 #reactions
                 #body
                 y.data.0 = [[#(#outputs),*]];
@@ -78,7 +78,7 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let (body, stored) = self.function(&self.model.programs.running.stored_energy);
         quote! {
-            fn stored_energy(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g]) -> S {
+            fn stored_energy(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> S {
                 #body
                 #(#stored)*
             }
@@ -90,7 +90,7 @@ impl Emission<'_> {
         let (body, powers) = self.function(&self.model.programs.running.powers);
         let (supplied, dissipated) = (&powers[0], &powers[1]);
         quote! {
-            fn powers(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g]) -> ::bg_model::system::Powers<S> {
+            fn powers(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> ::bg_model::system::Powers<S> {
                 #body
                 ::bg_model::system::Powers { supplied: #supplied, dissipated: #dissipated }
             }

@@ -90,7 +90,7 @@ impl Emission<'_> {
             let block = self.with_names(|names| blocks.block(group, &assignments(group, names), names));
             functions.extend(quote! {
                 #[inline(never)]
-                fn #name(&self, t: S, x: &[S; #n], negative: &[bool; #g], v: &mut #array_type) {
+                fn #name(&self, t: S, x: &[S; #n], negative: &[S::Switch; #g], v: &mut #array_type) {
                     let c = &self.#constants;
                     #bindings
                     #block

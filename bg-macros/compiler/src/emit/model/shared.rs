@@ -108,7 +108,7 @@ impl Emission<'_> {
         let count = reactions.len();
         self.shared().where_any(|_| {
             quote! {
-                fn reactions(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g]) -> [S; #count] {
+                fn reactions(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> [S; #count] {
                     let (state, mut reactions) = (x, { #body [#(#reactions),*] });
                     ::bg_model::__private::share(self, t, state, negative, &mut reactions);
                     reactions
@@ -139,7 +139,8 @@ impl Emission<'_> {
         let reactions = self.shared().where_any(|_| {
             quote! {
                 let state = x.map(S::from_f64);
-                let reactions = self.reactions(S::from_f64(t), &state, negative).map(|reaction| reaction.to_f64());
+                let switches = negative.map(S::Switch::from);
+                let reactions = self.reactions(S::from_f64(t), &state, &switches).map(|reaction| reaction.to_f64());
             }
         });
         let values = if reactions.is_some() { quote!(&reactions) } else { quote!(&[]) };

@@ -155,7 +155,7 @@ impl Emission<'_> {
                 }
                 #kept
                 #[inline(never)]
-                fn hold(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], entries: &mut [S]) {
+                fn hold(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]) {
                     #body
                     entries.copy_from_slice(&[#(#entries),*]);
                 }

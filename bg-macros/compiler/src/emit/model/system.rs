@@ -26,6 +26,7 @@ impl Emission<'_> {
         let (rate, guards, project) = (self.rate(), self.guards(), self.project());
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
         let (next_break, first_branches, iterations) = (self.next_break(), self.first_branches(), self.iterations());
+        let runs_in_lanes = self.runs_in_lanes();
         quote! {
             #iterations
             impl<S: Scalar> ::bg_model::system::System<S, #n, #g> for Model<S> {
@@ -34,6 +35,7 @@ impl Emission<'_> {
                 #project
                 #next_break
                 #first_branches
+                #runs_in_lanes
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
                 }
@@ -48,7 +50,7 @@ impl Emission<'_> {
     fn rate(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
         let running = &self.model.programs.running;
-        let arguments = quote!(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], dx: &mut SVector<S, #n>);
+        let arguments = quote!(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], dx: &mut SVector<S, #n>);
         let function = |name: TokenStream, inline: Option<Inlined>, (body, rates): (TokenStream, Vec<TokenStream>)| {
             // The unknowns of iterations come after the rates.
             let rates = &rates[..self.model.equations.states.len()];
@@ -95,7 +97,7 @@ impl Emission<'_> {
         let (body, guards) = self.function(&self.model.programs.running.guards);
         quote! {
             #[inline(always)]
-            fn guards(&self, t: S, x: &SVector<S, #n>, negative: &[bool; #g], guards: &mut SVector<S, #g>) {
+            fn guards(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], guards: &mut SVector<S, #g>) {
                 #body
                 guards.data.0 = [[#(#guards),*]];
             }
@@ -109,11 +111,11 @@ impl Emission<'_> {
         let momenta = self.projection(&running.settle, &equations.settled);
         let inline = Inlined;
         quote! {
-            fn project(&self, t: S, negative: &[bool; #g], state: &mut SVector<S, #n>) {
+            fn project(&self, t: S, negative: &[S::Switch; #g], state: &mut SVector<S, #n>) {
                 ::bg_model::system::System::inlined_project(self, t, negative, state);
             }
             #inline
-            fn inlined_project(&self, t: S, negative: &[bool; #g], state: &mut SVector<S, #n>) {
+            fn inlined_project(&self, t: S, negative: &[S::Switch; #g], state: &mut SVector<S, #n>) {
                 #pose
                 #momenta
             }
@@ -162,6 +164,23 @@ impl Emission<'_> {
         })
     }
 
+    /// Whether several runs side by side are those that each is by itself, and gain by it; nothing where they always are.
+    fn runs_in_lanes(&self) -> Option<TokenStream> {
+        let inputs = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect::<Vec<_>>();
+        let answer = if self.model.equations.found() > 0 || self.inline().is_none() {
+            quote!(false)
+        } else {
+            quote!(#(self.inputs.#inputs.is_constant())&&*)
+        };
+        (!answer.is_empty()).then(|| {
+            quote! {
+                fn runs_in_lanes(&self) -> bool {
+                    #answer
+                }
+            }
+        })
+    }
+
     /// What switches are called.
     fn switch_name(&self) -> Option<TokenStream> {
         (!self.model.equations.switches.is_empty()).then(|| {
@@ -197,7 +216,7 @@ impl Emission<'_> {
         Some(quote! {
             #[cold]
             fn not_finite(
-                &self, t: S, x: &SVector<S, #n>, negative: &[bool; #g],
+                &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g],
             ) -> Option<::bg_model::failure::Origin> {
                 let parameters = &self.values;
                 #kept

@@ -143,6 +143,7 @@ impl Neg for DoubleDouble {
 
 impl Scalar for DoubleDouble {
     type Pair = Both<Self>;
+    type Switch = bool;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
@@ -151,6 +152,10 @@ impl Scalar for DoubleDouble {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self.high
+    }
+    #[inline(always)]
+    fn select(switch: bool, negative: Self, positive: Self) -> Self {
+        if switch { negative } else { positive }
     }
     #[inline(never)]
     fn sqrt(self) -> Self {

@@ -14,8 +14,8 @@ mod polynomial;
 mod radau9;
 mod tableau;
 
+use crate::solve::integrator::Arch;
 use nalgebra::{Complex, SVector};
-use pulp::Arch;
 
 use self::newton::{Convergence, Goal};
 pub(super) use self::radau9::RADAU9;

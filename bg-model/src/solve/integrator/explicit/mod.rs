@@ -17,8 +17,8 @@ mod vectors;
 use core::marker::PhantomData;
 use core::ops::Range;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;

@@ -1,7 +1,7 @@
 //! The vectors of the machine at hand give the bytes that those of every machine give.
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::{Bs5, Cfmr7, Dop853, Explicit, Tableau};
 use crate::model::system::System;

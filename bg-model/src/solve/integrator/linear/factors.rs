@@ -5,7 +5,7 @@
 
 use alloc::vec::Vec;
 
-use pulp::Arch;
+use crate::solve::integrator::Arch;
 
 use super::Jacobian;
 use super::dense::Dense;

@@ -6,17 +6,20 @@
 //! step may be almost twice as long before a stiff joint makes it unstable. Without states of second order it is a
 //! Runge-Kutta method. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, section II.14.
 
+#[cfg(feature = "std")]
+mod lanes;
 #[cfg(test)]
 mod order;
 mod ring;
+mod stages;
 mod tableau;
 #[cfg(test)]
 mod trees;
 
 use core::ops::Range;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::dense::{FROM_ENDS, Polynomial};
 use super::tolerances::{index_of_largest, largest};
@@ -25,20 +28,15 @@ use super::{Flow, Method, Point, Scale, StepControl};
 use crate::model::capability::SecondOrder;
 #[cfg(test)]
 use crate::model::scalar::Scalar;
-use crate::model::scalar::double::power;
+#[cfg(feature = "std")]
+pub(crate) use lanes::{NystromInLanes, Side};
 use ring::Ring;
-use tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES};
+pub(crate) use stages::Begin;
+use stages::{END, Forces, Stages};
+use tableau::{DENSE, STAGES};
 
-/// Behind the rows of the stages: those of the state at the end, and of the error estimate.
-const END: usize = STAGES;
-const ERROR: usize = STAGES + 1;
 /// The coefficients of the dense output: it has degree 5 in the part of the step.
 const COEFFICIENTS: usize = FROM_ENDS + DENSE.len();
-
-/// Numbers of all states where vectors of the machine begin, so that none lies across two lines of its cache.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-struct Aligned<const N: usize>(SVector<f64, N>);
 
 /// The Runge-Kutta-Nystrom method for stiff, lightly damped joints, of order 5, and 6 where no force depends on momenta.
 ///
@@ -47,8 +45,7 @@ struct Aligned<const N: usize>(SVector<f64, N>);
 /// of second order, the tolerance alone decides.
 #[derive(Clone, Debug)]
 pub struct Nystrom<const N: usize> {
-    /// The second derivatives of the states of second order and the rates of the others, at the stages and at the end.
-    k: [Aligned<N>; STAGES + 1],
+    stages: Stages<f64, N>,
     /// The states of second order.
     second: Range<usize>,
     /// The magnitudes of the differences to the embedded method, in parts of what is allowed.
@@ -65,7 +62,7 @@ impl<const N: usize> Nystrom<N> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            k: [Aligned(SVector::zeros()); STAGES + 1],
+            stages: Stages::new(),
             second: 0..0,
             errors: [0.0; N],
             ring: Ring::new(),
@@ -73,80 +70,32 @@ impl<const N: usize> Nystrom<N> {
             arch: Arch::new(),
         }
     }
-
-    /// The sum of the stages for state `i`.
-    #[inline(always)]
-    fn combine(&self, weights: &[f64], i: usize) -> f64 {
-        // Adding to -0 changes nothing, not even the sign of a zero.
-        (0..weights.len()).fold(-0.0, |sum, j| sum + weights[j] * self.k[j].0.data.0[0][i])
-    }
-
-    /// Writes the state of a row at the instant `c` of the step.
-    #[inline(always)]
-    fn reach<const ROW: usize>(
-        &self,
-        second: &Range<usize>,
-        c: f64,
-        start: &Point<N>,
-        h: f64,
-        x: &mut SVector<f64, N>,
-    ) {
-        let (from, rate, x) = (&start.x.data.0[0], &start.rate.data.0[0], &mut x.data.0[0]);
-        for i in 0..second.start {
-            x[i] = from[i] + h * self.combine(FIRST[ROW], i);
-        }
-        for i in second.clone() {
-            x[i] = from[i] + h * (c * rate[i] + h * self.combine(SECOND[ROW], i));
-        }
-        for i in second.end..N {
-            x[i] = from[i] + h * self.combine(FIRST[ROW], i);
-        }
-    }
-
-    /// Evaluates the stages. Their sums are written out, so that each finds its weights as constants.
-    #[inline(always)]
-    fn evaluate(&mut self, flow: &impl Flow<N>, states: &Range<usize>, start: &Point<N>, h: f64) {
-        let second = flow.second_order();
-        let mut x = start.x;
-        self.k[0].0 = start.rate;
-        if let Some(second) = &second {
-            second.second_derivatives(&x, &mut self.k[0].0);
-        }
-        for (stage, c) in INSTANTS.iter().enumerate().skip(1) {
-            macro_rules! written_out {
-                ($($stage:literal)*) => {
-                    match stage {
-                        $( $stage => self.reach::<$stage>(states, *c, start, h, &mut x), )*
-                        _ => unreachable!("a step has nine stages"),
-                    }
-                };
-            }
-            written_out!(1 2 3 4 5 6 7 8);
-            let (t, k) = (start.t + c * h, &mut self.k[stage].0);
-            match &second {
-                Some(second) => second.forces(t, &x, &[], k),
-                None => flow.inlined_rate(t, &x, k),
-            }
-        }
-    }
-
-    /// Sets the errors of a step.
-    #[inline(always)]
-    fn compare(&mut self, second: &Range<usize>, start: &Point<N>, h: f64, scale: &Scale<N>, end: &SVector<f64, N>) {
-        let mut errors = [0.0; N];
-        for (i, error) in errors.iter_mut().enumerate() {
-            let sum =
-                if second.contains(&i) { h * self.combine(SECOND[ERROR], i) } else { self.combine(FIRST[ERROR], i) };
-            *error = (h * sum / scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i])).abs();
-        }
-        self.errors = errors;
-    }
 }
 
 /// The states of second order of a flow; an empty range where there are none.
 #[inline(always)]
 fn states_of_second_order<const N: usize>(flow: &impl Flow<N>) -> Range<usize> {
     flow.second_order().map_or(0..0, |second| second.states())
+}
+
+/// The forces of a flow.
+struct OfFlow<'a, F>(&'a F);
+
+impl<F: Flow<N>, const N: usize> Forces<f64, N> for OfFlow<'_, F> {
+    #[inline(always)]
+    fn at_start(&self, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        if let Some(second) = self.0.second_order() {
+            second.second_derivatives(x, dx);
+        }
+    }
+
+    #[inline(always)]
+    fn at_stage(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        match self.0.second_order() {
+            Some(second) => second.forces(t, x, &[], dx),
+            None => self.0.inlined_rate(t, x, dx),
+        }
+    }
 }
 
 impl<const N: usize> Default for Nystrom<N> {
@@ -165,10 +114,8 @@ impl<const N: usize> Vectorised<N> for Nystrom<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        let states = states_of_second_order(flow);
-        self.evaluate(flow, &states, start, h);
-        self.reach::<END>(&states, 1.0, start, h, end);
-        self.compare(&states, start, h, scale, end);
+        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
+        self.errors = self.stages.step(&OfFlow(flow), &states_of_second_order(flow), &from, scale, end);
         largest(&self.errors)
     }
 }
@@ -192,7 +139,7 @@ impl<const N: usize> Method<N> for Nystrom<N> {
     ) -> f64 {
         self.second = states_of_second_order(flow);
         self.ring.follow(flow, start, &self.second);
-        let reach = power(h * self.ring.frequency / tableau::REACH, tableau::ERROR_ORDER as u32);
+        let reach = self.ring.reach(h);
         if reach > 1.0 {
             return reach;
         }
@@ -215,15 +162,15 @@ impl<const N: usize> Method<N> for Nystrom<N> {
     fn faulty_rate(&self) -> Option<(usize, f64)> {
         // A force that is no number makes the second derivatives none that follow from it.
         let forces_first = || (0..N).filter(|i| !self.second.contains(i)).chain(self.second.clone());
-        self.k[..STAGES].iter().find_map(|k| forces_first().map(|i| (i, k.0[i])).find(|(_, rate)| !rate.is_finite()))
+        self.stages.k[..STAGES]
+            .iter()
+            .find_map(|k| forces_first().map(|i| (i, k.0[i])).find(|(_, rate)| !rate.is_finite()))
     }
 
     fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        self.k[END].0 = end.rate;
-        if let Some(second) = flow.second_order() {
-            second.second_derivatives(&end.x, &mut self.k[END].0);
-        }
-        let Self { k, second, polynomial, .. } = self;
+        self.stages.k[END].0 = end.rate;
+        OfFlow(flow).at_start(&end.x, &mut self.stages.k[END].0);
+        let Self { stages: Stages { k }, second, polynomial, .. } = self;
         polynomial.set(start, h, end, |m, i, [_, first, third]| {
             if second.contains(&i) {
                 // The polynomial of degree 5 through the second derivatives at both ends, too.

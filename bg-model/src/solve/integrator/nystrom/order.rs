@@ -1,8 +1,8 @@
 //! Checks of the tableau against the order conditions of Runge-Kutta-Nystrom methods for q'' = f(q, q').
 
+use super::stages::{END, ERROR};
 use super::tableau::{DENSE, FIRST, INSTANTS, SECOND, STAGES};
 use super::trees::{self, dot};
-use super::{END, ERROR};
 
 /// A tree with its elementary weights at the stages.
 struct Tree {

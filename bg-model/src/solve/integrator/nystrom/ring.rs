@@ -9,8 +9,9 @@ use core::ops::Range;
 
 use nalgebra::SVector;
 
+use super::tableau;
 use crate::model::capability::SecondOrder;
-use crate::model::scalar::double::{fraction, root};
+use crate::model::scalar::double::{fraction, power, root};
 use crate::solve::integrator::{Flow, Point};
 
 /// Steps after a restart that each iterate once.
@@ -18,7 +19,7 @@ const FIRST_STEPS: u32 = 8;
 /// Steps between iterations later on.
 const PAUSE: u32 = 4;
 /// The size of the trial displacement, in parts of the largest position.
-const DISPLACEMENT: f64 = 1e-7;
+pub(super) const DISPLACEMENT: f64 = 1e-7;
 /// The fractional part of the golden ratio: its multiples lie evenly, so that no oscillation of equal parts has no share in them.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -28,7 +29,7 @@ pub(super) struct Ring<const N: usize> {
     /// Its frequency, rad/s; 0 where it is not known or there is none.
     pub frequency: f64,
     /// Its direction, of length 1; 0 where it is not known.
-    direction: SVector<f64, N>,
+    pub(super) direction: SVector<f64, N>,
     /// Accepted steps since the restart.
     steps: u32,
     /// Whether the present step has been looked at.
@@ -58,14 +59,12 @@ impl<const N: usize> Ring<N> {
             self.frequency = 0.0;
             return;
         };
-        let is_due = self.steps < FIRST_STEPS || self.steps.is_multiple_of(PAUSE);
-        if self.is_done || !is_due {
+        if !self.is_due() {
             return;
         }
-        self.is_done = true;
         let masked =
             |x: &SVector<f64, N>| SVector::<f64, N>::from_fn(|i, _| if states.contains(&i) { x[i] } else { 0.0 });
-        if self.steps == 0 || self.direction.amax() == 0.0 {
+        if self.begins() {
             // What rang before the branch changed, and a share of everything else.
             let any = SVector::<f64, N>::from_fn(|i, _| 1.0 + fraction(GOLDEN * i as f64));
             self.direction = (self.direction + masked(&any).normalize()).normalize();
@@ -80,8 +79,31 @@ impl<const N: usize> Ring<N> {
         let change = masked(&(moved - second));
         let stiffness = change.norm() / size;
         if stiffness.is_finite() {
-            self.frequency = root(stiffness);
             self.direction = if stiffness > 0.0 { change.normalize() } else { SVector::zeros() };
         }
+        self.found(stiffness);
+    }
+
+    /// Whether it is time to iterate.
+    pub fn is_due(&self) -> bool {
+        !self.is_done && (self.steps < FIRST_STEPS || self.steps.is_multiple_of(PAUSE))
+    }
+
+    /// Whether the direction is to be found anew.
+    pub fn begins(&self) -> bool {
+        self.steps == 0 || self.frequency == 0.0
+    }
+
+    /// An iteration has given this stiffness, rad^2/s^2.
+    pub fn found(&mut self, stiffness: f64) {
+        self.is_done = true;
+        if stiffness.is_finite() {
+            self.frequency = root(stiffness);
+        }
+    }
+
+    /// The error norm that holds a step of size `h` (s) to where the oscillation is stable.
+    pub fn reach(&self, h: f64) -> f64 {
+        power(h * self.frequency / tableau::REACH, tableau::ERROR_ORDER as u32)
     }
 }

@@ -4,8 +4,8 @@
 
 use alloc::vec::Vec;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::inverse::{Inverse, LANES, Lanes};
 use super::pattern::Pattern;

@@ -5,7 +5,9 @@
 
 use alloc::vec::Vec;
 
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
+
+use crate::solve::integrator::Arch;
 
 /// Numbers of states side by side.
 pub(super) const LANES: usize = 4;

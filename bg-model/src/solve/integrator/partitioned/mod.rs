@@ -12,8 +12,8 @@ mod inverse;
 mod pattern;
 mod tableau;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use self::block::Block;
 pub(super) use self::tableau::KennedyCarpenter;

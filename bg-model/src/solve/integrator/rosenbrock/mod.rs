@@ -6,8 +6,8 @@
 mod step;
 mod tableau;
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::tolerances::index_of_largest;
 use super::{Flow, Method, Point, Scale, StepControl, hermite};

@@ -3,8 +3,8 @@
 //! In: a flow, a step, a tableau. Out: the stages' increments, the state at the end, the error estimate. Source: see
 //! `tableau`. The equations are multiplied by h gamma, so that the matrix is I - h gamma J.
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::tableau::Tableau;
 use crate::solve::integrator::linear::{Factors, Jacobian};

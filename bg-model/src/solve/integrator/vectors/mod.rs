@@ -8,11 +8,44 @@
 mod tests;
 
 use nalgebra::SVector;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+use pulp::x86::V3;
 
 use super::{Flow, Point, Scale};
 use crate::model::capability::Elimination;
 use crate::model::linear::Field;
+
+/// The vectors that steps are compiled for. Not [`pulp::Arch`], which has those of AVX-512 besides: one run gains nothing by them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Arch {
+    /// Those of every machine of its kind.
+    Scalar,
+    /// Those of AVX2.
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    V3(V3),
+}
+
+impl Arch {
+    /// The largest of the machine at hand.
+    pub fn new() -> Self {
+        #[cfg(all(feature = "std", target_arch = "x86_64"))]
+        if let Some(machine) = V3::try_new() {
+            return Self::V3(machine);
+        }
+        Self::Scalar
+    }
+
+    /// Calls `of`, compiled for these vectors where it is inlined.
+    #[inline(always)]
+    pub fn dispatch<F: NullaryFnOnce>(self, of: F) -> F::Output {
+        match self {
+            Self::Scalar => of.call(),
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
+            Self::V3(machine) => machine.vectorize(of),
+        }
+    }
+}
 
 /// A method whose attempts are all sums, rates and series.
 pub(super) trait Vectorised<const N: usize> {
@@ -85,10 +118,11 @@ pub(crate) fn rate_in<const N: usize>(
     x: &SVector<f64, N>,
     dx: &mut SVector<f64, N>,
 ) {
-    match arch {
+    if matches!(arch, Arch::Scalar) {
         // The function that there is anyway.
-        Arch::Scalar => flow.rate(t, x, dx),
-        _ => arch.dispatch(Rate { flow, t, x, dx }),
+        flow.rate(t, x, dx);
+    } else {
+        arch.dispatch(Rate { flow, t, x, dx });
     }
 }
 

@@ -1,7 +1,7 @@
 //! The vectors of the machine at hand give the bytes that those of every machine give. (Explicit methods: `explicit::vectors`.)
 
+use crate::solve::integrator::Arch;
 use nalgebra::SVector;
-use pulp::Arch;
 
 use super::rate_in;
 use crate::model::capability::{Elimination, Linearised, Series};

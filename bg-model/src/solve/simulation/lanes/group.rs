@@ -1,0 +1,257 @@
+//! The steps of runs side by side, as far as they are the same operations for all.
+//!
+//! In: where each run stands, the step that it is to try. Out: where that leads, its error, whether it can be taken over without
+//! a closer look. Nothing of one place enters another.
+
+use nalgebra::SVector;
+use pulp::NullaryFnOnce;
+
+use crate::model::scalar::Scalar;
+use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::model::system::System;
+use crate::solve::event::{Readings, Steps};
+use crate::solve::integrator::{Begin, Nystrom, NystromInLanes, Point, Scale, Side};
+
+/// How much less than the projection that is looked at a projection may move a state.
+const CERTAIN: f64 = 0.99;
+
+/// States of all runs.
+type States<V, const N: usize> = SVector<Lanes<V>, N>;
+
+/// Runs side by side where they stand.
+#[derive(Debug)]
+pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
+    t: Lanes<V>,
+    h: Lanes<V>,
+    t_end: Lanes<V>,
+    /// States and rates at the start and at the end of the steps.
+    start: [States<V, N>; 2],
+    end: [States<V, N>; 2],
+    negative: [V::Mask; G],
+    readings: Readings<V, G>,
+    method: NystromInLanes<V, N>,
+}
+
+/// What has come of steps.
+pub(super) struct Tried<V: Vector> {
+    /// The norms of their errors.
+    pub norms: V::Numbers,
+    /// A bit for each that leads to finite states and rates, and is moved by the projection by no more than `moved`.
+    pub fine: u8,
+    /// A bit for each in which all guards keep to their sides.
+    pub clear: u8,
+}
+
+impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
+    pub fn new() -> Self {
+        let zero = Lanes::from_f64(0.0);
+        let none = [SVector::from([zero; N]); 2];
+        Self {
+            t: zero,
+            h: zero,
+            t_end: zero,
+            start: none,
+            end: none,
+            negative: [false.into(); G],
+            readings: Readings::new(),
+            method: NystromInLanes::new(),
+        }
+    }
+
+    /// Takes over a run at a place: where it stands, its branches, the readings of its guards, what its method knows.
+    pub fn load(
+        &mut self,
+        lane: usize,
+        point: &Point<N>,
+        negative: [bool; G],
+        guards: [SVector<f64, G>; 2],
+        method: &Nystrom<N>,
+    ) {
+        let bit = 1 << lane;
+        for (mask, is_negative) in self.negative.iter_mut().zip(negative) {
+            let others = V::bits(*mask) & !bit;
+            *mask = V::mask(others | if is_negative { bit } else { 0 });
+        }
+        V::vectorized(Load { group: self, bit, point, guards: &guards, method });
+    }
+
+    /// Gives back where a run stands at time `t` (s), and what its method knows.
+    pub fn store(&self, lane: usize, t: f64, method: &mut Nystrom<N>) -> Point<N> {
+        self.method.store(lane, method);
+        let of = |states: &States<V, N>| SVector::from_fn(|i, _| states[i].get(lane));
+        Point { t, x: of(&self.start[0]), rate: of(&self.start[1]) }
+    }
+
+    /// The readings of the guards at the end of a run's step: values, slopes (per s), values in its middle.
+    pub fn guards(&self, lane: usize) -> ([SVector<f64, G>; 2], SVector<f64, G>) {
+        let of = |guards: &SVector<Lanes<V>, G>| SVector::from_fn(|k, _| guards[k].get(lane));
+        (self.readings.end.each_ref().map(of), of(&self.readings.middle))
+    }
+
+    /// Iterates towards the fastest oscillations of the runs at the places of `due`; gives their stiffnesses.
+    pub fn follow<Sys>(&mut self, system: &Sys, due: u8) -> V::Numbers
+    where
+        Sys: System<Lanes<V>, N, G>,
+    {
+        V::vectorized(Following { group: self, system, due })
+    }
+
+    /// Tries steps of these sizes to these times (s).
+    pub fn attempt<Sys>(
+        &mut self,
+        system: &Sys,
+        scale: &Scale<N>,
+        moved: f64,
+        h: V::Numbers,
+        t_end: V::Numbers,
+    ) -> Tried<V>
+    where
+        Sys: System<Lanes<V>, N, G>,
+    {
+        (self.h, self.t_end) = (Lanes(V::new(h)), Lanes(V::new(t_end)));
+        V::vectorized(Attempt { group: self, system, scale, moved })
+    }
+
+    /// The steps at the places of `accepted` are made.
+    pub fn advance(&mut self, accepted: u8) {
+        V::vectorized(Advance { group: self, accepted });
+    }
+}
+
+struct Load<'a, V: Vector, const N: usize, const G: usize> {
+    group: &'a mut Group<V, N, G>,
+    bit: u8,
+    point: &'a Point<N>,
+    guards: &'a [SVector<f64, G>; 2],
+    method: &'a Nystrom<N>,
+}
+
+impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Load<'_, V, N, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { group: Group { t, start, readings, method, .. }, bit, point, guards, method: own } = self;
+        let mask = V::mask(bit);
+        *t = Lanes::select(mask, t.alike(point.t), *t);
+        put(&mut start[0], &point.x, mask);
+        put(&mut start[1], &point.rate, mask);
+        for (to, from) in readings.start.iter_mut().zip(guards) {
+            put(to, from, mask);
+        }
+        put(method.direction(), own.direction(), mask);
+    }
+}
+
+/// Puts numbers at the places of `mask`.
+#[inline(always)]
+fn put<V: Vector, const N: usize>(to: &mut States<V, N>, from: &SVector<f64, N>, mask: V::Mask) {
+    for i in 0..N {
+        let to = &mut to.data.0[0][i];
+        *to = Lanes::select(mask, to.alike(from.data.0[0][i]), *to);
+    }
+}
+
+struct Following<'a, V: Vector, Sys, const N: usize, const G: usize> {
+    group: &'a mut Group<V, N, G>,
+    system: &'a Sys,
+    due: u8,
+}
+
+impl<V: Vector, Sys, const N: usize, const G: usize> NullaryFnOnce for Following<'_, V, Sys, N, G>
+where
+    Sys: System<Lanes<V>, N, G>,
+{
+    type Output = V::Numbers;
+
+    #[inline(always)]
+    fn call(self) -> V::Numbers {
+        let Group { t, start: [x, rate], negative, method, .. } = self.group;
+        method.follow(&Side { system: self.system, negative }, V::mask(self.due), *t, x, rate).0.numbers()
+    }
+}
+
+struct Attempt<'a, V: Vector, Sys, const N: usize, const G: usize> {
+    group: &'a mut Group<V, N, G>,
+    system: &'a Sys,
+    scale: &'a Scale<N>,
+    moved: f64,
+}
+
+impl<V: Vector, Sys, const N: usize, const G: usize> NullaryFnOnce for Attempt<'_, V, Sys, N, G>
+where
+    Sys: System<Lanes<V>, N, G>,
+{
+    type Output = Tried<V>;
+
+    #[inline(always)]
+    fn call(self) -> Tried<V> {
+        let Self { group, system, scale, moved } = self;
+        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], negative, readings, method } = group;
+        let (t, h, t_end) = (*t, *h, *t_end);
+        let side = Side { system, negative };
+        let norms = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
+        let mut fine = finite(end);
+        let before = *end;
+        system.inlined_project(t_end, negative, end);
+        if system.joints().is_some() {
+            fine &= near(&before, end, scale, CERTAIN * moved);
+        }
+        side.rate(t_end, end, end_rate);
+        fine &= finite(end_rate);
+        let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
+        let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
+        Tried { norms: norms.0.numbers(), fine, clear }
+    }
+}
+
+/// A bit for each run whose numbers are all finite.
+#[inline(always)]
+fn finite<V: Vector, const N: usize>(of: &States<V, N>) -> u8 {
+    // What is finite times 0 is 0; anything else times 0 is no number.
+    let mut sum = of.data.0[0][0].times(0.0);
+    for value in &of.data.0[0] {
+        sum = sum + value.times(0.0);
+    }
+    V::bits(V::below(sum.abs().0, sum.alike(1.0).0))
+}
+
+/// A bit for each run none of whose states is further from the one before than `most` of what is allowed there.
+#[inline(always)]
+fn near<V: Vector, const N: usize>(before: &States<V, N>, after: &States<V, N>, scale: &Scale<N>, most: f64) -> u8 {
+    let mut near = u8::MAX;
+    for i in 0..N {
+        let (from, to) = (before.data.0[0][i], after.data.0[0][i]);
+        let allowed = scale.allowed(i, to, to.alike(0.0)).times(most);
+        near &= V::bits(V::below((to - from).abs().0, allowed.0));
+    }
+    near
+}
+
+struct Advance<'a, V: Vector, const N: usize, const G: usize> {
+    group: &'a mut Group<V, N, G>,
+    accepted: u8,
+}
+
+impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Advance<'_, V, N, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Group { t, t_end, start, end, readings, .. } = self.group;
+        let accepted = V::mask(self.accepted);
+        *t = Lanes::select(accepted, *t_end, *t);
+        for part in 0..2 {
+            take(&mut start[part], &end[part], accepted);
+            take(&mut readings.start[part], &readings.end[part], accepted);
+        }
+    }
+}
+
+/// Replaces the numbers at the places of `mask`.
+#[inline(always)]
+fn take<V: Vector, const N: usize>(to: &mut States<V, N>, from: &States<V, N>, mask: V::Mask) {
+    for i in 0..N {
+        to.data.0[0][i] = Lanes::select(mask, from.data.0[0][i], to.data.0[0][i]);
+    }
+}

@@ -1,0 +1,305 @@
+//! Runs side by side, in the vectors of the machine: each with its own model, time, steps, branches and events.
+//!
+//! In: runs, one model for as many of them as there are places. Out: what each gives by itself, to the bit. A place whose run is
+//! done takes the next one. What is not the same operations for all (a step with an event, with a sample inside, with a number
+//! that is not finite) its run makes by itself and then comes back. A run that fails is given back to be made by itself from its
+//! start.
+
+mod group;
+
+use nalgebra::SVector;
+
+use super::observer::Observer;
+use super::run::{MOVED, Run};
+use super::settings::{self, Settings, Span};
+use crate::model::reactions::LoopWatch;
+use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::model::system::System;
+use crate::solve::event::Never;
+use crate::solve::finish::{Ended, Finish};
+use crate::solve::integrator::{AnyMethod, Method, Nystrom, Point, Scale};
+use crate::solve::simulation::Samples;
+use crate::solve::stepper::Stepper;
+use group::{Group, Tried};
+
+/// A run to be made.
+pub(crate) struct Job<'a, Mo, O, const N: usize> {
+    /// Its number, for who asked for it.
+    pub number: usize,
+    /// Its model.
+    pub model: &'a Mo,
+    /// The values of its parameters.
+    pub values: &'a [f64],
+    /// A method of its own.
+    pub method: &'a mut AnyMethod<N>,
+    /// Its start.
+    pub start: SVector<f64, N>,
+    /// Who is told of it.
+    pub observer: O,
+}
+
+/// Whether runs of `model` can be made side by side with these settings.
+pub(crate) fn fits<Mo, const N: usize, const G: usize>(model: &Mo, settings: &Settings<N>) -> bool
+where
+    Mo: System<f64, N, G>,
+{
+    let has_loops = model.joints().and_then(LoopWatch::new).is_some();
+    let each_step = settings.samples == Samples::Steps;
+    model.runs_in_lanes() && !has_loops && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
+}
+
+/// A run at its place.
+struct Lane<'a, Mo, O, const N: usize, const G: usize> {
+    number: usize,
+    values: &'a [f64],
+    run: Run<'a, Mo, AnyMethod<N>, Never, N, G>,
+    observer: O,
+}
+
+/// What a run does next.
+enum Next {
+    /// The step of this size to this time, s.
+    Step(f64, f64),
+    /// Nothing more in company.
+    Fails,
+}
+
+impl<'a, Mo, O, const N: usize, const G: usize> Lane<'a, Mo, O, N, G>
+where
+    Mo: System<f64, N, G>,
+    O: Observer<N, G>,
+{
+    /// The run at its start; none where it fails there.
+    fn new(job: Job<'a, Mo, O, N>, span: Span, settings: &'a Settings<N>) -> Result<Self, (usize, O)> {
+        let Job { number, model, values, method, start, mut observer } = job;
+        let control = method.control();
+        let stepper = Stepper::new(model, method, Scale::from(&settings.tolerances), Point::at(span.t0, start));
+        let mut run = Run::new(stepper, Never, control, span, settings);
+        let is_fine = settings::check(model, control, &start, span, settings).is_ok();
+        if !is_fine || run.begin(control, settings).is_err() {
+            return Err((number, observer));
+        }
+        run.sample(&mut observer, span.t0);
+        Ok(Self { number, values, run, observer })
+    }
+
+    fn method(&mut self) -> &mut Nystrom<N> {
+        self.run.stepper.method.nystrom().expect("only runs by this method are side by side")
+    }
+
+    fn is_at_end(&self) -> bool {
+        self.run.stepper.start.t >= self.run.span.t_end
+    }
+
+    /// The next step, not longer than is stable.
+    fn next(&mut self) -> Next {
+        let t = self.run.stepper.start.t;
+        let next_break = self.run.next_break(t);
+        loop {
+            if self.run.pace.is_lost(t) || self.run.attempts >= self.run.limit {
+                return Next::Fails;
+            }
+            let t_new = self.run.pace.next_end(t, next_break);
+            let h = t_new - t;
+            let reach = self.method().reach(h);
+            if reach <= 1.0 {
+                return Next::Step(h, t_new);
+            }
+            self.reject(h, reach);
+        }
+    }
+
+    fn reject(&mut self, h: f64, error: f64) {
+        self.run.attempts += 1;
+        self.run.stepper.statistics.rejected += 1;
+        self.run.pace.reject(h, error);
+    }
+
+    /// Takes over a step of size `h` (s) to `t` (s) with this error.
+    fn accept(&mut self, h: f64, t: f64, error: f64) {
+        self.run.attempts += 1;
+        self.run.faulty = None;
+        self.run.pace.accept(t, h, error);
+        self.run.stepper.statistics.record(h);
+        self.run.stepper.start.t = t;
+        self.method().advance();
+    }
+}
+
+/// Makes the `jobs`, whose method is [`Nystrom`]; `lifted` makes a model of parameters side by side. `done` is told the number of
+/// each run with its observer, and where it has come to: nothing of one that is to be made by itself.
+pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
+    mut jobs: impl Iterator<Item = Job<'a, Mo, O, N>>,
+    lifted: impl Fn(&[Lanes<V>]) -> Li,
+    span: Span,
+    settings: &'a Settings<N>,
+    mut done: impl FnMut(usize, O, Option<Finish<N, G>>),
+) where
+    V: Vector,
+    Mo: System<f64, N, G> + 'a,
+    Li: System<Lanes<V>, N, G>,
+    O: Observer<N, G>,
+{
+    let scale = Scale::from(&settings.tolerances);
+    let mut group = Box::new(Group::<V, N, G>::new());
+    let mut lanes: Vec<Option<Lane<'a, Mo, O, N, G>>> = (0..V::LANES).map(|_| None).collect();
+    let mut system: Option<Li> = None;
+    loop {
+        // Free places take the next runs.
+        let mut is_new = false;
+        for (place, slot) in lanes.iter_mut().enumerate() {
+            while slot.is_none() {
+                let Some(job) = jobs.next() else { break };
+                match Lane::new(job, span, settings) {
+                    Ok(lane) => *slot = Some(lane),
+                    Err((number, observer)) => done(number, observer, None),
+                }
+                is_new |= slot.is_some();
+                if let Some(lane) = slot {
+                    load(&mut group, place, lane);
+                }
+            }
+        }
+        let Some(any) = lanes.iter().flatten().next() else { return };
+        if is_new || system.is_none() {
+            // A free place calculates with what another has.
+            let values = |lane: usize, k: usize| lanes[lane].as_ref().unwrap_or(any).values[k];
+            let packed: Vec<Lanes<V>> = (0..any.values.len()).map(|k| Lanes::each(|lane| values(lane, k))).collect();
+            system = Some(lifted(&packed));
+        }
+        let Some(model) = &system else { return };
+        let finished = round(&mut group, &mut lanes, model, &scale);
+        for (place, slot) in lanes.iter_mut().enumerate() {
+            let ended = finished & 1 << place != 0;
+            let is_at_end = slot.as_ref().is_some_and(Lane::is_at_end);
+            if !(ended || is_at_end) {
+                continue;
+            }
+            let Some(mut lane) = slot.take() else { continue };
+            if !ended {
+                store(&group, place, &mut lane);
+            }
+            let Lane { number, run, observer, .. } = lane;
+            done(number, observer, is_at_end.then(|| run.finish(Ended::AtEnd)));
+        }
+    }
+}
+
+/// A step, or an attempt at one, of each run; gives a bit for each run that cannot go on in company.
+fn round<V, Mo, Li, O, const N: usize, const G: usize>(
+    group: &mut Group<V, N, G>,
+    lanes: &mut [Option<Lane<'_, Mo, O, N, G>>],
+    model: &Li,
+    scale: &Scale<N>,
+) -> u8
+where
+    V: Vector,
+    Mo: System<f64, N, G>,
+    Li: System<Lanes<V>, N, G>,
+    O: Observer<N, G>,
+{
+    let has_second = model.second_order().is_some();
+    let (mut due, mut alone, mut failed) = (0_u8, 0_u8, 0_u8);
+    for (place, lane) in lanes.iter_mut().enumerate().filter_map(|(place, lane)| Some((place, lane.as_mut()?))) {
+        match lane.method().is_due(has_second) {
+            Some(true) => due |= 1 << place,
+            Some(false) => {}
+            None => alone |= 1 << place,
+        }
+    }
+    if due != 0 {
+        let stiffnesses = group.follow(model, due);
+        for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| due & 1 << place != 0) {
+            let Some(lane) = lane else { continue };
+            lane.method().stiffness(stiffnesses.as_ref()[place]);
+            lane.run.stepper.statistics.rate_evaluations += 1;
+        }
+    }
+    let mut sizes = V::filled(0.0).numbers();
+    let mut ends = sizes;
+    let mut tried = 0_u8;
+    for (place, lane) in lanes.iter_mut().enumerate() {
+        let Some(lane) = lane else { continue };
+        if alone & 1 << place != 0 {
+            continue;
+        }
+        match lane.next() {
+            Next::Step(h, t_new) => {
+                (sizes.as_mut()[place], ends.as_mut()[place]) = (h, t_new);
+                tried |= 1 << place;
+            }
+            Next::Fails => failed |= 1 << place,
+        }
+    }
+    let mut accepted = 0_u8;
+    if tried != 0 {
+        let Tried { norms, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
+        for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| tried & 1 << place != 0) {
+            let Some(lane) = lane else { continue };
+            let (bit, h, t_new) = (1 << place, sizes.as_ref()[place], ends.as_ref()[place]);
+            let (norm, reach) = (norms.as_ref()[place], lane.method().reach(h));
+            let error = if norm < reach { reach } else { norm };
+            if error > 1.0 {
+                lane.reject(h, error);
+                lane.run.stepper.statistics.rate_evaluations += STAGES;
+                continue;
+            }
+            let is_quiet = fine & bit != 0 && !lane.run.sampling.is_due(t_new) && {
+                let (end, middle) = group.guards(place);
+                let negative = lane.run.stepper.negative;
+                lane.run.watch.pass(negative, end, &middle, h, clear & bit != 0)
+            };
+            if is_quiet {
+                lane.run.stepper.statistics.rate_evaluations += STAGES + 1;
+                lane.run.stepper.statistics.guard_evaluations += if G == 0 { 0 } else { GUARDS };
+                lane.accept(h, t_new, error);
+                accepted |= bit;
+            } else {
+                alone |= bit;
+            }
+        }
+    }
+    group.advance(accepted);
+    for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| alone & 1 << place != 0) {
+        let Some(lane) = lane else { continue };
+        store(group, place, lane);
+        match lane.run.advance(&mut lane.observer) {
+            Ok(_) => load(group, place, lane),
+            Err(_) => failed |= 1 << place,
+        }
+    }
+    failed
+}
+
+/// The rates of an attempt, without that at its start.
+const STAGES: u64 = 8;
+/// The evaluations of the guards in a step that has no event.
+const GUARDS: u64 = 3;
+
+/// Takes a run over into the group.
+fn load<V, Mo, O, const N: usize, const G: usize>(
+    group: &mut Group<V, N, G>,
+    place: usize,
+    lane: &mut Lane<'_, Mo, O, N, G>,
+) where
+    V: Vector,
+    Mo: System<f64, N, G>,
+    O: Observer<N, G>,
+{
+    let (start, negative, guards) = (lane.run.stepper.start, lane.run.stepper.negative, lane.run.watch.at_start());
+    group.load(place, &start, negative, guards, lane.method());
+}
+
+/// Gives a run back what the group knows of it.
+fn store<V, Mo, O, const N: usize, const G: usize>(
+    group: &Group<V, N, G>,
+    place: usize,
+    lane: &mut Lane<'_, Mo, O, N, G>,
+) where
+    V: Vector,
+    Mo: System<f64, N, G>,
+    O: Observer<N, G>,
+{
+    let t = lane.run.stepper.start.t;
+    lane.run.stepper.start = group.store(place, t, lane.method());
+}
