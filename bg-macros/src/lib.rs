@@ -697,7 +697,7 @@ use proc_macro::TokenStream;
 /// | `tune { a, b }` | the parameters that stay adjustable, and the only fields of the scene's parameter struct; the others are their defaults, as numbers. Without it all stay; `tune {}` keeps none; `tune all but { c }` keeps the others |
 /// | `without { a, b }` | joints, contacts, springs, drives, frictions, stops, orifices or elements that are not there, with their bonds |
 /// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
-/// | `independent speeds;` | momenta and positions of bodies that rigid joints determine are expressions of the others: fewer states and operations, reactions only of rows that close loops. For mechanisms that do not pass singular poses, as a slider-crank's dead centre with equal links: near one the steps become too small and the run ends with an error |
+/// | `independent speeds;` | momenta and positions of bodies that rigid joints determine are expressions of the others: fewer states and operations, reactions only of rows that close loops. Singular poses are passed as with the reactions of all joints |
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
 /// | `expect integral causality;` | an error (BG0403) where a storage is in [derivative causality](#derivative-causality) |
 /// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |

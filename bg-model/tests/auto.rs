@@ -2,9 +2,11 @@
 
 mod problems;
 
+use bg_model::bond_graph;
 use bg_model::integrator::{Auto, Cfmr7, Dop853, Method, Radau9, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Finish, Settings, Span, integrate};
+use bg_model::system::Model;
 use problems::*;
 
 /// A run to `t_end` (s) from t = 0, and when which method took over.
@@ -62,6 +64,42 @@ fn races_of_explicit_methods_cost_no_more_than_a_fiftieth() {
             );
             assert_eq!(last, "DOP853", "{tolerance:e}");
         }
+    }
+}
+
+bond_graph! {
+    /// Two masses on damped springs, one of which stiffens.
+    pub graph Swing {
+        param coupling: N/m = 25;
+        param loss: N*s/m = 0.02;
+        1 first: translation;
+        1 second: translation;
+        0 between: translation;
+        I m1 = 1; I m2 = 0.7;
+        C left(q) = 40 * q + 90 * q * q * q start 0.3;
+        C right = coupling start -0.2;
+        R damper = loss;
+        first -> m1; first -> left; first -> damper;
+        first -> between; between -> second; between -> right; second -> m2;
+        observe { x: m = left.q; y: m = right.q }
+    }
+}
+
+/// The methods of a run of the masses to 100 s, at a relative tolerance.
+fn methods_of_swing(tolerance: f64) -> Vec<&'static str> {
+    let (model, mut method) = (Swing::new(SwingParameters::default()).unwrap(), Auto::new());
+    let span = Span { t0: 0.0, t_end: 100.0 };
+    integrate(&model, &mut method, &model.start().unwrap(), span, &settings(tolerance), &mut ()).unwrap();
+    method.changes().iter().map(|change| change.method).collect()
+}
+
+#[test]
+fn taylor_series_take_over_where_they_get_further_with_their_price() {
+    for tolerance in [1e-9, 1e-12] {
+        assert_eq!(methods_of_swing(tolerance), ["Taylor"], "{tolerance:e}");
+    }
+    for tolerance in [1e-2, 1e-4] {
+        assert!(!methods_of_swing(tolerance).contains(&"Taylor"), "{tolerance:e}");
     }
 }
 

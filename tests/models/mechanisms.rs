@@ -47,6 +47,7 @@ bond_graph! {
         observe { B0: m = first.rod.head.position; v0: m/s = first.rod.head.velocity; all of first; all of square }
         scenes only;
         scene DoubleFourBar { expect planar; }
+        scene FourBarsBySpeeds { independent speeds; expect planar; expect states = 15; }
     }
 
     /// A rod of the governor, 1 m and 0.3 kg, with 5 kg at its end, a point of mass.

@@ -69,10 +69,28 @@ pub trait Series<S: Scalar, const N: usize, const G: usize> {
     /// How many numbers each order takes as work space.
     fn width(&self) -> usize;
 
+    /// What a series costs beside a rate; none by default. `auto` compares methods by it.
+    fn operations(&self) -> Option<Operations> {
+        None
+    }
+
     /// Writes the Taylor series of the states from time `t` (s) on: `series[0]` is the state there, `series[k]` becomes the
     /// coefficient of the k-th power of (time - `t`) / `h`, which has the state's unit. `rows` has at least
     /// [`Series::width`] numbers for each `k` but the last.
     fn expand(&self, t: S, h: S, negative: &[S::Switch; G], rows: &mut [S], series: &mut [SVector<S, N>]);
+}
+
+/// Operations of a rate and of its Taylor series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Operations {
+    /// Of a rate.
+    pub rate: u32,
+    /// Of each order of the series, without what follows.
+    pub order: u32,
+    /// The products that each order sums over all lower ones, side by side.
+    pub products: u32,
+    /// The same, one after the other: for quotients and functions.
+    pub sums: u32,
 }
 
 /// A system whose joints hold motions.

@@ -23,9 +23,10 @@ pub struct Slip {
 /// What the joints of a system hold.
 ///
 /// [`Joints::hold`](crate::capability::Joints::hold) writes, one after the other: the flow of each rigid motion, the flow of
-/// each compliant one, the gap of each rigid motion (its integral as the poses have it, 0 where they do not), the lower
-/// triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it changes
-/// the rate of each moved state.
+/// each compliant one, the gap of each rigid motion (its integral as the poses have it, 0 where they do not), its mobility (how
+/// much one unit of its reaction changes the rate of its flow while no other joint holds anything: A_ii where no rows are solved),
+/// the lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it
+/// changes the rate of each moved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Held {
     /// The motions that rigid joints hold, each with a reaction.
@@ -54,7 +55,7 @@ impl Held {
     #[must_use]
     pub const fn entries(&self) -> usize {
         let reactions = self.rigid.len();
-        2 * reactions + self.compliant.len() + reactions * (reactions + 1) / 2 + reactions * self.moved.len()
+        3 * reactions + self.compliant.len() + reactions * (reactions + 1) / 2 + reactions * self.moved.len()
     }
 }
 
@@ -71,7 +72,7 @@ pub struct Stop {
 ///
 /// [`Impacts::impact`](crate::capability::Impacts::impact) writes, one after the other: the flow of each rigid motion and of each
 /// stop, positive towards it; of each stop the restitution, the speed of a rebound below which something rests on it (-1 where
-/// the accuracy of the run decides), and the rate of its flow; the lower triangle of the symmetric, negative definite matrix A
+/// the accuracy of the run decides), and the rate of its flow; the mobility of each rigid motion; the lower triangle of the symmetric, negative definite matrix A
 /// by rows, where impulses L change the flows by A L; and for each row by how much one unit of its impulse changes the moved
 /// states, then the integrals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +101,7 @@ impl Stops {
     pub const fn entries(&self) -> usize {
         let rows = self.rows();
         let moves = rows * (self.moved.len() + self.integrals.len());
-        rows + 3 * self.stops.len() + rows * (rows + 1) / 2 + moves
+        rows + 3 * self.stops.len() + self.rigid + rows * (rows + 1) / 2 + moves
     }
 }
 

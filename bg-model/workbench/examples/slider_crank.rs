@@ -83,6 +83,7 @@ bond_graph! {
         /// Links on pins and a slide that do not give.
         scene RigidSliderCrank {
             rigid joints;
+            independent speeds;
             observe {
                 angle: rad = crank.angle;
                 speed: rad/s = pin_o.speed;
@@ -97,7 +98,7 @@ bond_graph! {
             }
             tune { torque, crank_angle, crank_length, rod_length }
             expect planar;
-            expect states = 18;
+            expect states = 6;
         }
     }
 }

@@ -31,8 +31,18 @@ pub(super) struct Reads {
     pub found: usize,
 }
 
-/// How many numbers each order takes, and the body of `expand`, from the routine of the rates.
-pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> (usize, TokenStream) {
+/// The code of a series.
+pub(super) struct Expansion {
+    /// How many numbers each order takes.
+    pub width: usize,
+    /// What it costs, as the fields of `Operations`.
+    pub operations: TokenStream,
+    /// The body of `expand`.
+    pub body: TokenStream,
+}
+
+/// The code of a series, from the routine of the rates.
+pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expansion {
     let changes = changing(&routine.assignments);
     let (moving, fixed): (Vec<_>, Vec<_>) =
         routine.assignments.iter().cloned().partition(|assignment| changes[assignment.target as usize]);
@@ -100,7 +110,37 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> (usi
             series[k + 1].data.0 = [[#(#order_rates * part),*]];
         }
     };
-    (places, body)
+    let operations = operations(routine, &counted, *found > 0);
+    Expansion { width: places, operations, body }
+}
+
+/// What an order costs beside a rate; where iterations find something, it is gone through twice.
+fn operations(routine: &Routine, counted: &Writer, is_twice: bool) -> TokenStream {
+    let (mut order, mut sums) = (routine.results.len(), 0);
+    let is_changing = |operand: &Operand| counted.is_changing(operand);
+    for Assignment { target, operation } in &routine.assignments {
+        if !counted.changes[*target as usize] {
+            continue;
+        }
+        order += match operation {
+            // Two products with the values at the start, and what is known already.
+            Operation::Multiply(..) if counted.is_product(operation) => 4,
+            Operation::Divide(_, divisor) if is_changing(divisor) => {
+                sums += 1;
+                2
+            }
+            Operation::Call(function, _) => {
+                sums += if matches!(function, Function::Abs | Function::Sqrt) { 1 } else { 2 };
+                4
+            }
+            Operation::Add(a, b) | Operation::Subtract(a, b) => usize::from(is_changing(a) && is_changing(b)),
+            _ => 1,
+        };
+    }
+    let passes = if is_twice { 2 } else { 1 };
+    let [rate, order, products, sums] =
+        [routine.counts.total(), passes * order, counted.products, passes * sums].map(Literal::usize_unsuffixed);
+    quote!(rate: #rate, order: #order, products: #products, sums: #sums)
 }
 
 /// Which assignments change with time.

@@ -13,7 +13,7 @@ use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::equations::definite::Factors;
 use crate::system::equations::{Holding, Kind, StateEquations};
 
-/// D over A_ii, the squared sine of the angle between a row and those before it, at which the projection is damped by half.
+/// D over the mobility, the squared sine of the angle between a row and those before it, at which the projection is damped by half.
 const NEAR: f64 = 1e-8;
 
 /// Adds the projection onto what rigid joints hold, unless Baumgarte's terms stand for it.
@@ -24,7 +24,7 @@ pub fn complete(equations: &mut StateEquations) {
     let StateEquations { pool, holding, .. } = equations;
     let rows = &holding.rigid;
     let factors = Factors::of(pool, &holding.matrix, |pool, row, pivot, entry| match rows[row].kept {
-        Some(kept) => damped(pool, kept, pivot, entry),
+        Some(kept) => damped(pool, kept, pivot, rows[row].mobility.unwrap_or(entry)),
         None => pool.powi(pivot, -1),
     });
     let zero = pool.zero();
@@ -38,9 +38,9 @@ pub fn complete(equations: &mut StateEquations) {
 
 /// 1 / D of a row that may follow from others: 0 where it does, small where it nearly does. Near a singular pose a gap is
 /// closed over several steps.
-fn damped(pool: &mut Pool, kept: u32, pivot: Id, entry: Id) -> Id {
+fn damped(pool: &mut Pool, kept: u32, pivot: Id, mobility: Id) -> Id {
     let kept = pool.symbol(Symbol::Kept(kept));
-    let (square, least) = (pool.powi(pivot, 2), pool.powi(entry, 2));
+    let (square, least) = (pool.powi(pivot, 2), pool.powi(mobility, 2));
     let divisor = pool.linear(0.0, &[(square, 1.0), (least, NEAR * NEAR)]);
     let inverse = pool.div(pivot, divisor);
     pool.mul(kept, inverse)

@@ -1,8 +1,9 @@
 //! A = L D L^T of a symmetric definite matrix, with the rows that follow from those before them.
 //!
-//! Method: Golub and Van Loan, Matrix Computations, algorithm 4.1.2, without pivots, as in the generated rates. D_i / A_ii
-//! is the squared sine of the angle between row i of the constraints and the plane of those before it, in the metric of
-//! the inverse masses.
+//! Method: Golub and Van Loan, Matrix Computations, algorithm 4.1.2, without pivots, as in the generated rates. D_i over the
+//! mobility of row i is the squared sine of the angle between this row of the constraints and the plane of those before it, in the
+//! metric of the inverse masses. The mobility is A_ii where the matrix has all rows; where rows are solved it has those that are left
+//! beside these, and A_ii itself vanishes where one follows from them.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -10,12 +11,27 @@ use alloc::vec::Vec;
 use super::{Redundancy, Slip};
 use crate::model::scalar::Scalar;
 
-/// A pivot below this part of the entry it came from follows from the rows before it. Rounding leaves some 1e-15 of the
-/// entry, so five digits of the reactions are left here, and a row that does follow comes out far below.
+/// A pivot below this part of the row's mobility follows from the rows before it. Rounding leaves some 1e-15 of
+/// that, so five digits of the reactions are left here, and a row that does follow comes out far below.
 pub(super) const DISTINCT: f64 = 1e-10;
 
 /// A part of a row that is smaller beside it is rounding.
 const PART: f64 = 1e-6;
+
+/// A symmetric definite matrix.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Matrix<'a, S> {
+    /// Its lower triangle by rows.
+    pub lower: &'a [S],
+    /// The mobilities of the first rows; those of the others are their entries on the diagonal.
+    pub mobilities: &'a [S],
+}
+
+impl<S> Matrix<'_, S> {
+    fn rows(&self) -> usize {
+        (0..).find(|&n| row(n) == self.lower.len()).expect("the length of a triangle")
+    }
+}
 
 /// The factors.
 #[derive(Clone, Debug)]
@@ -24,8 +40,8 @@ pub(super) struct Factors<S> {
     rows: Vec<S>,
     /// Rows that follow from those before them; they take no part in what comes after.
     follows: Vec<bool>,
-    /// A_ii.
-    diagonal: Vec<S>,
+    /// The mobilities.
+    mobilities: Vec<S>,
 }
 
 /// Where row `i` of a packed lower triangle begins.
@@ -37,39 +53,38 @@ impl<S: Scalar> Factors<S> {
     /// Room for `n` rows.
     pub fn new(n: usize) -> Self {
         let zero = S::from_f64(0.0);
-        Self { rows: vec![zero; row(n)], follows: vec![false; n], diagonal: vec![zero; n] }
+        Self { rows: vec![zero; row(n)], follows: vec![false; n], mobilities: vec![zero; n] }
     }
 
-    /// The factors of the lower triangle `matrix`.
-    pub fn of(matrix: &[S]) -> Self {
-        let n = (0..).find(|&n| row(n) == matrix.len()).expect("the length of a triangle");
-        let mut factors = Self::new(n);
-        factors.factor_where(matrix, |_, pivot, entry| pivot <= DISTINCT * entry);
+    /// The factors of a matrix.
+    pub fn of(matrix: Matrix<'_, S>) -> Self {
+        let mut factors = Self::new(matrix.rows());
+        factors.factor_where(matrix, |_, pivot, mobility| pivot <= DISTINCT * mobility);
         factors
     }
 
-    /// The factors of the lower triangle `matrix` without the rows that are `dropped`.
-    pub fn without(matrix: &[S], dropped: &[bool]) -> Self {
+    /// The factors of a matrix without the rows that are `dropped`.
+    pub fn without(matrix: Matrix<'_, S>, dropped: &[bool]) -> Self {
         let mut factors = Self::new(dropped.len());
         factors.factor_where(matrix, |row, _, _| dropped[row]);
         factors
     }
 
-    /// How many rows of the lower triangle `matrix` do not follow from others, without those that are `left_out`.
-    pub fn rank(matrix: &[S], left_out: &[bool]) -> usize {
+    /// How many rows of a matrix do not follow from others, without those that are `left_out`.
+    pub fn rank(matrix: Matrix<'_, S>, left_out: &[bool]) -> usize {
         let mut factors = Self::new(left_out.len());
-        factors.factor_where(matrix, |row, pivot, entry| left_out[row] || pivot <= DISTINCT * entry);
+        factors.factor_where(matrix, |row, pivot, mobility| left_out[row] || pivot <= DISTINCT * mobility);
         factors.follows.iter().filter(|&&follows| !follows).count()
     }
 
-    /// Replaces the factors by those of the lower triangle `matrix`; `follows` says of a row, its pivot and its entry on the
-    /// diagonal whether it takes no part. Allocates nothing.
-    pub fn factor_where(&mut self, matrix: &[S], follows: impl Fn(usize, f64, f64) -> bool) {
-        self.rows.copy_from_slice(matrix);
+    /// Replaces the factors by those of a matrix; `follows` says of a row, its pivot and its mobility whether it takes no part.
+    /// Allocates nothing.
+    pub fn factor_where(&mut self, matrix: Matrix<'_, S>, follows: impl Fn(usize, f64, f64) -> bool) {
+        self.rows.copy_from_slice(matrix.lower);
         for i in 0..self.follows.len() {
             let (above, rest) = self.rows.split_at_mut(row(i));
             let own = &mut rest[..=i];
-            self.diagonal[i] = own[i];
+            self.mobilities[i] = matrix.mobilities.get(i).copied().unwrap_or(own[i]);
             // The entries are L_ij D_j until all of them are known.
             for j in 0..i {
                 for k in 0..j {
@@ -84,9 +99,9 @@ impl<S: Scalar> Factors<S> {
                 own[j] = scaled / above[row(j) + j];
                 own[i] = own[i] - scaled * own[j];
             }
-            let (pivot, entry) = (own[i].to_f64().abs(), self.diagonal[i].to_f64().abs());
+            let (pivot, mobility) = (own[i].to_f64().abs(), self.mobilities[i].to_f64().abs());
             // What is not a number is for the rate to find.
-            self.follows[i] = follows(i, pivot, entry);
+            self.follows[i] = follows(i, pivot, mobility);
         }
     }
 
@@ -170,9 +185,9 @@ impl<S: Scalar> Factors<S> {
         for &i in rows {
             found.directions.extend(Some(slips[i].direction).filter(|direction| !direction.is_empty()));
             self.combination(i, &mut parts);
-            let own = self.diagonal[i].to_f64().abs();
+            let own = self.mobilities[i].to_f64().abs();
             for (j, slip) in slips[..i].iter().enumerate() {
-                let part = parts[j].to_f64() * (self.diagonal[j].to_f64().abs() / own).sqrt();
+                let part = parts[j].to_f64() * (self.mobilities[j].to_f64().abs() / own).sqrt();
                 if part.abs() > PART && slip.joint != joint && !found.others.contains(&slip.joint) {
                     found.others.push(slip.joint);
                 }
@@ -196,6 +211,10 @@ mod tests {
         (0..rows.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| dot(&rows[i], &rows[j])).collect()
     }
 
+    fn factors(lower: &[f64]) -> Factors<f64> {
+        Factors::of(Matrix { lower, mobilities: &[] })
+    }
+
     #[test]
     fn a_definite_matrix_of_either_sign_is_solved() {
         let rows = [[2.0, 1.0, 0.0], [1.0, 3.0, -1.0], [0.5, 0.0, 1.0]];
@@ -204,7 +223,7 @@ mod tests {
             let matrix: Vec<f64> = triangle(&rows).iter().map(|entry| sign * entry).collect();
             let entry = |i: usize, j: usize| matrix[row(i.max(j)) + i.min(j)];
             let b: Vec<f64> = (0..3).map(|i| (0..3).map(|j| entry(i, j) * x[j]).sum()).collect();
-            let factors = Factors::of(&matrix);
+            let factors = factors(&matrix);
             assert!(factors.solved(&b).iter().zip(x).all(|(y, x)| (y - x).abs() < 1e-14));
             assert_eq!(factors.redundancy(&[slip("a", ""), slip("b", ""), slip("c", "")], &[false; 3]), None);
         }
@@ -215,7 +234,7 @@ mod tests {
         let slips = [slip("a", "in x"), slip("b", "in y"), slip("c", "in x"), slip("d", "in z"), slip("c", "in y")];
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 2.0]);
         let twice: [f64; 3] = core::array::from_fn(|k| 0.1 * x[k] + 0.3 * y[k]);
-        let factors = Factors::of(&triangle(&[x, y, twice, z, y]));
+        let factors = factors(&triangle(&[x, y, twice, z, y]));
         let expected = Redundancy { joint: "c", directions: vec!["in x", "in y"], others: vec!["a", "b"] };
         let found = factors.redundancy(&slips, &[false; 5]).unwrap();
         assert_eq!(found, expected);
@@ -229,10 +248,16 @@ mod tests {
     #[test]
     fn an_angle_of_a_hundred_thousandth_is_the_limit() {
         let slips = [slip("a", ""), slip("b", "")];
-        let at = |angle: f64| Factors::of(&triangle(&[[1.0, 0.0, 0.0], [angle.cos(), angle.sin(), 0.0]]));
+        let at = |angle: f64| factors(&triangle(&[[1.0, 0.0, 0.0], [angle.cos(), angle.sin(), 0.0]]));
         assert!(at(2e-5).redundancy(&slips, &[false; 2]).is_none());
         assert!(at(0.5e-5).redundancy(&slips, &[false; 2]).is_some());
-        let nothing = Factors::of(&triangle(&[[0.0; 3]])).redundancy(&slips[..1], &[false]).unwrap();
+        let nothing = factors(&triangle(&[[0.0; 3]])).redundancy(&slips[..1], &[false]).unwrap();
         assert_eq!(nothing.to_string(), "rigid joint `a` holds what cannot move anyway");
+    }
+    /// A row of which others are solved may have any size: beside its mobility a pivot is what it is with all rows.
+    #[test]
+    fn a_pivot_is_judged_beside_the_mobility() {
+        let of = |pivot: f64| Factors::of(Matrix { lower: &[pivot], mobilities: &[3.0] });
+        assert!(!of(4e-10).follows(0) && of(2e-10).follows(0));
     }
 }

@@ -16,7 +16,7 @@ use alloc::vec::Vec;
 
 use nalgebra::SVector;
 
-use super::factors::{DISTINCT, Factors};
+use super::factors::{DISTINCT, Factors, Matrix};
 use crate::model::capability::Impacts;
 use crate::model::holding::{Stop, Stops};
 use crate::model::scalar::Scalar;
@@ -205,10 +205,10 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
         (0..self.table.rows()).fold(0.0, |largest, row| largest.max(Self::flow(&self.before, row).abs()))
     }
 
-    fn matrix<'a>(&self, entries: &'a [S]) -> &'a [S] {
+    fn matrix<'a>(&self, entries: &'a [S]) -> Matrix<'a, S> {
         let rows = self.table.rows();
-        let first = rows + 3 * self.table.stops.len();
-        &entries[first..first + rows * (rows + 1) / 2]
+        let (mobilities, rest) = entries[rows + 3 * self.table.stops.len()..].split_at(self.table.rigid);
+        Matrix { lower: &rest[..rows * (rows + 1) / 2], mobilities }
     }
 
     /// How much one unit of a row's impulse changes the moved states, then the integrals.
@@ -277,15 +277,16 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
             self.part[row] = if is_out { S::from_f64(0.0) } else { self.after[row] - self.target[row] };
         }
         let mut factors = core::mem::replace(&mut self.factors, Factors::new(0));
-        factors
-            .factor_where(self.matrix(&self.after), |row, pivot, entry| self.is_out(row) || pivot <= DISTINCT * entry);
+        factors.factor_where(self.matrix(&self.after), |row, pivot, mobility| {
+            self.is_out(row) || pivot <= DISTINCT * mobility
+        });
         factors.solve(&mut self.part);
         self.factors = factors;
     }
 
     /// The last stop whose impulse pulls, or that gives none and is passed.
     fn wrong(&self, scale: f64) -> Option<usize> {
-        let (rigid, matrix) = (self.table.rigid, self.matrix(&self.after));
+        let (rigid, matrix) = (self.table.rigid, self.matrix(&self.after).lower);
         let entry = |i: usize, j: usize| matrix[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)];
         let changed = |row: usize| {
             let parts = (0..self.part.len()).map(|j| (entry(row, j) * self.part[j]).to_f64());

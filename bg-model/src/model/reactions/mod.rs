@@ -25,7 +25,7 @@ use crate::model::holding::{FITTING, Held, Redundancy, Slip, Slipping};
 use crate::model::nearest::{lifted, nearest};
 use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign};
-use factors::Factors;
+use factors::{Factors, Matrix};
 pub(crate) use impact::{After, Collision};
 pub use shared::{kept, redundant, share};
 pub(crate) use watch::{Broken, LoopWatch};
@@ -67,17 +67,18 @@ impl<S: Scalar> Hold<S> {
         &self.entries[..self.held.rigid.len() + self.held.compliant.len()]
     }
 
-    /// The lower triangle of A by rows.
-    fn matrix(&self) -> &[S] {
+    /// A.
+    fn matrix(&self) -> Matrix<'_, S> {
         let reactions = self.held.rigid.len();
-        let first = self.flows().len() + reactions;
-        &self.entries[first..first + reactions * (reactions + 1) / 2]
+        let rest = &self.entries[self.flows().len() + reactions..];
+        let (mobilities, rest) = rest.split_at(reactions);
+        Matrix { lower: &rest[..reactions * (reactions + 1) / 2], mobilities }
     }
 
     /// What one unit of a reaction changes, state by state of [`Held::moved`].
     fn moves(&self, reaction: usize) -> &[S] {
         let width = self.held.moved.len();
-        let first = self.flows().len() + self.held.rigid.len() + self.matrix().len() + reaction * width;
+        let first = self.entries.len() - (self.held.rigid.len() - reaction) * width;
         &self.entries[first..first + width]
     }
 

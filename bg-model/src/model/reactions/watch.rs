@@ -18,10 +18,10 @@ use crate::model::holding::{Redundancy, Slipping};
 const FOLLOWING: f64 = 1e-6;
 /// How much faster than the fastest of the others it may be: Baumgarte's terms leave some flow.
 const FASTER: f64 = 1e3;
-/// A pivot below this part of its entry is of a pose 1e-4 rad from a singular one. Two steps in a row that end there creep.
+/// A pivot below this part of its row's mobility is of a pose 1e-4 rad from a singular one. Two steps in a row that end there creep.
 const NEAR: f64 = 1e-8;
 
-/// A pivot below this part of its entry is of a pose in whose neighbourhood steps err much in what joints hold, some 6 degrees from
+/// A pivot below this part of its row's mobility is of a pose in whose neighbourhood steps err much in what joints hold, some 6 degrees from
 /// a singular one.
 const AROUND: f64 = 1e-2;
 
@@ -79,7 +79,7 @@ impl LoopWatch {
     {
         let Self { hold, factors, dropped, .. } = self;
         hold.read(joints, t, x, negative);
-        factors.factor_where(hold.matrix(), |row, pivot, entry| dropped[row] || pivot <= AROUND * entry);
+        factors.factor_where(hold.matrix(), |row, pivot, mobility| dropped[row] || pivot <= AROUND * mobility);
         (0..dropped.len()).any(|row| factors.follows(row) && !dropped[row])
     }
 
@@ -99,7 +99,7 @@ impl LoopWatch {
     /// The joint that holds almost what others hold, for the second time in a row.
     fn singular(&mut self) -> Option<Redundancy> {
         let Self { hold, factors, dropped, was_near } = self;
-        factors.factor_where(hold.matrix(), |row, pivot, entry| dropped[row] || pivot <= NEAR * entry);
+        factors.factor_where(hold.matrix(), |row, pivot, mobility| dropped[row] || pivot <= NEAR * mobility);
         let found = (0..dropped.len()).find(|&row| factors.follows(row) && !dropped[row]);
         let is_creeping = core::mem::replace(was_near, found.is_some());
         found.filter(|_| is_creeping).map(|row| factors.shared(hold.held.rigid, &[row]))

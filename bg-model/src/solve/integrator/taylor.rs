@@ -108,10 +108,18 @@ impl<const N: usize> Taylor<N> {
         let power = if theta == 1.0 { 1.0 } else { libm::pow(theta, k as f64) };
         power * largest::<N>(&core::array::from_fn(|i| (self.series[k].data.0[0][i] * weights[i]).abs()))
     }
+
+    /// Whether a step of the series of `h` (s) from `start` meets the tolerances. The method begins anew after it.
+    pub(super) fn reaches(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+        let mut end = start.x;
+        let norm = self.attempt(flow, start, h, scale, &mut end);
+        self.restart();
+        norm <= 1.0 && !self.is_by_other && is_finite(&end)
+    }
 }
 
 /// The order for a relative tolerance, even: by measurement on the hacksaw, where two more or less cost some percent.
-fn order_for(relative: f64) -> usize {
+pub(super) fn order_for(relative: f64) -> usize {
     let half = libm::round(2.9 - 0.625 * libm::log10(relative));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 4 to 15")]
     let half = half.clamp(4.0, 15.0) as usize;

@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use nalgebra::SVector;
 
-use crate::model::capability::{Elimination, Linearised, SecondOrder, Series};
+use crate::model::capability::{Elimination, Linearised, Operations, SecondOrder, Series};
 use crate::model::linear::{Sparsity, differences};
 use crate::model::system::System;
 use crate::solve::integrator::Flow;
@@ -137,6 +137,10 @@ where
 {
     fn width(&self) -> usize {
         self.system.width()
+    }
+
+    fn operations(&self) -> Option<Operations> {
+        self.system.operations()
     }
 
     #[inline(always)]

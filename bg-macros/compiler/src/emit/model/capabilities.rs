@@ -118,15 +118,19 @@ impl Emission<'_> {
         });
         let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
         let reads = series::Reads { values: quote!(#inputs #first), states, found };
-        let (width, expansion) = self.with_names(|names| series::expansion(routine, names, &reads));
+        let series::Expansion { width, operations, body } =
+            self.with_names(|names| series::expansion(routine, names, &reads));
         quote! {
             impl<S: Scalar> ::bg_model::capability::Series<S, #n, #g> for Model<S> {
                 fn width(&self) -> usize {
                     #width
                 }
+                fn operations(&self) -> Option<::bg_model::capability::Operations> {
+                    Some(::bg_model::capability::Operations { #operations })
+                }
                 #[cfg_attr(not(debug_assertions), inline(always))]
                 fn expand(&self, t: S, h: S, negative: &[S::Switch; #g], rows: &mut [S], series: &mut [SVector<S, #n>]) {
-                    #expansion
+                    #body
                 }
             }
         }

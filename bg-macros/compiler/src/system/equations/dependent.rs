@@ -229,6 +229,7 @@ impl Signals<'_> {
             flow,
             kept: None,
             gap: None,
+            mobility: None,
         };
         excess.into_iter().enumerate().map(slip).collect()
     }

@@ -99,7 +99,15 @@ impl Signals<'_> {
         self.guard(friction, rest, ways);
         let against = self.sliding(friction);
         let unit = self.graph.bond(self.graph.node(friction.node).bonds[0]).flow_unit();
-        let slip = Slip { joint, direction: String::new(), unit, flow: friction.flow.0[0], kept: None, gap: None };
+        let slip = Slip {
+            joint,
+            direction: String::new(),
+            unit,
+            flow: friction.flow.0[0],
+            kept: None,
+            gap: None,
+            mobility: None,
+        };
         let multiplier = self.pool.symbol(friction.multiplier);
         let effort = self.moving(ways, against, multiplier);
         let (zero, one) = (self.pool.zero(), self.pool.one());

@@ -27,6 +27,26 @@ pub struct Slip {
     pub kept: Option<u32>,
     /// Its integral as the poses have it, where they do.
     pub gap: Option<Id>,
+    /// How much one unit of its reaction changes the rate of its flow while no other joint holds anything, where the matrix does
+    /// not say so because rows of other joints are solved. Beside it a pivot tells how near the pose is to a singular one.
+    pub mobility: Option<Id>,
+}
+
+impl Slip {
+    /// Every expression.
+    pub fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
+        [&mut self.flow].into_iter().chain(&mut self.gap).chain(&mut self.mobility)
+    }
+
+    /// The same, of a slip that stays as it is.
+    pub fn ids(&self) -> impl Iterator<Item = Id> + use<> {
+        [self.flow].into_iter().chain(self.gap).chain(self.mobility)
+    }
+}
+
+/// The mobilities of rigid motions: those of the matrix, where rows before them are not solved.
+pub(super) fn mobilities<'a>(rigid: &'a [Slip], matrix: &'a [Vec<Id>]) -> impl Iterator<Item = Id> + 'a {
+    rigid.iter().zip(matrix).enumerate().map(|(row, (slip, entries))| slip.mobility.unwrap_or(entries[row]))
 }
 
 /// What joints hold at any state. The parts of rigid joints are known once the reactions are solved for.
@@ -43,20 +63,21 @@ pub struct Holding {
 }
 
 impl Holding {
-    /// Every expression: the rigid flows, the compliant ones, the rigid gaps, the matrix, then for each reaction what it
-    /// moves.
+    /// Every expression: the rigid flows, the compliant ones, the rigid gaps, the mobilities, the matrix, then for each reaction
+    /// what it moves.
     #[must_use]
     pub fn entries(&self, pool: &Pool) -> Vec<Id> {
         let flows = self.rigid.iter().chain(&self.compliant).map(|slip| slip.flow);
         let gaps = self.rigid.iter().map(|slip| slip.gap.unwrap_or(pool.zero()));
         let moves = (0..self.rigid.len()).flat_map(|k| self.moves.iter().map(move |(_, moves)| moves[k]));
-        flows.chain(gaps).chain(self.matrix.iter().flatten().copied()).chain(moves).collect()
+        let matrix = self.matrix.iter().flatten().copied();
+        flows.chain(gaps).chain(mobilities(&self.rigid, &self.matrix)).chain(matrix).chain(moves).collect()
     }
 
     /// Replaces symbols and decides switches everywhere.
     pub fn replace(&mut self, pool: &mut Pool, replace: &dyn Fn(Symbol) -> Option<Id>, branch: &dyn Fn(u32) -> Branch) {
         let flows = self.rigid.iter_mut().chain(&mut self.compliant);
-        let flows = flows.flat_map(|slip| [&mut slip.flow].into_iter().chain(&mut slip.gap));
+        let flows = flows.flat_map(Slip::roots);
         let moves = self.moves.iter_mut().flat_map(|(_, moves)| moves);
         let roots: Vec<&mut Id> = flows.chain(self.matrix.iter_mut().flatten()).chain(moves).collect();
         let before: Vec<Id> = roots.iter().map(|id| **id).collect();
@@ -64,11 +85,11 @@ impl Holding {
         roots.into_iter().zip(after).for_each(|(root, id)| *root = id);
     }
 
-    /// What the rigid motions that act on a momentum are: their flows and gaps.
+    /// What the rigid motions that act on a momentum are: their flows, gaps and mobilities.
     pub fn of_momentum(&self, pool: &Pool, state: usize) -> Vec<Id> {
         let Some((_, moves)) = self.moves.iter().find(|(moved, _)| *moved == state) else { return Vec::new() };
         let acting = self.rigid.iter().zip(moves).filter(|&(_, &by)| !pool.is_zero(by));
-        acting.flat_map(|(slip, _)| [slip.flow].into_iter().chain(slip.gap)).collect()
+        acting.flat_map(|(slip, _)| slip.ids()).collect()
     }
 
     /// Whether joints close loops, so that reactions may not be unique.
@@ -87,7 +108,7 @@ impl Holding {
     /// What must stay where the reaction of this row is wanted and may have to be shared among joints.
     pub fn shared(&self, row: usize) -> Vec<Id> {
         let slip = self.rigid.get(row).filter(|_| self.is_shared());
-        slip.into_iter().flat_map(|slip| [slip.flow].into_iter().chain(slip.gap)).collect()
+        slip.into_iter().flat_map(Slip::ids).collect()
     }
 
     /// Whether there is nothing.
@@ -108,6 +129,7 @@ impl Holding {
         let rows = 0..self.rigid.len();
         let is_known = |i: usize| {
             stays(self.rigid[i].flow)
+                && self.rigid[i].mobility.is_none_or(stays)
                 && rows.clone().all(|j| stays(entry(i, j)))
                 && self.moves.iter().all(|moved| acts(moved, i))
         };
@@ -180,7 +202,7 @@ impl Signals<'_> {
             for (component, &flow) in flows.iter().enumerate() {
                 let direction = in_words((flows.len() > 1).then(|| direction(component, turns)));
                 let (joint, unit) = (graph.joint(close.joint).to_owned(), unit.to_owned());
-                slips.push((close.joint, Slip { joint, direction, unit, flow, kept: None, gap: None }));
+                slips.push((close.joint, Slip { joint, direction, unit, flow, kept: None, gap: None, mobility: None }));
             }
         }
         let flows: Vec<Id> = slips.iter().map(|(_, slip)| slip.flow).collect();

@@ -6,7 +6,7 @@
 //! mean of its coefficient before and after; that of a power gives the work (W. Thomson, P. G. Tait, Treatise on Natural
 //! Philosophy (1879), article 309).
 
-use super::holding::Slip;
+use super::holding::{Slip, mobilities};
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 use crate::system::equations::definite::filter;
 use crate::system::equations::solution::Known;
@@ -73,7 +73,7 @@ impl Impacts {
     }
 
     /// Every expression: the flows of all rows, of each stop the restitution, the speed of rest (-1 where none is given) and the
-    /// rate of its flow, the matrix, then for each reaction what it moves.
+    /// rate of its flow, the mobilities of the rigid motions, the matrix, then for each reaction what it moves.
     #[must_use]
     pub fn entries(&self, pool: &mut Pool) -> Vec<Id> {
         let none = pool.number(-1.0);
@@ -85,7 +85,8 @@ impl Impacts {
         let moved = |k: usize| self.moves.iter().chain(&self.integrals).map(move |(_, moves)| moves[k]);
         let moves = (0..self.matrix.len()).flat_map(moved);
         let matrix = self.matrix.iter().flatten().copied();
-        flows.chain(restitutions).chain(rests).chain(rates).chain(matrix).chain(moves).collect()
+        let mobilities = mobilities(&self.rigid, &self.matrix);
+        flows.chain(restitutions).chain(rests).chain(rates).chain(mobilities).chain(matrix).chain(moves).collect()
     }
 
     /// What must stay where this switch does.
@@ -106,7 +107,7 @@ impl Impacts {
                 stop.rebound.switch = number;
             }
         }
-        let rigid = self.rigid.iter_mut().map(|slip| &mut slip.flow);
+        let rigid = self.rigid.iter_mut().flat_map(|slip| [&mut slip.flow].into_iter().chain(&mut slip.mobility));
         let moves = self.moves.iter_mut().chain(&mut self.integrals).flat_map(|(_, moves)| moves);
         let matrix = self.matrix.iter_mut().flatten();
         let roots: Vec<&mut Id> =
@@ -118,10 +119,10 @@ impl Impacts {
 
     /// Forgets the rows that need what is not there.
     pub fn prune(&mut self, pool: &Pool, known: &Known) {
-        let flows = self.rigid.iter().map(|slip| slip.flow);
+        let has = |slip: &Slip| [slip.flow].into_iter().chain(slip.mobility).all(|id| known.has(pool, id));
         let has_all = |stop: &Struck| stop.ids().into_iter().all(|id| known.has(pool, id));
         let stays = |stop: &Struck| known.has_switch(stop.rebound.switch) && has_all(stop);
-        let kept: Vec<bool> = flows.map(|flow| known.has(pool, flow)).chain(self.stops.iter().map(stays)).collect();
+        let kept: Vec<bool> = self.rigid.iter().map(has).chain(self.stops.iter().map(stays)).collect();
         for moves in [&mut self.moves, &mut self.integrals] {
             moves.retain(|(state, _)| known.has_state(*state));
         }

@@ -55,7 +55,7 @@ impl Signals<'_> {
                 let joint = self.holder(node).to_owned();
                 let (direction, unit) = (self.direction_of(node, k), graph.bond(bond).flow_unit());
                 let gap = gap.as_ref().map(|gap| gap[k]);
-                let slip = Slip { joint, direction, unit, flow, kept: None, gap };
+                let slip = Slip { joint, direction, unit, flow, kept: None, gap, mobility: None };
                 reactions.push(Reaction { slip, multiplier, switched: None, rebound: None });
             }
         }

@@ -18,8 +18,7 @@ impl StateEquations {
         roots.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
         roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
         for reaction in &mut self.reactions {
-            roots.push(&mut reaction.slip.flow);
-            roots.extend(&mut reaction.slip.gap);
+            roots.extend(reaction.slip.roots());
             roots.extend(reaction.switched.iter_mut().flat_map(|switched| [&mut switched.effort, &mut switched.acts]));
         }
         roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
@@ -47,13 +46,14 @@ impl StateEquations {
         self.solution = solution;
     }
 
-    /// Writes every expression that depends on states anew.
+    /// Writes every expression that depends on states anew, as they are in a state that fits: not what makes it fit.
     pub fn rewrite(&mut self, written: &dyn Fn(&mut Pool, &[Id]) -> Vec<Id>) {
         let mut pool = std::mem::take(&mut self.pool);
+        let projections = std::mem::take(&mut self.projections);
         let before: Vec<Id> = self.roots().into_iter().map(|id| *id).collect();
         let after = written(&mut pool, &before);
         self.roots().into_iter().zip(after).for_each(|(root, id)| *root = id);
-        self.pool = pool;
+        (self.pool, self.projections) = (pool, projections);
     }
 
     /// Replaces symbols everywhere.

@@ -53,7 +53,7 @@ impl Signals<'_> {
         self.switches.push(Switch { element: name.clone(), condition: CLEAR.to_owned(), guard, remembers: true });
         let unit = graph.bond(bond).flow_unit();
         let (flow, gap) = (flow.0[0], Some(beyond));
-        let slip = Slip { joint: name, direction: String::new(), unit, flow, kept: None, gap };
+        let slip = Slip { joint: name, direction: String::new(), unit, flow, kept: None, gap, mobility: None };
         let rebound = Some(Rebound { switch: number, restitution, rest });
         Some(Reaction { slip, multiplier, switched: Some(switched), rebound })
     }

@@ -28,7 +28,16 @@ pub(super) fn arrange(equations: &mut StateEquations, mut reactions: Vec<Reactio
     (arranged, moves.iter().map(|(state, by)| (*state, rows(by))).collect())
 }
 
-/// The rows of joints that hang something new on the tree, and those of the others.
+/// Whether a joint closes a loop.
+pub(super) fn is_any(equations: &mut StateEquations) -> bool {
+    let rigid = friction::rigid(&equations.reactions);
+    let StateEquations { pool, states, reactions, .. } = &mut *equations;
+    let moves = moves(pool, states, &reactions[..rigid], &is_moved);
+    !split(equations, &equations.reactions[..rigid], &moves).1.is_empty()
+}
+
+/// The rows of joints that hang something new on the tree, and those of the others: of rows that are left when others are solved
+/// their own momenta do not tell it, but these have mobilities.
 fn split(equations: &StateEquations, reactions: &[Reaction], moves: &Moves) -> (Vec<usize>, Vec<usize>) {
     let pool = &equations.pool;
     let node = |state: usize| match equations.states[state].origin {
@@ -41,8 +50,9 @@ fn split(equations: &StateEquations, reactions: &[Reaction], moves: &Moves) -> (
     for rows in of_joints(reactions) {
         let states: BTreeSet<usize> = rows.iter().flat_map(|&row| moved(row)).collect();
         let is_new = |state: &&usize| node(**state).is_none_or(|node| !seen.contains(&node));
-        let hangs = states.iter().filter(is_new).count() >= rows.len();
+        let is_new_to_tree = states.iter().filter(is_new).count() >= rows.len();
         seen.extend(states.iter().filter_map(|&state| node(state)));
+        let hangs = is_new_to_tree && rows.iter().all(|&row| reactions[row].slip.mobility.is_none());
         if hangs { tree.extend(rows) } else { closing.extend(rows) }
     }
     (tree, closing)

@@ -12,8 +12,8 @@
 use std::collections::BTreeSet;
 
 use super::joined::Choice;
-use super::projected;
 use super::report::Report;
+use super::{closing, projected};
 use crate::expr::{Id, Symbol, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, StateEquations};
 
@@ -34,6 +34,9 @@ pub(super) fn choose(equations: &mut StateEquations, report: &mut Report) {
 
 /// Puts what is chosen into the equations; false where the rows act on what cannot be projected.
 fn put(equations: &mut StateEquations, choice: &Choice) -> bool {
+    if closing::is_any(equations) && !keep_mobilities(equations, choice) {
+        return false;
+    }
     let Some(values) = projected::equations(equations, choice) else { return false };
     equations.replace(&|symbol| match symbol {
         Symbol::Multiplier(_) => values.get(&symbol).copied(),
@@ -46,6 +49,25 @@ fn put(equations: &mut StateEquations, choice: &Choice) -> bool {
         !choice.is_solved(row - 1)
     });
     write_by_momenta(equations, choice);
+    true
+}
+
+/// Gives the rows that are left their mobilities, by all momenta: the pivot of a row that is alone is its own entry of the matrix, and
+/// tells nothing of how near to a singular pose the mechanism is. False where a row acts on something else.
+fn keep_mobilities(equations: &mut StateEquations, choice: &Choice) -> bool {
+    let StateEquations { pool, reactions, .. } = equations;
+    for row in (0..choice.rigid).filter(|&row| !choice.is_solved(row)) {
+        let Some(loads) = &choice.loads[row] else { return false };
+        let slip = &mut reactions[row].slip;
+        let parts: Vec<Id> = loads
+            .iter()
+            .map(|(&state, &load)| {
+                let slope = partial(pool, &[slip.flow], Symbol::state(state))[0];
+                pool.mul(slope, load)
+            })
+            .collect();
+        slip.mobility = Some(pool.sum(&parts));
+    }
     true
 }
 

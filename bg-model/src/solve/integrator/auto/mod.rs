@@ -8,6 +8,7 @@
 //! followed anyway do not count as such.
 
 mod change;
+mod price;
 mod race;
 
 use alloc::vec::Vec;
@@ -168,7 +169,7 @@ struct Claim<const N: usize> {
 const REMEMBERED: usize = 256;
 
 impl<const N: usize> Auto<N> {
-    /// DOP853, CFMR7osc and Nystrom, `ARK5(4)8L[2]SAb`, Radau IIA 9; DOP853 begins.
+    /// DOP853, CFMR7osc, Nystrom and Taylor series, `ARK5(4)8L[2]SAb`, Radau IIA 9; DOP853 begins.
     #[must_use]
     pub fn new() -> Self {
         let explicit = Race::new();
@@ -194,6 +195,11 @@ impl<const N: usize> Auto<N> {
             changes: Vec::with_capacity(REMEMBERED),
             told,
         }
+    }
+
+    /// What a step of the method of a kind costs beside one that its worth was measured with.
+    fn dearness(&self, kind: Kind) -> f64 {
+        if kind == Kind::Explicit { self.explicit.dearness() } else { 1.0 }
     }
 
     /// The median of the last accepted steps, s.
@@ -237,7 +243,7 @@ impl<const N: usize> Auto<N> {
     fn reaches(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         // Twice as long as it has to be where what it costs varies as much as what the present one does.
         let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
-        let longer = gain * kind.worth(self.kind, N);
+        let longer = gain * kind.worth(self.kind, N) / self.dearness(self.kind);
         let (h, mut x) = (longer * h, start.x);
         let error = of!((&mut) self, kind, method => {
             // Only the method that makes the steps has seen the last ones.
@@ -256,7 +262,7 @@ impl<const N: usize> Auto<N> {
     /// Whether steps of a less implicit method meet the tolerances from `start` over the step `h` (s) of the present one. Each of them is
     /// twice as long as it has to be to be worth a change, so that the choice does not swing.
     fn succeeds(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
-        let h = 2.0 * h / self.kind.worth(kind, N);
+        let h = 2.0 * h * self.dearness(kind) / self.kind.worth(kind, N);
         let (mut point, mut end) = (*start, start.x);
         of!((&mut) self, kind, method => method.restart());
         (0..SUCCESSION).all(|_| {

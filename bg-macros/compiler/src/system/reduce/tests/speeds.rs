@@ -3,6 +3,8 @@
 use std::fmt::Write;
 
 use super::{Scene, scene};
+use crate::expr::{Environment, evaluate};
+use crate::system::equations::{Kind, Slip, StateEquations};
 
 /// A chain of rods on pins from the ground, the first of them driven.
 fn chain(rods: usize, first: &str) -> String {
@@ -114,5 +116,52 @@ fn orientations_that_start_apart_stay() {
         let scene = scene(&SHAPER.replace("FORCE", force), "independent speeds; tune { torque }");
         assert!(scene.words(&["block.orientation_11"]) == ["integrated"], "{}", scene.report);
         assert_eq!(scene.reduced.holding.rigid.len(), rows, "{}", scene.report);
+    }
+}
+
+/// Squared cosines and sines are 1 in every equation but those that make them so.
+#[test]
+fn angles_are_put_back_on_the_circle() {
+    let scene = scene(&chain(2, ""), "independent speeds; tune {}");
+    let StateEquations { pool, states, projections, .. } = &scene.reduced;
+    let off: Vec<f64> =
+        states.iter().map(|state| if state.origin.kind() == Kind::Orientation { 0.7 } else { 0.0 }).collect();
+    let roots: Vec<_> = projections.iter().map(|&(_, id)| id).collect();
+    assert_eq!(roots.len(), 4);
+    for value in evaluate(pool, &roots, &Environment { states: &off, ..Environment::default() }) {
+        // Newton's step from 0.7, which is 7e-3 off.
+        assert!((value - 0.5_f64.sqrt()).abs() < 2e-4, "{value}");
+    }
+}
+
+/// What is left of a loop's rows is judged beside the entry that they have in the matrix of all rows.
+#[test]
+fn rows_that_close_a_loop_are_known_as_such() {
+    let four_bar = format!(
+        "{} body c {{ mass 2; inertia [0.1, 0.01, 0.1]; point top = [0, 0.5, 0]; point low = [0, -0.5, 0];
+            start top at [1, 0, 0]; }}
+         body d {{ mass 3; inertia [0.1, 0.2, 0.3]; point left = [-0.5, 0, 0]; point right = [0.5, 0, 0];
+            start left at [0, -1, 0]; }}
+         joint p: revolute z (ground.P -> c.top) {{ rigid; }} joint q: revolute z (b0.low -> d.left) {{ rigid; }}
+         joint r: revolute z (d.right -> c.low) {{ rigid; }}",
+        chain(1, "")
+            .replace("f: N = j0.force;", "")
+            .replace("point O = [0, 0, 0];", "point O = [0, 0, 0]; point P = [1, 0, 0];")
+    );
+    let [all, left] =
+        ["", "independent speeds;"].map(|clause| scene(&four_bar, &format!("{clause} tune {{}}")).reduced);
+    assert_eq!((all.holding.rigid.len(), left.holding.rigid.len()), (8, 2));
+    let at_start = |of: &StateEquations, id| {
+        let starts: Vec<_> = of.states.iter().map(|state| state.start).collect();
+        let states = evaluate(&of.pool, &starts, &Environment::default());
+        evaluate(&of.pool, &[id], &Environment { states: &states, ..Environment::default() })[0]
+    };
+    for (row, slip) in left.holding.rigid.iter().enumerate() {
+        assert_eq!(slip.kept, Some(u32::try_from(row).expect("a few rows")));
+        let is_same = |other: &Slip| other.joint == slip.joint && other.direction == slip.direction;
+        let place = all.holding.rigid.iter().position(is_same).expect("the row");
+        let [own, among_all] = [(&left, slip.mobility.expect("a mobility")), (&all, all.holding.matrix[place][place])]
+            .map(|(of, id)| at_start(of, id));
+        assert!((own / among_all - 1.0).abs() < 1e-12, "{own} {among_all}");
     }
 }
