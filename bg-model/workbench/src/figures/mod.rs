@@ -1,7 +1,7 @@
 //! Figures as SVG: curves over time, paths, speed against error; light or dark as the reader prefers.
 //!
 //! In: curves. Out: SVG text. Every figure has 16 : 9 and follows the reader's colour scheme (`palette`). Curves are thinned
-//! to what the eye can see at the drawn size ([`bg_analysis::thinning`]), so a file stays below 300 kB whatever the output interval.
+//! to what the eye can see at the drawn size ([`thinning`]), so a file stays below 300 kB whatever the output interval.
 
 pub mod bode;
 pub mod canvas;
@@ -15,6 +15,7 @@ mod work_precision;
 
 use std::sync::Arc;
 
+pub use bg_analysis::thinning;
 use bg_model::simulation::{MissingColumn, Recording};
 use thiserror::Error;
 

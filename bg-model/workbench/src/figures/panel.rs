@@ -5,7 +5,6 @@
 
 use std::ops::Range;
 
-use bg_analysis::thinning;
 use plotters::coord::ranged1d::{KeyPointHint, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::RGBColor;
@@ -14,6 +13,7 @@ use plotters::style::text_anchor::HPos;
 use super::FigureError;
 use super::canvas::{Area, Rectangle, UNITS, drawing, label, text, write};
 use super::palette::{AXIS, GRID};
+use super::thinning;
 use crate::quantities::superscript;
 
 pub use crate::quantities::extent;
