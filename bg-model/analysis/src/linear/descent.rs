@@ -14,7 +14,7 @@ use super::eigen::Balanced;
 use super::error::LinearError;
 use super::manifold::Manifold;
 use super::plant::Plant;
-use super::state_space::{check_derivatives, check_rates};
+use super::state_space::checked;
 
 /// Singular values below this part of the largest one are free directions.
 const FREE: f64 = 1e-11;
@@ -67,11 +67,7 @@ impl Local {
 
     /// The plant near state `x`.
     pub fn at(plant: &Plant, t: f64, x: &DVector<f64>, steady: bool) -> Result<Self, LinearError> {
-        let description = plant.description;
-        let here = plant.derivatives(x);
-        check_rates(description, &here, t)?;
-        let inputs = plant.by_inputs(x);
-        check_derivatives(description, &here, &inputs, t)?;
+        let (here, inputs) = checked(plant, t, x)?;
         let manifold = Manifold::at(plant, x, &here, &inputs);
         let Balanced { matrix: jacobian, scales } =
             Balanced::of(&(&manifold.chart * &here.rates_by_state * &manifold.tangent));

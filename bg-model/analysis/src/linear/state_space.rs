@@ -85,10 +85,7 @@ pub fn linearise<Me: Mechanism>(mechanism: &Me, t: f64, x: &[f64]) -> Result<Sta
 
 fn linearised(plant: &Plant, t: f64, x: &DVector<f64>) -> Result<StateSpace, LinearError> {
     let description = plant.description;
-    let here = plant.derivatives(x);
-    check_rates(description, &here, t)?;
-    let inputs = plant.by_inputs(x);
-    check_derivatives(description, &here, &inputs, t)?;
+    let (here, inputs) = checked(plant, t, x)?;
     let manifold = Manifold::at(plant, x, &here, &inputs);
     let named = |name: &str, unit: &str| Named { name: name.to_owned(), unit: unit.to_owned() };
     let states: Vec<Named> = manifold.coordinates.iter().map(|k| named(&k.name, k.unit)).collect();
@@ -117,8 +114,17 @@ fn linearised(plant: &Plant, t: f64, x: &DVector<f64>) -> Result<StateSpace, Lin
     })
 }
 
+/// The derivatives at state `x`, all finite.
+pub(super) fn checked(plant: &Plant, t: f64, x: &DVector<f64>) -> Result<(Derivatives, ByInputs), LinearError> {
+    let here = plant.derivatives(x);
+    check_rates(plant.description, &here, t)?;
+    let inputs = plant.by_inputs(x);
+    check_derivatives(plant.description, &here, &inputs, t)?;
+    Ok((here, inputs))
+}
+
 /// Whether the rates are finite.
-pub(super) fn check_rates(description: &Description, here: &Derivatives, t: f64) -> Result<(), LinearError> {
+fn check_rates(description: &Description, here: &Derivatives, t: f64) -> Result<(), LinearError> {
     match here.rates.iter().position(|rate| !rate.is_finite()) {
         Some(k) => Err(LinearError::BadRate { of: description.states[k].name.to_owned(), value: here.rates[k], t }),
         None => Ok(()),
@@ -126,7 +132,7 @@ pub(super) fn check_rates(description: &Description, here: &Derivatives, t: f64)
 }
 
 /// Whether the derivatives of the rates are finite.
-pub(super) fn check_derivatives(
+fn check_derivatives(
     description: &Description,
     here: &Derivatives,
     inputs: &ByInputs,
