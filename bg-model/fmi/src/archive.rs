@@ -1,13 +1,13 @@
 //! A unit as a file: the archive of a library and its description.
 //!
-//! In: a model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml` and the
-//! library in the folder of its platform. Source: FMI 3.0.1, section 2.5, and 2.0.4, section 2.3.
+//! In: a model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml`, the
+//! library in the folder of its platform, and what tells variables that belong together, if any do. Source: FMI 3.0.1, section 2.5, and 2.0.4, section 2.3.
 
 use std::io::{self, Cursor, Error, Write};
 
 use rawzip::{CompressionMethod, DataDescriptorOutput, ZipArchiveWriter};
 
-use crate::description::{Packing, Version, model_description};
+use crate::description::{Packing, Version, model_description, terminals_and_icons};
 use crate::exported::Described;
 
 /// How hard the compressor tries, of 10.
@@ -42,7 +42,10 @@ pub fn archive(model: &dyn Described, packing: &Packing, library: &[u8]) -> io::
     let mut archive = ZipArchiveWriter::new(&mut bytes);
     let place = format!("binaries/{}/{}", platform(packing.version), library_name(&packing.identifier));
     let description = model_description(model, packing);
-    for (name, content) in [("modelDescription.xml", description.as_bytes()), (&place, library)] {
+    let terminals = terminals_and_icons(model);
+    let terminals = terminals.as_ref().map(|text| ("terminalsAndIcons/terminalsAndIcons.xml", text.as_bytes()));
+    let files = [("modelDescription.xml", description.as_bytes()), (&place, library)];
+    for (name, content) in files.into_iter().chain(terminals) {
         let entry = archive.new_file(name).compression_method(CompressionMethod::DEFLATE);
         let (mut entry, _) = entry.start().map_err(Error::other)?;
         entry.write_all(&miniz_oxide::deflate::compress_to_vec(content, LEVEL))?;

@@ -29,7 +29,7 @@
 //! |---|---|
 //! | [`instance`] | what an instance of a model does: the whole interface, in safe Rust |
 //! | [`exported`] | what an instance needs of a model |
-//! | [`description`] | what `modelDescription.xml` says |
+//! | [`description`] | what `modelDescription.xml` and `terminalsAndIcons.xml` say |
 //! | [`archive`] | what a unit's file has in it |
 //! | [`abi`] | the functions of the standard: pointers in, slices on |
 
@@ -42,7 +42,7 @@ mod units;
 pub mod variables;
 
 pub use bg_model;
-pub use description::{Packing, Version, model_description, token};
+pub use description::{Packing, Version, model_description, terminals_and_icons, token};
 pub use exported::{Described, Exported, Of};
 pub use instance::{Fault, Instance, Interface};
 

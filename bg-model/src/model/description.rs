@@ -130,6 +130,8 @@ pub struct OutputInfo {
     pub name: &'static str,
     /// What it is a component of, such as `C2` or `R2`; of a scalar the same as its name.
     pub of: &'static str,
+    /// What this observes, as written, with the names of parts in full: `rod.position`, `valve.effort`.
+    pub observes: &'static str,
     /// Its unit.
     pub unit: &'static str,
 }

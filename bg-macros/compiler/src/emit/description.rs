@@ -11,7 +11,7 @@ use crate::graph::{BondGraph, NodeKind};
 use crate::pipeline::Compiled;
 use crate::program::Counts;
 use crate::source::mechanism::{self, Part};
-use crate::system::equations::{Origin, StateEquations};
+use crate::system::equations::{Origin, Output, StateEquations};
 
 /// The `Description` literal; `PARAMETERS` is the table of the parameters.
 pub(super) fn description(model: &Compiled, costs: &[(&str, Counts)]) -> TokenStream {
@@ -56,8 +56,8 @@ fn states(graph: &BondGraph, equations: &StateEquations) -> impl Iterator<Item =
 
 fn outputs(equations: &StateEquations) -> impl Iterator<Item = TokenStream> {
     equations.outputs.iter().map(|output| {
-        let (name, of, unit) = (&output.name, &output.of, &output.unit);
-        quote!(::bg_model::description::OutputInfo { name: #name, of: #of, unit: #unit })
+        let Output { name, of, observes, unit, .. } = output;
+        quote!(::bg_model::description::OutputInfo { name: #name, of: #of, observes: #observes, unit: #unit })
     })
 }
 

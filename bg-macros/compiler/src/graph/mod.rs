@@ -309,6 +309,8 @@ pub struct Close {
 pub struct Observation {
     /// Its name.
     pub name: String,
+    /// Its value as written.
+    pub text: String,
     /// Its value.
     pub value: Term,
     /// Its shape.

@@ -1,7 +1,8 @@
-//! `modelDescription.xml`: a model as hosts read it.
+//! `modelDescription.xml` and `terminalsAndIcons.xml`: a model as hosts read it.
 //!
-//! In: a model and how it is packed. Out: the text. What the versions of the standard share is here.
+//! In: a model and how it is packed. Out: the texts. What the versions of the standard share is here.
 
+mod terminals;
 mod three;
 mod two;
 
@@ -15,6 +16,8 @@ use quick_xml::Writer;
 use crate::exported::Described;
 use crate::units::{BASES, exponents};
 use crate::variables::{Counts, Kind, names, unit};
+
+pub use terminals::terminals_and_icons;
 
 /// A version of the standard.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,12 +80,17 @@ pub fn token(model: &dyn Described) -> String {
 }
 
 fn text(model: &dyn Described, packing: &Packing, token: &str) -> String {
-    let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     let write = match packing.version {
         Version::Two => two::write,
         Version::Three => three::write,
     };
-    write(&mut xml, model, packing, token).expect("a vector takes all that is written");
+    document(|xml| write(xml, model, packing, token))
+}
+
+/// A text of XML.
+fn document(write: impl FnOnce(&mut Xml) -> io::Result<()>) -> String {
+    let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
+    write(&mut xml).expect("a vector takes all that is written");
     let body = String::from_utf8(xml.into_inner()).expect("names are text");
     format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{body}\n")
 }

@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     const fn output(name: &'static str) -> OutputInfo {
-        OutputInfo { name, of: name, unit: "m" }
+        OutputInfo { name, of: name, observes: name, unit: "m" }
     }
     static OUTPUTS: [OutputInfo; 2] = [output("x"), output("force")];
 

@@ -125,7 +125,7 @@ mod tests {
     use std::sync::LazyLock;
 
     const fn output(name: &'static str, of: &'static str, unit: &'static str) -> OutputInfo {
-        OutputInfo { name, of, unit }
+        OutputInfo { name, of, observes: of, unit }
     }
 
     static OUTPUTS: [OutputInfo; 9] = [

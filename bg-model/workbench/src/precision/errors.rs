@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn orientations_differ_by_an_angle() {
         let names = ["R_11", "R_12", "R_13", "R_21", "R_22", "R_23", "R_31", "R_32", "R_33"];
-        let outputs = names.map(|name| OutputInfo { name, of: "R", unit: "1" });
+        let outputs = names.map(|name| OutputInfo { name, of: "R", observes: "body.orientation", unit: "1" });
         let columns = names.map(|name| (name, ""));
         let turned = |angle: f64| {
             let (s, c) = angle.sin_cos();

@@ -366,7 +366,8 @@ impl Resolver {
     fn observe(&mut self, observation: &ast::Observation) {
         let first = self.graph.integrals.len();
         let value = self.term(&observation.value, Place::Observed);
-        let name = observation.name.as_ref().map_or_else(|| observation.value.to_string(), |name| name.text.clone());
+        let text = observation.value.to_string();
+        let name = observation.name.as_ref().map_or_else(|| text.clone(), |name| name.text.clone());
         let alone = matches!(value.kind, TermKind::Integral(_));
         for (k, integral) in self.graph.integrals[first..].iter_mut().enumerate() {
             integral.name = if alone { name.clone() } else { format!("{name}.integral_{}", k + 1) };
@@ -378,7 +379,7 @@ impl Resolver {
             self.fault(span, &DeclaredTwice { name: name.clone() });
         }
         self.observed.push(declared);
-        self.graph.observations.push(Observation { name, value, shape: Shape::Scalar, unit });
+        self.graph.observations.push(Observation { name, text, value, shape: Shape::Scalar, unit });
     }
 
     fn term(&mut self, expression: &Expression, place: Place<'_>) -> Term {

@@ -196,6 +196,8 @@ pub struct Output {
     pub name: String,
     /// The name without the suffix.
     pub of: String,
+    /// What this observes, as written.
+    pub observes: String,
     /// Its unit.
     pub unit: String,
     /// Its value.

@@ -363,8 +363,9 @@ impl<'a> Signals<'a> {
             let value = self.evaluate(&observation.value, None);
             for (suffix, id) in value.shape().suffixes().iter().zip(value.0) {
                 let name = format!("{}{suffix}", observation.name);
-                let (of, unit) = (observation.name.clone(), observation.unit.clone());
-                outputs.push(Output { name, of, unit, value: id });
+                let (of, observes, unit) =
+                    (observation.name.clone(), observation.text.clone(), observation.unit.clone());
+                outputs.push(Output { name, of, observes, unit, value: id });
             }
         }
         outputs
