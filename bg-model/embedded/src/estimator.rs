@@ -14,12 +14,12 @@ const OUTPUTS: usize = Drive::OUTPUTS;
 
 /// An observer that calculates in `S`.
 #[derive(Clone, Debug)]
-pub struct Estimator<S: Scalar> {
+pub struct Estimator<S: Scalar<Switch = bool>> {
     model: Drive<S>,
     run: FixedStep<S, STATES, SWITCHES>,
 }
 
-impl<S: Scalar> Estimator<S> {
+impl<S: Scalar<Switch = bool>> Estimator<S> {
     /// An observer of a machine that these parameters describe, at rest.
     ///
     /// # Errors

@@ -125,7 +125,7 @@ bond_graph! {
 ///
 /// # Errors
 /// Parameters that cannot be, numbers that are not finite, a place that takes no text.
-pub fn report<S: Scalar>(
+pub fn report<S: Scalar<Switch = bool>>(
     out: &mut impl Write,
     samples: u32,
     mut around: impl FnMut(&mut dyn FnMut()),
