@@ -92,8 +92,9 @@ impl<Mo: Model<Gradient, N, G, M>, const N: usize, const G: usize, const M: usiz
         }
         let mut entries = vec![zero(); held.entries()];
         joints.hold(t, &SVector::from_column_slice(x), &of_switches(negative), &mut entries);
-        let (gaps, triangle) = entries[reactions + held.compliant.len()..].split_at(reactions);
-        let (triangle, moves) = triangle.split_at(reactions * (reactions + 1) / 2);
+        let (gaps, rest) = entries[reactions + held.compliant.len()..].split_at(reactions);
+        let (_mobilities, rest) = rest.split_at(reactions);
+        let (triangle, moves) = rest.split_at(reactions * (reactions + 1) / 2);
         let matrix = DMatrix::from_fn(reactions, reactions, |i, j| {
             let (row, column) = (i.max(j), i.min(j));
             triangle[row * (row + 1) / 2 + column].value
