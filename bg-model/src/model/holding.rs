@@ -57,6 +57,35 @@ impl Held {
         let reactions = self.rigid.len();
         3 * reactions + self.compliant.len() + reactions * (reactions + 1) / 2 + reactions * self.moved.len()
     }
+
+    /// These numbers by what they are.
+    ///
+    /// # Panics
+    /// There are not as many as [`Held::entries`].
+    #[must_use]
+    pub fn read<'a, S>(&self, entries: &'a [S]) -> HeldNow<'a, S> {
+        let reactions = self.rigid.len();
+        let (flows, rest) = entries.split_at(reactions + self.compliant.len());
+        let (gaps, rest) = rest.split_at(reactions);
+        let (mobilities, rest) = rest.split_at(reactions);
+        let (lower, moves) = rest.split_at(reactions * (reactions + 1) / 2);
+        HeldNow { flows, gaps, mobilities, lower, moves }
+    }
+}
+
+/// The numbers of [`Held`] at one state.
+#[derive(Clone, Copy, Debug)]
+pub struct HeldNow<'a, S> {
+    /// The flows of rigid motions, then of compliant ones.
+    pub flows: &'a [S],
+    /// The gaps of rigid motions.
+    pub gaps: &'a [S],
+    /// Their mobilities.
+    pub mobilities: &'a [S],
+    /// The lower triangle of A by rows.
+    pub lower: &'a [S],
+    /// What one unit of each reaction changes, state by state of [`Held::moved`].
+    pub moves: &'a [S],
 }
 
 /// A stop that gives back a part of the speed with which something hits it.

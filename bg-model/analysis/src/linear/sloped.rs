@@ -92,21 +92,19 @@ impl<Mo: Model<Gradient, N, G, M>, const N: usize, const G: usize, const M: usiz
         }
         let mut entries = vec![zero(); held.entries()];
         joints.hold(t, &SVector::from_column_slice(x), &of_switches(negative), &mut entries);
-        let (gaps, rest) = entries[reactions + held.compliant.len()..].split_at(reactions);
-        let (_mobilities, rest) = rest.split_at(reactions);
-        let (triangle, moves) = rest.split_at(reactions * (reactions + 1) / 2);
+        let now = held.read(&entries);
         let matrix = DMatrix::from_fn(reactions, reactions, |i, j| {
             let (row, column) = (i.max(j), i.min(j));
-            triangle[row * (row + 1) / 2 + column].value
+            now.lower[row * (row + 1) / 2 + column].value
         });
         let mut by_state = DMatrix::zeros(N, reactions);
         for reaction in 0..reactions {
             for (place, &state) in held.moved.iter().enumerate() {
-                by_state[(state, reaction)] = moves[reaction * held.moved.len() + place].value;
+                by_state[(state, reaction)] = now.moves[reaction * held.moved.len() + place].value;
             }
         }
-        let gaps = DVector::from_iterator(reactions, gaps.iter().map(|gap| gap.value));
-        Some(HeldNow { flows: entries[..reactions].to_vec(), gaps, matrix, moves: by_state })
+        let gaps = DVector::from_iterator(reactions, now.gaps.iter().map(|gap| gap.value));
+        Some(HeldNow { flows: now.flows[..reactions].to_vec(), gaps, matrix, moves: by_state })
     }
 
     fn projected(&self, t: Gradient, x: &[Gradient], negative: &[bool]) -> Vec<Gradient> {

@@ -21,7 +21,7 @@ use nalgebra::{DVector, SVector};
 
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::Joints;
-use crate::model::holding::{FITTING, Held, Redundancy, Slip, Slipping};
+use crate::model::holding::{FITTING, Held, HeldNow, Redundancy, Slip, Slipping};
 use crate::model::nearest::{lifted, nearest};
 use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign};
@@ -64,22 +64,19 @@ impl<S: Scalar> Hold<S> {
 
     /// The flows of rigid motions, then of compliant ones.
     fn flows(&self) -> &[S] {
-        &self.entries[..self.held.rigid.len() + self.held.compliant.len()]
+        self.held.read(&self.entries).flows
     }
 
     /// A.
     fn matrix(&self) -> Matrix<'_, S> {
-        let reactions = self.held.rigid.len();
-        let rest = &self.entries[self.flows().len() + reactions..];
-        let (mobilities, rest) = rest.split_at(reactions);
-        Matrix { lower: &rest[..reactions * (reactions + 1) / 2], mobilities }
+        let HeldNow { lower, mobilities, .. } = self.held.read(&self.entries);
+        Matrix { lower, mobilities }
     }
 
     /// What one unit of a reaction changes, state by state of [`Held::moved`].
     fn moves(&self, reaction: usize) -> &[S] {
         let width = self.held.moved.len();
-        let first = self.entries.len() - (self.held.rigid.len() - reaction) * width;
-        &self.entries[first..first + width]
+        &self.held.read(&self.entries).moves[reaction * width..][..width]
     }
 
     /// The state that `impulses` of the reactions leave of `x`.
