@@ -1,7 +1,7 @@
 //! A geared motor, observed: the bond graph has the corrections as sources, which measurements modulate.
 //!
 //! In: voltage, measured current and measured speed of the rotor, a thousand times a second. Out: all states, among them the twist
-//! of the shaft, the speed of the load and the torque that hangs on it, which nothing measures. No `std`: the same lines run on a
+//! of the shaft, the speed of the load and the torque that acts on it, which nothing measures. No `std`: the same lines run on a
 //! controller and on a desktop.
 
 #![no_std]
@@ -50,7 +50,7 @@ bond_graph! {
         param dry: N*m = 0.3, at least 0;
         /// Viscous friction of the load.
         param viscous: N*m*s/rad = 0.05, at least 0;
-        /// Torque of a weight that hangs on the load.
+        /// Torque of a weight on the load.
         param weight: N*m = 0;
         /// Volts for one ampere that the measured current differs.
         param current_gain: Ohm = 2, at least 0;

@@ -25,7 +25,7 @@ fn the_observer_finds_what_it_does_not_know() -> Result<(), Fault> {
     let alone = DriveParameters { current_gain: 0.0, speed_gain: 0.0, torque_gain: 1e-9, ..DriveParameters::default() };
     let ([without, _], [with, torque]) = (told::<f64>(alone)?, told::<f64>(DriveParameters::default())?);
     let [single, single_torque] = told::<f32>(DriveParameters::default())?;
-    println!("off by {without:.3} rad/s without corrections, {with:.3} with; {torque:.3} N*m hang on the load");
+    println!("off by {without:.3} rad/s without corrections, {with:.3} with; {torque:.3} N*m act on the load");
     println!("in f32 off by {single:.3} rad/s; {single_torque:.3} N*m");
     assert!(without > 0.5 && with < without / 4.0, "{without} {with}");
     assert!((torque + 0.8).abs() < 0.02, "{torque}");

@@ -2,7 +2,7 @@
 //!
 //! In: a mechanism, a time and states. Out: rates, outputs and their derivatives by states and inputs, exact to
 //! rounding; the states after a finite move along the kinematics.
-//! Method: numbers with slopes along [`WIDTH`] states at once, and along time for an input that is made to grow with time.
+//! Method: numbers with slopes along [`WIDTH`] states at once, and along time for an input whose tangent is 1.
 
 use bg_model::description::{Description, StateKind};
 use bg_model::input::Input;
@@ -42,7 +42,7 @@ pub(super) struct Plant {
     pub description: &'static Description,
     t: f64,
     model: Box<dyn Sloped>,
-    /// The same with each input in turn growing by one unit a second.
+    /// The same with a tangent of one unit a second for each input in turn.
     growing: Vec<Box<dyn Sloped>>,
 }
 
@@ -103,10 +103,10 @@ impl Plant {
     }
 }
 
-/// Inputs that keep these values, but for the one that grows by one unit a second.
+/// Inputs that keep these values; one has a tangent of one unit a second, which no law can read as a rate.
 fn held(values: &[f64], growing: Option<usize>) -> Vec<Input> {
     let input = |(k, &value): (usize, &f64)| {
-        if growing == Some(k) { Input::with_rate(move |_| value, |_| 1.0) } else { Input::constant(value) }
+        if growing == Some(k) { Input::with_tangent(move |_| value, |_| 1.0) } else { Input::constant(value) }
     };
     values.iter().enumerate().map(input).collect()
 }
