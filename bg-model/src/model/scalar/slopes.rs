@@ -107,59 +107,92 @@ impl Slopes for Everywhere {
 }
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
-pub use super::lanes::Avx2;
-#[cfg(all(feature = "std", target_arch = "x86_64"))]
-use super::lanes::Vector;
+pub use avx2::Avx2;
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
-impl Slopes for Avx2 {
-    const MUST_BE_INLINED: bool = true;
+mod avx2 {
+    use core::arch::x86_64::__m256d;
+    use core::fmt;
 
-    #[inline(always)]
-    fn new(slopes: [f64; WIDTH]) -> Self {
-        Vector::new(slopes)
+    use pulp::NullaryFnOnce;
+    use pulp::x86::V3;
+
+    use super::{Slopes, WIDTH};
+
+    /// In a vector of AVX2.
+    #[derive(Clone, Copy)]
+    pub struct Avx2 {
+        all: __m256d,
+        machine: V3,
     }
-    #[inline(always)]
-    fn numbers(self) -> [f64; WIDTH] {
-        Vector::numbers(self)
+
+    impl Avx2 {
+        #[inline(always)]
+        fn machine() -> V3 {
+            V3::try_new().expect("slopes are kept in such vectors where the machine has them")
+        }
+
+        #[inline(always)]
+        fn with(self, all: __m256d) -> Self {
+            Self { all, ..self }
+        }
     }
-    #[inline(always)]
-    fn filled(self, value: f64) -> Self {
-        self.alike(value)
+
+    impl fmt::Debug for Avx2 {
+        fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+            self.numbers().fmt(formatter)
+        }
     }
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        Vector::plus(self, other)
-    }
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        Vector::minus(self, other)
-    }
-    #[inline(always)]
-    fn times(self, factor: f64) -> Self {
-        Vector::times(self, self.alike(factor))
-    }
-    #[inline(always)]
-    fn times_each(self, factors: Self) -> Self {
-        Vector::times(self, factors)
-    }
-    #[inline(always)]
-    fn over_each(self, divisors: Self) -> Self {
-        self.over(divisors)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Vector::abs(self)
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.larger(other)
-    }
-    fn is_at_hand() -> bool {
-        <Self as Vector>::is_at_hand()
-    }
-    #[inline(always)]
-    fn vectorized<F: NullaryFnOnce>(of: F) -> F::Output {
-        <Self as Vector>::vectorized(of)
+
+    impl Slopes for Avx2 {
+        const MUST_BE_INLINED: bool = true;
+
+        #[inline(always)]
+        fn new(slopes: [f64; WIDTH]) -> Self {
+            Self { all: pulp::cast(slopes), machine: Self::machine() }
+        }
+        #[inline(always)]
+        fn numbers(self) -> [f64; WIDTH] {
+            pulp::cast(self.all)
+        }
+        #[inline(always)]
+        fn filled(self, value: f64) -> Self {
+            self.with(self.machine.avx._mm256_set1_pd(value))
+        }
+        #[inline(always)]
+        fn plus(self, other: Self) -> Self {
+            self.with(self.machine.avx._mm256_add_pd(self.all, other.all))
+        }
+        #[inline(always)]
+        fn minus(self, other: Self) -> Self {
+            self.with(self.machine.avx._mm256_sub_pd(self.all, other.all))
+        }
+        #[inline(always)]
+        fn times(self, factor: f64) -> Self {
+            self.times_each(self.filled(factor))
+        }
+        #[inline(always)]
+        fn times_each(self, factors: Self) -> Self {
+            self.with(self.machine.avx._mm256_mul_pd(self.all, factors.all))
+        }
+        #[inline(always)]
+        fn over_each(self, divisors: Self) -> Self {
+            self.with(self.machine.avx._mm256_div_pd(self.all, divisors.all))
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            self.with(self.machine.avx._mm256_andnot_pd(self.filled(-0.0).all, self.all))
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            self.with(self.machine.avx._mm256_max_pd(self.all, other.all))
+        }
+        fn is_at_hand() -> bool {
+            V3::is_available()
+        }
+        #[inline(always)]
+        fn vectorized<F: NullaryFnOnce>(of: F) -> F::Output {
+            Self::machine().vectorize(of)
+        }
     }
 }
