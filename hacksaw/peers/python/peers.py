@@ -2,7 +2,8 @@
 
 The first line in is JSON: {"constants": .., "start": [24 numbers], "cutting": true, "samples": [times], "absolute": ratio,
 "sources": [names]}. The first line out is the JSON list of solvers; after that each line {"solver": i, "setting": x} in is
-answered with {"seconds": .., "poses": [[12 numbers] ..], "work": {..}} or {"fault": ".."}. What has to be compiled is
+answered with {"seconds": .., "poses": [[12 numbers] ..], "work": {..}} or {"fault": ".."}. A line {"batch": tolerance,
+"values": [[4 numbers] ..]}, whose runs number a multiple of heyoka's batch, is answered with the poses at their ends. What has to be compiled is
 compiled when the list is made or at the first run, outside of the time taken.
 """
 
@@ -33,9 +34,14 @@ def main():
             faults.append({"source": source, "fault": f"{type(fault).__name__}: {fault}"})
     listed = [{key: solver[key] for key in ("name", "source", "locates_events", "settings")} for solver in solvers]
     answer({"solvers": listed, "faults": faults, "versions": versions()})
+    batches = {}
     for line in sys.stdin:
         request = json.loads(line)
         try:
+            if "batch" in request:
+                taylor = importlib.import_module(SOURCES["heyoka"])
+                answer(taylor.batch(problem, batches, request["batch"], request["values"]))
+                continue
             answer(solvers[request["solver"]]["run"](request["setting"]))
         except Exception as fault:
             answer({"fault": f"{type(fault).__name__}: {fault}".splitlines()[0]})

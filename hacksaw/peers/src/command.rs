@@ -11,7 +11,7 @@ use crate::poses::{Reference, reference};
 use crate::problem::Problem;
 use crate::solvers::python::{self, Python};
 use crate::solvers::{Solver, Source, in_rust};
-use crate::{diagram, ratios, table};
+use crate::{batch, diagram, ratios, table};
 
 /// Compares bg-model with other solvers on 5 s of the paper's hacksaw in the plane.
 #[derive(Debug, Parser)]
@@ -37,6 +37,10 @@ pub struct Arguments {
     #[arg(long)]
     python: Option<PathBuf>,
 
+    /// Instead of all this: so many runs with parameters of their own, ours in lanes and heyoka's in batches
+    #[arg(long, value_name = "RUNS", value_parser = clap::value_parser!(u32).range(1..))]
+    batch: Option<u32>,
+
     /// Where the files go
     #[arg(long, default_value = "out/peers")]
     out: PathBuf,
@@ -46,6 +50,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), String> {
     std::fs::create_dir_all(&arguments.out).map_err(|fault| format!("{}: {fault}", arguments.out.display()))?;
     let problem = Problem::paper();
+    if let Some(runs) = arguments.batch {
+        let interpreter = interpreter(arguments)?;
+        print!("{}", batch::compared(&interpreter, &problem, runs as usize, arguments.repeats.into())?);
+        return Ok(());
+    }
     let reference = reference()?;
     let python = from_python(arguments, &problem);
     let mut solvers: Vec<Box<dyn Solver + '_>> = in_rust(&problem, &arguments.only);
@@ -63,17 +72,20 @@ fn from_python(arguments: &Arguments, problem: &Problem) -> Python {
     if arguments.no_python || sources.is_empty() {
         return nothing(Vec::new());
     }
-    let interpreter = match &arguments.python {
+    let python = interpreter(arguments).and_then(|interpreter| python::start(&interpreter, problem, &sources));
+    let python = python.unwrap_or_else(|fault| nothing(vec![format!("solvers from Python left out: {fault}")]));
+    python.faults.iter().for_each(|fault| eprintln!("warning: {fault}"));
+    python
+}
+
+fn interpreter(arguments: &Arguments) -> Result<PathBuf, String> {
+    match &arguments.python {
         Some(path) => Ok(path.clone()),
         None => {
             eprintln!("virtual environment for Python's packages");
             python::environment(&std::path::absolute(arguments.out.join("venv")).unwrap_or_default())
         }
-    };
-    let python = interpreter.and_then(|interpreter| python::start(&interpreter, problem, &sources));
-    let python = python.unwrap_or_else(|fault| nothing(vec![format!("solvers from Python left out: {fault}")]));
-    python.faults.iter().for_each(|fault| eprintln!("warning: {fault}"));
-    python
+    }
 }
 
 fn write(

@@ -4,6 +4,7 @@
 //! output, and in a folder the whole of it as Markdown, CSV, JSON and a work-precision diagram. `README.md` beside this
 //! package says what is measured and how.
 
+mod batch;
 mod command;
 mod diagram;
 mod machine;

@@ -9,9 +9,9 @@ use bg_model::simulation::Recording;
 use bg_workbench::samples;
 use hacksaw::columns::LINKS;
 
-use hacksaw_planar::State;
 use crate::problem::{SAMPLES, instants};
 use crate::solvers::ours;
+use hacksaw_planar::State;
 
 /// `[x, y, angle]` of crank, rod, frame and guide, m and rad.
 pub type Pose = [f64; 12];

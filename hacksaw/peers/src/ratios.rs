@@ -14,12 +14,23 @@ struct Goal {
 
 const RUST: &[Source] = &[Source::Diffsol, Source::OdeSolvers, Source::DifferentialEquations];
 
-const GOALS: [Goal; 5] = [
-    Goal { name: "heyoka", sources: &[Source::Heyoka], error: 1e-6, factor: 2.0 },
+const HEYOKA: &[Source] = &[Source::Heyoka];
+const BY_HAND: &[Source] = &[Source::ByHand];
+
+const GOALS: [Goal; 13] = [
+    Goal { name: "heyoka", sources: HEYOKA, error: 1e-6, factor: 4.0 },
+    Goal { name: "heyoka", sources: HEYOKA, error: 3e-7, factor: 4.0 },
+    Goal { name: "heyoka", sources: HEYOKA, error: 1e-8, factor: 3.0 },
+    Goal { name: "heyoka", sources: HEYOKA, error: 1e-10, factor: 2.5 },
+    Goal { name: "heyoka", sources: HEYOKA, error: 1e-12, factor: 2.5 },
+    Goal { name: "by hand", sources: BY_HAND, error: 1e-3, factor: 2.0 },
+    Goal { name: "by hand", sources: BY_HAND, error: 1e-6, factor: 2.0 },
+    Goal { name: "by hand", sources: BY_HAND, error: 3e-7, factor: 2.0 },
+    Goal { name: "by hand", sources: BY_HAND, error: 1e-8, factor: 2.0 },
+    Goal { name: "by hand", sources: BY_HAND, error: 1e-10, factor: 2.0 },
+    Goal { name: "by hand", sources: BY_HAND, error: 1e-12, factor: 2.0 },
     Goal { name: "the best Rust crate", sources: RUST, error: 1e-6, factor: 4.0 },
     Goal { name: "CVODE", sources: &[Source::Cvode, Source::Casadi], error: 1e-6, factor: 6.0 },
-    Goal { name: "heyoka", sources: &[Source::Heyoka], error: 1e-10, factor: 1.0 },
-    Goal { name: "heyoka", sources: &[Source::Heyoka], error: 1e-12, factor: 1.0 },
 ];
 
 /// Ours: with energies and without.

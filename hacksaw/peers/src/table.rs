@@ -4,7 +4,7 @@ use crate::measure::{Point, Series};
 use crate::solvers::Setting;
 
 /// The errors of the summary's columns, m or rad.
-pub const ERRORS: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
+pub const ERRORS: [f64; 6] = [1e-3, 1e-6, 3e-7, 1e-8, 1e-10, 1e-12];
 
 /// The fastest point of a series whose error is at most `error`.
 pub fn fastest(series: &Series, error: f64) -> Option<&Point> {

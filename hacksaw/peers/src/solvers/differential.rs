@@ -16,9 +16,9 @@ use differential_equations::solout::Solout;
 use differential_equations::solution::Solution;
 
 use super::{Run, Solver, Source, Work, by_tolerance};
-use hacksaw_planar::State;
 use crate::poses::{self, Poses};
 use crate::problem::{ABSOLUTE, Branch, Problem, SAMPLES, T_END, instant};
+use hacksaw_planar::State;
 
 /// A method of the crate at a tolerance. `rtol` and `atol` are methods of each type, not of a trait.
 macro_rules! line {

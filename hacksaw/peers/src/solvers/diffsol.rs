@@ -11,9 +11,9 @@ use std::time::Instant;
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason};
 
 use super::{Run, Solver, Source, Work, by_tolerance};
-use hacksaw_planar::State;
 use crate::poses;
 use crate::problem::{ABSOLUTE, Branch, Problem, SAMPLES, T_END, instant};
+use hacksaw_planar::State;
 
 type Matrix = NalgebraMat<f64>;
 type Lu = NalgebraLU<f64>;

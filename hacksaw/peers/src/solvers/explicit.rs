@@ -10,9 +10,9 @@ use ode_solvers::dop_shared::{IntegrationError, OutputType, Stats};
 use ode_solvers::{Dop853, Dopri5, SVector, System};
 
 use super::{Run, Solver, Source, Work, by_tolerance};
-use hacksaw_planar::State;
 use crate::poses::{self, Poses};
 use crate::problem::{ABSOLUTE, INTERVAL, Problem, SAMPLES, T_END};
+use hacksaw_planar::State;
 
 type Vector = SVector<f64, 24>;
 

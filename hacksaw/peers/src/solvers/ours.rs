@@ -5,7 +5,7 @@
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
-use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method, Nystrom, Radau9, Rk4, Taylor, Tolerances};
+use bg_model::integrator::{Auto, Bs5, Cfmr7, Dop853, Method, Nystrom, Radau9, Rk4, Taylor, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Column, EachSample, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
@@ -13,9 +13,9 @@ use bg_model::system::{Model, System};
 use hacksaw::mechanism::{Motion, MotionParameters, Paper, PaperParameters};
 
 use super::{Entry, Line, Run, Setting, Solver, Source, Work, by_tolerance};
-use hacksaw_planar::State;
 use crate::poses::{self, Poses};
 use crate::problem::{ABSOLUTE, Problem, T_END, instants, slip};
+use hacksaw_planar::State;
 
 /// States of the paper's scene.
 const N: usize = Paper::STATES;
@@ -26,6 +26,7 @@ const SCENE_ABSOLUTE: f64 = 0.1;
 /// All our lines.
 pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
     vec![
+        on_scene(Source::Ours, "auto, the default", 3..=13, paper, Auto::new),
         on_scene(Source::Ours, "CFMR7osc", 3..=11, paper, Cfmr7::new),
         on_scene(Source::Ours, "Nystrom", 3..=9, paper, Nystrom::new),
         on_scene(Source::Ours, "DOP853", 3..=13, paper, Dop853::new),
@@ -33,6 +34,7 @@ pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
         on_scene(Source::Ours, "BS5", 3..=9, paper, Bs5::new),
         on_scene(Source::Ours, "Radau IIA 9", 3..=9, paper, Radau9::new),
         on_scene_by_steps("RK4, fixed step", &[2e-4, 1e-4, 5e-5, 2e-5], Rk4::new),
+        on_scene(Source::Motion, "auto, poses only", 3..=13, motion, Auto::new),
         on_scene(Source::Motion, "CFMR7osc, poses only", 3..=11, motion, Cfmr7::new),
         on_scene(Source::Motion, "Nystrom, poses only", 3..=9, motion, Nystrom::new),
         on_scene(Source::Motion, "DOP853, poses only", 3..=13, motion, Dop853::new),

@@ -83,6 +83,51 @@ pub fn environment(folder: &Path) -> Result<PathBuf, String> {
 /// # Errors
 /// It does not start or does not answer.
 pub fn start(python: &Path, problem: &Problem, sources: &[Source]) -> Result<Python, String> {
+    let (process, offer) = spawned(python, problem, sources)?;
+    let process = Rc::new(RefCell::new(process));
+    let solvers = offer.solvers.into_iter().enumerate().map(|(index, listed)| -> Box<dyn Solver> {
+        let source = *sources.iter().find(|&&source| name(source) == listed.source).expect("one of those asked for");
+        let line =
+            Line { name: listed.name, source, locates_events: listed.locates_events, setting: Setting::Tolerance };
+        Box::new(Remote { line, settings: listed.settings, index, process: process.clone() })
+    });
+    let faults = offer.faults.into_iter().map(|missing| format!("{}: {}", missing.source, missing.fault));
+    Ok(Python { solvers: solvers.collect(), versions: offer.versions, faults: faults.collect() })
+}
+
+/// heyoka's runs side by side.
+pub struct Batches {
+    process: Process,
+    /// Versions by package, and Python's.
+    pub versions: BTreeMap<String, String>,
+}
+
+impl Batches {
+    /// Starts the process.
+    ///
+    /// # Errors
+    /// It does not start, or there is no heyoka.
+    pub fn new(python: &Path, problem: &Problem) -> Result<Self, String> {
+        let (process, offer) = spawned(python, problem, &[Source::Heyoka])?;
+        match offer.faults.into_iter().next() {
+            Some(missing) => Err(missing.fault),
+            None => Ok(Self { process, versions: offer.versions }),
+        }
+    }
+
+    /// The runs with the parameters `values` at a tolerance: CPU time, s, of all, and each one's poses at its end.
+    ///
+    /// # Errors
+    /// What heyoka says.
+    pub fn run(&mut self, tolerance: f64, values: &[[f64; 4]]) -> Result<(f64, Poses), String> {
+        match self.process.ask(&json!({ "batch": tolerance, "values": values }))? {
+            Answer::Run { seconds, poses, .. } => Ok((seconds, poses)),
+            Answer::Fault { fault } => Err(fault),
+        }
+    }
+}
+
+fn spawned(python: &Path, problem: &Problem, sources: &[Source]) -> Result<(Process, Offer), String> {
     let script = scripts().join("peers.py");
     // CasADi leaves what it compiles in the working folder.
     let absolute = std::path::absolute(python).map_err(|fault| format!("{}: {fault}", python.display()))?;
@@ -94,19 +139,11 @@ pub fn start(python: &Path, problem: &Problem, sources: &[Source]) -> Result<Pyt
     let (stdin, stdout) = (stdin.expect("is piped"), BufReader::new(stdout.expect("is piped")));
     let mut process = Process { child, stdin, stdout };
     let names: Vec<String> = sources.iter().map(|&source| name(source)).collect();
-    let offer: Offer = process.ask(&json!({
+    let offer = process.ask(&json!({
         "constants": problem.constants(), "start": problem.start, "cutting": problem.cuts_after(&problem.start),
         "samples": instants(), "absolute": ABSOLUTE, "sources": names,
     }))?;
-    let process = Rc::new(RefCell::new(process));
-    let solvers = offer.solvers.into_iter().enumerate().map(|(index, listed)| -> Box<dyn Solver> {
-        let source = *sources.iter().find(|&&source| name(source) == listed.source).expect("one of those asked for");
-        let line =
-            Line { name: listed.name, source, locates_events: listed.locates_events, setting: Setting::Tolerance };
-        Box::new(Remote { line, settings: listed.settings, index, process: process.clone() })
-    });
-    let faults = offer.faults.into_iter().map(|missing| format!("{}: {}", missing.source, missing.fault));
-    Ok(Python { solvers: solvers.collect(), versions: offer.versions, faults: faults.collect() })
+    Ok((process, offer))
 }
 
 fn name(source: Source) -> String {
