@@ -19,8 +19,7 @@ const INLINED: usize = 400;
 pub struct Programs {
     /// Functions of the running model; they share one constant table.
     pub running: Running,
-    /// How what they give depends on states and constants, where rates are inlined: of longer ones the sweeps, three times as long, are
-    /// too much to check in each build.
+    /// How what they give depends on states and constants, where that is not too long.
     pub reversed: Option<Reversed>,
     /// The derivatives of the rates, with a constant table of their own.
     pub jacobian: Program<1>,
@@ -95,7 +94,7 @@ pub struct Starting {
 /// Schedules all functions of a model. The pools gain nodes of parameters and numbers.
 pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_order: &mut SecondOrder) -> Programs {
     let running = running(equations);
-    let reversed = running.is_inlined().then(|| reversed(&running, equations.states.len()));
+    let reversed = reversed(&running, equations.states.len());
     let derivatives = jacobian.roots();
     let jacobian = schedule(&mut jacobian.pool, [Request { name: "jacobian", roots: &derivatives }]);
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));

@@ -20,16 +20,17 @@ pub struct Reversed {
     pub settle: Reverse,
 }
 
-/// The reverse sweeps of the functions of a model with so many states.
-pub fn reversed(running: &Running, states: usize) -> Reversed {
+/// The reverse sweeps of the functions of a model with so many states. None where rates are not inlined: of longer ones the sweeps, three
+/// times as long, are too much to check in each build.
+pub fn reversed(running: &Running, states: usize) -> Option<Reversed> {
     let of = |routine: &Routine| reverse(routine, routine.results.len(), &format!("reverse_{}", routine.name));
-    Reversed {
+    running.is_inlined().then(|| Reversed {
         // What iterations find comes after the rates.
         rate: reverse(&running.rate, states, "reverse_rate"),
         outputs: (!reads_reactions(&running.outputs)).then(|| of(&running.outputs)),
         project: of(&running.project),
         settle: of(&running.settle),
-    }
+    })
 }
 
 fn reads_reactions(routine: &Routine) -> bool {

@@ -15,9 +15,9 @@ impl Emission<'_> {
         let reversed = self.model.programs.reversed.as_ref()?;
         let (equations, constants) = (&self.model.equations, self.constants());
         let (rate, project) = (self.sweep(&reversed.rate, equations.states.len()), self.reverse_project());
-        let outputs = reversed.outputs.as_ref().map(|sweep| {
-            let function = self.sweep(sweep, equations.outputs.len());
-            let implementation = quote! {
+        let outputs = reversed.outputs.as_ref().map(|sweep| self.sweep(sweep, equations.outputs.len()));
+        let reverse_outputs = outputs.as_ref().map(|_| {
+            quote! {
                 fn reverse_outputs(
                     &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], weights: &SVector<S, #m>,
                     by_state: &mut SVector<S, #n>, by_constants: &mut [S],
@@ -26,17 +26,15 @@ impl Emission<'_> {
                     self.sweep_outputs(t, x, negative, &weights.data.0[0], by_state, by_constants);
                     true
                 }
-            };
-            (function, implementation)
+            }
         });
-        let (output_functions, outputs): (Vec<_>, Vec<_>) = outputs.into_iter().unzip();
         let functions = [(&reversed.project, &equations.projections), (&reversed.settle, &equations.settled)];
         let functions = functions.into_iter().filter(|(_, moved)| !moved.is_empty());
         let functions = functions.map(|(sweep, moved)| self.sweep(sweep, moved.len()));
         Some(quote! {
             impl<S: Scalar> Model<S> {
                 #rate
-                #(#output_functions)*
+                #outputs
                 #(#functions)*
             }
             impl<S: Scalar> ::bg_model::capability::Reversed<S, #n, #g, #m> for Model<S> {
@@ -51,7 +49,7 @@ impl Emission<'_> {
                     self.sweep_rate(t, x, negative, &weights.data.0[0], by_state, by_constants);
                 }
                 #project
-                #(#outputs)*
+                #reverse_outputs
             }
         })
     }
