@@ -163,7 +163,7 @@ impl LiftedVisitor<Gradient, Gradient> for Asked<'_> {
         let scale = Scale::from(&self.request.settings(0.0).tolerances);
         let back = Back::new((model, sweeps, lifted), scale, &self.objective.integrals);
         let mut backwards = Backwards { back, record: &record, model, weights: SVector::zeros() };
-        backwards.to_start()?;
+        backwards.back_to_start()?;
         backwards.by_parameters(self.directions)?;
         let (integral, by) = (backwards.back.integral, backwards.back.lifted.by);
         drop(record);
@@ -214,7 +214,7 @@ where
     Li: Model<Gradient, N, G, M>,
 {
     /// Follows the run from its end to its start.
-    fn to_start(&mut self) -> Result<(), SensitivityError> {
+    fn back_to_start(&mut self) -> Result<(), SensitivityError> {
         let Record { states, stride, steps, events, samples, .. } = self.record;
         let (mut events, mut samples) = (events.as_slice(), samples.as_slice());
         for (kept, state) in states.iter().enumerate().rev() {

@@ -1,9 +1,9 @@
 //! What a run leaves to be followed backwards: its steps, events and samples, in the order of time.
 //!
-//! In: what an observer of the run is told, the most states that are kept. Out: a [`Record`]. Of each step its instant stays, 16 bytes,
-//! and its start state; where there are more of these than are kept, every second one is forgotten, again and again, and the states
-//! between two that are left are made again. So a run of n steps takes 16 n bytes and a fixed number of states, beside its events and
-//! the samples that were asked for.
+//! In: what an observer of the run is told, the most states that are kept. Out: a [`Record`]. Of each step its instants stay and the
+//! number of its branches, 24 bytes, and its start state; where there are more of these than are kept, every second one is forgotten,
+//! again and again, and the states between two that are left are made again. So a run of n steps takes 24 n bytes and a fixed number of
+//! states, beside its events and the samples that count.
 
 use nalgebra::SVector;
 
