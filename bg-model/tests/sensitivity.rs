@@ -1,5 +1,8 @@
 //! Derivatives by parameters and start values against five-point differences in double-double arithmetic, and closed forms.
 
+#[path = "sensitivity/adjoint.rs"]
+mod adjoint;
+
 use bg_model::bond_graph;
 use bg_model::extended::Accuracy;
 use bg_model::integrator::Integrator;
@@ -70,10 +73,6 @@ bond_graph! {
     }
 }
 
-fn all_parameters<Me: Mechanism>() -> Vec<Direction> {
-    (0..Me::Parameters::table().len()).map(Direction::Parameter).collect()
-}
-
 fn request(t: f64, method: Integrator) -> Request {
     Request { method, t_end: t, rtol: 1e-12, atol: Some(1e-13), samples: Samples::At(vec![t]), ..Request::default() }
 }
@@ -81,7 +80,7 @@ fn request(t: f64, method: Integrator) -> Request {
 /// The largest difference of an exact derivative from differences, in parts of the largest derivative of its output at `t` (s)
 /// per part of its parameter; and how many events there were.
 fn deviation<Me: Mechanism>(model: &Me, t: f64, method: Integrator) -> (f64, u64) {
-    let directions = all_parameters::<Me>();
+    let directions = Direction::parameters::<Me>();
     let found = sensitivities(model, &request(t, method), &directions).expect("derivatives");
     let values: Vec<f64> = (0..directions.len()).map(|k| model.parameters().value(k)).collect();
     let mut worst = 0.0_f64;
@@ -167,7 +166,7 @@ fn impacts_against_the_closed_form() {
 #[test]
 fn each_direction_is_the_same_beside_others_and_alone() {
     let model = Block::new(BlockParameters::default()).unwrap();
-    let all = all_parameters::<Block>();
+    let all = Direction::parameters::<Block>();
     let together = sensitivities(&model, &request(1.0, Integrator::Dop853), &all).unwrap();
     for (k, &direction) in all.iter().enumerate() {
         let alone = sensitivities(&model, &request(1.0, Integrator::Dop853), &[direction]).unwrap();
@@ -183,7 +182,7 @@ fn the_run_is_the_one_without_derivatives() {
     let model = Belt::new(BeltParameters::default()).unwrap();
     let request = Request { samples: Samples::Every(0.1), ..request(4.0, Integrator::Auto) };
     let plain = bg_model::run::Simulation::of(&model, request.clone()).run().unwrap();
-    let found = sensitivities(&model, &request, &all_parameters::<Belt>()).unwrap();
+    let found = sensitivities(&model, &request, &Direction::parameters::<Belt>()).unwrap();
     assert_eq!(found.trajectory.recording, plain.recording);
     assert_eq!(found.trajectory.statistics, plain.statistics);
 }

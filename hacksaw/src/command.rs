@@ -33,6 +33,8 @@ pub fn program() -> Program<Hacksaw> {
     let program = program.cases(case::cases(), &["paper", "full-offset", "rigid"]);
     #[cfg(all(feature = "lanes", not(target_arch = "wasm32")))]
     let program = program.lanes();
+    #[cfg(feature = "gradients")]
+    let program = program.gradients();
     program
 }
 

@@ -28,7 +28,8 @@ const WHOLE: [&str; 12] = [
 ];
 
 /// The names of the stages after the source.
-const ALL: [&str; 7] = ["expanded", "resolved", "causal", "equations", "program", "jacobian", "elimination"];
+const ALL: [&str; 8] =
+    ["expanded", "resolved", "causal", "equations", "program", "reversed", "jacobian", "elimination"];
 
 /// Every stage but the program, whose lists of values in three dimensions are longer than a reader follows.
 const SPATIAL: [&str; 1] = ["free_body"];

@@ -13,7 +13,7 @@ use crate::graph::{BondGraph, NodeKind, Storage};
 use crate::pipeline::{self, Compiled};
 use crate::program::elimination::Elimination;
 use crate::program::pairs::{Half, Paired, Step, Value};
-use crate::program::{Assignment, Counts, Operand, Operation, Routine, Running};
+use crate::program::{Assignment, Counts, Operand, Operation, Reverse, Reversed, Routine, Running};
 use crate::source::ast::TrackKind;
 use crate::source::syntax;
 use crate::system::equations::StateEquations;
@@ -26,7 +26,7 @@ pub struct Stage {
     /// The graph's name.
     pub graph: String,
     /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `program`, where it pays
-    /// `pairs`, `jacobian`, `second` and `elimination`.
+    /// `pairs`, `reversed`, `jacobian`, `second` and `elimination`.
     pub name: &'static str,
     /// The stage's result.
     pub text: String,
@@ -69,6 +69,10 @@ fn of_model(model: &Compiled) -> Vec<Stage> {
     if let Some(paired) = &programs.running.paired_rate {
         push("pairs", paired_text(equations, paired));
     }
+    push(
+        "reversed",
+        programs.reversed.as_ref().map_or_else(|| "none: the rate is too long\n".to_owned(), reversed_text),
+    );
     push("jacobian", jacobian_text(equations, jacobian));
     push("second", second_text(equations, second_order));
     push("elimination", elimination_text(equations, elimination));
@@ -242,6 +246,20 @@ fn assignment_text(equations: &StateEquations, assignment: &Assignment) -> Strin
         }
     };
     format!("v{} = {text}", assignment.target)
+}
+
+/// What the reverse sweeps cost, and by what they differentiate.
+fn reversed_text(reversed: &Reversed) -> String {
+    let Reversed { rate, outputs, project, settle } = reversed;
+    let mut out = String::new();
+    let sweeps = [rate].into_iter().chain(outputs).chain([project, settle]);
+    for Reverse { routine, leaves } in sweeps.filter(|sweep| !sweep.leaves.is_empty()) {
+        let states = leaves.iter().filter(|leaf| matches!(leaf, Operand::Symbol(_))).count();
+        let (name, constants) = (&routine.name, leaves.len() - states);
+        let operations = routine.counts.total();
+        let _ = writeln!(out, "{name}: {operations} operations, by {states} states and {constants} constants");
+    }
+    out
 }
 
 /// The steps of the rate with pairs.

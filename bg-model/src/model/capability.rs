@@ -123,6 +123,53 @@ pub trait Impacts<S: Scalar, const N: usize, const G: usize> {
     fn impact(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]);
 }
 
+/// A model that knows its reverse sweeps: how a weighted sum of what a function gives depends on all that the function reads, at the cost of
+/// a few evaluations of it. What depends on the parameters only is a table of constants, by which each sweep adds its derivatives to
+/// `by_constants`: in the weights' unit times the result's, per the constant's. Branches are given.
+pub trait Reversed<S: Scalar, const N: usize, const G: usize, const M: usize> {
+    /// The table of constants.
+    fn constants(&self) -> &[S];
+
+    /// The sweep of the rate at time `t` (s) and state `x`: writes the derivatives by the states into `by_state`.
+    fn reverse_rate(
+        &self,
+        t: S,
+        x: &SVector<S, N>,
+        negative: &[S::Switch; G],
+        weights: &SVector<S, N>,
+        by_state: &mut SVector<S, N>,
+        by_constants: &mut [S],
+    );
+
+    /// The sweep of the projection of the state `x`: replaces the weights of the projected states by those of the states before. By
+    /// default nothing is projected.
+    #[inline]
+    fn reverse_project(
+        &self,
+        _t: S,
+        _x: &SVector<S, N>,
+        _negative: &[S::Switch; G],
+        _weights: &mut SVector<S, N>,
+        _by_constants: &mut [S],
+    ) {
+    }
+
+    /// The sweep of the outputs, as that of the rate. Gives whether there is one: by default, and where outputs read reactions that
+    /// joints share, there is none.
+    #[inline]
+    fn reverse_outputs(
+        &self,
+        _t: S,
+        _x: &SVector<S, N>,
+        _negative: &[S::Switch; G],
+        _weights: &SVector<S, M>,
+        _by_state: &mut SVector<S, N>,
+        _by_constants: &mut [S],
+    ) -> bool {
+        false
+    }
+}
+
 /// A capability that is not there.
 #[derive(Clone, Copy, Debug)]
 pub enum Absent {}
@@ -180,6 +227,23 @@ impl<S: Scalar, const N: usize, const G: usize> Impacts<S, N, G> for Absent {
         match *self {}
     }
     fn impact(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut [S]) {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize, const G: usize, const M: usize> Reversed<S, N, G, M> for Absent {
+    fn constants(&self) -> &[S] {
+        match *self {}
+    }
+    fn reverse_rate(
+        &self,
+        _: S,
+        _: &SVector<S, N>,
+        _: &[S::Switch; G],
+        _: &SVector<S, N>,
+        _: &mut SVector<S, N>,
+        _: &mut [S],
+    ) {
         match *self {}
     }
 }

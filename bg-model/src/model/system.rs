@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use nalgebra::SVector;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::{Absent, Impacts, Joints, Linearised, SecondOrder, Series};
+use crate::model::capability::{Absent, Impacts, Joints, Linearised, Reversed, SecondOrder, Series};
 use crate::model::description::Description;
 use crate::model::holding::Redundancy;
 use crate::model::origin::Origin;
@@ -206,4 +206,10 @@ pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: Syst
 
     /// The powers over the model's boundary, W: d(stored)/dt = supplied - dissipated.
     fn powers(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G]) -> Powers<S>;
+
+    /// The reverse sweeps of rate, projection and outputs; by default none are known.
+    #[inline]
+    fn reversed(&self) -> Option<&impl Reversed<S, N, G, M>> {
+        None::<&Absent>
+    }
 }

@@ -88,6 +88,8 @@ pub mod files;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod golden;
 #[cfg(not(target_arch = "wasm32"))]
+pub mod gradient;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod identify;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod markup;

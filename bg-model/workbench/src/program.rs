@@ -7,6 +7,8 @@ use std::process::ExitCode;
 use bg_model::mechanism::Scenes;
 
 use crate::extras::{Extras, Plain};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gradient::Differentiate;
 use crate::precision::case::Case;
 use crate::scenes::{Scene, scenes};
 #[cfg(not(target_arch = "wasm32"))]
@@ -23,6 +25,9 @@ pub struct Program<Me> {
     /// What makes runs side by side, if the program has it.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) lanes: Option<Many>,
+    /// What follows runs backwards, if the program has it.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) gradients: Option<Differentiate>,
     mechanism: PhantomData<Me>,
 }
 
@@ -65,6 +70,8 @@ impl<Me: Scenes> Program<Me> {
             extras: Box::new(Plain),
             #[cfg(not(target_arch = "wasm32"))]
             lanes: None,
+            #[cfg(not(target_arch = "wasm32"))]
+            gradients: None,
             mechanism: PhantomData,
         }
     }
@@ -117,6 +124,16 @@ impl<Me: Scenes> Program<Me> {
     pub fn lanes(mut self) -> Self {
         self.lanes = Some(crate::sweep::lanes::many::<Me>);
         self
+    }
+
+    /// Gives the program the command `gradient`: one number of a run differentiated by all parameters, by the run followed backwards. It is
+    /// compiled for each model, so a program has it only if it asks for it. A page has no use for it.
+    #[must_use]
+    pub fn gradients(self) -> Self {
+        cfg_select! {
+            target_arch = "wasm32" => self,
+            _ => Self { gradients: Some(crate::gradient::differentiate::<Me>), ..self },
+        }
     }
 
     /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output failed,

@@ -121,7 +121,7 @@ impl Influence {
 }
 
 /// The unit `unit` per `per`.
-fn quotient(unit: &str, per: &str) -> String {
+pub(crate) fn quotient(unit: &str, per: &str) -> String {
     let plain = |unit: &str| if unit.is_empty() { "1".to_owned() } else { unit.to_owned() };
     match (plain(unit), plain(per)) {
         (unit, per) if per == "1" => unit,

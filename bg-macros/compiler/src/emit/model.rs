@@ -11,6 +11,7 @@ pub(super) mod mechanism;
 mod names;
 mod outputs;
 mod required;
+mod reversed;
 mod routines;
 mod shared;
 mod start;
@@ -107,7 +108,8 @@ impl Emission<'_> {
     fn code(&self, given: &Given, costs: &[(&str, Counts)], tables: &Tables) -> TokenStream {
         let description = description::description(self.model, costs);
         let constructors = self.constructors(given, tables);
-        let (system, capabilities, model) = (self.system(), self.capabilities(), self.model());
+        let (system, capabilities, model, reversed) =
+            (self.system(), self.capabilities(), self.model(), self.reversed());
         let mechanism = self.mechanism();
         let import_pair = tables.has_pairs.then(|| {
             quote!(
@@ -125,6 +127,7 @@ impl Emission<'_> {
             #system
             #capabilities
             #model
+            #reversed
             #mechanism
         }
     }

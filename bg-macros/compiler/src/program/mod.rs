@@ -4,11 +4,13 @@
 //! Method: `bg_expressions::schedule`.
 
 mod programs;
+mod reversed;
 mod tape;
 
 pub use bg_expressions::elimination;
 pub use bg_expressions::schedule::{
-    Assignment, Counts, Operand, Operation, Program, Request, Routine, pairs, schedule,
+    Assignment, Counts, Operand, Operation, Program, Request, Reverse, Routine, pairs, reverse, schedule,
 };
 pub use programs::{Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
+pub use reversed::Reversed;
 pub use tape::Tape;

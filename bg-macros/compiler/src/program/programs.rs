@@ -4,6 +4,7 @@
 //! with its table of constants.
 
 use super::pairs::{Paired, pair};
+use super::reversed::{Reversed, reversed};
 use super::tape::{Tape, tape};
 use super::{Counts, Program, Request, Routine, schedule};
 use crate::expr::{Id, Pool};
@@ -18,6 +19,8 @@ const INLINED: usize = 400;
 pub struct Programs {
     /// Functions of the running model; they share one constant table.
     pub running: Running,
+    /// How what they give depends on states and constants, where that is not too long.
+    pub reversed: Option<Reversed>,
     /// The derivatives of the rates, with a constant table of their own.
     pub jacobian: Program<1>,
     /// What there is for states of second order, with a constant table of its own.
@@ -91,6 +94,7 @@ pub struct Starting {
 /// Schedules all functions of a model. The pools gain nodes of parameters and numbers.
 pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_order: &mut SecondOrder) -> Programs {
     let running = running(equations);
+    let reversed = reversed(&running, equations.states.len());
     let derivatives = jacobian.roots();
     let jacobian = schedule(&mut jacobian.pool, [Request { name: "jacobian", roots: &derivatives }]);
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
@@ -101,7 +105,7 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let required = [("required", false), ("required_at_start", true)]
         .map(|(name, is_of_start)| required(equations, name, is_of_start));
     let shown = tape(&equations.pool, &equations.solution, &equations.shown.quantities());
-    Programs { running, jacobian, second_order, holding, impacts, starting, required, not_finite, shown }
+    Programs { running, reversed, jacobian, second_order, holding, impacts, starting, required, not_finite, shown }
 }
 
 /// The operations of the rate function as it would be generated from the equations.

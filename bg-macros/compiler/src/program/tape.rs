@@ -110,7 +110,8 @@ fn leaf(symbol: Symbol, solution: &Solution) -> Option<(u32, u32)> {
         | Symbol::Flow(_)
         | Symbol::Kept(_)
         | Symbol::Unsolved(_)
-        | Symbol::Rate(_) => None,
+        | Symbol::Rate(_)
+        | Symbol::Weight(_) => None,
     }
 }
 

@@ -25,6 +25,8 @@ pub struct Environment<'a> {
     pub rates: &'a [f64],
     /// What iterations have found.
     pub found: &'a [f64],
+    /// Weights of results.
+    pub weights: &'a [f64],
     /// Whether each switch's guard is below zero.
     pub negative: &'a [bool],
 }
@@ -41,6 +43,7 @@ impl Environment<'_> {
             Symbol::Slope(index) => self.slopes[index as usize],
             Symbol::Rate(index) => self.rates[index as usize],
             Symbol::Found(index) => self.found[index as usize],
+            Symbol::Weight(index) => self.weights[index as usize],
             Symbol::Kept(_) => 1.0,
             Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Unsolved(_) => {
                 panic!("no value of {symbol:?}")

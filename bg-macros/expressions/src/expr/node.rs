@@ -38,6 +38,8 @@ pub enum Symbol {
     Slope(u32),
     /// The rate of a state.
     Rate(u32),
+    /// The weight of a result, where routines are followed backwards.
+    Weight(u32),
 }
 
 impl Symbol {

@@ -17,6 +17,7 @@ mod greedy;
 pub mod pairs;
 mod plan;
 mod rebuild;
+mod reverse;
 mod signs;
 mod statics;
 mod table;
@@ -28,6 +29,7 @@ use factor::Grouping;
 use flat::Constants;
 use graph::{Graph, Value};
 use plan::Plan;
+pub use reverse::{Reverse, reverse};
 use statics::Statics;
 
 use crate::expr::{Function, Id, Pool, Symbol};

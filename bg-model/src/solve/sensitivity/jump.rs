@@ -26,7 +26,7 @@ pub(super) fn jumped<Sys, const N: usize, const G: usize>(
 where
     Sys: System<Gradient, N, G>,
 {
-    let Switching { before, after, negative_before, reached, left, jumps, .. } = event;
+    let Switching { before, after, jumps, .. } = event;
     let after_with =
         |slope: &dyn Fn(usize) -> [f64; WIDTH]| SVector::from_fn(|i, _| Gradient::new(after.x[i], slope(i)));
     if !jumps && before.rate == after.rate {
@@ -35,13 +35,8 @@ where
     let delays = delays(system, plain, x, event)?;
     let along = |rate: &SVector<f64, N>, i: usize, l: usize| rate[i] * delays[l];
     let at_event = |i: usize| std::array::from_fn(|l| x[i].slopes()[l] + along(&before.rate, i, l));
-    let mut moved: Sloped<N> = SVector::from_fn(|i, _| Gradient::new(before.x[i], at_event(i)));
-    if let (true, Some(impacts)) = (*jumps, system.impacts()) {
-        let closed = |k: usize| reached[k] || !negative_before[k];
-        let is_low = |k: usize, _: f64, _: bool| !left[k];
-        let t = Gradient::new(before.t, delays);
-        Collision::new(impacts).strike(impacts, (t, &mut moved), negative_before, closed, is_low);
-    }
+    let moved = SVector::from_fn(|i, _| Gradient::new(before.x[i], at_event(i)));
+    let moved = struck(system, event, Gradient::new(before.t, delays), moved);
     Some(after_with(&|i| std::array::from_fn(|l| moved[i].slopes()[l] - along(&after.rate, i, l))))
 }
 
@@ -55,16 +50,53 @@ fn delays<Sys, const N: usize, const G: usize>(
 where
     Sys: System<Gradient, N, G>,
 {
-    let Switching { before, negative_before, reached, .. } = event;
-    let guards = |of: &Sys, by_time: f64, x: &Sloped<N>| {
-        let mut guards = SVector::repeat(Gradient::from_f64(0.0));
-        of.guards(Gradient::new(before.t, [by_time; WIDTH]), x, negative_before, &mut guards);
-        guards
-    };
-    let flow = SVector::from_fn(|i, _| Gradient::new(before.x[i], [before.rate[i]; WIDTH]));
-    let (by_direction, by_time) = (guards(system, 0.0, x), guards(plain, 1.0, &flow));
-    let speed = |k: &usize| by_time[*k].slopes()[0];
-    let k = (0..G).filter(|&k| reached[k]).find(|k| speed(k).is_finite() && speed(k) != 0.0)?;
-    let delays = by_direction[k].slopes().map(|slope| -slope / speed(&k));
+    let (k, speed) = passed(plain, event)?;
+    let delays = guards(system, event, 0.0, x)[k].slopes().map(|slope| -slope / speed);
     delays.iter().all(|delay| delay.is_finite()).then_some(delays)
+}
+
+/// The guard that decides on the instant, and how fast it passes through zero, in its unit per s. `plain` has slopes of nothing.
+pub(super) fn passed<Sys, const N: usize, const G: usize>(plain: &Sys, event: &Switching<N, G>) -> Option<(usize, f64)>
+where
+    Sys: System<Gradient, N, G>,
+{
+    let Switching { before, reached, .. } = event;
+    let flow = SVector::from_fn(|i, _| Gradient::new(before.x[i], [before.rate[i]; WIDTH]));
+    let by_time = guards(plain, event, 1.0, &flow);
+    let mut speeds = (0..G).filter(|&k| reached[k]).map(|k| (k, by_time[k].slopes()[0]));
+    speeds.find(|(_, speed)| speed.is_finite() && *speed != 0.0)
+}
+
+/// The guards at the end of the step that leads to the event, at the state `x` and where time has these slopes.
+pub(super) fn guards<Sys, const N: usize, const G: usize>(
+    system: &Sys,
+    event: &Switching<N, G>,
+    by_time: f64,
+    x: &Sloped<N>,
+) -> SVector<Gradient, G>
+where
+    Sys: System<Gradient, N, G>,
+{
+    let mut guards = SVector::repeat(Gradient::from_f64(0.0));
+    system.guards(Gradient::new(event.before.t, [by_time; WIDTH]), x, &event.negative_before, &mut guards);
+    guards
+}
+
+/// The state `x` at the instant `t` (s) after the impact of an event, if it has one.
+pub(super) fn struck<Sys, const N: usize, const G: usize>(
+    system: &Sys,
+    event: &Switching<N, G>,
+    t: Gradient,
+    mut x: Sloped<N>,
+) -> Sloped<N>
+where
+    Sys: System<Gradient, N, G>,
+{
+    let Switching { negative_before, reached, left, jumps, .. } = event;
+    if let (true, Some(impacts)) = (*jumps, system.impacts()) {
+        let closed = |k: usize| reached[k] || !negative_before[k];
+        let is_low = |k: usize, _: f64, _: bool| !left[k];
+        Collision::new(impacts).strike(impacts, (t, &mut x), negative_before, closed, is_low);
+    }
+    x
 }

@@ -31,6 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod adjoint;
 mod differences;
 mod follow;
 mod jump;
@@ -50,6 +51,7 @@ use crate::model::system::Model;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
 use crate::solve::simulation::{Observer, Switching};
+pub use adjoint::{Gradients, Measured, Objective, gradient, gradient_within};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
 use step::{Fastest, Stepper, Steps, among};
@@ -75,6 +77,12 @@ impl Direction {
     pub fn parameter<Me: Mechanism>(name: &str) -> Result<Self, ParameterError> {
         let index = Me::Parameters::table().iter().position(|parameter| parameter.name == name);
         index.map(Self::Parameter).ok_or_else(|| ParameterError::Unknown { name: name.to_owned() })
+    }
+
+    /// All parameters, in the order of their table.
+    #[must_use]
+    pub fn parameters<Me: Mechanism>() -> Vec<Self> {
+        (0..Me::Parameters::table().len()).map(Self::Parameter).collect()
     }
 }
 
@@ -126,6 +134,22 @@ pub enum SensitivityError {
         /// Time, s.
         t: f64,
     },
+    /// An objective asks for an instant at which there is no run.
+    #[error("the objective asks for t = {t:?} s, and the run is from 0 to {t_end:?} s; ask for an instant in it")]
+    OutsideOfRun {
+        /// The instant, s.
+        t: f64,
+        /// The end of the run, s.
+        t_end: f64,
+    },
+    /// There is no reverse sweep of the model.
+    #[error(
+        "there is no reverse sweep of `{model}`, whose rate has more than 400 operations; ask for its derivatives along each direction"
+    )]
+    NoReverseSweep {
+        /// The model.
+        model: &'static str,
+    },
     /// The derivatives change so fast that too many steps would be needed.
     #[error(
         "the derivatives change too fast from t = {t:?} s on: the model is too stiff for them, or they are not finite"
@@ -167,14 +191,14 @@ impl Following<'_> {
         };
         if value == 0.0 { PART } else { PART * value.abs() }
     }
+}
 
-    /// The parameters with their slopes along these directions.
-    fn sloped(&self, directions: &[Direction]) -> Vec<Gradient> {
-        let slope = |index: usize| {
-            std::array::from_fn(|l| f64::from(u8::from(directions.get(l) == Some(&Direction::Parameter(index)))))
-        };
-        self.values.iter().enumerate().map(|(index, &value)| Gradient::new(value, slope(index))).collect()
-    }
+/// The values of parameters with their slopes along these directions.
+fn sloped(values: &[f64], directions: &[Direction]) -> Vec<Gradient> {
+    let slope = |index: usize| {
+        std::array::from_fn(|l| f64::from(u8::from(directions.get(l) == Some(&Direction::Parameter(index)))))
+    };
+    values.iter().enumerate().map(|(index, &value)| Gradient::new(value, slope(index))).collect()
 }
 
 impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
@@ -197,15 +221,15 @@ impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
         let settings = self.request.settings(0.0);
         let scale = Scale::<N>::from(&settings.tolerances);
         let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
-            let system = lifted(&self.sloped(chunk))?;
+            let system = lifted(&sloped(&self.values, chunk))?;
             let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
             let steps: Box<dyn Steps<N, G>> = if Fastest::is_at_hand() {
                 Box::new(Stepper::new(in_numbers(&system, among), scale.clone(), sizes))
             } else {
-                Box::new(Stepper::new(lifted(&self.sloped(chunk))?, scale.clone(), sizes))
+                Box::new(Stepper::new(lifted(&sloped(&self.values, chunk))?, scale.clone(), sizes))
             };
             let x = system.start()?;
-            Ok(Follower::new([system, lifted(&self.sloped(&[]))?], steps, chunk, 0.0, x))
+            Ok(Follower::new([system, lifted(&sloped(&self.values, &[]))?], steps, chunk, 0.0, x))
         };
         let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);

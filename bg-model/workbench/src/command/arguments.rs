@@ -6,6 +6,7 @@ use bg_model::integrator::Integrator;
 use bg_model::run::Request;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::gradient::GradientArguments;
 use super::identify::IdentifyArguments;
 use super::methods::integrator;
 use super::sensitivity::SensitivityArguments;
@@ -57,6 +58,8 @@ pub enum Command {
     Linearize(LinearizeArguments),
     /// Differentiate a run by parameters, exactly and through events: which parameter moves which output
     Sensitivity(SensitivityArguments),
+    /// Differentiate one number of a run by all parameters at once, exactly and through events
+    Gradient(GradientArguments),
     /// Fit parameters to measured columns: values with confidence, correlations, what cannot be identified
     Identify(IdentifyArguments),
     /// Run for many values of parameters by a plan, into Parquet files; on all cores, or on many machines

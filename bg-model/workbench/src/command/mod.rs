@@ -7,6 +7,7 @@ mod arguments;
 mod compare;
 mod fmu;
 mod golden;
+mod gradient;
 mod graph;
 mod identify;
 mod linearize;
@@ -149,6 +150,7 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
         Command::Sweep(arguments) => sweep::obey(program, &arguments),
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Identify(arguments) => identify::identify(program, &arguments),
+        Command::Gradient(arguments) => gradient::gradient(program, &arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.scenes))),
         Command::Scene { scene: Some(name) } => {
@@ -177,6 +179,7 @@ fn command<Me: Mechanism>(program: &Program<Me>) -> clap::Command {
     let texts = &program.texts;
     let command = Cli::command().name(texts.name.clone()).bin_name(texts.name.clone()).version(texts.version.clone());
     let command = every(command.about(texts.about.clone()).after_help(help.clone()), program);
+    let command = command.mut_subcommand("gradient", |gradient| gradient.hide(program.gradients.is_none()));
     let command = command.mut_subcommand("report", |report| report.after_help(help.clone()));
     command.mut_subcommand("run", |run| run.after_help(help))
 }

@@ -6,6 +6,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::super::items::identifier;
+use super::capabilities::accessor;
 use super::{Emission, Shape};
 
 impl Emission<'_> {
@@ -14,6 +15,8 @@ impl Emission<'_> {
         let (start, started) = self.start();
         let (outputs, stored_energy, powers) = (self.outputs(), self.stored_energy(), self.powers());
         let (shown, redundant) = (self.shown(), self.redundant());
+        let reversed = self.model.programs.reversed.as_ref();
+        let reversed = reversed.map(|_| accessor("reversed", &quote!(Reversed<S, #n, #g, #m>), &quote!(Some(self))));
         quote! {
             #started
             impl<S: Scalar> ::bg_model::system::Model<S, #n, #g, #m> for Model<S> {
@@ -26,6 +29,7 @@ impl Emission<'_> {
                 #stored_energy
                 #powers
                 #shown
+                #reversed
             }
         }
     }

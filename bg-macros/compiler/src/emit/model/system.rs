@@ -123,7 +123,7 @@ impl Emission<'_> {
     }
 
     /// Gives the states of `moved` what the routine makes of them.
-    fn projection(&self, routine: &Routine, moved: &[(usize, Id)]) -> Option<TokenStream> {
+    pub(super) fn projection(&self, routine: &Routine, moved: &[(usize, Id)]) -> Option<TokenStream> {
         let (body, projected) = self.function(routine);
         let indices = moved.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
         (!moved.is_empty()).then(|| {

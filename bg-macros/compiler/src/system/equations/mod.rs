@@ -250,5 +250,6 @@ fn symbol_name(symbol: Symbol, states: &[State], parameters: &[Parameter], input
         Symbol::Found(index) => format!("found_{index}"),
         Symbol::Slope(index) => format!("{}'", inputs[index as usize].name.text),
         Symbol::Rate(index) => format!("{}'", states[index as usize].name),
+        Symbol::Weight(index) => format!("weight_{index}"),
     }
 }

@@ -1,6 +1,7 @@
 //! Tests of the schedule: values against the interpreter of expressions, and operation counts of hand-written examples.
 
 mod counts;
+mod reverse;
 mod values;
 
 use super::{Counts, Operand, Operation, Program, Request, Routine, schedule};

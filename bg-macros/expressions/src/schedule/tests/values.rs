@@ -6,19 +6,19 @@ use crate::expr::{Node, children};
 use crate::random::Random;
 use std::collections::BTreeMap;
 
-struct Source(Random);
+pub(super) struct Source(pub Random);
 
 impl Source {
-    fn below(&mut self, end: usize) -> usize {
+    pub fn below(&mut self, end: usize) -> usize {
         self.0.below(end)
     }
 
-    fn number(&mut self) -> f64 {
+    pub fn number(&mut self) -> f64 {
         self.below(2001) as f64 / 1000.0 - 1.0
     }
 
     /// Expressions over six states, four parameters and an unknown; the later ones are made of the earlier ones.
-    fn expressions(&mut self, pool: &mut Pool, count: usize) -> Vec<Id> {
+    pub fn expressions(&mut self, pool: &mut Pool, count: usize) -> Vec<Id> {
         let mut found: Vec<Id> = (0..6).map(|index| pool.symbol(Symbol::State(index))).collect();
         found.extend((0..4).map(|index| pool.symbol(Symbol::Parameter(index))));
         found.extend([Symbol::Time, Symbol::Unknown(0), Symbol::Input(0)].map(|symbol| pool.symbol(symbol)));

@@ -1,0 +1,188 @@
+//! The command `gradient`: how one number of a run depends on all parameters, as table and CSV. Of programs that ask for it.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use bg_model::description::OutputInfo;
+use bg_model::mechanism::Scenes;
+use bg_model::parameters::Parameters;
+use bg_model::sensitivity::{Measured, Objective};
+use clap::Args;
+
+use super::arguments::{IntegrationArguments, ModelArguments};
+use super::run::request;
+use super::sensitivity::{adjustable, observed};
+use super::{InputError, ended};
+use crate::Program;
+use crate::files::{FileError, RunFolder, console};
+use crate::gradient::{Asked, Fault, Slope, csv, text};
+use crate::identify::Data;
+use crate::identify::data::{pair, read_file};
+use crate::inputs;
+use crate::output::OutputError;
+use crate::parameters;
+use crate::scenes::Scene;
+
+const TABLE: &str = "gradient.txt";
+const CSV: &str = "gradient.csv";
+
+/// What is differentiated, and by what.
+#[derive(Debug, Args)]
+pub struct GradientArguments {
+    /// The output that is differentiated: its last value
+    #[arg(long = "of", value_name = "OUTPUT", required_unless_present = "data")]
+    pub output: Option<String>,
+
+    /// Its value at this time, s
+    #[arg(long, value_name = "SECONDS", conflicts_with_all = ["integral", "data"], allow_negative_numbers = true)]
+    pub at: Option<f64>,
+
+    /// Its integral over the run
+    #[arg(long, conflicts_with = "data")]
+    pub integral: bool,
+
+    /// The squares of what these columns leave, in parts of each one's root mean square: a CSV file as `identify` takes it. The run ends at
+    /// its last time
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "output")]
+    pub data: Option<PathBuf>,
+
+    /// Which output a column measures that has another name; can be given again and again
+    #[arg(long, value_name = "NAME=OUTPUT", requires = "data")]
+    pub column: Vec<String>,
+
+    /// The parameters; several with commas [default: all that the scene leaves adjustable]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub by: Vec<String>,
+
+    #[command(flatten)]
+    pub model: ModelArguments,
+
+    #[command(flatten)]
+    pub integration: IntegrationArguments,
+
+    /// Folder for gradient.txt and gradient.csv
+    #[arg(long, value_name = "DIR", default_value = "out/gradient")]
+    pub out: PathBuf,
+}
+
+/// What is differentiated, in words, with its unit.
+struct Question<'a> {
+    words: String,
+    unit: String,
+    objective: Objective<'a>,
+}
+
+pub fn gradient<Me: Scenes>(program: &Program<Me>, arguments: &GradientArguments) -> Result<ExitCode, InputError> {
+    let Some(differentiate) = program.gradients else {
+        let fault = "this program has no such command; its `main` asks for it by `Program::gradients()`".to_owned();
+        return Err(InputError::Unknown { option: "gradient", fault });
+    };
+    let values = &arguments.model;
+    let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
+    chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
+    let scene = program.scene_called(&values.scene);
+    let parameters = adjustable(scene, &chosen, &arguments.by, "--by")?;
+    let mut request = request(&arguments.integration, 0.0, None)?;
+    let columns = match &arguments.data {
+        Some(path) => {
+            let outputs = scene.description.outputs;
+            let named = arguments.column.iter().map(|text| pair(text, outputs)).collect::<Result<Vec<_>, _>>();
+            let named = named.map_err(|fault| InputError::Unknown { option: "--column", fault })?;
+            let data = read_file(path, outputs, &named, &[])?;
+            request.t_end = data.times.last().copied().unwrap_or_default();
+            measured(&data)
+        }
+        None => Vec::new(),
+    };
+    let question = question(scene, arguments, &columns, request.t_end)?;
+    let folder = RunFolder::claim(&arguments.out, &[TABLE, CSV].map(str::to_owned))?;
+    let all: Vec<f64> = (0..Me::Parameters::table().len()).map(|index| chosen.values.value(index)).collect();
+    let by: Vec<&str> = parameters.iter().map(|(info, _)| info.name).collect();
+    let found = differentiate(Asked {
+        scene,
+        scenes: &program.scenes,
+        values: &all,
+        inputs: &chosen.inputs,
+        request: &request,
+        objective: &question.objective,
+        by: &by,
+    });
+    let found = found.map_err(|fault| match fault {
+        Fault::Fixed(fault) => InputError::Fixed { place: chosen.places[fault.index].clone(), fault },
+        Fault::Model(fault) => fault.into(),
+        Fault::Gradient(fault) => fault.into(),
+    })?;
+    let slopes: Vec<Slope> = (parameters.iter().zip(&found.by))
+        .map(|(&(parameter, at), &derivative)| Slope { parameter, at, derivative })
+        .collect();
+    let Question { words, unit, .. } = question;
+    let (events, t_end) = (found.trajectory.statistics.events, request.t_end);
+    let told = format!(
+        "{words}: {:.6e}{}{unit}; derivatives by {} parameters over {t_end} s, {events} events\n\n{}",
+        found.value,
+        if unit.is_empty() { "" } else { " " },
+        slopes.len(),
+        text(found.value, &unit, &slopes)
+    );
+    let written = write(folder, &told, &csv(found.value, &unit, &slopes));
+    let place = written
+        .as_ref()
+        .map_or_else(|_| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
+    let printed = console::print(&format!("{told}\nwritten: {place}\n"));
+    Ok(ended(written.err().map(OutputError::from).into_iter().chain(printed.err().map(OutputError::from))))
+}
+
+fn question<'a>(
+    scene: &Scene,
+    arguments: &GradientArguments,
+    columns: &'a [Measured],
+    t_end: f64,
+) -> Result<Question<'a>, InputError> {
+    let Some(name) = &arguments.output else {
+        let words = format!("squares of what {} columns leave", columns.len());
+        return Ok(Question { words, unit: String::new(), objective: Objective::squares(columns) });
+    };
+    let (output, info) = only(scene, name)?;
+    let (name, unit) = (info.name, info.unit.to_owned());
+    Ok(match arguments.at {
+        Some(value) if !(0.0..=t_end).contains(&value) => {
+            return Err(InputError::Range { name: "--at", value, range: format!("a time in the run, 0 to {t_end} s") });
+        }
+        Some(t) => Question { words: format!("`{name}` at {t} s"), unit, objective: Objective::at(output, t) },
+        None if arguments.integral => {
+            let unit = if unit.is_empty() { "s".to_owned() } else { format!("{unit}*s") };
+            Question { words: format!("integral of `{name}` over time"), unit, objective: Objective::integral(output) }
+        }
+        None => Question { words: format!("`{name}` at the end"), unit, objective: Objective::last(output) },
+    })
+}
+
+/// The output of this name, which has no components.
+fn only(scene: &Scene, name: &str) -> Result<(usize, &'static OutputInfo), InputError> {
+    let found = observed(scene, &[name.to_owned()], "--of")?;
+    let [output] = found[..] else {
+        let names: Vec<&str> = found.iter().map(|(_, output)| output.name).collect();
+        let fault = format!("`{name}` is several numbers; give one of {}", names.join(", "));
+        return Err(InputError::Unknown { option: "--of", fault });
+    };
+    Ok(output)
+}
+
+/// The columns, each in parts of its root mean square.
+fn measured(data: &Data) -> Vec<Measured> {
+    let of = |column: &crate::identify::Measured| {
+        let values: Vec<(f64, f64)> =
+            data.times.iter().zip(&column.values).filter_map(|(&t, value)| Some((t, (*value)?))).collect();
+        let square = values.iter().fold(0.0, |sum, (_, value)| sum + value * value) / values.len().max(1) as f64;
+        let noise = if square > 0.0 { square.sqrt() } else { 1.0 };
+        Measured { output: column.output, values, noise }
+    };
+    data.columns.iter().map(of).collect()
+}
+
+/// Writes the files; gives their number.
+fn write(mut folder: RunFolder, told: &str, csv: &str) -> Result<usize, FileError> {
+    folder.write_text(TABLE, told)?;
+    folder.write_text(CSV, csv)?;
+    Ok(folder.publish()?.len())
+}
