@@ -5,6 +5,7 @@
 //! builds the macro for it, into a target folder of its own.
 
 mod client;
+mod colours;
 mod grammar;
 mod machine;
 

@@ -18,6 +18,7 @@ static TURNED: Of<Turned> = Of::NEW;
 static WATCHED: Of<Watched> = Of::NEW;
 static CLOSED: Of<Closed> = Of::NEW;
 static PUSHED: Of<Pushed> = Of::NEW;
+static LINKED: Of<Linked> = Of::NEW;
 const VERSIONS: [Version; 2] = [Version::Three, Version::Two];
 
 bond_graph! {
@@ -90,6 +91,27 @@ bond_graph! {
         Se weight = [0, -19.62, 0];
         weight -> free -> mass; free -> drag;
         observe { v: m/s = free.flow; drag_y: N = drag.effort.y }
+    }
+}
+
+bond_graph! {
+    /// Two rods, the first one driven, on a pin and a soft knee, whose loads are observed.
+    graph Linked {
+        input torque: N*m;
+        gravity [0, -9.81, 0];
+        ground { point pivot = [0, 1, 0]; }
+        body thigh { cuboid [0.6, 0.03, 0.03] density 7850; point hip = [-0.3, 0, 0]; point knee = [0.3, 0, 0]; start hip at [0, 1, 0]; }
+        body shank { cuboid [0.4, 0.03, 0.03] density 7850; point knee = [-0.2, 0, 0]; start at [0.8, 1, 0]; }
+        joint pin: revolute z (ground.pivot -> thigh.hip) { rigid; }
+        joint knee: revolute z (thigh.knee -> shank.knee) { stiffness 1e6; damping 200; tilt stiffness 1e4; tilt damping 5; }
+        drive motor on pin torque = torque;
+        observe {
+            F: N = pin.force; M: N*m = pin.moment; v: m/s = thigh.hip.velocity; w: rad/s = thigh.angular_velocity;
+            G: N = knee.force; L: N*m = knee.moment; a: m/s = thigh.knee.velocity; b: m/s = shank.knee.velocity;
+            u: rad/s = shank.angular_velocity;
+            motor: W = motor.power; dissipated: W = dissipated_power;
+            stretch: m = knee.gap;
+        }
     }
 }
 
@@ -244,9 +266,71 @@ fn without_a_pair_there_is_no_file() {
     }
 }
 
+/// The power through each end of a model's joints, W, by `JOINT.END`, where its unit stands.
+fn through_ends(unit: &mut Running, model: &dyn Described) -> BTreeMap<String, f64> {
+    let (mut joint, mut end, mut members) =
+        (String::new(), String::new(), BTreeMap::<String, BTreeMap<String, f64>>::new());
+    for (element, of) in elements(&terminals_and_icons(model).unwrap(), &["Terminal", "TerminalMemberVariable"]) {
+        match (element.as_str(), of.get("terminalKind").map(String::as_str)) {
+            ("Terminal", Some("_bg-fmi_joint")) => joint.clone_from(&of["name"]),
+            ("Terminal", Some("_bg-fmi_end")) => end = format!("{joint}.{}", of["name"]),
+            ("Terminal", _) => end.clear(),
+            _ if !end.is_empty() => {
+                let value = unit.get(&of["variableName"]);
+                members.entry(end.clone()).or_default().insert(of["memberName"].clone(), value);
+            }
+            _ => {}
+        }
+    }
+    let product = |of: &BTreeMap<String, f64>, [effort, flow]: [&str; 2]| -> f64 {
+        ["x", "y", "z"].iter().map(|axis| of[&format!("{effort}_{axis}")] * of[&format!("{flow}_{axis}")]).sum()
+    };
+    let power =
+        |of: &BTreeMap<String, f64>| product(of, ["force", "velocity"]) + product(of, ["moment", "angular_velocity"]);
+    members.iter().map(|(end, of)| (end.clone(), power(of))).collect()
+}
+
+#[test]
+fn the_ends_of_joints_are_terminals_inside_the_joints() {
+    let lines = lines(&LINKED);
+    let pin: Vec<&str> = lines.iter().map(|line| line.split(' ').next().unwrap()).collect();
+    assert_eq!(pin, ["pin", "second", "knee", "first", "second"], "{lines:?}");
+    assert!(
+        lines[1].contains(" force_x = F_x signal,") && lines[1].contains(" velocity_y = v_y signal,"),
+        "{}",
+        lines[1]
+    );
+    assert!(
+        lines[3].contains(" velocity_z = a_z signal,") && lines[4].contains(" velocity_z = b_z signal,"),
+        "{lines:?}"
+    );
+    // Of a joint without all of its loads nothing is told.
+    assert!(!terminals_and_icons(&ARM).unwrap().contains("_bg-fmi_joint"));
+}
+
+#[test]
+fn the_power_through_joints_is_that_of_the_graph() {
+    let mut unit = Running::new(&LINKED, &[("torque", 40.0)]);
+    let power = through_ends(&mut unit, &LINKED);
+    let near = |value: f64, wanted: f64| (value - wanted).abs() < 1e-12 * wanted.abs().max(1.0);
+    // Into the thigh goes through the rigid pin what the motor gives.
+    let supplied = -unit.get("motor");
+    assert!(supplied > 1.0 && near(power["pin.second"], supplied), "{power:?} {supplied}");
+    // The knee gives on what it takes, less what its dampers and its springs take: these are known by their laws.
+    let kept = power["knee.first"] - power["knee.second"];
+    let mut along = 0.0;
+    for axis in ["x", "y", "z"] {
+        let slip = unit.get(&format!("b_{axis}")) - unit.get(&format!("a_{axis}"));
+        along += 1e6 * unit.get(&format!("stretch_{axis}")) * slip;
+    }
+    let lost = unit.get("dissipated");
+    assert!(lost > 1e-9 && kept.abs() > 1e-9, "{lost} {kept}");
+    assert!(near(kept, lost + along), "{kept} {lost} {along}");
+}
+
 #[test]
 fn members_are_inputs_and_outputs_of_the_unit() {
-    for model in [&MOTOR as &dyn Described, &DRIVEN, &ARM, &TURNED, &WATCHED, &PUSHED] {
+    for model in [&MOTOR as &dyn Described, &DRIVEN, &ARM, &TURNED, &WATCHED, &PUSHED, &LINKED] {
         let description = model_description(model, &Packing::default());
         let variables = elements(&description, &["Float64"]).into_iter();
         let causalities: BTreeMap<_, _> =
@@ -277,6 +361,7 @@ fn hosts_can_read_it() {
         (&TURNED, "1"),
         (&WATCHED, "2"),
         (&PUSHED, "1"),
+        (&LINKED, "2"),
         (&CLOSED, "0"),
     ] {
         for version in VERSIONS {

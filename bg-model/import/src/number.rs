@@ -51,11 +51,14 @@ type Factor = (&'static str, f64);
 fn factors(value: &Matrix3<f64>) -> Option<Vec<Factor>> {
     let angle = |sine: (usize, usize), cosine: (usize, usize)| value[sine].atan2(value[cosine]);
     let about = [
-        ("x", angle((2, 1), (1, 1)), value[(0, 0)]),
-        ("y", angle((0, 2), (0, 0)), value[(1, 1)]),
-        ("z", angle((1, 0), (0, 0)), value[(2, 2)]),
+        ("x", angle((2, 1), (1, 1)), value.column(0)),
+        ("y", angle((0, 2), (0, 0)), value.column(1)),
+        ("z", angle((1, 0), (0, 0)), value.column(2)),
     ];
-    if let Some((axis, angle, _)) = about.into_iter().find(|(.., cosine)| *cosine > 1.0 - 1e-14) {
+    // By the sines: a cosine is 1 to rounding for angles of 1e-8.
+    let is_kept = |(index, direction): (usize, &Vector3<f64>)| (direction - Vector3::ith(index, 1.0)).amax() < 1e-12;
+    let kept = about.into_iter().enumerate().find(|(index, (.., image))| is_kept((*index, &image.into_owned())));
+    if let Some((_, (axis, angle, _))) = kept {
         return Some(vec![(axis, angle)]);
     }
     let pitch = ("y", (-value[(2, 0)]).atan2(value[(0, 0)].hypot(value[(1, 0)])));
@@ -93,6 +96,15 @@ fn turn(axis: &str, angle: f64) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_small_turn_about_another_axis_is_kept() {
+        let turn = |axis: Vector3<f64>, angle: f64| nalgebra::Rotation3::new(axis * angle).into_inner();
+        let value = turn(Vector3::y(), -5e-8) * turn(Vector3::x(), 1.5);
+        let text = rotation(&value).expect("it turns");
+        assert!(text.contains("rotation_y(-5e-8)") && text.contains("rotation_x(1.5)"), "{text}");
+        assert_eq!(rotation(&turn(Vector3::x(), 1.5)).as_deref(), Some("rotation_x(1.5)"));
+    }
 
     #[test]
     fn numbers_are_short_and_small_residues_are_nothing() {

@@ -2,6 +2,7 @@
 //!
 //! In: a model and how it is packed. Out: the texts. What the versions of the standard share is here.
 
+mod joints;
 mod terminals;
 mod three;
 mod two;

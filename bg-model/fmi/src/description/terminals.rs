@@ -1,6 +1,7 @@
 //! `terminalsAndIcons.xml`: which variables of a unit belong together.
 //!
-//! In: a model. Out: the bonds whose effort and flow are both variables, the bodies whose pose is, and the text that tells hosts so.
+//! In: a model. Out: the bonds whose effort and flow are both variables, the bodies whose pose is, joints by their ends (`joints`), and
+//! the text that tells hosts so.
 //! A bond that an input drives is a port: the host stands where the source does. All others are closed inside the unit, to be read
 //! only. Source: FMI 3.0.1, section 2.4.9 and its schema; the file stands in the same place in a unit of FMI 2.0.
 
@@ -20,17 +21,19 @@ const SIGNAL: &str = "signal";
 const QUANTITIES: [&str; 2] = ["effort", "flow"];
 
 /// A group of variables.
-struct Terminal {
-    name: String,
+pub(super) struct Terminal {
+    pub name: String,
     /// `plug`: hosts connect all members or none; `bus`: those that match.
-    rule: &'static str,
+    pub rule: &'static str,
     /// Terminals of one kind fit together.
-    kind: String,
-    description: String,
-    members: Vec<Member>,
+    pub kind: String,
+    pub description: String,
+    pub members: Vec<Member>,
+    /// Terminals that this one consists of.
+    pub inside: Vec<Self>,
 }
 
-struct Member {
+pub(super) struct Member {
     name: String,
     variable: String,
     /// `signal`, or of what sums to zero in a connection `inflow`, `outflow`.
@@ -45,8 +48,8 @@ pub fn terminals_and_icons(model: &dyn Described) -> Option<String> {
 }
 
 /// A model's variables by what they are of it.
-struct Variables {
-    description: &'static Description,
+pub(super) struct Variables {
+    pub description: &'static Description,
     names: Vec<String>,
 }
 
@@ -58,7 +61,9 @@ impl Variables {
     fn terminals(&self) -> Vec<Terminal> {
         let bonds = self.description.bonds.iter().filter_map(|bond| self.bond(bond));
         let bodies = self.description.parts.iter().filter(|part| part.word == "body");
-        let mut terminals: Vec<Terminal> = bonds.chain(bodies.filter_map(|body| self.frame(body.name))).collect();
+        let joints = self.description.parts.iter().filter_map(|part| self.joint(part));
+        let mut terminals: Vec<Terminal> =
+            bonds.chain(bodies.filter_map(|body| self.frame(body.name))).chain(joints).collect();
         let mut taken = Vec::new();
         // Bonds beside each other between the same junctions have the same effort and flow.
         terminals.retain(|terminal| {
@@ -106,6 +111,7 @@ impl Variables {
             kind: format!("_bg-fmi_bond_{effort}_{flow}"),
             description,
             members: members.into_iter().flatten().collect(),
+            inside: Vec::new(),
         })
     }
 
@@ -122,10 +128,11 @@ impl Variables {
             kind: "_bg-fmi_frame".to_owned(),
             description: "Centre of mass, and the rotation from the body's axes, both in inertial ones".to_owned(),
             members: [places, matrix, angle].into_iter().flatten().collect(),
+            inside: Vec::new(),
         })
     }
 
-    fn node(&self, name: &str) -> Option<&'static ElementInfo> {
+    pub(super) fn node(&self, name: &str) -> Option<&'static ElementInfo> {
         self.description.elements.iter().find(|element| element.name == name)
     }
 
@@ -136,7 +143,7 @@ impl Variables {
     }
 
     /// The outputs that observe `quantity` or a component of it; their names in a terminal begin with `what`.
-    fn observed(&self, quantity: &str, what: &str) -> Vec<Member> {
+    pub(super) fn observed(&self, quantity: &str, what: &str) -> Vec<Member> {
         let outputs = self.description.outputs.iter().enumerate();
         let member = outputs.filter_map(|(index, output)| {
             let of_vector = output.name.strip_prefix(output.of)?;
@@ -189,7 +196,7 @@ fn given_by(node: &ElementInfo) -> Option<usize> {
 }
 
 /// The first of each name.
-fn distinct(mut members: Vec<Member>) -> Vec<Member> {
+pub(super) fn distinct(mut members: Vec<Member>) -> Vec<Member> {
     members.sort_by(|a, b| a.name.cmp(&b.name));
     members.dedup_by(|b, a| a.name == b.name);
     members
@@ -202,7 +209,7 @@ fn write(xml: &mut Xml, terminals: &[Terminal]) -> io::Result<()> {
 }
 
 fn one(xml: &mut Xml, terminal: &Terminal) -> io::Result<()> {
-    let Terminal { name, rule, kind, description, members } = terminal;
+    let Terminal { name, rule, kind, description, members, inside } = terminal;
     let about: Attributes<'_> = vec![
         ("name", name.clone()),
         ("matchingRule", (*rule).to_owned()),
@@ -217,6 +224,7 @@ fn one(xml: &mut Xml, terminal: &Terminal) -> io::Result<()> {
                 ("variableKind", (*kind).to_owned()),
             ];
             empty(xml, "TerminalMemberVariable", &member)
-        })
+        })?;
+        inside.iter().try_for_each(|terminal| one(xml, terminal))
     })
 }

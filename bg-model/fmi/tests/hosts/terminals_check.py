@@ -32,9 +32,10 @@ if __name__ == "__main__":
     if len(set(names)) < len(names):
         problems.append(f"terminals of one name: {names}")
     variables = {variable.name for variable in read_model_description(unit).modelVariables}
-    for terminal in terminals:
-        members = [member.get("memberName") for member in terminal]
+    for terminal in document.iter("Terminal") if terminals else []:
+        variables_of = terminal.findall("TerminalMemberVariable")
+        members = [member.get("memberName") for member in variables_of]
         if None in members or len(set(members)) < len(members):
             problems.append(f"members of one name: {members}")
-        problems += [f"no variable {member.get('variableName')}" for member in terminal if member.get("variableName") not in variables]
+        problems += [f"no variable {member.get('variableName')}" for member in variables_of if member.get("variableName") not in variables]
     print("\n".join(problems) if problems else f"{len(terminals)} terminals")

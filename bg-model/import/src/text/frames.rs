@@ -23,7 +23,7 @@ pub fn frames(joint: &Joint) -> Frames {
     if !matches!(kind, Kind::Revolute | Kind::Prismatic | Kind::Cylindrical) {
         return Frames { letter: "", reversed: false, in_parent, in_child };
     }
-    match ["x", "y", "z"].into_iter().zip(axis.iter()).find(|(_, part)| part.abs() > 1.0 - 1e-15) {
+    match ["x", "y", "z"].into_iter().zip(axis.iter()).find(|(_, part)| axis.abs().sum() - part.abs() < 1e-12) {
         Some((letter, part)) => Frames { letter, reversed: *part < 0.0, in_parent, in_child },
         None => {
             let (letter, axes) = turned_to(axis);

@@ -115,8 +115,11 @@ impl Pace {
             let goal = if next_break < t_end { next_break } else { t_end };
             let stretched = t + (1.0 + STRETCH) * self.step >= goal;
             let reaches = stretched && goal - t <= (1.0 + 1e-9) * self.largest;
-            self.is_cut = reaches && (next_break < t_end || self.goes_on) && goal - t < self.step;
-            return if reaches { goal } else { t + self.step };
+            // Of a run that goes on all pieces end like that: two even steps, not a whole one and a rest that says little of the next.
+            let halves = !reaches && self.goes_on && goal - t < 2.0 * self.step;
+            let end = if reaches { goal } else { t + if halves { 0.5 * (goal - t) } else { self.step } };
+            self.is_cut = halves || reaches && (next_break < t_end || self.goes_on) && goal - t < self.step;
+            return end;
         }
         let end_of = |grid: u64| self.span.t0 + grid as f64 * self.step;
         while end_of(self.grid) <= t + self.sliver {
@@ -271,6 +274,21 @@ mod tests {
         assert_eq!(pace(control, 1.0).next_end(98.995, f64::INFINITY), 99.995);
         assert_eq!(pace(control, 1.0).next_end(99.0, f64::INFINITY), 100.0);
         assert_eq!(pace(control, 1.01).next_end(98.995, f64::INFINITY), 100.0);
+    }
+
+    /// Pieces of a run that goes on end in two even steps; a whole run ends as `dop853.f` does, in a whole step and the rest.
+    #[test]
+    fn a_piece_ends_in_even_steps() {
+        let mut pace = pace(StepControl::Adaptive { order: 5.0 }, f64::INFINITY);
+        assert_eq!(pace.next_end(98.75, f64::INFINITY), 99.75);
+        pace.go_on(Span { t0: 0.0, t_end: 100.0 });
+        assert_eq!(pace.next_end(97.5, f64::INFINITY), 98.5);
+        assert_eq!(pace.next_end(98.75, f64::INFINITY), 99.375);
+        // Both are cut, so the step after them is as long as it was to be.
+        pace.accept(99.375, 0.625, 1e-3);
+        assert_eq!(pace.next_end(99.375, f64::INFINITY), 100.0);
+        pace.accept(100.0, 0.625, 0.2);
+        assert!(pace.step() >= 0.7, "{}", pace.step());
     }
 
     #[test]
