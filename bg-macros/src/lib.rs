@@ -677,7 +677,8 @@ use proc_macro::TokenStream;
 /// ```text
 /// scene  = "scene" NAME "{" { clause } "}" | "scenes" "only" ";"
 /// clause = observe | "tune" ["all" "but"] NAMES | "without" NAMES | "rigid" ( "joints" ";" | "{" NAME { "," NAME } "}" )
-///        | "independent" "speeds" ";" | "angles" ";" | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
+///        | "all" "reactions" ";" | "angles" ";" | "expect" "planar" ";" | "expect" "states" "=" COUNT ";"
+///        | "expect" "independent" "speeds" ";" | "expect" "integral" "causality" ";"
 /// NAMES  = "{" [NAME { "," NAME }] "}" | NAME { "," NAME } ";"
 /// ```
 ///
@@ -697,7 +698,8 @@ use proc_macro::TokenStream;
 /// | `tune { a, b }` | the parameters that stay adjustable, and the only fields of the scene's parameter struct; the others are their defaults, as numbers. Without it all stay; `tune {}` keeps none; `tune all but { c }` keeps the others |
 /// | `without { a, b }` | joints, contacts, springs, drives, frictions, stops, orifices or elements that are not there, with their bonds |
 /// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
-/// | `independent speeds;` | momenta and positions of bodies that rigid joints determine are expressions of the others: fewer states and operations, reactions only of rows that close loops. Singular poses are passed as with the reactions of all joints |
+/// | `all reactions;` | every momentum and position of a body stays a state, and every direction of a rigid joint has a reaction that is solved for in each rate. Without it, where that takes fewer operations, momenta and positions that rigid joints determine are expressions of the others, and rates need the reactions of joints that close loops only; outputs show all of them, with the same values |
+/// | `expect independent speeds;` | an error (BG0611), with the reason, where that has not been done |
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
 /// | `expect integral causality;` | an error (BG0403) where a storage is in [derivative causality](#derivative-causality) |
 /// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |
@@ -735,13 +737,13 @@ use proc_macro::TokenStream;
 ///             rigid joints;
 ///             observe { angle: rad = pin.angle; pin.force; pin.gap }
 ///             tune { mass, angle }
-///             expect states = 7;
+///             expect states = 3;
 ///         }
 ///     }
 /// }
 /// use bg_model::system::Model;
 ///
-/// assert_eq!((Bob::STATES, Swing::STATES, Ideal::STATES), (19, 7, 7));
+/// assert_eq!((Bob::STATES, Swing::STATES, Ideal::STATES), (19, 7, 3));
 /// // The scene's parameters are what it tunes: there is no field `aside`.
 /// let swing = Swing::new(SwingParameters { mass: 3.0, angle: 1.2 })?;
 /// assert!(swing.description().reduction.starts_with("18 states: 9 constant; 2 equal up to sign;"));
@@ -777,7 +779,7 @@ use proc_macro::TokenStream;
 /// | parameters folded | nothing: a parameter that is not tuned is its default. A switch whose guard has become a number is decided |
 /// | constant states | that the rates of all of them, and what `project` gives them, vanish or stay while all of them have their start values: the greatest such set, found by dropping what does not hold until nothing does. By induction in time they keep their values. A start value that depends on a `guess` is not taken for constant |
 /// | equal states | that states with the same start value up to sign have the same rate up to sign, while all the equalities hold: classes are split until none splits |
-/// | states of joints expressed | with `independent speeds;`: that a rigid joint determines the momentum of a body and its position, or two bodies turn alike by it: its row is solved for them, with a pivot that cannot vanish, and no rate needs its reaction. Not done where velocities at the start need not fit, where rows that close loops may hold all that is left, or where rates would take more operations |
+/// | states of joints expressed | that a rigid joint determines the momentum of a body and its position, or two bodies turn alike by it: its row is solved for them, with a pivot that cannot vanish, and no rate needs its reaction. Not done where velocities at the start need not fit, where rows that close loops may hold all that is left, where an output shows a reaction that several joints may share, where the scene says `all reactions;`, or where rates would take more operations: the report then says which |
 /// | reactions solved | nothing: this is where the multipliers of rigid joints are solved for, on what is left |
 /// | affine states | that the rate of a displacement or integral is a combination, with fixed numbers, of the rates of other displacements, integrals, positions and orientations: the difference vanishes as a polynomial. It then is its start value plus what the others have changed |
 /// | unwatched states | that no output depends on it, nor the rate, projection or switch of anything that an output depends on |
@@ -1188,6 +1190,7 @@ use proc_macro::TokenStream;
 /// | BG0608 | `start impulse` where no joint is rigid |
 /// | BG0609 | `scenes only` in a graph without a scene |
 /// | BG0610 | with `scenes only`: a scene that adjusts what the first one does not |
+/// | BG0611 | with `expect independent speeds`: a scene that keeps the reactions of all rigid joints |
 /// | **values** | |
 /// | BG0701 | a number that no physics allows, such as a mass of 0 |
 /// | BG0702 | a matrix that no physics allows |

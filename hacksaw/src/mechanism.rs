@@ -217,7 +217,6 @@ bond_graph! {
                 gap_23: m = norm(pin_a.gap); gap_34: m = norm(pin_b.gap); gap_15: m = norm(pin_c.gap);
             }
             tune { torque, crank_angle, r_cut, r_return }
-            independent speeds;
             expect planar;
             expect states = 9;
         }

@@ -46,8 +46,8 @@ bond_graph! {
         joint middle: revolute z (square[0].post.rod.head -> square[1].rod.left) { rigid; }
         observe { B0: m = first.rod.head.position; v0: m/s = first.rod.head.velocity; all of first; all of square }
         scenes only;
-        scene DoubleFourBar { expect planar; }
-        scene FourBarsBySpeeds { independent speeds; expect planar; expect states = 15; }
+        scene DoubleFourBar { all reactions; expect planar; }
+        scene FourBarsBySpeeds { expect planar; expect independent speeds; expect states = 15; }
     }
 
     /// A rod of the governor, 1 m and 0.3 kg, with 5 kg at its end, a point of mass.

@@ -8,6 +8,7 @@ mod contact;
 mod dc_motor;
 mod double_pendulum;
 mod drives;
+mod flat_poses;
 mod forty_loops;
 mod free_body;
 mod gearbox;

@@ -11,7 +11,7 @@ use bond_graph_tests::support::record::{Record, instants, record};
 use super::truth::within;
 
 /// The parts of the double four-bar that have an energy and a gap.
-const PARTS: [&str; 5] = ["first", "square[0]", "square[0].post", "square[1]", "square[1].post"];
+pub const PARTS: [&str; 5] = ["first", "square[0]", "square[0].post", "square[1]", "square[1].post"];
 
 /// The sum of an output of all parts at every sample.
 fn sums(run: &Record, what: &str) -> Vec<f64> {

@@ -28,7 +28,7 @@ observe { p: m = bob.position; }
 ";
 
 /// Statements after those of `GRAPH`, in its sixth line and on; then what the one fault says.
-const CASES: [(&str, &str); 11] = [
+const CASES: [(&str, &str); 14] = [
     ("scene A {}\nscene ▸A {}", "[BG0601] there are two models called `A`\nhelp: give one of them another name"),
     ("scene ▸G {}", "[BG0601] there are two models called `G`\nhelp: give one of them another name"),
     (
@@ -67,6 +67,21 @@ const CASES: [(&str, &str); 11] = [
     (
         "scene A { rigid { ▸band } }",
         "[BG0606] there is no joint `band` to make rigid\nhelp: name a joint of the graph, or write `rigid joints;`",
+    ),
+    (
+        "scene A { expect ▸independent speeds; }",
+        "[BG0611] scene `A` keeps the reactions of all rigid joints: no joint is rigid\nhelp: make joints rigid: \
+         `rigid joints;`",
+    ),
+    (
+        "scene A { rigid joints; all reactions; expect ▸independent speeds; }",
+        "[BG0611] scene `A` keeps the reactions of all rigid joints: the scene says `all reactions;`\nhelp: leave out \
+         `all reactions;`",
+    ),
+    (
+        "scene A { rigid joints; expect ▸independent speeds; }",
+        "[BG0611] scene `A` keeps the reactions of all rigid joints: start velocities may tear joint `pivot`\nhelp: make \
+         its start velocities guesses, or give those of both bodies so that they fit",
     ),
 ];
 

@@ -84,7 +84,6 @@ bond_graph! {
                 stored: J = stored_energy;
                 supplied: J = integral(supplied_power);
             }
-            independent speeds;
             expect planar;
             expect states = 6;
         }

@@ -83,7 +83,6 @@ bond_graph! {
         /// Links on pins and a slide that do not give.
         scene RigidSliderCrank {
             rigid joints;
-            independent speeds;
             observe {
                 angle: rad = crank.angle;
                 speed: rad/s = pin_o.speed;

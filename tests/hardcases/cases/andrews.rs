@@ -99,7 +99,7 @@ bond_graph! {
         /// On bushings: the 42 states of seven bodies in the plane.
         scene PlanarSqueezer { angles; expect planar; expect states = 42; }
         /// On ideal pins.
-        scene RigidSqueezer { rigid joints; angles; tune {} expect planar; expect states = 42; }
+        scene RigidSqueezer { rigid joints; angles; tune {} expect planar; expect states = 14; }
     }
 }
 

@@ -452,9 +452,9 @@ pub struct Scene {
     pub rigid: Rigid,
     /// `angles;`: orientations that turn about one axis only are integrated as angles.
     pub angles: bool,
-    /// `independent speeds;`: what rigid joints determine of bodies is no state.
-    pub speeds: bool,
-    /// `expect planar;`, `expect states = 29;`, `expect integral causality;`
+    /// `all reactions;`: what rigid joints determine of bodies stays in the states, with a reaction for each row of each joint.
+    pub all_reactions: bool,
+    /// `expect planar;`, `expect states = 29;`, `expect independent speeds;`, `expect integral causality;`
     pub expect: Vec<Expectation>,
 }
 
@@ -478,6 +478,8 @@ pub enum Expectation {
     Planar(Span),
     /// `expect states = N;` with the number's span.
     States(usize, Span),
+    /// `expect independent speeds;` with the first word's span.
+    IndependentSpeeds(Span),
 }
 
 /// The inertial frame's named points.

@@ -342,7 +342,7 @@ impl Display for Scene {
             Rigid::All(_) => entries.push("rigid joints;".into()),
             Rigid::Some(names) => entries.push(format!("rigid {}", list(names, ", "))),
         }
-        entries.extend(self.speeds.then(|| "independent speeds;".into()));
+        entries.extend(self.all_reactions.then(|| "all reactions;".into()));
         entries.extend(self.angles.then(|| "angles;".into()));
         entries.extend(self.expect.iter().map(Expectation::to_string));
         write!(f, "scene {} ", self.name)?;
@@ -356,6 +356,7 @@ impl Display for Expectation {
             Self::IntegralCausality => f.write_str("expect integral causality;"),
             Self::Planar(_) => f.write_str("expect planar;"),
             Self::States(states, _) => write!(f, "expect states = {states};"),
+            Self::IndependentSpeeds(_) => f.write_str("expect independent speeds;"),
         }
     }
 }

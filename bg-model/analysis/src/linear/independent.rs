@@ -23,7 +23,18 @@ pub(super) struct Independent {
 
 /// The independent rows of `matrix`; of two that can stand for each other that with the lower `rank`.
 pub(super) fn independent<R: Ord + Copy>(matrix: &DMatrix<f64>, rank: &[R]) -> Independent {
-    let (mut rest, lengths) = scaled(matrix);
+    let (scaled, lengths) = scaled(matrix);
+    chosen(scaled, &lengths, rank)
+}
+
+/// The independent rows of `matrix`, the largest first, as they are: of two that can stand for each other the longer one.
+pub(super) fn longest(matrix: &DMatrix<f64>) -> Vec<usize> {
+    let lengths = DVector::repeat(matrix.nrows(), 1.0);
+    chosen(by_columns(matrix), &lengths, &vec![0; matrix.nrows()]).rows
+}
+
+/// The same of scaled rows, which had these lengths.
+fn chosen<R: Ord + Copy>(mut rest: DMatrix<f64>, lengths: &DVector<f64>, rank: &[R]) -> Independent {
     let rows = rest.nrows();
     let mut chosen: Vec<usize> = Vec::new();
     let mut along: Vec<DVector<f64>> = Vec::new();
@@ -46,7 +57,7 @@ pub(super) fn independent<R: Ord + Copy>(matrix: &DMatrix<f64>, rank: &[R]) -> I
             along.push(part);
         }
     }
-    let factors = factors(&chosen, &along, &lengths);
+    let factors = factors(&chosen, &along, lengths);
     let mut order: Vec<usize> = (0..chosen.len()).collect();
     order.sort_by_key(|&k| chosen[k]);
     Independent {
@@ -55,8 +66,8 @@ pub(super) fn independent<R: Ord + Copy>(matrix: &DMatrix<f64>, rank: &[R]) -> I
     }
 }
 
-/// The matrix with columns and then rows of length 1, rounding errors removed, and the lengths that the rows had.
-fn scaled(matrix: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+/// The matrix with 1 as the largest entry of each column, rounding errors removed.
+fn by_columns(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let mut scaled = matrix.clone();
     for mut column in scaled.column_iter_mut() {
         let largest = column.amax();
@@ -65,6 +76,12 @@ fn scaled(matrix: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
         }
         column.iter_mut().filter(|entry| entry.abs() < ROUNDING).for_each(|entry| *entry = 0.0);
     }
+    scaled
+}
+
+/// The matrix with columns and then rows of length 1, rounding errors removed, and the lengths that the rows had.
+fn scaled(matrix: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let mut scaled = by_columns(matrix);
     let lengths = DVector::from_fn(scaled.nrows(), |row, _| scaled.row(row).norm());
     for (mut row, &length) in scaled.row_iter_mut().zip(&lengths) {
         if length > 0.0 {
@@ -105,6 +122,13 @@ fn factors(chosen: &[usize], along: &[DVector<f64>], lengths: &DVector<f64>) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A row of which rounding is left does not stand for one that is there.
+    #[test]
+    fn the_longest_rows_are_chosen() {
+        let matrix = DMatrix::from_row_slice(3, 1, &[1e-7, 2.0, -3.0]);
+        assert_eq!((longest(&matrix), independent(&matrix, &[0; 3]).rows), (vec![2], vec![0]));
+    }
 
     #[test]
     fn dependent_rows_follow_from_the_preferred_ones() {

@@ -13,7 +13,7 @@ use bg_model::nalgebra::{DMatrix, DVector};
 
 use super::carry::Carry;
 use super::coordinates::{Coordinate, Coordinates, Role, is_idle_integral};
-use super::independent::independent;
+use super::independent::{independent, longest};
 use super::plant::{ByInputs, Derivatives, Plant, at_rest, momenta};
 
 /// States that a linear model does not have, and why.
@@ -74,9 +74,9 @@ impl Manifold {
 
         // Momenta that rigid joints allow.
         let held = (&rest.flows_by_state * &all.to_states).select_columns(&p);
-        let allowed = Allowed::by(&held);
-        // How all else can change.
         let by_coordinate = &all.from_states * &rest.rates_by_state * &all.to_states;
+        let allowed = Allowed::by(&held, &by_coordinate.select_rows(&q).select_columns(&p));
+        // How all else can change.
         let by_momenta = by_coordinate.select_rows(&q).select_columns(&p) * &allowed.momenta;
         let by_inputs = (&all.from_states * &inputs.rates).select_rows(&q);
         let by_others =
@@ -196,10 +196,19 @@ struct Allowed {
 }
 
 impl Allowed {
-    /// `held` are the derivatives of the held flows (rows) by the momenta (columns).
-    fn by(held: &DMatrix<f64>) -> Self {
+    /// `held` are the derivatives of the held flows (rows) by the momenta (columns), `moved` those of the rates of the pose. Those are bound
+    /// that the flows depend on most in the metric of kinetic energy: a link that does not turn in this pose tells nothing of the others.
+    fn by(held: &DMatrix<f64>, moved: &DMatrix<f64>) -> Self {
         let momenta = held.ncols();
-        let bound = independent(&held.transpose(), &vec![0; momenta]).rows;
+        let mut weighed = held.transpose();
+        for (mut row, velocities) in weighed.row_iter_mut().zip(moved.column_iter()) {
+            // A momentum p of inertia m moves its pose by p / m, and has the energy p^2 / 2 m.
+            let reciprocal = velocities.amax();
+            if reciprocal > 0.0 {
+                row.unscale_mut(reciprocal.sqrt());
+            }
+        }
+        let bound = longest(&weighed);
         let free: Vec<usize> = (0..momenta).filter(|k| !bound.contains(k)).collect();
         Self::by_rows(held, &free)
     }

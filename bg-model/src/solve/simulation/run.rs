@@ -217,8 +217,9 @@ where
         if moved <= MOVED || !self.is_around_singular() {
             return moved <= MOVED;
         }
-        let [again, once_more] = [self.stepper.project(), self.stepper.project()];
-        again <= AGAIN * moved || again <= MOVED * once_more
+        let rounding = self.stepper.rounding_of_projection(&self.stepper.end.x);
+        let again = self.stepper.project();
+        again <= AGAIN * moved || again <= MOVED * rounding
     }
 
     /// The first instant after `t` (s) and before the end, by more than rounding, at which the system has a step end;

@@ -13,7 +13,7 @@ use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_
 use crate::solve::statistics::Statistics;
 use frozen::Frozen;
 
-/// What rounding may leave of a projection, beside what it leaves of another one.
+/// What rounding may leave of a projection, beside what another rounding of the same state changes.
 const ROUNDING: f64 = 10.0;
 
 /// A system, a method and the step between two points that is being made.
@@ -74,11 +74,9 @@ where
             system.project(end.t, &negative, x);
         };
         let error = method.error_after(&flow, start, h, scale, &end.x, project)?;
-        let mut once = end.x;
-        project(&mut once);
-        let mut again = once;
-        system.project(end.t, &negative, &mut again);
-        let rounding = scale.norm(&(again - once), &once);
+        let mut reached = end.x;
+        project(&mut reached);
+        let rounding = self.rounding_of_projection(&reached);
         Some(if error <= ROUNDING * rounding { error.min(1.0) } else { error })
     }
 
@@ -96,6 +94,16 @@ where
         let before = *x;
         self.system.project(t, &self.negative, x);
         if self.system.joints().is_some() { self.scale.norm(&(*x - before), x) } else { 0.0 }
+    }
+
+    /// The norm of what the projection makes of the rounding of a state `x` at the end of the step, which grows into a singular pose.
+    /// It is the difference to the same state rounded otherwise: what is left of its own rounding may be nothing by chance.
+    pub fn rounding_of_projection(&self, x: &SVector<f64, N>) -> f64 {
+        let [projected, otherwise] = [*x, rounded_otherwise(x)].map(|mut x| {
+            self.system.project(self.end.t, &self.negative, &mut x);
+            x
+        });
+        self.scale.norm(&(otherwise - projected), &projected)
     }
 
     /// Evaluates the rate at the end of the step.
@@ -167,4 +175,9 @@ where
         self.method.dense(&self.start, self.h, &self.end, theta, &mut x);
         x
     }
+}
+
+/// A state with each number as the next rounding would have it, up or down.
+fn rounded_otherwise<const N: usize>(x: &SVector<f64, N>) -> SVector<f64, N> {
+    SVector::from_fn(|i, _| x[i] * if i.count_ones() % 2 == 0 { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON })
 }

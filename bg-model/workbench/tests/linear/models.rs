@@ -97,7 +97,8 @@ bond_graph! {
         joint shoulder: revolute z (ground.O -> upper.top) { stiffness 1e7; tilt stiffness 1e3; }
         joint elbow: revolute z (upper.bottom -> lower.top) { stiffness 1e7; tilt stiffness 1e3; }
         observe { upper: rad = shoulder.angle; elbow: rad = elbow.angle }
-        scene DoubleIdeal { rigid joints; expect planar; }
+        scene DoubleIdeal { rigid joints; expect planar; expect independent speeds; }
+        scene DoubleWithAll { rigid joints; all reactions; expect planar; }
         scene DoublePlane { expect planar; }
     }
     /// A motor with a flywheel.
@@ -225,6 +226,7 @@ bond_graph! {
         }
         drive push on slider force = [load, 0, 0];
         observe { angle: rad = crank.angle; x: m = slider.position.x }
-        scene CrankIdeal { rigid joints; tune { load } expect planar; }
+        scene CrankIdeal { rigid joints; tune { load } expect planar; expect independent speeds; }
+        scene CrankWithAll { rigid joints; all reactions; tune { load } expect planar; }
     }
 }

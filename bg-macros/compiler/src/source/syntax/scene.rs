@@ -12,11 +12,8 @@ use super::{
 use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene, Tune, Watch};
 
 /// The block of a scene.
-const SCENE: Place = Place {
-    name: "a scene",
-    words: &["observe", "tune", "without", "rigid", "independent", "angles", "expect"],
-    list: false,
-};
+const SCENE: Place =
+    Place { name: "a scene", words: &["observe", "tune", "without", "rigid", "all", "angles", "expect"], list: false };
 
 /// `observe { ... }`
 const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
@@ -25,7 +22,7 @@ const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
 const NAMES: Place = Place { name: "the list", words: &[], list: true };
 
 /// What a scene can expect.
-const EXPECTATIONS: &[&str] = &["planar", "states", "integral"];
+const EXPECTATIONS: &[&str] = &["planar", "states", "independent", "integral"];
 
 /// A block of names, for messages.
 const LIST: &str = "`{ NAME, NAME }`";
@@ -73,7 +70,7 @@ impl Cursor<'_> {
             without: Vec::new(),
             rigid: Rigid::None,
             angles: false,
-            speeds: false,
+            all_reactions: false,
             expect: Vec::new(),
         };
         let block = self.group(Delimiter::Brace, "`{ ... }`", &SCENE);
@@ -121,12 +118,12 @@ impl Cursor<'_> {
                 self.end_statement("");
                 scene.angles = true;
             }
-            Some("independent") => {
-                self.fill(&mut filled.speeds, (), "independent speeds", span);
+            Some("all") => {
+                self.fill(&mut filled.reactions, (), "all reactions", span);
                 self.advance();
-                self.expect_word("speeds")?;
+                self.expect_word("reactions")?;
                 self.end_statement("");
-                scene.speeds = true;
+                scene.all_reactions = true;
             }
             Some("expect") => {
                 let expectation = self.expectation()?;
@@ -175,16 +172,21 @@ impl Cursor<'_> {
         Ok(Rigid::Some(block.names("a joint")))
     }
 
-    /// `expect planar;`, `expect states = 29;` or `expect integral causality;`
+    /// `expect planar;`, `expect states = 29;`, `expect independent speeds;` or `expect integral causality;`
     fn expectation(&mut self) -> Parsed<Expectation> {
         self.advance();
         let Some(word) = self.word().map(str::to_owned) else {
-            return Err(self.unexpected("`planar`, `states` or `integral`"));
+            return Err(self.unexpected("`planar`, `states`, `independent` or `integral`"));
         };
         let span = self.span();
         if self.eat_word("planar").is_some() {
             self.end_statement("");
             return Ok(Expectation::Planar(span));
+        }
+        if self.eat_word("independent").is_some() {
+            self.expect_word("speeds")?;
+            self.end_statement("");
+            return Ok(Expectation::IndependentSpeeds(span));
         }
         if self.eat_word("integral").is_some() {
             return self.integral_causality().map(|()| Expectation::IntegralCausality);
@@ -209,7 +211,7 @@ struct Filled {
     tune: Option<()>,
     rigid: Option<()>,
     angles: Option<()>,
-    speeds: Option<()>,
+    reactions: Option<()>,
 }
 
 /// `NAME: UNIT = E`, `NAME = E` or `E`

@@ -2,7 +2,7 @@
 //!
 //! In: a scene, the parameters, the report of the reduction. Out: what the reduction is to keep, or faults.
 
-use super::{Fate, Report, Wanted};
+use super::{Fate, Kept, Report, Wanted};
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::graph::Parameter;
 use crate::source::ast::{Expectation, Scene};
@@ -17,6 +17,7 @@ pub enum ExpectationFault {
     UnknownParameter { name: String, near: Option<String> },
     NotPlanar { scene: String, states: Vec<String> },
     StateCount { scene: String, expected: usize, states: Vec<String> },
+    AllReactions { scene: String, kept: Kept },
 }
 
 use ExpectationFault as F;
@@ -27,6 +28,7 @@ impl Explain for ExpectationFault {
             F::UnknownParameter { .. } => "BG0603",
             F::NotPlanar { .. } => "BG0604",
             F::StateCount { .. } => "BG0605",
+            F::AllReactions { .. } => "BG0611",
         }
     }
 
@@ -39,6 +41,9 @@ impl Explain for ExpectationFault {
             F::StateCount { scene, expected, states } => {
                 format!("scene `{scene}` integrates {} states, not {expected}: {}", states.len(), list(states))
             }
+            F::AllReactions { scene, kept } => {
+                format!("scene `{scene}` keeps the reactions of all rigid joints: {kept}")
+            }
         }
     }
 
@@ -50,6 +55,16 @@ impl Explain for ExpectationFault {
                 "find what moves them: a tuned parameter out of the plane, a start value, a force".to_owned()
             }
             F::StateCount { .. } => "correct the number, or what the scene watches and tunes".to_owned(),
+            F::AllReactions { kept, .. } => match kept {
+                Kept::Asked => "leave out `all reactions;`".to_owned(),
+                Kept::NothingRigid => "make joints rigid: `rigid joints;`".to_owned(),
+                Kept::Baumgarte => "leave out `baumgarte`: joints are closed by projection then".to_owned(),
+                Kept::Start(_) => {
+                    "make its start velocities guesses, or give those of both bodies so that they fit".to_owned()
+                }
+                Kept::Shared => "do not observe forces and moments of rigid joints in this scene".to_owned(),
+                _ => "leave out `expect independent speeds;`: results are the same with all reactions".to_owned(),
+            },
         }
     }
 }
@@ -65,7 +80,7 @@ fn list(states: &[String]) -> String {
 /// # Errors
 /// Names to tune that are no parameters.
 pub fn wanted(scene: &Scene, parameters: &[Parameter]) -> Staged<Wanted> {
-    Ok(Wanted { tuned: tuned(scene, parameters)?, angles: scene.angles, speeds: scene.speeds })
+    Ok(Wanted { tuned: tuned(scene, parameters)?, angles: scene.angles, speeds: !scene.all_reactions })
 }
 
 /// For each parameter whether the scene tunes it.
@@ -97,6 +112,14 @@ pub fn check(scene: &Scene, report: &Report) -> Staged<()> {
                 let states = out_of_plane(report);
                 if !states.is_empty() {
                     faults.push(Fault::new(*span, &F::NotPlanar { scene: name.clone(), states }));
+                }
+            }
+            Expectation::IndependentSpeeds(span) => {
+                // Without reactions the reduction has not looked.
+                let is_expressed = report.fates.iter().any(|(_, fate)| matches!(fate, Fate::Joined(_)));
+                if !is_expressed {
+                    let kept = report.kept.clone().unwrap_or(Kept::NothingRigid);
+                    faults.push(Fault::new(*span, &F::AllReactions { scene: name.clone(), kept }));
                 }
             }
             Expectation::States(expected, span) => {

@@ -23,7 +23,7 @@ use crate::expr::{Branch, Id, Pool, Symbol};
 use crate::system::equations::StateEquations;
 
 pub use reaction::solve as solve_reactions;
-pub use report::{Count, Fate, Report};
+pub use report::{Count, Fate, Kept, Report};
 
 /// What the scene is to keep.
 #[derive(Clone, Debug)]
@@ -56,8 +56,8 @@ const PASSES: [Pass; 8] = [
     Pass { name: "equal states merged", applies: always, run: |equations, _, report| equal::merge(equations, report) },
     Pass {
         name: "states of joints expressed",
-        applies: |equations, wanted| wanted.speeds && !equations.reactions.is_empty() && equations.baumgarte.is_none(),
-        run: |equations, _, report| speeds::choose(equations, report),
+        applies: |equations, _| !equations.reactions.is_empty(),
+        run: |equations, wanted, report| report.kept = speeds::choose(equations, wanted, report).err(),
     },
     Pass {
         name: "reactions solved",

@@ -146,7 +146,7 @@ mod tests {
             "{BOB} joint pivot: revolute z (ground.O -> bob.top) {{ rigid; }}
              observe {{ angle: rad = pivot.angle; w: rad/s = pivot.speed; f: N = pivot.force; gap: m = pivot.gap; }}"
         );
-        let scene = scene(&graph, "");
+        let scene = scene(&graph, "all reactions;");
         assert_eq!(scene.reduced.states.len(), 7, "{}", scene.report);
         assert!(scene.reduced.reactions.is_empty());
         // At rest at the angle a: w' = -m g l sin(a) / (J + m l^2), and the centre of mass falls with l w'.
@@ -171,8 +171,8 @@ mod tests {
                  observe {{ p: m = bob.position; f: N = pivot.force; h: kg*m^2/s = bob.h; }}"
             )
         };
-        let compliant = scene(&joint("stiffness 1e3;"), "rigid joints;");
-        let rigid = scene(&joint("rigid;"), "");
+        let compliant = scene(&joint("stiffness 1e3;"), "rigid joints; all reactions;");
+        let rigid = scene(&joint("rigid;"), "all reactions;");
         assert_eq!(compliant.starts(), rigid.starts());
         assert_eq!(compliant.left(), rigid.left());
         compliant.agrees();
@@ -185,7 +185,7 @@ mod tests {
              joint pivot: revolute z (ground.O -> bob.top) {{ rigid; }}
              observe {{ p: m = bob.position; q: m = rod.position; f: N = pivot.force; }}"
         );
-        let scene = scene(&graph, "observe { f: N = pivot.force; m: N*m = pivot.moment; }");
+        let scene = scene(&graph, "all reactions; observe { f: N = pivot.force; m: N*m = pivot.moment; }");
         let zero = |name: &str| {
             let output = scene.reduced.outputs.iter().find(|output| output.name == name).expect(name);
             scene.reduced.pool.is_zero(output.value)

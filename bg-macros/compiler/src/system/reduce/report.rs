@@ -51,6 +51,51 @@ pub struct Count {
     pub operations: usize,
 }
 
+/// Why the rows of rigid joints are not solved for momenta and positions of bodies.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Kept {
+    /// The scene says so.
+    Asked,
+    /// No joint is rigid.
+    NothingRigid,
+    /// Baumgarte's terms keep the joints closed.
+    Baumgarte,
+    /// No row gives the momentum of a body by those of others with a pivot that cannot vanish.
+    NoPivot,
+    /// Joints that close loops may hold all that is left, or what other joints hold.
+    Immobile,
+    /// Joints that close loops share their reactions with others, of which an output shows one.
+    Shared,
+    /// The start velocities of this joint may not fit.
+    Start(String),
+    /// A reaction changes what is no momentum.
+    Load,
+    /// A rate would take so many operations; it takes the second number.
+    Costs(usize, usize),
+}
+
+impl std::fmt::Display for Kept {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Asked => f.write_str("the scene says `all reactions;`"),
+            Self::NothingRigid => f.write_str("no joint is rigid"),
+            Self::Baumgarte => f.write_str("`baumgarte` keeps the joints closed"),
+            Self::NoPivot => {
+                f.write_str("no rigid joint gives the momentum of a body by those of others in every pose")
+            }
+            Self::Immobile => f.write_str("joints that close loops may hold all motions that are left"),
+            Self::Shared => {
+                f.write_str("several directions close loops, and an output shows a reaction that they may share")
+            }
+            Self::Start(joint) => write!(f, "start velocities may tear joint `{joint}`"),
+            Self::Load => f.write_str("a reaction of a rigid joint acts on something else than momenta"),
+            Self::Costs(by_speeds, before) => {
+                write!(f, "a rate would take some {by_speeds} operations in place of {before}")
+            }
+        }
+    }
+}
+
 /// What became of every state of the literal model.
 #[derive(Clone, Debug)]
 pub struct Report {
@@ -58,6 +103,8 @@ pub struct Report {
     pub fates: Vec<(State, Fate)>,
     /// The model's size after each reduction.
     pub counts: Vec<Count>,
+    /// Why all joints have kept their reactions, where they have.
+    pub kept: Option<Kept>,
     /// For each state still there its index in `fates`.
     left: Vec<usize>,
 }
@@ -67,7 +114,7 @@ impl Report {
         let fates: Vec<(State, Fate)> =
             equations.states.iter().map(|state| (state.clone(), Fate::Integrated)).collect();
         let left = (0..fates.len()).collect();
-        Self { fates, counts: Vec::new(), left }
+        Self { fates, counts: Vec::new(), kept: None, left }
     }
 
     /// Notes the size of the model.
@@ -118,6 +165,9 @@ impl std::fmt::Display for Report {
         )?;
         for Count { stage, states, operations } in &self.counts {
             writeln!(f, "  {stage}: {states} states, {operations} operations a rate")?;
+        }
+        if let Some(kept) = self.kept.as_ref().filter(|kept| **kept != Kept::NothingRigid) {
+            writeln!(f, "  the reactions of all rigid joints are kept: {kept}")?;
         }
         self.fates.iter().try_for_each(|(state, fate)| writeln!(f, "  {}: {fate}", state.name))
     }

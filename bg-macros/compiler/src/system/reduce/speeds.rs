@@ -12,17 +12,31 @@
 use std::collections::BTreeSet;
 
 use super::joined::Choice;
-use super::report::Report;
-use super::{closing, projected};
+use super::report::{Kept, Report};
+use super::{Wanted, closing, friction, projected};
 use crate::expr::{Id, Symbol, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, StateEquations};
 
-/// Takes momenta out of the equations that rigid joints determine, where rates take fewer operations then.
-pub(super) fn choose(equations: &mut StateEquations, report: &mut Report) {
+/// Takes momenta out of the equations that rigid joints determine, where rates take fewer operations then; else says why not.
+pub(super) fn choose(equations: &mut StateEquations, wanted: &Wanted, report: &mut Report) -> Result<(), Kept> {
+    if !wanted.speeds {
+        return Err(Kept::Asked);
+    }
+    if friction::rigid(&equations.reactions) == 0 {
+        return Err(Kept::NothingRigid);
+    }
+    if equations.baumgarte.is_some() {
+        return Err(Kept::Baumgarte);
+    }
     let mut changed = equations.clone();
-    let Some(choice) = Choice::of(&mut changed).filter(|choice| suits(&mut changed, choice)) else { return };
-    if !put(&mut changed, &choice) || cost(&changed) >= cost(equations) {
-        return;
+    let choice = Choice::of(&mut changed).ok_or(Kept::NoPivot)?;
+    check(&mut changed, &choice)?;
+    if !put(&mut changed, &choice) {
+        return Err(Kept::Load);
+    }
+    let [by_speeds, before] = [cost(&changed), cost(equations)];
+    if by_speeds >= before {
+        return Err(Kept::Costs(by_speeds, before));
     }
     for (&state, fate) in &choice.fates {
         report.say(state, fate.clone());
@@ -30,6 +44,7 @@ pub(super) fn choose(equations: &mut StateEquations, report: &mut Report) {
     *equations = changed;
     let kept: Vec<bool> = (0..equations.states.len()).map(|state| !choice.images.contains_key(&state)).collect();
     super::live::keep_states(equations, report, &kept);
+    Ok(())
 }
 
 /// Puts what is chosen into the equations; false where the rows act on what cannot be projected.
@@ -83,19 +98,22 @@ fn cost(equations: &StateEquations) -> usize {
     pool.cost(&rates)
 }
 
-/// Whether the mechanism can do without the reactions of the chosen rows.
-fn suits(equations: &mut StateEquations, choice: &Choice) -> bool {
+/// Says why the mechanism cannot do without the reactions of the chosen rows, if so.
+fn check(equations: &mut StateEquations, choice: &Choice) -> Result<(), Kept> {
     let left: Vec<usize> = (0..choice.rigid).filter(|&row| !choice.is_solved(row)).collect();
     let moved: BTreeSet<usize> = choice.survivors(equations).collect();
     // As many rows as momenta: they may follow from each other, and reactions of least norm be asked for, or nothing may move.
     if !left.is_empty() && left.len() >= moved.len() {
-        return false;
+        return Err(Kept::Immobile);
     }
     // Where several rows close loops, some of them may follow from others; what is shared then is shared among all joints.
     if left.len() > 1 && is_watched(equations, choice) {
-        return false;
+        return Err(Kept::Shared);
     }
-    choice.rows.iter().all(|&(row, _)| starts_at_rest(equations, row))
+    match choice.rows.iter().find(|&&(row, _)| !starts_at_rest(equations, row)) {
+        Some(&(row, _)) => Err(Kept::Start(equations.reactions[row].slip.joint.clone())),
+        None => Ok(()),
+    }
 }
 
 /// Whether an output shows a reaction of a chosen row.

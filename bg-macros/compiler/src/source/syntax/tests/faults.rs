@@ -48,7 +48,7 @@ fn unknown_words_have_a_near_miss_or_a_list() {
         ),
         (
             "scene S { expect planr; }",
-            "2:18 BG0111 found `planr`, expected an expectation: `planar`, `states`, `integral` | write `planar`",
+            "2:18 BG0111 found `planr`, expected an expectation: `planar`, `states`, `independent`, `integral` | write `planar`",
         ),
     ]);
 }

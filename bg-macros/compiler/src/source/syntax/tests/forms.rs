@@ -90,8 +90,9 @@ fn blocks_print_one_statement_per_line() {
         tune { c, d }
         without { e }
         rigid joints;
-        independent speeds;
+        all reactions;
         expect planar;
+        expect independent speeds;
         expect states = 29;
     }
 }

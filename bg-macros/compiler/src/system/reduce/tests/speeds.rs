@@ -51,13 +51,13 @@ fn fits_the_literal_model(scene: &Scene) {
 #[test]
 fn rods_on_pins_are_left_with_an_angle_and_a_momentum_each() {
     for (rods, expected) in [(1, 6), (2, 35)] {
-        let scene = scene(&chain(rods, ""), "independent speeds; tune {}");
+        let scene = scene(&chain(rods, ""), "tune {}");
         assert_eq!(scene.left().len(), 3 * rods, "{}", scene.report);
         assert_eq!(operations(&scene), expected, "{}", scene.report);
         assert!(scene.reduced.holding.rigid.is_empty());
         fits_the_literal_model(&scene);
     }
-    let scene = scene(&chain(2, ""), "independent speeds; tune {}");
+    let scene = scene(&chain(2, ""), "tune {}");
     let names = ["b1.linear.p_x", "b1.position_y", "b1.angular.p_z"];
     assert_eq!(scene.words(&names), ["joined j1", "joined j1", "integrated"]);
 }
@@ -65,7 +65,7 @@ fn rods_on_pins_are_left_with_an_angle_and_a_momentum_each() {
 /// The full matrix of a long chain takes more operations than the band of its reactions.
 #[test]
 fn a_long_chain_keeps_its_reactions() {
-    let scene = scene(&chain(10, ""), "independent speeds; tune {}");
+    let scene = scene(&chain(10, ""), "tune {}");
     assert_eq!((scene.left().len(), scene.reduced.holding.rigid.len()), (70, 20));
 }
 
@@ -73,7 +73,7 @@ fn a_long_chain_keeps_its_reactions() {
 #[test]
 fn a_start_that_may_not_fit_keeps_its_reactions() {
     for (start, states) in [("start spin [0, 0, 2];", 7), ("start spin [0, 0, 2]; start velocity [1, 0, 0];", 3)] {
-        let scene = scene(&chain(1, start), "independent speeds; tune {}");
+        let scene = scene(&chain(1, start), "tune {}");
         assert_eq!(scene.left().len(), states, "{start} {}", scene.report);
         fits_the_literal_model(&scene);
     }
@@ -83,7 +83,7 @@ fn a_start_that_may_not_fit_keeps_its_reactions() {
 #[test]
 fn what_may_not_move_keeps_its_reactions() {
     let graph = format!("{} joint back: revolute z (ground.O -> b0.low) {{ rigid; }}", chain(1, ""));
-    let scene = scene(&graph, "independent speeds; tune {}");
+    let scene = scene(&graph, "tune {}");
     assert_eq!(scene.reduced.holding.rigid.len(), 4, "{}", scene.report);
 }
 
@@ -96,7 +96,7 @@ fn a_slide_between_moving_bodies_leaves_one_reaction() {
     let shaper =
         shaper.replace("start Q at [0, -1, 0]; start turned rotation_z(guess(1.3));", "start Q at [-0.9, 0, 0];");
     let shaper = shaper.replace("point Q = [0, -1, 0];", "point Q = [-0.9, 0, 0];");
-    let scene = scene(&shaper, "independent speeds; tune { torque }");
+    let scene = scene(&shaper, "tune { torque }");
     assert_eq!(scene.left().len(), 7, "{}", scene.report);
     assert_eq!(scene.words(&["block.orientation_11", "block.angular.p_z"]), ["joined slot", "joined slot"]);
     assert_eq!(scene.reduced.holding.rigid.len(), 1, "{}", scene.report);
@@ -113,7 +113,7 @@ fn a_slide_between_moving_bodies_leaves_one_reaction() {
 #[test]
 fn orientations_that_start_apart_stay() {
     for (force, rows) in [("", 2), ("f: N = o.force;", 8)] {
-        let scene = scene(&SHAPER.replace("FORCE", force), "independent speeds; tune { torque }");
+        let scene = scene(&SHAPER.replace("FORCE", force), "tune { torque }");
         assert!(scene.words(&["block.orientation_11"]) == ["integrated"], "{}", scene.report);
         assert_eq!(scene.reduced.holding.rigid.len(), rows, "{}", scene.report);
     }
@@ -122,7 +122,7 @@ fn orientations_that_start_apart_stay() {
 /// Squared cosines and sines are 1 in every equation but those that make them so.
 #[test]
 fn angles_are_put_back_on_the_circle() {
-    let scene = scene(&chain(2, ""), "independent speeds; tune {}");
+    let scene = scene(&chain(2, ""), "tune {}");
     let StateEquations { pool, states, projections, .. } = &scene.reduced;
     let off: Vec<f64> =
         states.iter().map(|state| if state.origin.kind() == Kind::Orientation { 0.7 } else { 0.0 }).collect();
@@ -148,8 +148,7 @@ fn rows_that_close_a_loop_are_known_as_such() {
             .replace("f: N = j0.force;", "")
             .replace("point O = [0, 0, 0];", "point O = [0, 0, 0]; point P = [1, 0, 0];")
     );
-    let [all, left] =
-        ["", "independent speeds;"].map(|clause| scene(&four_bar, &format!("{clause} tune {{}}")).reduced);
+    let [all, left] = ["all reactions;", ""].map(|clause| scene(&four_bar, &format!("{clause} tune {{}}")).reduced);
     assert_eq!((all.holding.rigid.len(), left.holding.rigid.len()), (8, 2));
     let at_start = |of: &StateEquations, id| {
         let starts: Vec<_> = of.states.iter().map(|state| state.start).collect();
