@@ -129,19 +129,19 @@ class Batch:
         )
 
     def run(self, values):
-        """The runs with `values`, rows of torque, r_cut, k_34, k_23: CPU time of this process, s, and the poses at their ends."""
+        """The runs with `values`, rows of torque, r_cut, k_34, k_23: time, s, and the poses at their ends."""
         integrator = self.integrator
         poses, seconds = [], 0.0
         for first in range(0, len(values), self.lanes):
             some = np.array(values[first : first + self.lanes])
-            clock = time.process_time()
+            clock = time.perf_counter()
             integrator.set_time(0.0)
             integrator.state[:] = np.array(self.start)[:, None]
             integrator.pars[1:] = some.T
             integrator.pars[0] = integrator.pars[2] if self.cutting else self.returning
             integrator.reset_cooldowns()
             integrator.propagate_until(self.end)
-            seconds += time.process_time() - clock
+            seconds += time.perf_counter() - clock
             poses += integrator.state[:12].T.tolist()
         return {"seconds": seconds, "poses": poses, "work": {}}
 

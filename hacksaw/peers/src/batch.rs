@@ -1,6 +1,6 @@
 //! Many runs: ours in lanes and heyoka's in batches, in turns.
 //!
-//! In: how many runs of 5 s, which differ in torque, cutting resistance and two stiffnesses. Out: a table of CPU time a run, the
+//! In: how many runs of 5 s, which differ in torque, cutting resistance and two stiffnesses. Out: a table of time a run by the wall clock, the
 //! least of the rounds, with the largest error of a pose at the end, m or rad, and the ratio at an error of at most 1e-6.
 
 use std::path::Path;
@@ -104,13 +104,7 @@ fn exactly(values: &[f64; 4]) -> Result<Pose, String> {
 
 /// Our runs with the time that they take, s.
 fn in_our_lanes(model: &Motion, rtol: f64, values: &[[f64; 4]]) -> Result<(f64, Poses), String> {
-    let all: Vec<Vec<f64>> = values
-        .iter()
-        .map(|values| {
-            let parameters = parameters(values);
-            (0..MotionParameters::table().len()).map(|index| parameters.value(index)).collect()
-        })
-        .collect();
+    let all: Vec<Vec<f64>> = values.iter().map(|values| parameters(values).values()).collect();
     let clock = Instant::now();
     let runs = in_lanes(model, &request(Integrator::Nystrom, rtol), &all);
     let seconds = clock.elapsed().as_secs_f64();

@@ -4,33 +4,29 @@ use crate::measure::Series;
 use crate::solvers::Source;
 use crate::table::fastest;
 
-/// A comparison: with whom, at which error (m or rad), and how many times as long they are to take at least.
-struct Goal {
+/// Comparisons with one kind of peers.
+struct Goals {
     name: &'static str,
     sources: &'static [Source],
-    error: f64,
-    factor: f64,
+    /// Errors, m or rad, and how many times as long they are to take at least.
+    factors: &'static [(f64, f64)],
 }
 
 const RUST: &[Source] = &[Source::Diffsol, Source::OdeSolvers, Source::DifferentialEquations];
 
-const HEYOKA: &[Source] = &[Source::Heyoka];
-const BY_HAND: &[Source] = &[Source::ByHand];
-
-const GOALS: [Goal; 13] = [
-    Goal { name: "heyoka", sources: HEYOKA, error: 1e-6, factor: 4.0 },
-    Goal { name: "heyoka", sources: HEYOKA, error: 3e-7, factor: 4.0 },
-    Goal { name: "heyoka", sources: HEYOKA, error: 1e-8, factor: 3.0 },
-    Goal { name: "heyoka", sources: HEYOKA, error: 1e-10, factor: 2.5 },
-    Goal { name: "heyoka", sources: HEYOKA, error: 1e-12, factor: 2.5 },
-    Goal { name: "by hand", sources: BY_HAND, error: 1e-3, factor: 2.0 },
-    Goal { name: "by hand", sources: BY_HAND, error: 1e-6, factor: 2.0 },
-    Goal { name: "by hand", sources: BY_HAND, error: 3e-7, factor: 2.0 },
-    Goal { name: "by hand", sources: BY_HAND, error: 1e-8, factor: 2.0 },
-    Goal { name: "by hand", sources: BY_HAND, error: 1e-10, factor: 2.0 },
-    Goal { name: "by hand", sources: BY_HAND, error: 1e-12, factor: 2.0 },
-    Goal { name: "the best Rust crate", sources: RUST, error: 1e-6, factor: 4.0 },
-    Goal { name: "CVODE", sources: &[Source::Cvode, Source::Casadi], error: 1e-6, factor: 6.0 },
+const GOALS: [Goals; 4] = [
+    Goals {
+        name: "heyoka",
+        sources: &[Source::Heyoka],
+        factors: &[(1e-6, 4.0), (3e-7, 4.0), (1e-8, 3.0), (1e-10, 2.5), (1e-12, 2.5)],
+    },
+    Goals {
+        name: "by hand",
+        sources: &[Source::ByHand],
+        factors: &[(1e-3, 2.0), (1e-6, 2.0), (3e-7, 2.0), (1e-8, 2.0), (1e-10, 2.0), (1e-12, 2.0)],
+    },
+    Goals { name: "the best Rust crate", sources: RUST, factors: &[(1e-6, 4.0)] },
+    Goals { name: "CVODE", sources: &[Source::Cvode, Source::Casadi], factors: &[(1e-6, 6.0)] },
 ];
 
 /// Ours: with energies and without.
@@ -41,8 +37,10 @@ pub fn table(series: &[Series]) -> String {
     let mut text = "Times of others over the best of ours on the generated scenes, at an error of at most ..:\n\n\
                     | error | ours | ms | other | ms | ratio | to reach |\n|---|---|---|---|---|---|---|\n"
         .to_owned();
-    for (goal, scene) in GOALS.iter().flat_map(|goal| SCENES.map(|scene| (goal, scene))) {
-        let (ours, theirs) = (best(series, &[scene], goal.error), best(series, goal.sources, goal.error));
+    let all = GOALS.iter().flat_map(|goals| goals.factors.iter().map(move |&(error, factor)| (goals, error, factor)));
+    for ((Goals { name, sources, .. }, error, factor), scene) in all.flat_map(|goal| SCENES.map(|scene| (goal, scene)))
+    {
+        let (ours, theirs) = (best(series, &[scene], error), best(series, sources, error));
         let cells = |best: &Option<(&Series, f64)>, otherwise: &str| match best {
             Some((series, time)) => format!("{} | {time:.1}", series.line.name),
             None => format!("{otherwise} | –"),
@@ -51,13 +49,8 @@ pub fn table(series: &[Series]) -> String {
             (Some((_, ours)), Some((_, theirs))) => format!("{:.2}", theirs / ours),
             _ => "–".to_owned(),
         };
-        text += &format!(
-            "| {:.0e} | {} | {} | {ratio} | {} |\n",
-            goal.error,
-            cells(&ours, "none"),
-            cells(&theirs, goal.name),
-            goal.factor
-        );
+        text +=
+            &format!("| {error:.0e} | {} | {} | {ratio} | {factor} |\n", cells(&ours, "none"), cells(&theirs, name),);
     }
     text
 }

@@ -4,6 +4,7 @@ pub(crate) mod serialized;
 
 use alloc::borrow::ToOwned;
 use alloc::string::String;
+use alloc::vec::Vec;
 
 use thiserror::Error;
 
@@ -20,6 +21,11 @@ pub trait Parameters: Clone + Default {
 
     /// Sets parameter `index` of the table without looking at its range.
     fn set_value(&mut self, index: usize, value: f64);
+
+    /// The values of all parameters, in the order of the table.
+    fn values(&self) -> Vec<f64> {
+        (0..Self::table().len()).map(|index| self.value(index)).collect()
+    }
 
     /// The value of the parameter called `name`, if there is one.
     fn get(&self, name: &str) -> Option<f64> {

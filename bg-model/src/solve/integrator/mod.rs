@@ -34,6 +34,8 @@ use crate::model::linear::{Sparsity, differences};
 pub use any::AnyMethod;
 pub use auto::{Auto, Change, Reason};
 pub use choice::{Integrator, UnknownIntegrator};
+#[cfg(feature = "std")]
+pub(crate) use explicit::both;
 pub use explicit::{
     BogackiShampine, Bs5, CalvoFrancoMontijanoRandez, Cfmr7, Dop853, DormandPrince, Explicit, Row, Tableau,
 };

@@ -40,7 +40,7 @@ pub fn differences<Me: Mechanism>(
     part: f64,
     accuracy: Accuracy,
 ) -> Result<Vec<f64>, DifferencesError> {
-    let values: Vec<f64> = (0..Me::Parameters::table().len()).map(|index| model.parameters().value(index)).collect();
+    let values = model.parameters().values();
     let distance = part * values[parameter].abs().max(1e-2);
     model.visit_lifted(Differences { values, parameter, distance, t, accuracy })
 }

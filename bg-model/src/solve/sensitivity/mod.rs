@@ -169,8 +169,7 @@ pub fn sensitivities<Me: Mechanism>(
     request: &Request,
     directions: &[Direction],
 ) -> Result<Sensitivities, SensitivityError> {
-    let parameters = model.parameters();
-    let values = (0..Me::Parameters::table().len()).map(|index| parameters.value(index)).collect();
+    let values = model.parameters().values();
     let following = Following { request, directions, values };
     model.visit_lifted::<Gradient, GradientIn<Fastest>, _>(following)
 }

@@ -19,7 +19,7 @@ use crate::model::scalar::slopes::Everywhere;
 use crate::model::scalar::slopes::{Slopes, WIDTH};
 use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::System;
-use crate::solve::integrator::{DormandPrince, Row, Scale, Tableau};
+use crate::solve::integrator::{DormandPrince, Row, Scale, Tableau, both};
 
 /// A state with slopes.
 pub(super) type Sloped<const N: usize> = SVector<Gradient, N>;
@@ -175,9 +175,7 @@ impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
             return f64::NAN;
         }
         let [first, second] = [first, second].map(|of| of.numbers().into_iter().fold(0.0, f64::max));
-        let second = second / h.abs();
-        let both = first * first + 0.01 * second * second;
-        if both == 0.0 { 0.0 } else { h.abs() * first * first / both.sqrt() }
+        both(h.abs(), first, second / h.abs())
     }
 }
 

@@ -96,7 +96,7 @@ pub fn gradient<Me: Scenes>(program: &Program<Me>, arguments: &GradientArguments
     };
     let question = question(scene, arguments, &columns, request.t_end)?;
     let folder = RunFolder::claim(&arguments.out, &[TABLE, CSV].map(str::to_owned))?;
-    let all: Vec<f64> = (0..Me::Parameters::table().len()).map(|index| chosen.values.value(index)).collect();
+    let all = chosen.values.values();
     let by: Vec<&str> = parameters.iter().map(|(info, _)| info.name).collect();
     let found = differentiate(Asked {
         scene,

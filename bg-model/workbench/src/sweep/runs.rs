@@ -81,7 +81,7 @@ impl<'a> Job<'a> {
         let Plan { design, wanted, scene, chosen, shard, .. } = plan;
         let parameters = <Me::Parameters as Parameters>::table();
         let place = |name: &String| parameters.iter().position(|info| info.name == name).expect("a plan was checked");
-        let base: Vec<f64> = (0..parameters.len()).map(|index| chosen.values.value(index)).collect();
+        let base = chosen.values.values();
         let swept: Vec<usize> = design.names.iter().map(place).collect();
         let all = parameters.iter().zip(&base).enumerate().filter(|(index, _)| !swept.contains(index));
         let all =

@@ -115,7 +115,7 @@ impl Batches {
         }
     }
 
-    /// The runs with the parameters `values` at a tolerance: CPU time, s, of all, and each one's poses at its end.
+    /// The runs with the parameters `values` at a tolerance: time, s, of all, and each one's poses at its end.
     ///
     /// # Errors
     /// What heyoka says.

@@ -251,11 +251,16 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         if T::SECOND.is_empty() {
             return h.abs() * first;
         }
-        let second = largest(&second);
-        let both = first * first + 0.01 * second * second;
-        // Both differences vanish exactly at a state of rest.
-        if both == 0.0 { 0.0 } else { h.abs() * first * first / root(both) }
+        both(h.abs(), first, largest(&second))
     }
+}
+
+/// The error of a method with two estimates, that of the higher order first, `scale` times theirs: the first one, the smaller the larger the second is
+/// beside it (`dop853.f`). Both vanish exactly at a state of rest.
+#[inline(always)]
+pub(crate) fn both(scale: f64, first: f64, second: f64) -> f64 {
+    let both = first * first + 0.01 * second * second;
+    if both == 0.0 { 0.0 } else { scale * first * first / root(both) }
 }
 
 impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
@@ -319,8 +324,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         let first = left(&|i| combine(T::ERROR, &self.k, i));
         if !T::SECOND.is_empty() {
             let second = left(&|i| combine(T::B, &self.k, i) - combine(T::SECOND, &self.k, i));
-            let both = first * first + 0.01 * second * second;
-            return Some(if both == 0.0 { 0.0 } else { first * first / root(both) });
+            return Some(both(1.0, first, second));
         }
         if T::LATE.is_empty() || first > 1.0 {
             return Some(first);

@@ -17,7 +17,7 @@ use super::lifted::{Lifted, weighted};
 use crate::model::capability::Reversed;
 use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;
-use crate::solve::integrator::{Arch, DormandPrince, Row, Scale, Tableau};
+use crate::solve::integrator::{Arch, DormandPrince, Row, Scale, Tableau, both};
 
 /// The stages of a step.
 const STAGES: usize = DormandPrince::END;
@@ -208,14 +208,7 @@ impl<'a, Mo, Re, Li, const N: usize, const M: usize> Back<'a, Mo, Re, Li, N, M> 
             first = first.max((combine(DormandPrince::ERROR, rates, i) / allowed).abs());
             second = second.max((other / allowed).abs());
         }
-        let both = first * first + 0.01 * second * second;
-        if !x.iter().all(|x| x.is_finite()) {
-            f64::NAN
-        } else if both == 0.0 {
-            0.0
-        } else {
-            h.abs() * first * first / both.sqrt()
-        }
+        if x.iter().all(|x| x.is_finite()) { both(h.abs(), first, second) } else { f64::NAN }
     }
 
     /// Replaces the weights of the state at the end of one part, whose stages are known, by those of the state at its start.

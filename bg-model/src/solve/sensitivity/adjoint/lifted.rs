@@ -2,6 +2,8 @@
 //!
 //! In: what makes a model of parameters with slopes. Out: derivatives of what is asked of it, a few directions at a time.
 
+use core::convert::Infallible;
+
 use nalgebra::SVector;
 
 use super::super::step::Sloped;
@@ -50,12 +52,11 @@ impl<Li> Lifted<Li> {
 
     /// Adds `factor` times the derivatives by each parameter of what has these slopes.
     pub fn add_by_parameters(&mut self, factor: f64, slopes: impl Fn(&Li) -> [f64; WIDTH]) {
-        for (by, system) in self.by.chunks_mut(WIDTH).zip(&self.sloped) {
-            by.iter_mut().zip(slopes(system)).for_each(|(by, slope)| *by += factor * slope);
-        }
+        let Ok(()) =
+            self.try_add_by_parameters(|system| Ok::<_, Infallible>(slopes(system).map(|slope| factor * slope)));
     }
 
-    /// The same where the slopes may not be had.
+    /// The same, once, where the slopes may not be had.
     ///
     /// # Errors
     /// That of the first ones that cannot.

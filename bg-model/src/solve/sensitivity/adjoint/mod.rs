@@ -111,8 +111,7 @@ pub fn gradient_within<Me: Mechanism>(
     let mut times: Vec<f64> = instants.iter().map(|&(t, ..)| t).collect();
     times.dedup();
     let request = Request { samples: simulation::Samples::At(times), ..request.clone() };
-    let parameters = model.parameters();
-    let values = (0..Me::Parameters::table().len()).map(|index| parameters.value(index)).collect();
+    let values = model.parameters().values();
     model.visit_lifted::<Gradient, Gradient, _>(Asked { request, objective, instants, directions, values, states })
 }
 
