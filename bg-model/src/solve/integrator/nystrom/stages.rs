@@ -111,11 +111,17 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
         self.evaluate(forces, second, from);
         self.reach::<END>(second, 1.0, from, end);
         let h = from.h;
+        let (start, reached) = (&from.x.data.0[0], &end.data.0[0]);
+        let part = |i: usize, sum: S| (h * sum / scale.allowed(i, start[i], reached[i])).abs();
         let mut errors = [h.alike(0.0); N];
-        for (i, error) in errors.iter_mut().enumerate() {
-            let sum =
-                if second.contains(&i) { h * self.combine(SECOND[ERROR], i) } else { self.combine(FIRST[ERROR], i) };
-            *error = (h * sum / scale.allowed(i, from.x.data.0[0][i], end.data.0[0][i])).abs();
+        for i in 0..second.start {
+            errors[i] = part(i, self.combine(FIRST[ERROR], i));
+        }
+        for i in second.clone() {
+            errors[i] = part(i, h * self.combine(SECOND[ERROR], i));
+        }
+        for i in second.end..N {
+            errors[i] = part(i, self.combine(FIRST[ERROR], i));
         }
         errors
     }
