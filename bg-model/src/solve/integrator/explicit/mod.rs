@@ -161,12 +161,12 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         stages: Range<usize>,
         completed: &mut impl Complete<N>,
     ) {
+        let mut x = start.x;
         for stage in stages {
-            let mut x = start.x;
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage if $stage < T::A.len() => self.add_stages::<$stage>(h, &mut x), )*
+                        $( $stage if $stage < T::A.len() => self.reach::<$stage>(start, h, &mut x), )*
                         _ => unreachable!("a tableau has fewer stages than there is room for"),
                     }
                 };
@@ -182,11 +182,12 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         }
     }
 
-    /// Adds to the state `x` at the start of the step what leads to the one of a stage.
+    /// Writes the state of a stage, without what completes it.
     #[inline(always)]
-    fn add_stages<const STAGE: usize>(&self, h: f64, x: &mut SVector<f64, N>) {
-        for (i, x) in x.data.0[0].iter_mut().enumerate() {
-            *x += h * combine(T::A[STAGE], &self.k, i);
+    fn reach<const STAGE: usize>(&self, start: &Point<N>, h: f64, x: &mut SVector<f64, N>) {
+        let (start, x) = (&start.x.data.0[0], &mut x.data.0[0]);
+        for i in 0..N {
+            x[i] = start[i] + h * combine(T::A[STAGE], &self.k, i);
         }
     }
 
