@@ -25,7 +25,7 @@ pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
 
 use super::carry::Carry;
-use super::dense::{FROM_ENDS, Polynomial};
+use super::dense::{FROM_ENDS, Polynomial, write_sum};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
@@ -355,7 +355,9 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         self.k[T::END] = end.rate;
         self.evaluate::<false>(flow, start, h, T::END + 1..T::A.len(), &mut ());
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
-        self.polynomial.set(start, h, end, |m, i, _| h * combine(row(m), &self.k, i));
+        self.polynomial.set(start, h, end, |m, _, out| {
+            write_sum(h, row(m).iter().map(|&(stage, weight)| (weight, &self.k[stage])), out);
+        });
     }
 
     fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
