@@ -28,8 +28,10 @@ pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
     /// The state at the start, until the run has begun.
     begin: Option<Sloped<N>>,
     error: Option<SensitivityError>,
+    /// The outputs that are asked for.
+    outputs: Vec<usize>,
     /// For each direction and output the derivatives at the samples.
-    pub outputs: Vec<Vec<Vec<f64>>>,
+    pub slopes: Vec<Vec<Vec<f64>>>,
 }
 
 impl<Li, const N: usize, const G: usize, const M: usize> Follower<Li, N, G, M>
@@ -40,7 +42,7 @@ where
     pub fn new(
         [system, plain]: [Li; 2],
         steps: Vec<Box<dyn Steps<N, G>>>,
-        directions: &[Direction],
+        (directions, outputs): (&[Direction], &[usize]),
         t0: f64,
         x: Sloped<N>,
     ) -> Self {
@@ -62,7 +64,8 @@ where
             t: t0,
             begin: Some(begin),
             error: None,
-            outputs: vec![vec![Vec::new(); M]; directions.len()],
+            outputs: outputs.to_vec(),
+            slopes: vec![vec![Vec::new(); M]; directions.len()],
         }
     }
 
@@ -116,8 +119,9 @@ where
         }
         let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
         self.system.outputs(Gradient::from_f64(t), &reached, negative, &mut outputs);
-        for (l, columns) in self.outputs.iter_mut().enumerate() {
-            columns.iter_mut().zip(&outputs).for_each(|(column, output)| column.push(output.slopes()[l]));
+        for &output in &self.outputs {
+            let slopes = outputs[output].slopes();
+            self.slopes.iter_mut().zip(slopes).for_each(|(columns, slope)| columns[output].push(slope));
         }
     }
 

@@ -41,7 +41,6 @@ use nalgebra::SVector;
 use thiserror::Error;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::description::Description;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::Gradient;
@@ -101,7 +100,7 @@ pub struct Sensitivities {
 }
 
 impl Sensitivities {
-    /// The derivative of an output along a direction at each sample, in the output's unit per the direction's.
+    /// The derivative of an output along a direction at each sample, if it was asked for, in the output's unit per the direction's.
     ///
     /// # Panics
     /// There is no such direction or output.
@@ -171,8 +170,26 @@ pub fn sensitivities<Me: Mechanism>(
     request: &Request,
     directions: &[Direction],
 ) -> Result<Sensitivities, SensitivityError> {
+    let all: Vec<usize> = (0..Me::describe().outputs.len()).collect();
+    sensitivities_of(model, request, directions, &all)
+}
+
+/// As [`sensitivities`], with the derivatives of these outputs alone, by their places in the model's description: of the others
+/// [`Sensitivities::of`] is empty.
+///
+/// # Errors
+/// [`SensitivityError`].
+///
+/// # Panics
+/// There is no such output.
+pub fn sensitivities_of<Me: Mechanism>(
+    model: &Me,
+    request: &Request,
+    directions: &[Direction],
+    outputs: &[usize],
+) -> Result<Sensitivities, SensitivityError> {
     let values = model.parameters().values();
-    let following = Following { request, directions, values };
+    let following = Following { request, directions, outputs, values };
     // What has no more directions than fit into a vector of AVX2 gains nothing by wider ones.
     #[cfg(target_arch = "x86_64")]
     if directions.len() > Avx2::LANES && Avx512::is_at_hand() {
@@ -187,6 +204,7 @@ pub fn sensitivities<Me: Mechanism>(
 struct Following<'a> {
     request: &'a Request,
     directions: &'a [Direction],
+    outputs: &'a [usize],
     values: Vec<f64>,
 }
 
@@ -225,7 +243,6 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         Li: Model<Gradient, N, G, M> + 'static,
         Fa: Model<GradientIn<V>, N, G, M> + 'static,
     {
-        let Description { outputs, .. } = model.description();
         let start = model.start()?;
         let settings = self.request.settings(0.0);
         let scale = Scale::<N>::from(&settings.tolerances);
@@ -240,7 +257,7 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
             let steps = chunk.chunks(V::LANES).enumerate().map(steps).collect::<Result<_, _>>()?;
             let (system, plain) = (system(chunk)?, system(&[])?);
             let x = system.start()?;
-            Ok(Follower::new([system, plain], steps, chunk, 0.0, x))
+            Ok(Follower::new([system, plain], steps, (chunk, self.outputs), 0.0, x))
         };
         let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);
@@ -249,8 +266,7 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         followers.iter_mut().try_for_each(Follower::check)?;
         let trajectory = outcome?;
         let states = followers.iter().flat_map(Follower::states).collect();
-        let slopes: Vec<Vec<Vec<f64>>> = followers.into_iter().flat_map(|follower| follower.outputs).collect();
-        debug_assert!(slopes.iter().all(|columns| columns.len() == outputs.len()));
+        let slopes = followers.into_iter().flat_map(|follower| follower.slopes).collect();
         Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
     }
 }
