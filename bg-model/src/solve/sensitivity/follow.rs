@@ -69,6 +69,19 @@ where
         }
     }
 
+    /// Begins at the first state of the run, which is to be that of the start. Gives whether it has begun.
+    fn has_begun(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) -> bool {
+        let Some(mut start) = self.begin.take() else { return true };
+        if start.iter().zip(x).any(|(start, x)| start.value != *x) {
+            self.error = Some(SensitivityError::ImpactAtStart);
+            return false;
+        }
+        self.system.project(Gradient::from_f64(t), negative, &mut start);
+        set_values(&mut start, x);
+        self.steps.iter_mut().for_each(|steps| steps.set(&start));
+        true
+    }
+
     /// The derivatives of the states where the run has come to, for each direction.
     pub fn states(&self) -> Vec<Vec<f64>> {
         let now = self.now(&SVector::zeros());
@@ -100,14 +113,8 @@ where
         if self.error.is_some() {
             return;
         }
-        if let Some(mut start) = self.begin.take() {
-            if start.iter().zip(x).any(|(start, x)| start.value != *x) {
-                self.error = Some(SensitivityError::ImpactAtStart);
-                return;
-            }
-            self.system.project(Gradient::from_f64(t), negative, &mut start);
-            set_values(&mut start, x);
-            self.steps.iter_mut().for_each(|steps| steps.set(&start));
+        if !self.has_begun(t, x, negative) {
+            return;
         }
         let mut reached = self.now(x);
         if t != self.t {
@@ -127,6 +134,9 @@ where
 
     fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {
         if self.error.is_some() {
+            return;
+        }
+        if !self.has_begun(start.t, &start.x, negative) {
             return;
         }
         (self.start, self.negative, self.t) = (start.t, *negative, end.t);
