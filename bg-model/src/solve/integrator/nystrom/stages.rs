@@ -114,15 +114,9 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
         let (start, reached) = (&from.x.data.0[0], &end.data.0[0]);
         let part = |i: usize, sum: S| (h * sum / scale.allowed(i, start[i], reached[i])).abs();
         let mut errors = [h.alike(0.0); N];
-        for i in 0..second.start {
-            errors[i] = part(i, self.combine(FIRST[ERROR], i));
-        }
-        for i in second.clone() {
-            errors[i] = part(i, h * self.combine(SECOND[ERROR], i));
-        }
-        for i in second.end..N {
-            errors[i] = part(i, self.combine(FIRST[ERROR], i));
-        }
+        let of_first = (0..second.start).chain(second.end..N);
+        of_first.for_each(|i| errors[i] = part(i, self.combine(FIRST[ERROR], i)));
+        second.clone().for_each(|i| errors[i] = part(i, h * self.combine(SECOND[ERROR], i)));
         errors
     }
 }
