@@ -182,25 +182,3 @@ impl<const N: usize> Nystrom<N> {
         self.ring.reach(h)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn lengths<const N: usize>() {
-        let of: [f64; N] = std::array::from_fn(|i| (0.7 + i as f64).sqrt() - 2.3);
-        assert_eq!(length(&of).to_bits(), SVector::from(of).norm().to_bits(), "{N}");
-    }
-
-    #[test]
-    fn a_length_is_that_of_nalgebra() {
-        lengths::<1>();
-        lengths::<2>();
-        lengths::<3>();
-        lengths::<4>();
-        lengths::<5>();
-        lengths::<8>();
-        lengths::<29>();
-        lengths::<81>();
-    }
-}

@@ -170,3 +170,21 @@ impl<const N: usize> Ring<N> {
         power(h * self.frequency / tableau::REACH, tableau::ERROR_ORDER as u32)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_that_of_nalgebra<const N: usize>() {
+        let of: [f64; N] = core::array::from_fn(|i| root(0.7 + i as f64) - 2.3);
+        let expected = SVector::from(of).norm();
+        assert!((length(&of) - expected).abs() <= 4.0 * f64::EPSILON * expected, "{N}");
+    }
+
+    #[test]
+    fn lengths() {
+        is_that_of_nalgebra::<1>();
+        is_that_of_nalgebra::<8>();
+        is_that_of_nalgebra::<29>();
+    }
+}
