@@ -60,19 +60,16 @@ impl Emission<'_> {
     /// Inputs that the routine uses, and their slopes, at time `t`.
     pub(super) fn input_bindings(&self, routine: &Routine) -> TokenStream {
         let input = |index: u32| identifier(&self.model.equations.inputs[index as usize].name.text);
-        bindings(&[routine], &|symbol| {
-            let name = self.symbol_name(symbol);
-            match symbol {
-                Symbol::Input(index) => {
-                    let field = input(index);
-                    Some(quote!(let #name = self.inputs.#field.value(t);))
-                }
-                Symbol::Slope(index) => {
-                    let field = input(index);
-                    Some(quote!(let #name = self.inputs.#field.slope(t);))
-                }
-                _ => None,
+        bindings(&[routine], &|symbol| match symbol {
+            Symbol::Input(index) => {
+                let (name, field) = (self.symbol_name(symbol), input(index));
+                Some(quote!(let #name = self.inputs.#field.value(t);))
             }
+            Symbol::Slope(index) => {
+                let (name, field) = (self.symbol_name(symbol), input(index));
+                Some(quote!(let #name = self.inputs.#field.slope(t);))
+            }
+            _ => None,
         })
     }
 
