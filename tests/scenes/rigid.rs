@@ -158,11 +158,12 @@ fn loose_tolerances_find_the_branches_of_the_rigid_hacksaw() {
     const EVENTS: u64 = 36;
     let model = Rigid::new(RigidParameters::default()).unwrap();
     for method in [Integrator::Taylor, Integrator::Dop853, Integrator::Cfmr7, Integrator::Nystrom] {
-        for rtol in [1e-3, 3e-4] {
-            let request = Request { method, t_end: 2.0, rtol, ..Request::default() };
+        // The tolerances may be those of parts of states, or of states.
+        for (rtol, atol) in [(1e-3, None), (3e-4, None), (1e-12, Some(1e-3))] {
+            let request = Request { method, t_end: 2.0, rtol, atol, ..Request::default() };
             let run = Simulation::of(&model, request).run();
-            let run = run.unwrap_or_else(|failure| panic!("{method:?} at {rtol}: {failure}"));
-            assert_eq!(run.statistics.events, EVENTS, "{method:?} at {rtol}");
+            let run = run.unwrap_or_else(|failure| panic!("{method:?} at {rtol}, {atol:?}: {failure}"));
+            assert_eq!(run.statistics.events, EVENTS, "{method:?} at {rtol}, {atol:?}");
         }
     }
 }

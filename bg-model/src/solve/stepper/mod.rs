@@ -13,7 +13,8 @@ use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_
 use crate::solve::statistics::Statistics;
 use frozen::Frozen;
 
-/// The part of a state that a projection may move it by for the next one, whose change is the square, to be lost in rounding.
+/// How far a projection may move a state, in its unit or in parts of it, for the next one, whose change is the square, to be lost in
+/// rounding.
 const SETTLED: f64 = 1e-8;
 /// What rounding may leave of a projection, beside what another rounding of the same state changes.
 const ROUNDING: f64 = 10.0;
@@ -95,7 +96,8 @@ where
     /// is known by: another projection would move a state at an event to either side of it.
     pub fn settle(&mut self) {
         const MOST: usize = 4;
-        let _ = (0..MOST).find(|_| self.project() * self.scale.relative <= SETTLED);
+        let allowed = self.scale.relative.max(self.scale.absolute.amax());
+        let _ = (0..MOST).find(|_| self.project() * allowed <= SETTLED);
     }
 
     /// The same with any state, at time `t` (s).
