@@ -4,7 +4,8 @@
 //! the sum of squares falls no further, with residuals and derivatives there.
 //! Method: steps (J'J + l D) d = -J'r with D the diagonal of J'J (J. J. More, The Levenberg-Marquardt algorithm, Lecture Notes in
 //! Mathematics 630 (1978)), solved by singular values of [J; sqrt(l D)]; a step is cut at the bounds, and a variable at a bound
-//! towards which the sum falls stays there. A step is tried without derivatives, which are taken where it has helped. Ours, since the crate `levenberg-marquardt` has no bounds.
+//! towards which the sum falls stays there. A step is tried without derivatives, which are taken where it has helped. Ours, since the
+//! crate `levenberg-marquardt` has no bounds.
 
 use bg_model::nalgebra::{DMatrix, DVector};
 
@@ -36,9 +37,9 @@ const MORE: f64 = 10.0;
 const SMALLEST: f64 = 1e-14;
 const LARGEST: f64 = 1e12;
 /// A step below this part of a variable's size is none, nor one by which the sum of squares is to fall by less than this part of one
-/// residual's square: a ten thousandth of a standard deviation.
+/// residual's square: a hundred thousandth of a standard deviation.
 const STEP: f64 = 1e-9;
-const FALL: f64 = 1e-8;
+const FALL: f64 = 1e-10;
 /// A step that differs by less than this part of it from one that did not help is not tried.
 const DIFFERENT: f64 = 0.05;
 
