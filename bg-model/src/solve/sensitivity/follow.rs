@@ -14,9 +14,9 @@ use crate::solve::simulation::{Observer, Switching};
 
 /// Some of the directions with the system in numbers that have slopes along them.
 pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
-    system: Li,
+    system: Box<Li>,
     /// The same with slopes of nothing.
-    plain: Li,
+    plain: Box<Li>,
     directions: Vec<Direction>,
     /// The slopes where the run has come to: some of the directions each.
     steps: Vec<Box<dyn Steps<N, G>>>,
@@ -40,7 +40,7 @@ where
 {
     /// From the start of a run at `t0` (s) and the state `x`; `steps` are those of the same system.
     pub fn new(
-        [system, plain]: [Li; 2],
+        [system, plain]: [Box<Li>; 2],
         steps: Vec<Box<dyn Steps<N, G>>>,
         (directions, outputs): (&[Direction], &[usize]),
         t0: f64,
@@ -149,7 +149,7 @@ where
         if self.error.is_some() {
             return;
         }
-        match jumped(&self.system, &self.plain, &self.now(&switching.before.x), switching) {
+        match jumped(&*self.system, &*self.plain, &self.now(&switching.before.x), switching) {
             Some(after) => self.steps.iter_mut().for_each(|steps| steps.set(&after)),
             None => {
                 let switch = switching.reached.iter().position(|&reached| reached).unwrap_or_default();

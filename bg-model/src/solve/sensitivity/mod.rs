@@ -248,10 +248,10 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         let scale = Scale::<N>::from(&settings.tolerances);
         let is_estimated = self.request.method != Integrator::Dop853;
         let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
-            let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions));
+            let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
             let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
             let steps = |(k, some): (usize, &[Direction])| -> Result<Box<dyn Steps<N, G>>, ParameterError> {
-                let system = in_numbers(&system(some)?, front);
+                let system = Box::new(in_numbers(&*system(some)?, front));
                 Ok(Box::new(Stepper::new(system, k * V::LANES, is_estimated, (scale.clone(), sizes))))
             };
             let steps = chunk.chunks(V::LANES).enumerate().map(steps).collect::<Result<_, _>>()?;

@@ -62,7 +62,7 @@ pub(super) trait Steps<const N: usize, const G: usize> {
 /// The method with its work space.
 #[derive(Debug)]
 pub(super) struct Stepper<V, Sys, const N: usize> {
-    system: Sys,
+    system: Box<Sys>,
     /// The place of its first slope.
     first: usize,
     /// The state at the start of the last step, at its end, and at a sample in it.
@@ -96,7 +96,7 @@ struct Stages<V, const N: usize> {
 impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
     /// Steps of this system, whose slopes are those from `first` on. Errors, where they are estimated, are measured with
     /// the scale of the states and the sizes of all directions.
-    pub fn new(system: Sys, first: usize, is_estimated: bool, (scale, sizes): (Scale<N>, [f64; WIDTH])) -> Self {
+    pub fn new(system: Box<Sys>, first: usize, is_estimated: bool, (scale, sizes): (Scale<N>, [f64; WIDTH])) -> Self {
         let nothing: Box<SlopedIn<V, N>> = Box::new(SVector::repeat(GradientIn::from_f64(0.0)));
         let k = Box::new(Stages { values: [[0.0; N]; STAGES], slopes: [[V::filled(0.0); N]; STAGES] });
         let sizes = part(Gradient::new(0.0, sizes), first).slopes;
@@ -134,6 +134,7 @@ where
 
     fn pass(&mut self, negative: &[bool; G], start: &Point<N>, end: &Point<N>) -> bool {
         let Self { system, from, now, work, .. } = self;
+        let system = &**system;
         core::mem::swap(from, now);
         set_values(from, &start.x);
         let is_exact = V::vectorized(Crossing { work, system, negative, span: [start.t, end.t], x: from, end: now });
@@ -143,6 +144,7 @@ where
 
     fn look(&mut self, negative: &[bool; G], from: f64, to: f64, x: &mut Sloped<N>) -> bool {
         let Self { system, first, from: start, between, work, .. } = self;
+        let system = &**system;
         let crossing = Crossing { work, system, negative, span: [from, to], x: start, end: between };
         let is_exact = V::vectorized(crossing);
         write(between, *first, x);
