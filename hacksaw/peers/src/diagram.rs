@@ -6,8 +6,10 @@
 use std::ops::Range;
 
 use plotters::coord::Shift;
+use plotters::element::{Drawable, PointCollection};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters_backend::{BackendCoord, DrawingErrorKind};
 
 use crate::measure::Series;
 use crate::solvers::Source;
@@ -134,16 +136,57 @@ fn key(area: &Area, lines: &[Drawn]) -> Result<(), String> {
     Ok(())
 }
 
-/// A mark: a disc, a triangle, a cross, a ring, a small disc, a large ring, in that order.
+/// A mark: a disc, a triangle, a cross, a ring, a small disc, a large ring, a square, an open square, a diamond, in that order.
 fn mark<'a, C: Clone + 'static>(line: &Drawn, at: C) -> DynElement<'static, SVGBackend<'a>, C> {
-    let (size, thin) = (5 * UNITS, line.colour.stroke_width(13));
+    let (size, thin, filled) = (5 * UNITS, line.colour.stroke_width(13), line.colour.filled());
+    let square = vec![(-size, -size), (size, -size), (size, size), (-size, size)];
+    let diamond = vec![(0, -3 * size / 2), (3 * size / 2, 0), (0, 3 * size / 2), (-3 * size / 2, 0)];
     match line.mark {
-        0 => Circle::new(at, size, line.colour.filled()).into_dyn(),
-        1 => TriangleMarker::new(at, size, line.colour.filled()).into_dyn(),
+        0 => Circle::new(at, size, filled).into_dyn(),
+        1 => TriangleMarker::new(at, size, filled).into_dyn(),
         2 => Cross::new(at, size, thin).into_dyn(),
         3 => Circle::new(at, size, thin).into_dyn(),
-        4 => Circle::new(at, size / 2, line.colour.filled()).into_dyn(),
-        _ => Circle::new(at, 3 * size / 2, thin).into_dyn(),
+        4 => Circle::new(at, size / 2, filled).into_dyn(),
+        5 => Circle::new(at, 3 * size / 2, thin).into_dyn(),
+        6 => Shape { at, corners: square, style: filled }.into_dyn(),
+        7 => Shape { at, corners: square, style: thin }.into_dyn(),
+        _ => Shape { at, corners: diamond, style: filled }.into_dyn(),
+    }
+}
+
+/// A polygon about a point, its corners in units of drawing from there.
+struct Shape<C> {
+    at: C,
+    corners: Vec<BackendCoord>,
+    style: ShapeStyle,
+}
+
+impl<'a, C> PointCollection<'a, C> for &'a Shape<C> {
+    type Point = &'a C;
+    type IntoIter = std::iter::Once<&'a C>;
+
+    fn point_iter(self) -> Self::IntoIter {
+        std::iter::once(&self.at)
+    }
+}
+
+impl<C, B: DrawingBackend> Drawable<B> for Shape<C> {
+    fn draw<I: Iterator<Item = BackendCoord>>(
+        &self,
+        points: I,
+        backend: &mut B,
+        _: (u32, u32),
+    ) -> Result<(), DrawingErrorKind<B::ErrorType>> {
+        for (x, y) in points {
+            let corners = self.corners.iter().map(|corner| (x + corner.0, y + corner.1));
+            if self.style.filled {
+                backend.fill_polygon(corners, &self.style)?;
+            } else {
+                let first = self.corners[0];
+                backend.draw_path(corners.chain([(x + first.0, y + first.1)]), &self.style)?;
+            }
+        }
+        Ok(())
     }
 }
 
