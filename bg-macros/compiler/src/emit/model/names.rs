@@ -2,7 +2,7 @@
 //!
 //! In: symbols of a program. Out: identifiers, and the `let`s that read parameters, states and inputs under them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -11,7 +11,7 @@ use super::super::items::identifier;
 use super::super::routine::Names;
 use super::Emission;
 use crate::expr::Symbol;
-use crate::program::{Operand, Routine};
+use crate::program::{Assignment, Operand, Operation, Routine};
 use crate::source::names;
 use crate::system::equations::StateEquations;
 
@@ -23,6 +23,11 @@ pub(super) fn bindings(routines: &[&Routine], binding: &dyn Fn(Symbol) -> Option
 /// Whether the routine reads what iterations have found.
 pub(super) fn reads_found(routine: &Routine) -> bool {
     symbols(&[routine]).iter().any(|symbol| matches!(symbol, Symbol::Found(_)))
+}
+
+/// `let found`, where the routine reads what iterations find.
+pub(super) fn found(routine: &Routine) -> Option<TokenStream> {
+    reads_found(routine).then(|| quote!(let found = self.found(t, x, negative);))
 }
 
 /// The symbols that some routines use.
@@ -52,9 +57,36 @@ impl Emission<'_> {
 
     /// Inputs, their slopes and states that the routine uses, and what iterations find for it.
     pub(super) fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
-        let found = reads_found(routine).then(|| quote!(let found = self.found(t, x, negative);));
+        let found = found(routine);
         let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
         quote! { #found #inputs #states }
+    }
+
+    /// What the routine reads beside states and constants, each as it is declared as an argument and as it is handed over: time, switches,
+    /// reactions, what iterations find, rates, weights.
+    pub(super) fn arguments(&self, routine: &Routine) -> BTreeMap<&'static str, [TokenStream; 2]> {
+        let g = &self.shape.g;
+        let of_symbols = symbols(&[routine]).into_iter().filter_map(|symbol| {
+            let (name, is_array) = match symbol {
+                Symbol::Time | Symbol::Input(_) | Symbol::Slope(_) => ("t", false),
+                Symbol::Multiplier(_) => ("reactions", true),
+                Symbol::Found(_) => ("found", true),
+                Symbol::Rate(_) => ("r", true),
+                Symbol::Weight(_) => ("weights", true),
+                _ => return None,
+            };
+            let ident = format_ident!("{name}");
+            let tokens = if is_array {
+                [quote!(#ident: &[S]), quote!(&#ident[..])]
+            } else {
+                [quote!(#ident: S), quote!(#ident)]
+            };
+            Some((name, tokens))
+        });
+        let is_choice = |of: &Assignment| matches!(of.operation, Operation::Select { .. });
+        let chooses = routine.assignments.iter().any(is_choice);
+        let switches = chooses.then(|| ("negative", [quote!(negative: &[S::Switch; #g]), quote!(negative)]));
+        of_symbols.chain(switches).collect()
     }
 
     /// Inputs that the routine uses, and their slopes, at time `t`.
