@@ -9,6 +9,8 @@
 //! where all lower ones are right and that one is 0 (Brent and Kung 1978, Fast algorithms for manipulating formal power series),
 //! so each order is gone through twice: for that coefficient, then with it.
 
+use std::slice::Chunks;
+
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -22,13 +24,17 @@ use crate::program::{Assignment, Operand, Operation, Routine};
 const TOGETHER: usize = 4;
 
 /// What a series reads, beside constants.
-pub(super) struct Reads {
+pub(super) struct Reads<'a> {
     /// `let`s of the inputs that the rates read, from the time `t`.
     pub values: TokenStream,
     /// `let`s of the states' coefficients, from `x`.
     pub states: Option<TokenStream>,
     /// How many unknowns iterations find; they are the last results of the routine.
     pub found: usize,
+    /// The numbers of states and of switches.
+    pub shape: [&'a Literal; 2],
+    /// `let`s of what some assignments read: inputs from the time `at`, the states' coefficients from `x`.
+    pub by: &'a dyn Fn(&[Assignment]) -> TokenStream,
 }
 
 /// The code of a series.
@@ -39,6 +45,8 @@ pub(super) struct Expansion {
     pub operations: TokenStream,
     /// The body of `expand`.
     pub body: TokenStream,
+    /// The functions of the model that the body of a long one calls.
+    pub parts: TokenStream,
 }
 
 /// The code of a series, from the routine of the rates.
@@ -49,16 +57,9 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
     let length = if routine.is_long() { BLOCK } else { usize::MAX };
     let (fixed, moving) = (fixed.chunks(length), moving.chunks(length));
     let blocks = routine.is_long().then(|| Blocks::of(fixed.clone().chain(moving.clone()), &routine.results));
-    let block = |group: &[Assignment], definitions: TokenStream| match &blocks {
-        Some(blocks) => {
-            let block = blocks.block(group, &definitions, names);
-            quote!({ #block })
-        }
-        None => definitions,
-    };
     let written = |is_start| {
         let mut writer = Writer::new(names, &changes, is_start, moving.clone().flatten());
-        let groups: TokenStream = moving.clone().map(|group| block(group, writer.group(group))).collect();
+        let groups: Vec<_> = moving.clone().map(|group| writer.group(group)).collect();
         let rates = routine.results.iter().map(|result| match &blocks {
             Some(blocks) if is_start || writer.is_changing(result) => blocks.result(result, names),
             _ => writer.value(result),
@@ -68,7 +69,21 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
     };
     let ((start, start_rates, counted), (order, order_rates, _)) = (written(true), written(false));
     let (products, places) = (counted.products, (2 * counted.products + counted.others).max(1));
-    let Reads { values, states, found } = reads;
+    let mut parts = TokenStream::new();
+    let mut statements = |pass: Pass, groups: Chunks<Assignment>, definitions: Vec<TokenStream>| match &blocks {
+        Some(blocks) => {
+            let (functions, calls) = pass.parts(groups, &definitions, blocks, names, reads);
+            parts.extend(functions);
+            calls
+        }
+        None => definitions.into_iter().collect(),
+    };
+    // What does not change with time, and yet is no constant of the model: it depends on inputs.
+    let definitions = fixed.clone().map(|group| routine::assignments(group, names)).collect();
+    let fixed = statements(Pass::Fixed, fixed, definitions);
+    let start = statements(Pass::Start { places }, moving.clone(), start);
+    let order = statements(Pass::Order { places, products }, moving, order);
+    let Reads { values, states, found, .. } = reads;
     let (start_rates, _) = start_rates.split_at(start_rates.len() - found);
     let (order_rates, coefficients) = order_rates.split_at(order_rates.len() - found);
     let order = if *found == 0 {
@@ -81,15 +96,14 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
             #order
         }
     };
-    let array = blocks.as_ref().map(Blocks::array);
-    // What does not change with time, and yet is no constant of the model: it depends on inputs.
-    let fixed: TokenStream = fixed.map(|group| block(group, routine::assignments(group, names))).collect();
+    let (array, at) = (blocks.as_ref().map(Blocks::array), blocks.as_ref().map(|_| quote!(let at = t;)));
     let body = quote! {
         use ::bg_model::__private::{load, store};
         let c = &self.constants;
         let table = rows.as_chunks_mut::<#places>().0;
         #values
         #array
+        #at
         #fixed
         {
             let k = 0;
@@ -101,7 +115,7 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
         }
         for k in 1..series.len() - 1 {
             let t = if k == 1 { h } else { S::from_f64(0.0) };
-            let inner = ::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
+            let inner = &::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
             let rows = &mut table[..=k];
             let [x] = &series[k].data.0;
             #states
@@ -111,7 +125,77 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
         }
     };
     let operations = operations(routine, &counted, *found > 0);
-    Expansion { width: places, operations, body }
+    Expansion { width: places, operations, body, parts }
+}
+
+/// What is gone through once or for each order.
+#[derive(Clone, Copy)]
+enum Pass {
+    /// What does not change.
+    Fixed,
+    /// The values at the start.
+    Start { places: usize },
+    /// The coefficients of an order.
+    Order { places: usize, products: usize },
+}
+
+impl Pass {
+    /// The functions of these groups, and their calls in the body of `expand`.
+    fn parts(
+        self,
+        groups: Chunks<Assignment>,
+        definitions: &[TokenStream],
+        blocks: &Blocks,
+        names: &Names,
+        reads: &Reads,
+    ) -> (TokenStream, TokenStream) {
+        let (pass, arguments) = self.arguments(reads);
+        let (declared, handed): (Vec<_>, Vec<_>) =
+            arguments.into_iter().map(|[declared, handed]| (declared, handed)).unzip();
+        let array = blocks.array_type();
+        let part = |(index, (group, definitions))| {
+            let (name, read, block) = (
+                format_ident!("series_{pass}_part_{index}"),
+                (reads.by)(group),
+                blocks.block(group, definitions, names),
+            );
+            let function = quote! {
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                fn #name(&self, #(#declared,)* v: &mut #array) {
+                    use ::bg_model::__private::{load, store};
+                    let c = &self.constants;
+                    #read
+                    #block
+                }
+            };
+            (function, quote!(self.#name(#(#handed,)* v);))
+        };
+        groups.zip(definitions).enumerate().map(part).unzip()
+    }
+
+    /// The name in those of its parts, and what these are handed: declared, and in the body of `expand`.
+    fn arguments(self, reads: &Reads) -> (&'static str, Vec<[TokenStream; 2]>) {
+        let [n, g] = reads.shape;
+        let mut arguments = vec![[quote!(at: S), quote!(at)]];
+        if let Self::Start { places } | Self::Order { places, .. } = self {
+            arguments.extend([
+                [quote!(t: S), quote!(t)],
+                [quote!(x: &[S; #n]), quote!(x)],
+                [quote!(negative: &[S::Switch; #g]), quote!(negative)],
+                [quote!(k: usize), quote!(k)],
+                [quote!(rows: &mut [[S; #places]]), quote!(rows)],
+            ]);
+            arguments.extend((reads.found > 0).then(|| [quote!(found: &[S]), quote!(&found)]));
+        }
+        match self {
+            Self::Fixed => ("fixed", arguments),
+            Self::Start { .. } => ("start", arguments),
+            Self::Order { products, .. } => {
+                arguments.push([quote!(inner: &[S; #products]), quote!(inner)]);
+                ("order", arguments)
+            }
+        }
+    }
 }
 
 /// What an order costs beside a rate; where iterations find something, it is gone through twice.
@@ -242,7 +326,7 @@ impl<'w, 'n> Writer<'w, 'n> {
             let [inner, lefts, rights] = ["i", "l", "r"].map(named);
             let [at, at_right] = [first, self.products + first].map(Literal::usize_unsuffixed);
             quote! {
-                let #inner = load(&inner, #at);
+                let #inner = load(inner, #at);
                 let #lefts = load(&rows[0], #at);
                 let #rights = load(&rows[0], #at_right);
             }

@@ -58,7 +58,7 @@ impl Emission<'_> {
     /// Inputs, their slopes and states that the routine uses, and what iterations find for it.
     pub(super) fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
         let found = found(routine);
-        let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
+        let (inputs, states) = (self.input_bindings(routine, "t"), self.state_bindings(routine));
         quote! { #found #inputs #states }
     }
 
@@ -89,19 +89,20 @@ impl Emission<'_> {
         of_symbols.chain(switches).collect()
     }
 
-    /// Inputs that the routine uses, and their slopes, at time `t`.
-    pub(super) fn input_bindings(&self, routine: &Routine) -> TokenStream {
+    /// Inputs that the routine uses, and their slopes, at the time of this name.
+    pub(super) fn input_bindings(&self, routine: &Routine, time: &str) -> TokenStream {
+        let time = format_ident!("{time}");
         let input = |index: u32| identifier(&self.model.equations.inputs[index as usize].name.text);
         bindings(&[routine], &|symbol| {
             let name = self.symbol_name(symbol);
             match symbol {
                 Symbol::Input(index) => {
                     let field = input(index);
-                    Some(quote!(let #name = self.inputs.#field.value(t);))
+                    Some(quote!(let #name = self.inputs.#field.value(#time);))
                 }
                 Symbol::Slope(index) => {
                     let field = input(index);
-                    Some(quote!(let #name = self.inputs.#field.slope(t);))
+                    Some(quote!(let #name = self.inputs.#field.slope(#time);))
                 }
                 _ => None,
             }
@@ -165,7 +166,7 @@ fn entry(array: &str, index: u32) -> TokenStream {
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
-    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner load store reactions kept found weights by_state by_constants \
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner at load store reactions kept found weights by_state by_constants \
         DESCRIPTION Some None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {

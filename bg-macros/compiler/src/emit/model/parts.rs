@@ -46,7 +46,7 @@ impl Emission<'_> {
         let functions = groups.enumerate().map(|(index, group)| {
             let name = name(routine, index);
             let part = alone(routine, group, &[]);
-            let (inputs, states) = (self.input_bindings(&part), self.state_bindings(&part));
+            let (inputs, states) = (self.input_bindings(&part, "t"), self.state_bindings(&part));
             let block = self.with_names(|names| blocks.block(group, &assignments(group, names), names));
             quote! {
                 #[inline(never)]
@@ -67,7 +67,7 @@ impl Emission<'_> {
         let array = blocks.array();
         let handed: Vec<_> = self.arguments(routine).into_values().map(|[_, handed]| handed).collect();
         let (found, read) = (names::found(routine), alone(routine, &[], &routine.results));
-        let (inputs, states) = (self.input_bindings(&read), self.state_bindings(&read));
+        let (inputs, states) = (self.input_bindings(&read, "t"), self.state_bindings(&read));
         let calls = (0..groups.len()).map(|index| {
             let name = name(routine, index);
             quote!(self.#name(x, #(#handed,)* v);)
@@ -91,6 +91,6 @@ fn blocks(routine: &Routine) -> (Chunks<'_, Assignment>, Blocks) {
 }
 
 /// The routine with these assignments and results only.
-fn alone(routine: &Routine, assignments: &[Assignment], results: &[Operand]) -> Routine {
+pub(super) fn alone(routine: &Routine, assignments: &[Assignment], results: &[Operand]) -> Routine {
     Routine { assignments: assignments.to_vec(), results: results.to_vec(), ..routine.clone() }
 }
