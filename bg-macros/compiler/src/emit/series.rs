@@ -19,10 +19,6 @@ use super::routine::{self, Names};
 use crate::expr::{Function, Symbol};
 use crate::program::{Assignment, Operand, Operation, Routine};
 
-/// Products whose places are read and written together. rustc checks this faster than each place for itself. More of them cost
-/// time in a step: in the rigid hacksaw 3 % with 4, 8 % with 8, 13 % with all.
-const TOGETHER: usize = 4;
-
 /// What a series reads, beside constants.
 pub(super) struct Reads<'a> {
     /// `let`s of the inputs that the rates read, from the time `t`.
@@ -98,7 +94,7 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
     };
     let (array, at) = (blocks.as_ref().map(Blocks::array), blocks.as_ref().map(|_| quote!(let at = t;)));
     let body = quote! {
-        use ::bg_model::__private::{load, store};
+        use ::bg_model::series::{first_product, next_product};
         let c = &self.constants;
         let table = rows.as_chunks_mut::<#places>().0;
         #values
@@ -162,7 +158,7 @@ impl Pass {
             let function = quote! {
                 #[cfg_attr(not(debug_assertions), inline(always))]
                 fn #name(&self, #(#declared,)* v: &mut #array) {
-                    use ::bg_model::__private::{load, store};
+                    use ::bg_model::series::{first_product, next_product};
                     let c = &self.constants;
                     #read
                     #block
@@ -256,8 +252,6 @@ struct Writer<'w, 'n> {
     product: usize,
     /// The places behind those of the products.
     others: usize,
-    /// The factors of the products of a group.
-    factors: Vec<(TokenStream, TokenStream)>,
 }
 
 impl<'w, 'n> Writer<'w, 'n> {
@@ -267,7 +261,7 @@ impl<'w, 'n> Writer<'w, 'n> {
         is_start: bool,
         assignments: impl Iterator<Item = &'a Assignment>,
     ) -> Self {
-        let mut writer = Self { names, changes, is_start, products: 0, product: 0, others: 0, factors: Vec::new() };
+        let mut writer = Self { names, changes, is_start, products: 0, product: 0, others: 0 };
         writer.products = assignments.filter(|assignment| writer.is_product(&assignment.operation)).count();
         writer
     }
@@ -297,47 +291,8 @@ impl<'w, 'n> Writer<'w, 'n> {
 
     /// The definitions of a group.
     fn group(&mut self, group: &[Assignment]) -> TokenStream {
-        let mut products = 0;
-        let is_last = |assignment: &Assignment| {
-            let is_product = self.is_product(&assignment.operation);
-            products += usize::from(is_product);
-            is_product && products.is_multiple_of(TOGETHER)
-        };
-        let some: Vec<_> = group.split_inclusive(is_last).collect();
-        some.into_iter().map(|some| self.some(some)).collect()
-    }
-
-    /// Definitions with few products. What is known of these is read before them, their factors are kept behind them.
-    fn some(&mut self, some: &[Assignment]) -> TokenStream {
-        let first = self.product;
-        let definitions: TokenStream = some
-            .iter()
-            .map(|assignment| routine::definition(assignment.target, &self.operation(&assignment.operation)))
-            .collect();
-        let (left, right): (Vec<_>, Vec<_>) = std::mem::take(&mut self.factors).into_iter().unzip();
-        if left.is_empty() {
-            return definitions;
-        }
-        let known = (!self.is_start).then(|| {
-            let named = |prefix: &str| {
-                let names = (first..self.product).map(|product| format_ident!("{prefix}{product}"));
-                quote!([#(#names),*])
-            };
-            let [inner, lefts, rights] = ["i", "l", "r"].map(named);
-            let [at, at_right] = [first, self.products + first].map(Literal::usize_unsuffixed);
-            quote! {
-                let #inner = load(inner, #at);
-                let #lefts = load(&rows[0], #at);
-                let #rights = load(&rows[0], #at_right);
-            }
-        });
-        let [at, at_right] = [first, self.products + first].map(Literal::usize_unsuffixed);
-        quote! {
-            #known
-            #definitions
-            store(&mut rows[k], #at, [#(#left),*]);
-            store(&mut rows[k], #at_right, [#(#right),*]);
-        }
+        let definition = |of: &Assignment| routine::definition(of.target, &self.operation(&of.operation));
+        group.iter().map(definition).collect()
     }
 
     fn operation(&mut self, operation: &Operation) -> TokenStream {
@@ -365,11 +320,13 @@ impl<'w, 'n> Writer<'w, 'n> {
 
     fn product(&mut self, a: &Operand, b: &Operand) -> TokenStream {
         let (a, b) = (self.value(a), self.value(b));
-        let [inner, left, right] = ["i", "l", "r"].map(|prefix| format_ident!("{prefix}{}", self.product));
+        let [left, right] = [self.product, self.products + self.product].map(Literal::usize_unsuffixed);
         self.product += 1;
-        let value = if self.is_start { quote!(#a * #b) } else { quote!(#inner + (#a * #right + #left * #b)) };
-        self.factors.push((a, b));
-        value
+        if self.is_start {
+            quote!(first_product(rows, #left, #right, #a, #b))
+        } else {
+            quote!(next_product(inner, rows, k, #left, #a, #b))
+        }
     }
 
     /// The first of `count` places.
