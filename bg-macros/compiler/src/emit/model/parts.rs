@@ -92,5 +92,6 @@ fn blocks(routine: &Routine) -> (Chunks<'_, Assignment>, Blocks) {
 
 /// The routine with these assignments and results only.
 pub(super) fn alone(routine: &Routine, assignments: &[Assignment], results: &[Operand]) -> Routine {
-    Routine { assignments: assignments.to_vec(), results: results.to_vec(), ..routine.clone() }
+    let Routine { name, counts, .. } = routine;
+    Routine { name: name.clone(), assignments: assignments.to_vec(), results: results.to_vec(), counts: *counts }
 }
