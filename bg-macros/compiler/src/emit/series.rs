@@ -15,7 +15,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::blocks::{BLOCK, Blocks};
-use super::routine::{self, Names};
+use super::routine::{self, Names, parsed, parsed_each};
 use crate::expr::{Function, Symbol};
 use crate::program::{Assignment, Operand, Operation, Routine};
 
@@ -60,19 +60,19 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
             Some(blocks) if is_start || writer.is_changing(result) => blocks.result(result, names),
             _ => writer.value(result),
         });
-        let rates: Vec<_> = rates.collect();
+        let rates = parsed_each(rates);
         (groups, rates, writer)
     };
     let ((start, start_rates, counted), (order, order_rates, _)) = (written(true), written(false));
     let (products, places) = (counted.products, (2 * counted.products + counted.others).max(1));
     let mut parts = TokenStream::new();
-    let mut statements = |pass: Pass, groups: Chunks<Assignment>, definitions: Vec<TokenStream>| match &blocks {
+    let mut statements = |pass: Pass, groups: Chunks<Assignment>, definitions: Vec<String>| match &blocks {
         Some(blocks) => {
             let (functions, calls) = pass.parts(groups, &definitions, blocks, names, reads);
             parts.extend(functions);
             calls
         }
-        None => definitions.into_iter().collect(),
+        None => parsed(&definitions.concat()),
     };
     // What does not change with time, and yet is no constant of the model: it depends on inputs.
     let definitions = fixed.clone().map(|group| routine::assignments(group, names)).collect();
@@ -140,7 +140,7 @@ impl Pass {
     fn parts(
         self,
         groups: Chunks<Assignment>,
-        definitions: &[TokenStream],
+        definitions: &[String],
         blocks: &Blocks,
         names: &Names,
         reads: &Reads,
@@ -149,11 +149,11 @@ impl Pass {
         let (declared, handed): (Vec<_>, Vec<_>) =
             arguments.into_iter().map(|[declared, handed]| (declared, handed)).unzip();
         let array = blocks.array_type();
-        let part = |(index, (group, definitions))| {
+        let part = |(index, (group, definitions)): (usize, (_, &String))| {
             let (name, read, block) = (
                 format_ident!("series_{pass}_part_{index}"),
                 (reads.by)(group),
-                blocks.block(group, definitions, names),
+                parsed(&blocks.block(group, definitions, names)),
             );
             let function = quote! {
                 #[cfg_attr(not(debug_assertions), inline(always))]
@@ -276,32 +276,32 @@ impl<'w, 'n> Writer<'w, 'n> {
     }
 
     /// The coefficient of an operand.
-    fn value(&self, operand: &Operand) -> TokenStream {
+    fn value(&self, operand: &Operand) -> String {
         if self.is_start || self.is_changing(operand) {
             routine::operand(operand, self.names)
         } else {
-            quote!(S::from_f64(0.0))
+            "S::from_f64(0.0)".to_owned()
         }
     }
 
     /// The value of an operand at the start, which is its value at all times if it does not change.
-    fn fixed(&self, operand: &Operand) -> TokenStream {
+    fn fixed(&self, operand: &Operand) -> String {
         routine::operand(operand, self.names)
     }
 
     /// The definitions of a group.
-    fn group(&mut self, group: &[Assignment]) -> TokenStream {
+    fn group(&mut self, group: &[Assignment]) -> String {
         let definition = |of: &Assignment| routine::definition(of.target, &self.operation(&of.operation));
         group.iter().map(definition).collect()
     }
 
-    fn operation(&mut self, operation: &Operation) -> TokenStream {
+    fn operation(&mut self, operation: &Operation) -> String {
         match operation {
             Operation::Multiply(a, b) if self.is_product(operation) => self.product(a, b),
             Operation::Divide(a, b) if self.is_changing(b) => {
                 let at = self.reserve(2);
                 let (a, b) = (self.value(a), self.value(b));
-                quote!(::bg_model::series::quotient(rows, k, #at, #a, #b))
+                format!("::bg_model::series::quotient(rows, k, {at}, {a}, {b})")
             }
             Operation::Call(function, arguments) => self.call(*function, arguments),
             // In the loop only what changes is left of a sum.
@@ -309,7 +309,7 @@ impl<'w, 'n> Writer<'w, 'n> {
             Operation::Add(a, b) | Operation::Subtract(a, b) if !self.is_start && !self.is_changing(b) => self.value(a),
             Operation::Subtract(a, b) if !self.is_start && !self.is_changing(a) => {
                 let b = self.value(b);
-                quote!(-#b)
+                format!("-{b}")
             }
             Operation::Multiply(..) | Operation::Divide(..) => {
                 routine::operation(operation, self.names, &|operand| self.fixed(operand))
@@ -318,47 +318,47 @@ impl<'w, 'n> Writer<'w, 'n> {
         }
     }
 
-    fn product(&mut self, a: &Operand, b: &Operand) -> TokenStream {
+    fn product(&mut self, a: &Operand, b: &Operand) -> String {
         let (a, b) = (self.value(a), self.value(b));
-        let [left, right] = [self.product, self.products + self.product].map(Literal::usize_unsuffixed);
+        let (left, right) = (self.product, self.products + self.product);
         self.product += 1;
         if self.is_start {
-            quote!(first_product(rows, #left, #right, #a, #b))
+            format!("first_product(rows, {left}, {right}, {a}, {b})")
         } else {
-            quote!(next_product(inner, rows, k, #left, #a, #b))
+            format!("next_product(inner, rows, k, {left}, {a}, {b})")
         }
     }
 
     /// The first of `count` places.
-    fn reserve(&mut self, count: usize) -> Literal {
+    fn reserve(&mut self, count: usize) -> usize {
         let at = 2 * self.products + self.others;
         self.others += count;
-        Literal::usize_unsuffixed(at)
+        at
     }
 
-    fn call(&mut self, function: Function, arguments: &[Operand]) -> TokenStream {
+    fn call(&mut self, function: Function, arguments: &[Operand]) -> String {
         let is_fixed_power = function == Function::Pow && !self.is_changing(&arguments[1]);
         let (name, places) = match function {
-            Function::Sqrt => (quote!(sqrt), 1),
-            Function::Abs => (quote!(abs), 1),
-            Function::Exp => (quote!(exp), 2),
-            Function::Ln => (quote!(ln), 2),
-            Function::Sin => (quote!(sin), 3),
-            Function::Cos => (quote!(cos), 3),
-            Function::Tan => (quote!(tan), 3),
-            Function::Tanh => (quote!(tanh), 3),
-            Function::Asin => (quote!(asin), 3),
-            Function::Acos => (quote!(acos), 3),
-            Function::Atan2 => (quote!(atan2), 4),
-            Function::Pow if is_fixed_power => (quote!(powf), 2),
-            Function::Pow => (quote!(power), 6),
+            Function::Sqrt => ("sqrt", 1),
+            Function::Abs => ("abs", 1),
+            Function::Exp => ("exp", 2),
+            Function::Ln => ("ln", 2),
+            Function::Sin => ("sin", 3),
+            Function::Cos => ("cos", 3),
+            Function::Tan => ("tan", 3),
+            Function::Tanh => ("tanh", 3),
+            Function::Asin => ("asin", 3),
+            Function::Acos => ("acos", 3),
+            Function::Atan2 => ("atan2", 4),
+            Function::Pow if is_fixed_power => ("powf", 2),
+            Function::Pow => ("power", 6),
         };
         let at = self.reserve(places);
         let first = self.value(&arguments[0]);
         let second = arguments.get(1).map(|second| {
             let second = if is_fixed_power { self.fixed(second) } else { self.value(second) };
-            quote!(, #second)
+            format!(", {second}")
         });
-        quote!(::bg_model::series::#name(rows, k, #at, #first #second))
+        format!("::bg_model::series::{name}(rows, k, {at}, {first}{})", second.unwrap_or_default())
     }
 }

@@ -93,19 +93,16 @@ impl Emission<'_> {
     pub(super) fn input_bindings(&self, routine: &Routine, time: &str) -> TokenStream {
         let time = format_ident!("{time}");
         let input = |index: u32| identifier(&self.model.equations.inputs[index as usize].name.text);
-        bindings(&[routine], &|symbol| {
-            let name = self.symbol_name(symbol);
-            match symbol {
-                Symbol::Input(index) => {
-                    let field = input(index);
-                    Some(quote!(let #name = self.inputs.#field.value(#time);))
-                }
-                Symbol::Slope(index) => {
-                    let field = input(index);
-                    Some(quote!(let #name = self.inputs.#field.slope(#time);))
-                }
-                _ => None,
+        bindings(&[routine], &|symbol| match symbol {
+            Symbol::Input(index) => {
+                let (name, field) = (self.symbol_name(symbol), input(index));
+                Some(quote!(let #name = self.inputs.#field.value(#time);))
             }
+            Symbol::Slope(index) => {
+                let (name, field) = (self.symbol_name(symbol), input(index));
+                Some(quote!(let #name = self.inputs.#field.slope(#time);))
+            }
+            _ => None,
         })
     }
 
@@ -114,16 +111,18 @@ impl Emission<'_> {
         let state = |symbol| if let Symbol::State(index) = symbol { Some(index) } else { None };
         let used: BTreeSet<u32> = symbols(&[routine]).into_iter().filter_map(state).collect();
         let behind = used.last()? + 1;
-        let names = (0..behind)
-            .map(|index| if used.contains(&index) { self.symbol_name(Symbol::State(index)) } else { quote!(_) });
+        let names = (0..behind).map(|index| {
+            if used.contains(&index) { self.symbol_name(Symbol::State(index)) } else { format_ident!("_") }
+        });
         let rest = ((behind as usize) < self.states.len()).then(|| quote!(, ..));
         Some(quote!(let [#(#names),* #rest] = *x;))
     }
 
-    fn symbol_name(&self, symbol: Symbol) -> TokenStream {
+    /// The name of a symbol that is a variable.
+    fn symbol_name(&self, symbol: Symbol) -> Ident {
         let equations = &self.model.equations;
         let input = |index: u32| names::field(&equations.inputs[index as usize].name.text);
-        let ident = match symbol {
+        match symbol {
             Symbol::Time => format_ident!("t"),
             Symbol::State(index) => self.states[index as usize].clone(),
             Symbol::Parameter(index) => {
@@ -132,25 +131,32 @@ impl Emission<'_> {
             Symbol::Input(index) => format_ident!("u_{}", input(index)),
             Symbol::Slope(index) => format_ident!("slope_{}", input(index)),
             Symbol::Kept(index) => format_ident!("kept_{index}"),
+            _ => unreachable!("{symbol:?} is no variable"),
+        }
+    }
+
+    /// The text of a symbol.
+    fn symbol_text(&self, symbol: Symbol) -> String {
+        match symbol {
             Symbol::Multiplier(_) => {
-                let row = equations.solution.row(symbol).expect("a reaction that is solved for");
-                return entry("reactions", u32::try_from(row).expect("fewer than 2^32 reactions"));
+                let row = self.model.equations.solution.row(symbol).expect("a reaction that is solved for");
+                entry("reactions", u32::try_from(row).expect("fewer than 2^32 reactions"))
             }
             Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Unsolved(_) => {
                 unreachable!("a model's equations contain no {symbol:?}")
             }
-            Symbol::Found(index) => return entry("found", index),
-            Symbol::Unknown(index) => return entry("u", index),
-            Symbol::Rate(index) => return entry("r", index),
-            Symbol::Weight(index) => return entry("weights", index),
-        };
-        quote!(#ident)
+            Symbol::Found(index) => entry("found", index),
+            Symbol::Unknown(index) => entry("u", index),
+            Symbol::Rate(index) => entry("r", index),
+            Symbol::Weight(index) => entry("weights", index),
+            _ => self.symbol_name(symbol).to_string(),
+        }
     }
 
-    /// Hands the tokens of what a routine refers to to `then`.
+    /// Hands the text of what a routine refers to to `then`.
     pub(super) fn with_names<T>(&self, then: impl FnOnce(&Names) -> T) -> T {
         then(&Names {
-            symbol: &|symbol| self.symbol_name(symbol),
+            symbol: &|symbol| self.symbol_text(symbol),
             constant: &|index| entry("c", index),
             switch: &|index| entry("negative", index),
         })
@@ -158,9 +164,8 @@ impl Emission<'_> {
 }
 
 /// An entry of an array.
-fn entry(array: &str, index: u32) -> TokenStream {
-    let (array, index) = (format_ident!("{array}"), Literal::u32_unsuffixed(index));
-    quote!(#array[#index])
+fn entry(array: &str, index: u32) -> String {
+    format!("{array}[{index}]")
 }
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.

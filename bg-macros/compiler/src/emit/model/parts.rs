@@ -9,7 +9,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::super::blocks::{BLOCK, Blocks};
-use super::super::routine::assignments;
+use super::super::routine::{assignments, parsed, parsed_each};
 use super::{Emission, names};
 use crate::program::{Assignment, Operand, Reversed, Routine, SecondOrderPrograms};
 
@@ -47,7 +47,7 @@ impl Emission<'_> {
             let name = name(routine, index);
             let part = alone(routine, group, &[]);
             let (inputs, states) = (self.input_bindings(&part, "t"), self.state_bindings(&part));
-            let block = self.with_names(|names| blocks.block(group, &assignments(group, names), names));
+            let block = self.with_names(|names| parsed(&blocks.block(group, &assignments(group, names), names)));
             quote! {
                 #[inline(never)]
                 fn #name(&self, x: &[S; #n], #(#declared,)* v: &mut #array_type) {
@@ -74,7 +74,7 @@ impl Emission<'_> {
         });
         let statements = quote!(#array #found #(#calls)* #inputs #states);
         let results =
-            self.with_names(|names| routine.results.iter().map(|result| blocks.result(result, names)).collect());
+            self.with_names(|names| parsed_each(routine.results.iter().map(|result| blocks.result(result, names))));
         (statements, results)
     }
 }

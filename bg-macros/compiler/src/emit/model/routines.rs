@@ -70,7 +70,7 @@ impl Emission<'_> {
                 #bindings
                 #statements
             };
-            (body, paired.results.iter().map(|result| pairs::half(result, names)).collect())
+            (body, pairs::results(paired, names))
         })
     }
 }
