@@ -4,6 +4,8 @@
 //! routine is cut into `blocks`. Statements are written as text, which becomes tokens at once: inside of rustc each piece that is
 //! quoted is handed over and copied several times, which takes three times as long.
 
+extern crate proc_macro;
+
 use proc_macro2::{TokenStream, TokenTree};
 use quote::quote;
 
@@ -23,9 +25,13 @@ pub struct Names<'a> {
     pub switch: &'a dyn Fn(u32) -> String,
 }
 
-/// The tokens of generated text.
+/// The tokens of generated text. Inside of rustc its own lexer reads them; that of `proc_macro2` would read them first, to be sure.
 pub(super) fn parsed(text: &str) -> TokenStream {
-    text.parse().expect("generated text is made of tokens")
+    const FAILED: &str = "generated text is made of tokens";
+    if proc_macro::is_available() {
+        return text.parse::<proc_macro::TokenStream>().expect(FAILED).into();
+    }
+    text.parse().expect(FAILED)
 }
 
 /// The tokens of each of these values.

@@ -2,10 +2,11 @@
 //!
 //! In: the program of the derivatives, the planned elimination. Out: `Linearised` and `Elimination` for the model.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::super::elimination;
+use super::super::routine::parsed;
 use super::capabilities::accessor;
 use super::{Emission, Shape};
 
@@ -18,10 +19,8 @@ impl Emission<'_> {
     /// The Jacobian with its sparsity.
     fn linearised(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let places = self.model.jacobian.entries.iter().map(|entry| {
-            let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
-            quote!((#row, #column))
-        });
+        let places = self.model.jacobian.entries.iter().map(|entry| format!("({}, {})", entry.row, entry.column));
+        let places = parsed(&places.collect::<Vec<_>>().join(", "));
         let count = self.model.jacobian.entries.len();
         let [routine] = &self.model.programs.jacobian.routines;
         let (body, results) = self.running(routine, &format_ident!("slope_constants"));
@@ -36,7 +35,7 @@ impl Emission<'_> {
         quote! {
             impl<S: Scalar> ::bg_model::capability::Linearised<S, #n, #g> for Model<S> {
                 fn sparsity(&self) -> ::bg_model::linear::Sparsity {
-                    static ENTRIES: [(u16, u16); #count] = [#(#places),*];
+                    static ENTRIES: [(u16, u16); #count] = [#places];
                     #sparsity
                 }
                 #[inline(never)]
