@@ -1,9 +1,12 @@
+use bg_model::integrator::Integrator;
+use bg_model::run::{Request, Simulation};
 use bond_graph_tests::models::double_pendulum::{RigidPendulum, RigidPendulumParameters};
 use bond_graph_tests::models::slider_crank::{
     RigidSliderCrank, RigidSliderCrankParameters, SliderCrank, SliderCrankParameters,
 };
 use bond_graph_tests::models::spinning_top::{FixedTip, FixedTipParameters};
 use bond_graph_tests::support::record::{Record, instants, record};
+use hacksaw::mechanism::{Rigid, RigidParameters};
 
 /// The largest value of a series that must be small.
 fn within(what: &str, value: f64, bound: f64) {
@@ -145,5 +148,22 @@ fn a_top_about_a_rigid_point_precesses_regularly() {
         within("centre", apart(&run, "center", circle(p.arm * tilt.sin(), p.arm * tilt.cos())), 1e-9);
         within("gap", largest(["x", "y", "z"].map(|axis| run.largest(&format!("gap_{axis}")))), 1e-10);
         within("energy", run.imbalance() / run.largest("stored"), 1e-9);
+    }
+}
+
+/// A state at an event is projected until that moves it no more: a projection that left a guard on either side of its zero made the
+/// branches change without end.
+#[test]
+fn loose_tolerances_find_the_branches_of_the_rigid_hacksaw() {
+    const EVENTS: u64 = 36;
+    let model = Rigid::new(RigidParameters::default()).unwrap();
+    for method in [Integrator::Taylor, Integrator::Dop853, Integrator::Cfmr7, Integrator::Nystrom] {
+        // The tolerances may be those of parts of states, or of states.
+        for (rtol, atol) in [(1e-3, None), (3e-4, None), (1e-12, Some(1e-3))] {
+            let request = Request { method, t_end: 2.0, rtol, atol, ..Request::default() };
+            let run = Simulation::of(&model, request).run();
+            let run = run.unwrap_or_else(|failure| panic!("{method:?} at {rtol}, {atol:?}: {failure}"));
+            assert_eq!(run.statistics.events, EVENTS, "{method:?} at {rtol}, {atol:?}");
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! Least squares with bounds by Levenberg's and Marquardt's method.
 //!
-//! In: a function that gives residuals with their derivatives, where the variables start, their bounds. Out: the variables at which
+//! In: what gives residuals, alone and with their derivatives, where the variables start, their bounds. Out: the variables at which
 //! the sum of squares falls no further, with residuals and derivatives there.
 //! Method: steps (J'J + l D) d = -J'r with D the diagonal of J'J (J. J. More, The Levenberg-Marquardt algorithm, Lecture Notes in
 //! Mathematics 630 (1978)), solved by singular values of [J; sqrt(l D)]; a step is cut at the bounds, and a variable at a bound
-//! towards which the sum falls stays there. Ours, since the crate `levenberg-marquardt` has no bounds.
+//! towards which the sum falls stays there. A step is tried without derivatives, which are taken where it has helped. Ours, since the
+//! crate `levenberg-marquardt` has no bounds.
 
 use bg_model::nalgebra::{DMatrix, DVector};
 
@@ -22,38 +23,62 @@ pub struct Fitted {
     pub jacobian: DMatrix<f64>,
     /// Which variables are at a bound that keeps the sum of squares from falling.
     pub held: Vec<bool>,
-    /// Evaluations that it took.
+    /// Evaluations that it took: points at which there were residuals.
     pub evaluations: usize,
     /// Whether it has converged, or only come to the number of evaluations that was allowed.
     pub has_converged: bool,
 }
 
-/// The damping at the start, its factors after steps that help and that do not, and the largest.
+/// The damping at the start, its factors after steps that help and that do not, the smallest and the largest. The smallest one hinders no
+/// step along what the residuals determine to seven digits.
 const DAMPING: f64 = 1e-4;
 const LESS: f64 = 0.1;
 const MORE: f64 = 10.0;
+const SMALLEST: f64 = 1e-14;
 const LARGEST: f64 = 1e12;
 /// A step below this part of a variable's size is none, nor one by which the sum of squares is to fall by less than this part of one
 /// residual's square: a hundred thousandth of a standard deviation.
 const STEP: f64 = 1e-9;
 const FALL: f64 = 1e-10;
+/// A step that differs by less than this part of it from one that did not help is not tried.
+const DIFFERENT: f64 = 0.05;
 
-/// Fits the variables from `start` on between `lower` and `upper`. `sizes` are what steps are measured with; `evaluate` fails where
-/// there are no residuals, which calls for a shorter step.
+/// What is fitted.
+pub trait Problem {
+    /// Why there are no residuals.
+    type Error;
+
+    /// The residuals, which cost much less than their derivatives.
+    ///
+    /// # Errors
+    /// There are none for these variables, which calls for a shorter step.
+    fn residuals(&mut self, x: &DVector<f64>) -> Result<DVector<f64>, Self::Error>;
+
+    /// The residuals and their derivatives.
+    ///
+    /// # Errors
+    /// As [`Problem::residuals`].
+    fn linear(&mut self, x: &DVector<f64>) -> Result<Linear, Self::Error>;
+}
+
+/// Fits the variables from `start` on between `lower` and `upper`, by at most `most` evaluations. `sizes` are what steps are measured with.
 ///
 /// # Errors
-/// That of `evaluate` at the start.
-pub fn fit<E>(
+/// That of the problem at the start.
+pub fn fit<P: Problem>(
     start: &DVector<f64>,
     [lower, upper]: [&DVector<f64>; 2],
     sizes: &DVector<f64>,
     most: usize,
-    mut evaluate: impl FnMut(&DVector<f64>) -> Result<Linear, E>,
-) -> Result<Fitted, E> {
+    problem: &mut P,
+) -> Result<Fitted, P::Error> {
     let within = |x: DVector<f64>| DVector::from_fn(x.len(), |k, _| x[k].clamp(lower[k], upper[k]));
+    let length = |way: &DVector<f64>| way.component_div(sizes).norm();
     let mut x = within(start.clone());
-    let (mut residuals, mut jacobian) = evaluate(&x)?;
+    let (mut residuals, mut jacobian) = problem.linear(&x)?;
     let (mut evaluations, mut damping, mut has_converged) = (1, DAMPING, false);
+    // The last step from here that did not help.
+    let mut failed: Option<DVector<f64>> = None;
     while !has_converged && evaluations < most {
         let held = held(&x, lower, upper, &jacobian.tr_mul(&residuals));
         let next = within(&x + limited(step(&residuals, &jacobian, &held, damping), sizes));
@@ -65,19 +90,20 @@ pub fn fit<E>(
             has_converged = true;
             break;
         }
-        if fall < 0.0 {
-            // Cut at the bounds the step leads up; a shorter one does not.
-            damping *= MORE;
-            has_converged = damping > LARGEST;
-            continue;
+        let is_known = failed.as_ref().is_some_and(|failed| length(&(&way - failed)) < DIFFERENT * length(failed));
+        // A step that is cut at the bounds may lead up; a shorter one does not.
+        let mut helps = false;
+        if fall >= 0.0 && !is_known {
+            evaluations += 1;
+            helps = problem.residuals(&next).is_ok_and(|there| there.norm_squared() < before);
         }
-        evaluations += 1;
-        match evaluate(&next) {
-            Ok((there, slopes)) if there.norm_squared() < before => {
-                (x, residuals, jacobian) = (next, there, slopes);
-                damping *= LESS;
+        match helps.then(|| problem.linear(&next)) {
+            Some(Ok(there)) => {
+                (x, (residuals, jacobian), failed) = (next, there, None);
+                damping = (damping * LESS).max(SMALLEST);
             }
             _ => {
+                failed = Some(way);
                 damping *= MORE;
                 has_converged = damping > LARGEST;
             }
@@ -130,13 +156,31 @@ fn step(residuals: &DVector<f64>, jacobian: &DMatrix<f64>, held: &[bool], dampin
 mod tests {
     use super::*;
 
-    /// Rosenbrock's valley: residuals 10 (y - x^2) and 1 - x.
-    fn valley(x: &DVector<f64>) -> Result<Linear, ()> {
-        let residuals = DVector::from_vec(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]);
-        Ok((residuals, DMatrix::from_row_slice(2, 2, &[-20.0 * x[0], 10.0, -1.0, 0.0])))
+    /// Rosenbrock's valley: residuals 10 (y - x^2), 1 - x and a rest that jitters; how often residuals and derivatives were asked for.
+    #[derive(Default)]
+    struct Valley {
+        rest: f64,
+        counts: [usize; 2],
     }
 
-    fn fitted(lower: [f64; 2], upper: [f64; 2]) -> Fitted {
+    impl Problem for Valley {
+        type Error = ();
+
+        fn residuals(&mut self, x: &DVector<f64>) -> Result<DVector<f64>, ()> {
+            self.counts[0] += 1;
+            let rest = self.rest * (1.0 + 1e-4 * (1e9 * (x[0] + x[1])).sin());
+            Ok(DVector::from_vec(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0], rest]))
+        }
+
+        fn linear(&mut self, x: &DVector<f64>) -> Result<Linear, ()> {
+            let residuals = self.residuals(x)?;
+            self.counts[0] -= 1;
+            self.counts[1] += 1;
+            Ok((residuals, DMatrix::from_row_slice(3, 2, &[-20.0 * x[0], 10.0, -1.0, 0.0, 0.0, 0.0])))
+        }
+    }
+
+    fn fitted(lower: [f64; 2], upper: [f64; 2], valley: &mut Valley) -> Fitted {
         let vector = |of: [f64; 2]| DVector::from_vec(of.to_vec());
         let bounds = [&vector(lower), &vector(upper)];
         fit(&vector([-1.2, 1.0]), bounds, &vector([1.0, 1.0]), 200, valley).unwrap()
@@ -144,13 +188,25 @@ mod tests {
 
     #[test]
     fn the_end_of_the_valley_is_found() {
-        let found = fitted([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]);
+        let mut valley = Valley::default();
+        let found = fitted([f64::NEG_INFINITY; 2], [f64::INFINITY; 2], &mut valley);
         assert!(found.has_converged && (found.x[0] - 1.0).abs() < 1e-8 && (found.x[1] - 1.0).abs() < 1e-8, "{found:?}");
+        // Derivatives at the start and where a step has helped; residuals wherever one was tried.
+        let [tried, linear] = valley.counts;
+        assert!(linear <= tried && tried + 1 == found.evaluations, "{:?}", valley.counts);
+    }
+
+    #[test]
+    fn residuals_that_jitter_more_than_a_step_promises_end_the_fit_soon() {
+        let mut valley = Valley { rest: 1.0, ..Valley::default() };
+        let found = fitted([f64::NEG_INFINITY; 2], [f64::INFINITY; 2], &mut valley);
+        assert!(found.has_converged && (found.x[0] - 1.0).abs() < 1e-2, "{found:?}");
+        assert!(valley.counts[0] <= 50, "{:?}", valley.counts);
     }
 
     #[test]
     fn a_bound_holds_what_would_pass_it() {
-        let found = fitted([-2.0, -2.0], [0.5, 2.0]);
+        let found = fitted([-2.0, -2.0], [0.5, 2.0], &mut Valley::default());
         assert!((found.x[0] - 0.5).abs() < 1e-12 && (found.x[1] - 0.25).abs() < 1e-6, "{found:?}");
         assert_eq!(found.held, [true, false]);
     }

@@ -12,13 +12,13 @@ use bg_model::description::ParameterInfo;
 use bg_model::mechanism::Mechanism;
 use bg_model::nalgebra::{DMatrix, DVector};
 use bg_model::parameters::{ParameterError, Parameters};
-use bg_model::run::Request;
-use bg_model::sensitivity::{Direction, Sensitivities, SensitivityError, sensitivities};
+use bg_model::run::{Request, Simulation, Trajectory};
+use bg_model::sensitivity::{Direction, Sensitivities, SensitivityError, sensitivities_of};
 use bg_model::simulation::Samples;
 use thiserror::Error;
 
 pub use data::{Data, Measured};
-use fit::{Fitted, fit};
+use fit::{Fitted, Problem, fit};
 
 /// A parameter that may change.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,13 +116,15 @@ pub struct Identified {
     pub undetermined: Vec<Vec<(&'static str, f64)>>,
     /// The columns of the data with the model's values.
     pub columns: Vec<Column>,
-    /// Runs with derivatives that it took.
+    /// Values of the parameters that were tried.
     pub evaluations: usize,
+    /// How many of them have helped, so that derivatives were taken there.
+    pub derivatives: usize,
     /// Whether the fit has converged.
     pub has_converged: bool,
 }
 
-/// Most runs of one fit, and fits for the noise to settle.
+/// Most values that one fit tries, and fits for the noise to settle.
 const EVALUATIONS: usize = 60;
 const FITS: usize = 4;
 /// A change of a column's noise by less than this part is none.
@@ -149,22 +151,101 @@ pub fn identify<Me: Mechanism>(
 ) -> Result<Identified, IdentifyError> {
     let directions: Vec<Direction> =
         variables.iter().map(|of| Direction::parameter::<Me>(of.info.name)).collect::<Result<_, _>>()?;
-    let run = |request: &Request, values: &[f64]| {
+    let made = |values: &[f64]| {
         let mut parameters = model.parameters().clone();
-        for (of, &value) in variables.iter().zip(values) {
-            parameters.set(of.info.name, value)?;
-        }
-        sensitivities(&Me::make(parameters, &model.inputs())?, request, &directions)
+        variables.iter().zip(values).try_for_each(|(of, &value)| parameters.set(of.info.name, value))?;
+        Me::make(parameters, &model.inputs())
     };
-    fitted(&run, request, data, variables, &mut told)
+    let outputs: Vec<usize> = data.columns.iter().map(|column| column.output).collect();
+    let plain = |request: &Request, values: &[f64]| Ok(Simulation::of(&made(values)?, request.clone()).run()?);
+    let with = |request: &Request, values: &[f64]| sensitivities_of(&made(values)?, request, &directions, &outputs);
+    fitted(Runs { plain: &plain, with: &with }, request, data, variables, &mut told)
 }
 
-/// A run with derivatives by the variables, of their values.
-type Run<'a> = dyn Fn(&Request, &[f64]) -> Result<Sensitivities, SensitivityError> + 'a;
+/// A run of the variables' values.
+type Run<'a, T> = &'a dyn Fn(&Request, &[f64]) -> Result<T, SensitivityError>;
+
+/// What makes runs, whatever the model's type.
+struct Runs<'a> {
+    plain: Run<'a, Trajectory>,
+    /// With derivatives by the variables.
+    with: Run<'a, Sensitivities>,
+}
+
+/// The residuals of a model in parts of the noise of their columns.
+struct Misfit<'a> {
+    runs: Runs<'a>,
+    request: Request,
+    data: &'a Data,
+    variables: &'a [Variable],
+    noise: Vec<f64>,
+    told: &'a mut dyn FnMut(&[f64], f64),
+    /// The last run with derivatives, of these variables, and how many there were.
+    latest: Option<(DVector<f64>, Sensitivities)>,
+    derivatives: usize,
+}
+
+impl Misfit<'_> {
+    fn values(&self, x: &DVector<f64>) -> Vec<f64> {
+        self.variables.iter().zip(x).map(|(of, &x)| of.outer(x)).collect()
+    }
+
+    /// What is left of each measured value by these columns of the model.
+    fn left(&self, models: &[bg_model::simulation::Column]) -> DVector<f64> {
+        let mut residuals = Vec::with_capacity(self.data.count());
+        for (column, noise) in self.data.columns.iter().zip(&self.noise) {
+            let both = column.values.iter().zip(&models[column.output].values);
+            residuals.extend(both.filter_map(|(measured, model)| Some((model - (*measured)?) / noise)));
+        }
+        DVector::from_vec(residuals)
+    }
+
+    /// Their derivatives by the variables.
+    fn slopes(&self, values: &[f64], found: &Sensitivities) -> DMatrix<f64> {
+        let mut slopes = Vec::with_capacity(self.data.count() * values.len());
+        for (column, noise) in self.data.columns.iter().zip(&self.noise) {
+            for k in (0..column.values.len()).filter(|&k| column.values[k].is_some()) {
+                let slope = |l: usize| found.of(l, column.output)[k] * self.variables[l].slope(values[l]) / noise;
+                slopes.extend((0..values.len()).map(slope));
+            }
+        }
+        DMatrix::from_row_slice(self.data.count(), values.len(), &slopes)
+    }
+
+    fn tell(&mut self, values: &[f64], residuals: &DVector<f64>) {
+        (self.told)(values, residuals.norm() / (residuals.len() as f64).sqrt());
+    }
+}
+
+impl Problem for Misfit<'_> {
+    type Error = SensitivityError;
+
+    fn residuals(&mut self, x: &DVector<f64>) -> Result<DVector<f64>, SensitivityError> {
+        let values = self.values(x);
+        let residuals = self.left(&(self.runs.plain)(&self.request, &values)?.columns);
+        self.tell(&values, &residuals);
+        Ok(residuals)
+    }
+
+    fn linear(&mut self, x: &DVector<f64>) -> Result<fit::Linear, SensitivityError> {
+        let values = self.values(x);
+        let is_start = self.latest.is_none();
+        if self.latest.as_ref().is_none_or(|(there, _)| there != x) {
+            self.latest = Some((x.clone(), (self.runs.with)(&self.request, &values)?));
+            self.derivatives += 1;
+        }
+        let (_, found) = self.latest.as_ref().expect("it was just made");
+        let (residuals, slopes) = (self.left(&found.trajectory.columns), self.slopes(&values, found));
+        if is_start {
+            self.tell(&values, &residuals);
+        }
+        Ok((residuals, slopes))
+    }
+}
 
 /// As [`identify`], whatever the model's type.
 fn fitted(
-    run: &Run,
+    runs: Runs,
     request: &Request,
     data: &Data,
     variables: &[Variable],
@@ -182,47 +263,29 @@ fn fitted(
     let bounds = [inner(|of| of.lower), inner(|of| of.upper)];
     let sizes = DVector::from_iterator(variables.len(), variables.iter().map(Variable::size));
     let sizes_of_columns: Vec<f64> = data.columns.iter().map(|column| spread(&column.values)).collect();
-    let mut noise = sizes_of_columns.clone();
-    let (mut start, mut evaluations, mut models) = (inner(|of| of.start), 0, Vec::new());
+    let noise = sizes_of_columns.clone();
+    let mut misfit = Misfit { runs, request, data, variables, noise, told, latest: None, derivatives: 0 };
+    let (mut start, mut evaluations) = (inner(|of| of.start), 0);
     for round in 0.. {
-        let mut latest = Vec::new();
-        let evaluate = |x: &DVector<f64>| -> Result<fit::Linear, SensitivityError> {
-            let values: Vec<f64> = variables.iter().zip(x).map(|(of, &x)| of.outer(x)).collect();
-            let found = run(&request, &values)?;
-            let (mut residuals, mut slopes) = (Vec::with_capacity(count), Vec::with_capacity(count * values.len()));
-            for (column, noise) in data.columns.iter().zip(&noise) {
-                let of_model = &found.trajectory.columns[column.output].values;
-                for (k, measured) in column.values.iter().enumerate() {
-                    let Some(measured) = measured else { continue };
-                    residuals.push((of_model[k] - measured) / noise);
-                    let slope = |l: usize| found.of(l, column.output)[k] * variables[l].slope(values[l]) / noise;
-                    slopes.extend((0..values.len()).map(slope));
-                }
-            }
-            let residuals = DVector::from_vec(residuals);
-            told(&values, residuals.norm() / (count as f64).sqrt());
-            latest.push((x.clone(), found.trajectory.recording.columns));
-            let slopes = DMatrix::from_row_slice(count, values.len(), &slopes);
-            Ok((residuals, slopes))
-        };
-        let fitted =
-            fit(&start, [&bounds[0], &bounds[1]], &sizes, EVALUATIONS, evaluate).map_err(IdentifyError::Start)?;
-        evaluations += fitted.evaluations;
-        if let Some((_, columns)) = latest.into_iter().rev().find(|(x, _)| *x == fitted.x) {
-            models = columns;
-        }
+        let fitted = fit(&start, [&bounds[0], &bounds[1]], &sizes, EVALUATIONS, &mut misfit);
+        let fitted = fitted.map_err(IdentifyError::Start)?;
+        // Of a later fit the start is what the one before has come to.
+        evaluations += fitted.evaluations - usize::from(round > 0);
         start.copy_from(&fitted.x);
-        let found = noise_of(data, &models, &sizes_of_columns);
-        let is_settled = found.iter().zip(&noise).all(|(found, noise)| (found - noise).abs() <= SETTLED * noise);
+        let (_, found) = misfit.latest.as_ref().expect("derivatives are taken at the start");
+        let models = &found.trajectory.columns;
+        let found = noise_of(data, models, &sizes_of_columns);
+        let is_settled = found.iter().zip(&misfit.noise).all(|(found, noise)| (found - noise).abs() <= SETTLED * noise);
         if is_settled || round + 1 == FITS {
             let columns = data.columns.iter().zip(found).map(|(column, noise)| Column {
                 output: column.output,
                 model: models[column.output].values.clone(),
                 noise,
             });
-            return Ok(identified(variables, &fitted, columns.collect(), evaluations));
+            let runs = (evaluations, misfit.derivatives);
+            return Ok(identified(variables, &fitted, columns.collect(), runs));
         }
-        noise = found;
+        misfit.noise = found;
     }
     unreachable!("the last of several fits is given")
 }
@@ -253,7 +316,12 @@ fn noise_of(data: &Data, models: &[bg_model::simulation::Column], sizes: &[f64])
 }
 
 /// What a fit says of the parameters.
-fn identified(variables: &[Variable], fitted: &Fitted, columns: Vec<Column>, evaluations: usize) -> Identified {
+fn identified(
+    variables: &[Variable],
+    fitted: &Fitted,
+    columns: Vec<Column>,
+    (evaluations, derivatives): (usize, usize),
+) -> Identified {
     let (rows, parameters) = fitted.jacobian.shape();
     let names = |part: &(usize, f64)| (variables[part.0].info.name, part.1);
     let norms: Vec<f64> = fitted.jacobian.column_iter().map(|column| column.norm()).collect();
@@ -312,6 +380,7 @@ fn identified(variables: &[Variable], fitted: &Fitted, columns: Vec<Column>, eva
         undetermined: undetermined.iter().map(|parts| parts.iter().map(names).collect()).collect(),
         columns,
         evaluations,
+        derivatives,
         has_converged: fitted.has_converged,
     }
 }

@@ -7,34 +7,14 @@ use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use pulp::NullaryFnOnce;
-
+use super::slopes::Slopes;
 use super::{Both, Scalar};
 
-/// A vector of a machine.
-pub trait Vector: Copy + Debug + 'static {
-    /// Its numbers.
-    type Numbers: Copy + Debug + AsRef<[f64]> + AsMut<[f64]>;
+/// A vector of a machine, with what runs side by side need besides.
+pub trait Vector: Slopes {
     /// What is true in some places.
     type Mask: Copy + Debug + From<bool>;
 
-    /// How many numbers there are.
-    const LANES: usize;
-
-    /// Whether the machine at hand has such vectors: to be asked before there is one.
-    fn is_at_hand() -> bool;
-    /// Calls `of`, compiled for these vectors where it is inlined.
-    fn vectorized<F: NullaryFnOnce>(of: F) -> F::Output;
-
-    /// The vector of these.
-    fn new(numbers: Self::Numbers) -> Self;
-    /// Its numbers.
-    fn numbers(self) -> Self::Numbers;
-    /// All of them `value`.
-    fn filled(value: f64) -> Self;
-    /// The same where there is a vector already, which spares the look at the machine.
-    #[must_use]
-    fn alike(self, value: f64) -> Self;
     /// The mask of these places, the first one the lowest bit.
     fn mask(bits: u8) -> Self::Mask;
     /// The places of a mask.
@@ -44,27 +24,9 @@ pub trait Vector: Copy + Debug + 'static {
     /// The numbers of `yes` where the mask is true, elsewhere those of `no`.
     #[must_use]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// The sum.
-    #[must_use]
-    fn plus(self, other: Self) -> Self;
-    /// The difference.
-    #[must_use]
-    fn minus(self, other: Self) -> Self;
-    /// The product.
-    #[must_use]
-    fn times(self, other: Self) -> Self;
-    /// The quotient.
-    #[must_use]
-    fn over(self, other: Self) -> Self;
     /// The opposite.
     #[must_use]
     fn negated(self) -> Self;
-    /// The magnitudes.
-    #[must_use]
-    fn abs(self) -> Self;
-    /// The larger one of each, that of `other` where one of them is none.
-    #[must_use]
-    fn larger(self, other: Self) -> Self;
     /// The square roots.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -226,7 +188,7 @@ mod machines {
     use pulp::NullaryFnOnce;
     use pulp::x86::{V3, V4};
 
-    use super::Vector;
+    use super::{Slopes, Vector};
 
     /// Places of AVX2: all bits of a number, or none.
     #[derive(Clone, Copy, Debug)]
@@ -254,6 +216,7 @@ mod machines {
         (
             $(#[$doc:meta])* $vector:ident of $lanes:literal: $all:ident of $machine:ident, $mask:ident, $kept:ident;
             { $($of:ident = $operation_set:ident.$operation:ident;)* }
+            $abs:item
             $($own:item)*
         ) => {
             $(#[$doc])*
@@ -279,11 +242,11 @@ mod machines {
                 }
             }
 
-            impl Vector for $vector {
+            impl Slopes for $vector {
                 type Numbers = [f64; $lanes];
-                type Mask = $mask;
 
                 const LANES: usize = $lanes;
+                const MUST_BE_INLINED: bool = true;
 
                 fn is_at_hand() -> bool {
                     $machine::try_new().map(|machine| $kept.get_or_init(|| machine)).is_some()
@@ -314,6 +277,13 @@ mod machines {
                         Self { all: self.machine.$operation_set.$operation(self.all, other.all), ..self }
                     }
                 )*
+                #[inline(always)]
+                $abs
+            }
+
+            impl Vector for $vector {
+                type Mask = $mask;
+
                 $(
                     #[inline(always)]
                     $own
@@ -334,6 +304,9 @@ mod machines {
         larger = avx._mm256_max_pd;
         }
 
+        fn abs(self) -> Self {
+            Self { all: self.machine.avx._mm256_andnot_pd(self.alike(-0.0).all, self.all), ..self }
+        }
         fn mask(bits: u8) -> Mask4 {
             Mask4(pulp::cast(std::array::from_fn::<u64, 4, _>(|lane| if bits >> lane & 1 == 1 { u64::MAX } else { 0 })))
         }
@@ -349,9 +322,6 @@ mod machines {
         }
         fn negated(self) -> Self {
             Self { all: self.machine.avx._mm256_xor_pd(self.all, self.alike(-0.0).all), ..self }
-        }
-        fn abs(self) -> Self {
-            Self { all: self.machine.avx._mm256_andnot_pd(self.alike(-0.0).all, self.all), ..self }
         }
         fn sqrt(self) -> Self {
             Self { all: self.machine.avx._mm256_sqrt_pd(self.all), ..self }
@@ -370,6 +340,9 @@ mod machines {
         larger = avx512f._mm512_max_pd;
         }
 
+        fn abs(self) -> Self {
+            Self { all: self.machine.avx512f._mm512_abs_pd(self.all), ..self }
+        }
         fn mask(bits: u8) -> Mask8 {
             Mask8(bits)
         }
@@ -384,9 +357,6 @@ mod machines {
         }
         fn negated(self) -> Self {
             Self { all: self.machine.avx512dq._mm512_xor_pd(self.all, self.alike(-0.0).all), ..self }
-        }
-        fn abs(self) -> Self {
-            Self { all: self.machine.avx512f._mm512_abs_pd(self.all), ..self }
         }
         fn sqrt(self) -> Self {
             Self { all: self.machine.avx512f._mm512_sqrt_pd(self.all), ..self }

@@ -29,7 +29,7 @@ pub(crate) trait Guarded<const N: usize, const G: usize> {
     /// The state at the part `theta` of the step, not projected. The rates at both ends must be known.
     fn dense(&mut self, theta: f64) -> SVector<f64, N>;
 
-    /// Tries the step with size `h` (s); its end is projected, the rate there is not known.
+    /// Tries the step with size `h` (s); its end is projected until that moves it no more, the rate there is not known.
     fn resize(&mut self, h: f64);
 
     /// Evaluates the rate at the end of the step, which is not later than `latest` (s).
@@ -78,7 +78,7 @@ where
 
     fn resize(&mut self, h: f64) {
         self.attempt(h);
-        self.project();
+        self.settle();
     }
 
     fn close(&mut self, latest: f64) {

@@ -8,7 +8,6 @@ use nalgebra::SVector;
 
 use super::Watch;
 use super::guarded::Guarded;
-use crate::model::scalar::double;
 
 /// How far rounding displaces a sum of some terms, in parts of the largest: the weights of methods go up to 30.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -25,9 +24,9 @@ impl<const G: usize> Watch<G> {
         x: &SVector<f64, N>,
         value: &SVector<f64, G>,
     ) -> [f64; G] {
-        let (start, h) = (*step.start(), step.size());
+        let (start, h) = (step.start(), step.size());
         let moves: [f64; N] = core::array::from_fn(|i| {
-            ROUNDING * irregular(i + 1) * (larger(start.x[i].abs(), x[i].abs()) + (h * start.rate[i]).abs())
+            ROUNDING * Irregular::<N>::FACTORS[i] * (larger(start.x[i].abs(), x[i].abs()) + (h * start.rate[i]).abs())
         });
         let wait = ROUNDING * larger(start.t.abs(), t.abs());
         let mut displaced = |by: f64| step.guards(t + by * wait, &SVector::from_fn(|i, _| x[i] + by * moves[i]));
@@ -56,13 +55,23 @@ impl<const G: usize> Watch<G> {
     }
 }
 
-/// A factor for the state of this number, of size 1/2 to 1: of irregular sizes and signs, so that what states have in common
-/// does not cancel. Source of the sequence: multiples of the golden ratio (Knuth, The Art of Computer Programming 3,
-/// section 6.4).
-fn irregular(number: usize) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let fraction = double::fraction(number as f64 * GOLDEN);
-    if fraction < 0.5 { -0.5 - fraction } else { fraction }
+/// Factors for states, of size 1/2 to 1: of irregular sizes and signs, so that what states have in common does not cancel. Source of the
+/// sequence: multiples of the golden ratio (Knuth, The Art of Computer Programming 3, section 6.4).
+struct Irregular<const N: usize>;
+
+impl<const N: usize> Irregular<N> {
+    const FACTORS: [f64; N] = {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let mut factors = [0.0; N];
+        let mut i = 0;
+        while i < N {
+            let multiple = (i + 1) as f64 * GOLDEN;
+            let fraction = multiple - multiple as u64 as f64;
+            factors[i] = if fraction < 0.5 { -0.5 - fraction } else { fraction };
+            i += 1;
+        }
+        factors
+    };
 }
 
 /// The larger number; `b` where `a` is none.
@@ -72,11 +81,11 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::irregular;
+    use super::Irregular;
 
     #[test]
     fn factors_are_of_both_signs_and_of_sizes_from_a_half_to_one() {
-        let factors: Vec<f64> = (1..=64).map(irregular).collect();
+        let factors = Irregular::<64>::FACTORS;
         assert!(factors.iter().all(|factor| (0.5..=1.0).contains(&factor.abs())));
         let positive = factors.iter().filter(|factor| **factor > 0.0).count();
         assert!((28..=36).contains(&positive), "{positive}");

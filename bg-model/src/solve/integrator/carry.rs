@@ -31,7 +31,7 @@ impl<const N: usize> Carry<N> {
 
     /// The step that was tried last was accepted.
     pub fn advance(&mut self) {
-        core::mem::swap(&mut self.start, &mut self.end);
+        self.start = self.end;
     }
 
     /// Nothing is carried over to the next step.

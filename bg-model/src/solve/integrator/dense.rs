@@ -23,14 +23,14 @@ impl<const N: usize, const C: usize> Polynomial<N, C> {
         Self { coefficients: [SVector::zeros(); C] }
     }
 
-    /// Sets the coefficients that follow from the ends of the step, and those behind them to what `others` gives: a number
-    /// for each coefficient and state, the coefficients counted from the first of these.
+    /// Sets the coefficients that follow from the ends of the step, and those behind them to what `write` writes: it gets the
+    /// coefficients of the ends and the count of the one to be written, from the first behind them.
     pub fn set(
         &mut self,
         start: &Point<N>,
         h: f64,
         end: &Point<N>,
-        others: impl Fn(usize, usize, [f64; FROM_ENDS]) -> f64,
+        write: impl Fn(usize, &[SVector<f64, N>], &mut [f64; N]),
     ) {
         let (ends, behind) = self.coefficients.split_at_mut(FROM_ENDS);
         for i in 0..N {
@@ -40,9 +40,9 @@ impl<const N: usize, const C: usize> Polynomial<N, C> {
             for (coefficient, value) in ends.iter_mut().zip(of_ends) {
                 coefficient.data.0[0][i] = value;
             }
-            for (m, coefficient) in behind.iter_mut().enumerate() {
-                coefficient.data.0[0][i] = others(m, i, of_ends);
-            }
+        }
+        for (m, coefficient) in behind.iter_mut().enumerate() {
+            write(m, ends, &mut coefficient.data.0[0]);
         }
     }
 
@@ -50,10 +50,31 @@ impl<const N: usize, const C: usize> Polynomial<N, C> {
     pub fn evaluate(&self, count: usize, start: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
         let factors = [theta, 1.0 - theta];
         let last = count - 1;
-        for i in 0..N {
-            let at = |m: usize| self.coefficients[m].data.0[0][i];
-            let sum = (0..last).rev().fold(at(last), |sum, m| at(m) + factors[(m + 1) % 2] * sum);
+        let mut sum = self.coefficients[last].data.0[0];
+        for (m, coefficient) in self.coefficients[..last].iter().enumerate().rev() {
+            let factor = factors[(m + 1) % 2];
+            for (sum, at) in sum.iter_mut().zip(&coefficient.data.0[0]) {
+                *sum = at + factor * *sum;
+            }
+        }
+        for (i, sum) in sum.into_iter().enumerate() {
             x.data.0[0][i] = start.x.data.0[0][i] + theta * sum;
         }
     }
+}
+
+/// Writes `h` times a sum of rates, each with its weight, in their order.
+pub(super) fn write_sum<'a, const N: usize>(
+    h: f64,
+    terms: impl Iterator<Item = (f64, &'a SVector<f64, N>)>,
+    out: &mut [f64; N],
+) {
+    // Adding to -0 changes nothing, not even the sign of a zero.
+    out.fill(-0.0);
+    for (weight, rate) in terms {
+        for (out, rate) in out.iter_mut().zip(&rate.data.0[0]) {
+            *out += weight * rate;
+        }
+    }
+    out.iter_mut().for_each(|out| *out *= h);
 }

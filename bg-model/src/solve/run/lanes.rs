@@ -15,6 +15,8 @@ use crate::model::parameters::{ParameterError, Parameters};
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::lanes::{Avx2, Avx512};
 use crate::model::scalar::lanes::{Lanes, Vector};
+#[cfg(target_arch = "x86_64")]
+use crate::model::scalar::slopes::Slopes;
 use crate::model::system::Model;
 use crate::solve::integrator::{AnyMethod, Change, Integrator, Method};
 use crate::solve::simulation::{Span, lanes};

@@ -5,7 +5,7 @@
 use nalgebra::SVector;
 
 use super::jump::jumped;
-use super::step::{Sloped, Steps};
+use super::step::{Sloped, Steps, set_values};
 use super::{Direction, SensitivityError};
 use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;
@@ -14,24 +14,24 @@ use crate::solve::simulation::{Observer, Switching};
 
 /// Some of the directions with the system in numbers that have slopes along them.
 pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
-    system: Li,
+    system: Box<Li>,
     /// The same with slopes of nothing.
-    plain: Li,
+    plain: Box<Li>,
     directions: Vec<Direction>,
-    steps: Box<dyn Steps<N, G>>,
-    /// The last step: its start, its branches, the state there.
+    /// The slopes where the run has come to: some of the directions each.
+    steps: Vec<Box<dyn Steps<N, G>>>,
+    /// The last step: its start, its branches.
     start: f64,
     negative: [bool; G],
-    from: Sloped<N>,
-    /// The state at a sample in it.
-    between: Sloped<N>,
     /// Where the run has come to.
     t: f64,
-    now: Sloped<N>,
-    has_begun: bool,
+    /// The state at the start, until the run has begun.
+    begin: Option<Sloped<N>>,
     error: Option<SensitivityError>,
+    /// The outputs that are asked for.
+    outputs: Vec<usize>,
     /// For each direction and output the derivatives at the samples.
-    pub outputs: Vec<Vec<Vec<f64>>>,
+    pub slopes: Vec<Vec<Vec<f64>>>,
 }
 
 impl<Li, const N: usize, const G: usize, const M: usize> Follower<Li, N, G, M>
@@ -40,18 +40,18 @@ where
 {
     /// From the start of a run at `t0` (s) and the state `x`; `steps` are those of the same system.
     pub fn new(
-        [system, plain]: [Li; 2],
-        steps: Box<dyn Steps<N, G>>,
-        directions: &[Direction],
+        [system, plain]: [Box<Li>; 2],
+        steps: Vec<Box<dyn Steps<N, G>>>,
+        (directions, outputs): (&[Direction], &[usize]),
         t0: f64,
         x: Sloped<N>,
     ) -> Self {
-        let mut now = x;
+        let mut begin = x;
         for (l, direction) in directions.iter().enumerate() {
             if let Direction::Start(state) = direction {
-                let mut slopes = now[*state].slopes();
+                let mut slopes = begin[*state].slopes();
                 slopes[l] += 1.0;
-                now[*state] = Gradient::new(now[*state].value, slopes);
+                begin[*state] = Gradient::new(begin[*state].value, slopes);
             }
         }
         Self {
@@ -61,20 +61,39 @@ where
             steps,
             start: t0,
             negative: [false; G],
-            from: now,
-            between: now,
             t: t0,
-            now,
-            has_begun: false,
+            begin: Some(begin),
             error: None,
-            outputs: vec![vec![Vec::new(); M]; directions.len()],
+            outputs: outputs.to_vec(),
+            slopes: vec![vec![Vec::new(); M]; directions.len()],
         }
+    }
+
+    /// Begins at the first state of the run, which is to be that of the start. Gives whether it has begun.
+    fn has_begun(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) -> bool {
+        let Some(mut start) = self.begin.take() else { return true };
+        if start.iter().zip(x).any(|(start, x)| start.value != *x) {
+            self.error = Some(SensitivityError::ImpactAtStart);
+            return false;
+        }
+        self.system.project(Gradient::from_f64(t), negative, &mut start);
+        set_values(&mut start, x);
+        self.steps.iter_mut().for_each(|steps| steps.set(&start));
+        true
     }
 
     /// The derivatives of the states where the run has come to, for each direction.
     pub fn states(&self) -> Vec<Vec<f64>> {
-        let of = |l: usize| self.now.iter().map(|state| state.slopes()[l]).collect();
+        let now = self.now(&SVector::zeros());
+        let of = |l: usize| now.iter().map(|state| state.slopes()[l]).collect();
         (0..self.directions.len()).map(of).collect()
+    }
+
+    /// The state where the run has come to, of these values.
+    fn now(&self, values: &SVector<f64, N>) -> Sloped<N> {
+        let mut now = values.map(Gradient::from_f64);
+        self.steps.iter().for_each(|steps| steps.write(&mut now));
+        now
     }
 
     /// What the outputs at the samples and the states have come to.
@@ -86,11 +105,6 @@ where
     }
 }
 
-/// The state `x` gets these values.
-fn set<const N: usize>(x: &mut Sloped<N>, values: &SVector<f64, N>) {
-    x.data.0[0].iter_mut().zip(&values.data.0[0]).for_each(|(x, &value)| x.value = value);
-}
-
 impl<Li, const N: usize, const G: usize, const M: usize> Observer<N, G> for Follower<Li, N, G, M>
 where
     Li: Model<Gradient, N, G, M>,
@@ -99,28 +113,22 @@ where
         if self.error.is_some() {
             return;
         }
-        if !std::mem::replace(&mut self.has_begun, true) {
-            if self.now.iter().zip(x).any(|(now, x)| now.value != *x) {
-                self.error = Some(SensitivityError::ImpactAtStart);
+        if !self.has_begun(t, x, negative) {
+            return;
+        }
+        let mut reached = self.now(x);
+        if t != self.t {
+            let (start, branches) = (self.start, &self.negative);
+            if !self.steps.iter_mut().all(|steps| steps.look(branches, start, t, &mut reached)) {
+                self.error = Some(SensitivityError::Inexact { t });
                 return;
             }
-            self.system.project(Gradient::from_f64(t), negative, &mut self.now);
-            set(&mut self.now, x);
         }
-        let Self { system, steps, from, now, between, .. } = self;
-        let reached = if t == self.t {
-            now
-        } else if steps.cross(&self.negative, self.start, t, from, between) {
-            between
-        } else {
-            self.error = Some(SensitivityError::Inexact { t });
-            return;
-        };
-        set(reached, x);
         let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
-        system.outputs(Gradient::from_f64(t), reached, negative, &mut outputs);
-        for (l, columns) in self.outputs.iter_mut().enumerate() {
-            columns.iter_mut().zip(&outputs).for_each(|(column, output)| column.push(output.slopes()[l]));
+        self.system.outputs(Gradient::from_f64(t), &reached, negative, &mut outputs);
+        for &output in &self.outputs {
+            let slopes = outputs[output].slopes();
+            self.slopes.iter_mut().zip(slopes).for_each(|(columns, slope)| columns[output].push(slope));
         }
     }
 
@@ -128,14 +136,11 @@ where
         if self.error.is_some() {
             return;
         }
-        (self.start, self.negative) = (start.t, *negative);
-        std::mem::swap(&mut self.from, &mut self.now);
-        let Self { steps, from, now, .. } = self;
-        set(from, &start.x);
-        if steps.cross(negative, start.t, end.t, from, now) {
-            self.t = end.t;
-            set(now, &end.x);
-        } else {
+        if !self.has_begun(start.t, &start.x, negative) {
+            return;
+        }
+        (self.start, self.negative, self.t) = (start.t, *negative, end.t);
+        if !self.steps.iter_mut().all(|steps| steps.pass(negative, start, end)) {
             self.error = Some(SensitivityError::Inexact { t: start.t });
         }
     }
@@ -144,9 +149,8 @@ where
         if self.error.is_some() {
             return;
         }
-        let Self { system, plain, now, .. } = self;
-        match jumped(system, plain, now, switching) {
-            Some(after) => self.now = after,
+        match jumped(&*self.system, &*self.plain, &self.now(&switching.before.x), switching) {
+            Some(after) => self.steps.iter_mut().for_each(|steps| steps.set(&after)),
             None => {
                 let switch = switching.reached.iter().position(|&reached| reached).unwrap_or_default();
                 let name = self.system.switch_name(switch).unwrap_or("a switch");

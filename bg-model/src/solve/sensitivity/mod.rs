@@ -41,20 +41,21 @@ use nalgebra::SVector;
 use thiserror::Error;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::description::Description;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::Gradient;
 use crate::model::scalar::gradient::GradientIn;
+#[cfg(target_arch = "x86_64")]
+use crate::model::scalar::lanes::{Avx2, Avx512};
 use crate::model::scalar::slopes::{Slopes, WIDTH};
 use crate::model::system::Model;
-use crate::solve::integrator::{Point, Scale};
+use crate::solve::integrator::{Integrator, Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
 use crate::solve::simulation::{Observer, Switching};
 pub use adjoint::{Gradients, Measured, Objective, gradient, gradient_within};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
-use step::{Fastest, Stepper, Steps, among};
+use step::{Stepper, Steps, front};
 
 /// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
 /// the slopes would no longer be the derivatives of these.
@@ -99,7 +100,7 @@ pub struct Sensitivities {
 }
 
 impl Sensitivities {
-    /// The derivative of an output along a direction at each sample, in the output's unit per the direction's.
+    /// The derivative of an output along a direction at each sample, if it was asked for, in the output's unit per the direction's.
     ///
     /// # Panics
     /// There is no such direction or output.
@@ -169,15 +170,41 @@ pub fn sensitivities<Me: Mechanism>(
     request: &Request,
     directions: &[Direction],
 ) -> Result<Sensitivities, SensitivityError> {
+    let all: Vec<usize> = (0..Me::describe().outputs.len()).collect();
+    sensitivities_of(model, request, directions, &all)
+}
+
+/// As [`sensitivities`], with the derivatives of these outputs alone, by their places in the model's description: of the others
+/// [`Sensitivities::of`] is empty.
+///
+/// # Errors
+/// [`SensitivityError`].
+///
+/// # Panics
+/// There is no such output.
+pub fn sensitivities_of<Me: Mechanism>(
+    model: &Me,
+    request: &Request,
+    directions: &[Direction],
+    outputs: &[usize],
+) -> Result<Sensitivities, SensitivityError> {
     let values = model.parameters().values();
-    let following = Following { request, directions, values };
-    model.visit_lifted::<Gradient, GradientIn<Fastest>, _>(following)
+    let following = Following { request, directions, outputs, values };
+    // What has no more directions than fit into a vector of AVX2 gains nothing by wider ones.
+    #[cfg(target_arch = "x86_64")]
+    if directions.len() > Avx2::LANES && Avx512::is_at_hand() {
+        return model.visit_lifted::<Gradient, GradientIn<Avx512>, _>(following);
+    } else if Avx2::is_at_hand() {
+        return model.visit_lifted::<Gradient, GradientIn<Avx2>, _>(following);
+    }
+    model.visit_lifted::<Gradient, Gradient, _>(following)
 }
 
 /// What is done with the model.
 struct Following<'a> {
     request: &'a Request,
     directions: &'a [Direction],
+    outputs: &'a [usize],
     values: Vec<f64>,
 }
 
@@ -200,7 +227,8 @@ fn sloped(values: &[f64], directions: &[Direction]) -> Vec<Gradient> {
     values.iter().enumerate().map(|(index, &value)| Gradient::new(value, slope(index))).collect()
 }
 
-impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
+/// The steps are in the vectors `V`.
+impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
     type Output = Result<Sensitivities, SensitivityError>;
 
     fn visit<Mo, Li, Fa, const N: usize, const G: usize, const M: usize>(
@@ -208,27 +236,28 @@ impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
         model: &Mo,
         _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
-        in_numbers: impl Fn(&Li, fn(Gradient) -> GradientIn<Fastest>) -> Fa,
+        in_numbers: impl Fn(&Li, fn(Gradient) -> GradientIn<V>) -> Fa,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
         Li: Model<Gradient, N, G, M> + 'static,
-        Fa: Model<GradientIn<Fastest>, N, G, M> + 'static,
+        Fa: Model<GradientIn<V>, N, G, M> + 'static,
     {
-        let Description { outputs, .. } = model.description();
         let start = model.start()?;
         let settings = self.request.settings(0.0);
         let scale = Scale::<N>::from(&settings.tolerances);
+        let is_estimated = self.request.method != Integrator::Dop853;
         let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
-            let system = lifted(&sloped(&self.values, chunk))?;
+            let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
             let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
-            let steps: Box<dyn Steps<N, G>> = if Fastest::is_at_hand() {
-                Box::new(Stepper::new(in_numbers(&system, among), scale.clone(), sizes))
-            } else {
-                Box::new(Stepper::new(lifted(&sloped(&self.values, chunk))?, scale.clone(), sizes))
+            let steps = |(k, some): (usize, &[Direction])| -> Result<Box<dyn Steps<N, G>>, ParameterError> {
+                let system = Box::new(in_numbers(&*system(some)?, front));
+                Ok(Box::new(Stepper::new(system, k * V::LANES, is_estimated, (scale.clone(), sizes))))
             };
+            let steps = chunk.chunks(V::LANES).enumerate().map(steps).collect::<Result<_, _>>()?;
+            let (system, plain) = (system(chunk)?, system(&[])?);
             let x = system.start()?;
-            Ok(Follower::new([system, lifted(&sloped(&self.values, &[]))?], steps, chunk, 0.0, x))
+            Ok(Follower::new([system, plain], steps, (chunk, self.outputs), 0.0, x))
         };
         let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);
@@ -237,8 +266,7 @@ impl LiftedVisitor<Gradient, GradientIn<Fastest>> for Following<'_> {
         followers.iter_mut().try_for_each(Follower::check)?;
         let trajectory = outcome?;
         let states = followers.iter().flat_map(Follower::states).collect();
-        let slopes: Vec<Vec<Vec<f64>>> = followers.into_iter().flat_map(|follower| follower.outputs).collect();
-        debug_assert!(slopes.iter().all(|columns| columns.len() == outputs.len()));
+        let slopes = followers.into_iter().flat_map(|follower| follower.slopes).collect();
         Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
     }
 }

@@ -2,41 +2,38 @@
 //!
 //! In: the start of a step that a run has made, a rate that takes numbers with slopes. Out: the state at its end, with slopes.
 //! Method: DOP853 on the state with its slopes, which is the same method on S' = J S + df/dp with the exact J and df/dp of every
-//! stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is. The step is divided into equal parts
-//! until the estimated error of the slopes is what is allowed: for a change of the direction by its size, what is allowed of the
+//! stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is. Steps of another method are divided into
+//! equal parts until the estimated error of the slopes is what is allowed: for a change of the direction by its size, what is allowed of the
 //! state (as in A. C. Hindmarsh and others, SUNDIALS, ACM TOMS 31 (2005), section 2.6).
 //!
-//! A step has vectors of its own: those of the machine, in which nothing else is calculated. All around it is [`Gradient`].
+//! A step has vectors of its own: those of the machine, in which nothing else is calculated, and it keeps the state in them from step to
+//! step. All around it is [`Gradient`].
 
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
 use crate::model::scalar::gradient::GradientIn;
-#[cfg(target_arch = "x86_64")]
-use crate::model::scalar::slopes::Avx2;
-#[cfg(not(target_arch = "x86_64"))]
-use crate::model::scalar::slopes::Everywhere;
 use crate::model::scalar::slopes::{Slopes, WIDTH};
 use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::System;
-use crate::solve::integrator::{DormandPrince, Row, Scale, Tableau, both};
+use crate::solve::integrator::{DormandPrince, Point, Row, Scale, Tableau, both};
 
 /// A state with slopes.
 pub(super) type Sloped<const N: usize> = SVector<Gradient, N>;
 /// The same in the vectors of a step.
 type SlopedIn<V, const N: usize> = SVector<GradientIn<V>, N>;
 
-/// The fastest vectors that a machine of this kind may have.
-#[cfg(target_arch = "x86_64")]
-pub(super) type Fastest = Avx2;
-/// The fastest vectors that a machine of this kind may have.
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) type Fastest = Everywhere;
-
-/// The same number in other vectors.
+/// The slopes from `first` on in other vectors.
 #[inline(always)]
-pub(super) fn among<V: Slopes, W: Slopes>(number: GradientIn<V>) -> GradientIn<W> {
-    GradientIn::new(number.value, number.slopes())
+fn part<V: Slopes>(number: Gradient, first: usize) -> GradientIn<V> {
+    let mut numbers = V::filled(0.0).numbers();
+    numbers.as_mut().copy_from_slice(&number.slopes()[first..first + V::LANES]);
+    GradientIn::new(number.value, numbers)
+}
+
+/// The first slopes in other vectors.
+pub(super) fn front<V: Slopes>(number: Gradient) -> GradientIn<V> {
+    part(number, 0)
 }
 
 /// The stages of a step.
@@ -46,20 +43,43 @@ const MOST_PARTS: u32 = 1 << 16;
 /// Errors below this let the next step have half as many parts: a twofold step errs 2^8 times as much.
 const SMALL: f64 = 1.0 / 512.0;
 
-/// Steps of a system, whatever its vectors.
+/// A state that follows the steps of a run, whatever its vectors. It has some of the slopes of a [`Gradient`].
 pub(super) trait Steps<const N: usize, const G: usize> {
-    /// Writes the state at the time `to` (s), from `x` at `from`, into `end`, projected, in the branches `negative`. Gives whether it
+    /// Has come to the state `x`.
+    fn set(&mut self, x: &Sloped<N>);
+
+    /// Writes the slopes of where it has come to into `x`.
+    fn write(&self, x: &mut Sloped<N>);
+
+    /// Goes on by a step of the run, from one state to the other, whose values it takes, in the branches `negative`. Gives whether it
     /// did: not where the slopes stay too inexact or are not finite.
-    fn cross(&mut self, negative: &[bool; G], from: f64, to: f64, x: &Sloped<N>, end: &mut Sloped<N>) -> bool;
+    fn pass(&mut self, negative: &[bool; G], start: &Point<N>, end: &Point<N>) -> bool;
+
+    /// Writes the slopes at the time `to` (s) inside the last step, which started at `from`, into `x`. Gives whether it did.
+    fn look(&mut self, negative: &[bool; G], from: f64, to: f64, x: &mut Sloped<N>) -> bool;
 }
 
 /// The method with its work space.
 #[derive(Debug)]
 pub(super) struct Stepper<V, Sys, const N: usize> {
-    system: Sys,
+    system: Box<Sys>,
+    /// The place of its first slope.
+    first: usize,
+    /// The state at the start of the last step, at its end, and at a sample in it.
+    from: Box<SlopedIn<V, N>>,
+    now: Box<SlopedIn<V, N>>,
+    between: Box<SlopedIn<V, N>>,
+    work: Work<V, N>,
+}
+
+/// What a step is made with.
+#[derive(Debug)]
+struct Work<V, const N: usize> {
     k: Box<Stages<V, N>>,
     /// The parts of the last step.
     parts: u32,
+    /// Whether errors are estimated: not where the run's steps are of the same method.
+    is_estimated: bool,
     /// What is allowed of a state.
     scale: Scale<N>,
     /// The size of each direction, in its unit.
@@ -74,34 +94,113 @@ struct Stages<V, const N: usize> {
 }
 
 impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
-    pub fn new(system: Sys, scale: Scale<N>, sizes: [f64; WIDTH]) -> Self {
-        let k = Box::new(Stages { values: [[0.0; N]; STAGES], slopes: [[V::new([0.0; WIDTH]); N]; STAGES] });
-        Self { system, k, parts: 1, scale, sizes: V::new(sizes) }
+    /// Steps of this system, whose slopes are those from `first` on. Errors, where they are estimated, are measured with
+    /// the scale of the states and the sizes of all directions.
+    pub fn new(system: Box<Sys>, first: usize, is_estimated: bool, (scale, sizes): (Scale<N>, [f64; WIDTH])) -> Self {
+        let nothing: Box<SlopedIn<V, N>> = Box::new(SVector::repeat(GradientIn::from_f64(0.0)));
+        let k = Box::new(Stages { values: [[0.0; N]; STAGES], slopes: [[V::filled(0.0); N]; STAGES] });
+        let sizes = part(Gradient::new(0.0, sizes), first).slopes;
+        let work = Work { k, parts: 1, is_estimated, scale, sizes };
+        Self { system, first, from: nothing.clone(), now: nothing.clone(), between: nothing, work }
+    }
+}
+
+/// The state `x` gets these values.
+pub(super) fn set_values<V, const N: usize>(x: &mut SlopedIn<V, N>, values: &SVector<f64, N>) {
+    x.data.0[0].iter_mut().zip(&values.data.0[0]).for_each(|(x, &value)| x.value = value);
+}
+
+/// Writes slopes to their places in `x`.
+fn write<V: Slopes, const N: usize>(slopes: &SlopedIn<V, N>, first: usize, x: &mut Sloped<N>) {
+    for (x, state) in x.iter_mut().zip(slopes) {
+        let mut all = x.slopes();
+        all[first..first + V::LANES].copy_from_slice(state.slopes().as_ref());
+        *x = Gradient::new(x.value, all);
+    }
+}
+
+impl<V, Sys, const N: usize, const G: usize> Steps<N, G> for Stepper<V, Sys, N>
+where
+    V: Slopes,
+    Sys: System<GradientIn<V>, N, G>,
+{
+    fn set(&mut self, x: &Sloped<N>) {
+        *self.now = x.map(|number| part(number, self.first));
     }
 
+    fn write(&self, x: &mut Sloped<N>) {
+        write(&self.now, self.first, x);
+    }
+
+    fn pass(&mut self, negative: &[bool; G], start: &Point<N>, end: &Point<N>) -> bool {
+        let Self { system, from, now, work, .. } = self;
+        let system = &**system;
+        core::mem::swap(from, now);
+        set_values(from, &start.x);
+        let is_exact = V::vectorized(Crossing { work, system, negative, span: [start.t, end.t], x: from, end: now });
+        set_values(now, &end.x);
+        is_exact
+    }
+
+    fn look(&mut self, negative: &[bool; G], from: f64, to: f64, x: &mut Sloped<N>) -> bool {
+        let Self { system, first, from: start, between, work, .. } = self;
+        let system = &**system;
+        let crossing = Crossing { work, system, negative, span: [from, to], x: start, end: between };
+        let is_exact = V::vectorized(crossing);
+        write(between, *first, x);
+        is_exact
+    }
+}
+
+/// A step, to be compiled for vectors.
+struct Crossing<'a, V, Sys, const N: usize, const G: usize> {
+    work: &'a mut Work<V, N>,
+    system: &'a Sys,
+    negative: &'a [bool; G],
+    /// From when to when, s.
+    span: [f64; 2],
+    x: &'a SlopedIn<V, N>,
+    end: &'a mut SlopedIn<V, N>,
+}
+
+impl<V, Sys, const N: usize, const G: usize> NullaryFnOnce for Crossing<'_, V, Sys, N, G>
+where
+    V: Slopes,
+    Sys: System<GradientIn<V>, N, G>,
+{
+    type Output = bool;
+
     #[inline(always)]
-    fn crossed<const G: usize>(
+    fn call(self) -> bool {
+        let Self { work, system, negative, span, x, end } = self;
+        work.cross(system, negative, span, x, end)
+    }
+}
+
+impl<V: Slopes, const N: usize> Work<V, N> {
+    /// Writes the state at the end of the time `from`..`to` (s), at whose start it is `x`, into `end`, projected.
+    #[inline(always)]
+    fn cross<Sys, const G: usize>(
         &mut self,
+        system: &Sys,
         negative: &[bool; G],
-        from: f64,
-        to: f64,
-        x: &Sloped<N>,
-        end: &mut Sloped<N>,
+        [from, to]: [f64; 2],
+        x: &SlopedIn<V, N>,
+        end: &mut SlopedIn<V, N>,
     ) -> bool
     where
         Sys: System<GradientIn<V>, N, G>,
     {
         while self.parts <= MOST_PARTS {
             let h = (to - from) / f64::from(self.parts);
-            let mut state: SlopedIn<V, N> = x.map(among);
-            let mut worst = 0.0_f64;
-            for part in 0..self.parts {
-                let t = from + f64::from(part) * h;
-                let error = self.attempt(negative, t, h, &mut state);
-                worst = if error <= worst { worst } else { error };
+            let mut worst = self.attempt(system, negative, from, h, x, end);
+            for part in 1..self.parts {
                 if worst.is_nan() || worst > 1.0 {
                     break;
                 }
+                let (t, begin) = (from + f64::from(part) * h, *end);
+                let error = self.attempt(system, negative, t, h, &begin, end);
+                worst = if error <= worst { worst } else { error };
             }
             if worst <= 1.0 {
                 if worst < SMALL && self.parts > 1 {
@@ -109,11 +208,10 @@ impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
                 }
                 let to = GradientIn::from_f64(to);
                 if V::MUST_BE_INLINED {
-                    self.system.inlined_project(to, negative, &mut state);
+                    system.inlined_project(to, negative, end);
                 } else {
-                    self.system.project(to, negative, &mut state);
+                    system.project(to, negative, end);
                 }
-                *end = state.map(among);
                 return true;
             }
             self.parts *= 2;
@@ -121,60 +219,77 @@ impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
         false
     }
 
-    /// Replaces the state by that at the end of one part; gives the norm of its slopes' error.
+    /// Writes the state at the end of one part, at whose start it is `x`, into `end`; gives the norm of its slopes' error.
     #[inline(always)]
-    fn attempt<const G: usize>(&mut self, negative: &[bool; G], t: f64, h: f64, x: &mut SlopedIn<V, N>) -> f64
+    fn attempt<Sys, const G: usize>(
+        &mut self,
+        system: &Sys,
+        negative: &[bool; G],
+        t: f64,
+        h: f64,
+        x: &SlopedIn<V, N>,
+        end: &mut SlopedIn<V, N>,
+    ) -> f64
     where
         Sys: System<GradientIn<V>, N, G>,
     {
-        let mut state = *x;
-        let mut rate = state;
+        let none = GradientIn { value: 0.0, slopes: self.sizes.alike(0.0) };
+        let mut rate = SVector::repeat(none);
         for stage in 0..STAGES {
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage => self.k.move_by(x, h, const { DormandPrince::A[$stage] }, &mut state), )*
+                        $( $stage => self.k.move_by(x, h, const { DormandPrince::A[$stage] }, end), )*
                         _ => {}
                     }
                 };
             }
             written_out!(1 2 3 4 5 6 7 8 9 10 11);
-            let t = GradientIn::from_f64(t + DormandPrince::C[stage] * h);
+            let (t, state) =
+                (GradientIn::from_f64(t + DormandPrince::C[stage] * h), if stage == 0 { x } else { &*end });
             if V::MUST_BE_INLINED {
-                self.system.always_inlined_rate(t, &state, negative, &mut rate);
+                system.always_inlined_rate(t, state, negative, &mut rate);
             } else {
-                self.system.rate(t, &state, negative, &mut rate);
+                system.rate(t, state, negative, &mut rate);
             }
             self.k.store(stage, &rate);
         }
-        self.k.move_by(x, h, DormandPrince::B, &mut state);
-        let error = self.error(h, x, &state);
-        x.copy_from(&state);
-        error
+        self.k.move_by(x, h, DormandPrince::B, end);
+        if !self.is_finite(end) {
+            f64::NAN
+        } else if self.is_estimated {
+            self.error(h, x, end)
+        } else {
+            0.0
+        }
     }
 
-    /// The norm of the slopes' error: DOP853's, of its two differences to embedded methods. Not a number where a slope is none.
+    /// Whether all slopes are.
+    #[inline(always)]
+    fn is_finite(&self, x: &SlopedIn<V, N>) -> bool {
+        let [x] = &x.data.0;
+        let nothing = x.iter().fold(self.sizes.alike(0.0), |sum, x| sum.plus(x.slopes.minus(x.slopes)));
+        nothing.numbers().as_ref().iter().all(|&number| number == 0.0)
+    }
+
+    /// The norm of the slopes' error: DOP853's, of its two differences to embedded methods.
     #[inline(always)]
     fn error(&self, h: f64, start: &SlopedIn<V, N>, end: &SlopedIn<V, N>) -> f64 {
-        let none = self.sizes.filled(0.0);
-        let (mut first, mut second, mut watched) = (none, none, none);
+        let none = self.sizes.alike(0.0);
+        let (mut first, mut second) = (none, none);
         for i in 0..N {
             let (from, to) = (&start.data.0[0][i], &end.data.0[0][i]);
             let error = self.k.slope(DormandPrince::ERROR, i);
             // The step's own mean slope, less that of the method of order 3.
-            let other = to.slopes.minus(from.slopes).minus(self.k.slope(DormandPrince::SECOND, i).times(h));
-            let changed = from.slopes.abs().max(to.slopes.abs()).times_each(self.sizes);
+            let other = to.slopes.minus(from.slopes).minus(self.k.slope(DormandPrince::SECOND, i).scaled(h));
+            let changed = from.slopes.abs().larger(to.slopes.abs()).times(self.sizes);
             let (absolute, relative) = (self.scale.absolute.data.0[0][i], self.scale.relative);
-            let size = changed.max(self.sizes.filled(to.value.abs())).times(relative);
-            let part = self.sizes.over_each(self.sizes.filled(absolute).plus(size));
-            first = first.max(error.abs().times_each(part));
-            second = second.max(other.abs().times_each(part));
-            watched = watched.plus(other.minus(other));
+            let size = changed.larger(none.alike(to.value.abs())).scaled(relative);
+            let part = self.sizes.over(none.alike(absolute).plus(size));
+            first = first.larger(error.abs().times(part));
+            second = second.larger(other.abs().times(part));
         }
-        if watched.numbers() != [0.0; WIDTH] {
-            return f64::NAN;
-        }
-        let [first, second] = [first, second].map(|of| of.numbers().into_iter().fold(0.0, f64::max));
+        let [first, second] = [first, second].map(|of| of.numbers().as_ref().iter().copied().fold(0.0, f64::max));
         both(h.abs(), first, second / h.abs())
     }
 }
@@ -197,7 +312,7 @@ impl<V: Slopes, const N: usize> Stages<V, N> {
         }
         for (i, moved) in moved.data.0[0].iter_mut().enumerate() {
             let x = &x.data.0[0][i];
-            let slopes = x.slopes.plus(self.slope(row, i).times(h));
+            let slopes = x.slopes.plus(self.slope(row, i).scaled(h));
             *moved = GradientIn { value: x.value + h * values[i], slopes };
         }
     }
@@ -206,41 +321,7 @@ impl<V: Slopes, const N: usize> Stages<V, N> {
     #[inline(always)]
     fn slope(&self, row: Row, i: usize) -> V {
         let (&(stage, weight), others) = row.split_first().expect("a combination has a stage");
-        let first = self.slopes[stage][i].times(weight);
-        others.iter().fold(first, |sum, &(stage, weight)| sum.plus(self.slopes[stage][i].times(weight)))
-    }
-}
-
-impl<V, Sys, const N: usize, const G: usize> Steps<N, G> for Stepper<V, Sys, N>
-where
-    V: Slopes,
-    Sys: System<GradientIn<V>, N, G>,
-{
-    fn cross(&mut self, negative: &[bool; G], from: f64, to: f64, x: &Sloped<N>, end: &mut Sloped<N>) -> bool {
-        V::vectorized(Crossing { stepper: self, negative, from, to, x, end })
-    }
-}
-
-/// A step, to be compiled for vectors.
-struct Crossing<'a, V, Sys, const N: usize, const G: usize> {
-    stepper: &'a mut Stepper<V, Sys, N>,
-    negative: &'a [bool; G],
-    from: f64,
-    to: f64,
-    x: &'a Sloped<N>,
-    end: &'a mut Sloped<N>,
-}
-
-impl<V, Sys, const N: usize, const G: usize> NullaryFnOnce for Crossing<'_, V, Sys, N, G>
-where
-    V: Slopes,
-    Sys: System<GradientIn<V>, N, G>,
-{
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        let Self { stepper, negative, from, to, x, end } = self;
-        stepper.crossed(negative, from, to, x, end)
+        let first = self.slopes[stage][i].scaled(weight);
+        others.iter().fold(first, |sum, &(stage, weight)| sum.plus(self.slopes[stage][i].scaled(weight)))
     }
 }

@@ -184,9 +184,12 @@ where
             }
             if error <= 1.0 && is_finite(&self.stepper.end.x) {
                 let is_near = self.project() || !self.pace.is_adaptive();
+                // Ahead of the rate, for neither to wait for the other.
+                let mut next = self.pace.clone();
+                next.accept(t_new, h, error);
                 self.stepper.evaluate_end();
                 if is_near && is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
-                    self.pace.accept(t_new, h, error);
+                    self.pace = next;
                     return Ok(());
                 }
             }

@@ -13,6 +13,9 @@ use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_
 use crate::solve::statistics::Statistics;
 use frozen::Frozen;
 
+/// How far a projection may move a state, in its unit or in parts of it, for the next one, whose change is the square, to be lost in
+/// rounding.
+const SETTLED: f64 = 1e-8;
 /// What rounding may leave of a projection, beside what another rounding of the same state changes.
 const ROUNDING: f64 = 10.0;
 
@@ -87,6 +90,14 @@ where
         let moved = self.project_state(t, &mut x);
         self.end.x = x;
         moved
+    }
+
+    /// The same until it moves no more. What one of Newton's steps leaves is below the tolerances, but not below what a guard at zero
+    /// is known by: another projection would move a state at an event to either side of it.
+    pub fn settle(&mut self) {
+        const MOST: usize = 4;
+        let allowed = self.scale.relative.max(self.scale.absolute.amax());
+        let _ = (0..MOST).find(|_| self.project() * allowed <= SETTLED);
     }
 
     /// The same with any state, at time `t` (s).

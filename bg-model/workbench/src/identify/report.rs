@@ -15,11 +15,12 @@ const STRONG: f64 = 0.95;
 pub fn text(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> String {
     let end = if found.has_converged { "converged" } else { "did not converge" };
     let mut text = format!(
-        "{} parameters from {} values in {} columns: {end} after {} runs with derivatives\n\n{}",
+        "{} parameters from {} values in {} columns: {end} after {} runs, {} of them with derivatives\n\n{}",
         found.estimates.len(),
         data.count(),
         data.columns.len(),
         found.evaluations,
+        found.derivatives,
         parameters(found)
     );
     for estimate in found.estimates.iter().filter(|estimate| estimate.is_held) {

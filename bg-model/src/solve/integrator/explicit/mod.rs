@@ -25,7 +25,7 @@ pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
 
 use super::carry::Carry;
-use super::dense::{FROM_ENDS, Polynomial};
+use super::dense::{FROM_ENDS, Polynomial, write_sum};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
@@ -161,12 +161,12 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         stages: Range<usize>,
         completed: &mut impl Complete<N>,
     ) {
+        let mut x = start.x;
         for stage in stages {
-            let mut x = start.x;
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage if $stage < T::A.len() => self.add_stages::<$stage>(h, &mut x), )*
+                        $( $stage if $stage < T::A.len() => self.reach::<$stage>(start, h, &mut x), )*
                         _ => unreachable!("a tableau has fewer stages than there is room for"),
                     }
                 };
@@ -182,11 +182,12 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         }
     }
 
-    /// Adds to the state `x` at the start of the step what leads to the one of a stage.
+    /// Writes the state of a stage, without what completes it.
     #[inline(always)]
-    fn add_stages<const STAGE: usize>(&self, h: f64, x: &mut SVector<f64, N>) {
-        for (i, x) in x.data.0[0].iter_mut().enumerate() {
-            *x += h * combine(T::A[STAGE], &self.k, i);
+    fn reach<const STAGE: usize>(&self, start: &Point<N>, h: f64, x: &mut SVector<f64, N>) {
+        let (start, x) = (&start.x.data.0[0], &mut x.data.0[0]);
+        for i in 0..N {
+            x[i] = start[i] + h * combine(T::A[STAGE], &self.k, i);
         }
     }
 
@@ -354,7 +355,9 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         self.k[T::END] = end.rate;
         self.evaluate::<false>(flow, start, h, T::END + 1..T::A.len(), &mut ());
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
-        self.polynomial.set(start, h, end, |m, i, _| h * combine(row(m), &self.k, i));
+        self.polynomial.set(start, h, end, |m, _, out| {
+            write_sum(h, row(m).iter().map(|&(stage, weight)| (weight, &self.k[stage])), out);
+        });
     }
 
     fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {

@@ -8,7 +8,7 @@ use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
 use super::Nystrom;
-use super::ring::DISPLACEMENT;
+use super::ring::Pull;
 use super::stages::{Begin, Forces, Stages};
 use crate::model::capability::SecondOrder;
 use crate::model::scalar::Scalar;
@@ -124,30 +124,15 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
     {
         let states = side.second();
         let zero = t.alike(0.0);
-        let mut largest = zero;
-        for i in states.clone() {
-            largest = x.data.0[0][i].abs().larger(largest);
-        }
-        let size = largest.larger(t.alike(DISPLACEMENT)).times(DISPLACEMENT);
-        let (mut displaced, mut second, mut moved) = (*x, *rate, *rate);
-        for i in 0..N {
-            displaced.data.0[0][i] = x.data.0[0][i] + self.direction.data.0[0][i] * size;
-        }
-        side.at_start(x, &mut second);
-        side.rate(t, &displaced, &mut moved);
-        side.at_start(&displaced, &mut moved);
-        let mut change = [zero; N];
-        for i in states.clone() {
-            change[i] = moved.data.0[0][i] - second.data.0[0][i];
-        }
-        let length = length(&change);
-        let stiffness = length / size;
+        let second_derivatives = |x: &_, dx: &mut _| side.at_start(x, dx);
+        let pull = Pull::along(&self.direction, &states, (x, rate), second_derivatives, |x, dx| side.rate(t, x, dx));
+        let stiffness = pull.stiffness;
         let infinity = t.alike(f64::INFINITY);
         let is_finite = V::below(stiffness.abs().0, infinity.0);
         let is_stiff = V::below(zero.0, stiffness.0);
         let is_found = V::mask(V::bits(due) & V::bits(is_finite));
         for i in states {
-            let new = Lanes::select(is_stiff, change[i] / length, zero);
+            let new = Lanes::select(is_stiff, pull.direction(i), zero);
             self.direction.data.0[0][i] = Lanes::select(is_found, new, self.direction.data.0[0][i]);
         }
         stiffness
@@ -174,41 +159,6 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
     }
 }
 
-#[inline(always)]
-fn square<S: Scalar>(of: S) -> S {
-    of * of
-}
-
-/// The length of a vector, its squares summed in the order in which [`SVector::norm`] does.
-#[inline(always)]
-fn length<S: Scalar, const N: usize>(of: &[S; N]) -> S {
-    const SIDE_BY_SIDE: usize = 8;
-    let zero = of[0].alike(0.0);
-    if N == 2 {
-        return (square(of[0]) + square(of[1])).sqrt();
-    }
-    if N == 3 {
-        return (square(of[0]) + square(of[1]) + square(of[2])).sqrt();
-    }
-    if N == 4 {
-        return ((square(of[0]) + square(of[2])) + (square(of[1]) + square(of[3]))).sqrt();
-    }
-    let mut sums = [zero; SIDE_BY_SIDE];
-    let whole = N / SIDE_BY_SIDE * SIDE_BY_SIDE;
-    for i in 0..whole {
-        sums[i % SIDE_BY_SIDE] = sums[i % SIDE_BY_SIDE] + square(of[i]);
-    }
-    let half = SIDE_BY_SIDE / 2;
-    let mut sum = zero;
-    for i in 0..half {
-        sum = sum + (sums[i] + sums[i + half]);
-    }
-    for &rest in &of[whole..] {
-        sum = sum + square(rest);
-    }
-    sum.sqrt()
-}
-
 impl<const N: usize> Nystrom<N> {
     /// What the method knows of the flow: the direction of the fastest oscillation.
     pub(crate) fn direction(&self) -> &SVector<f64, N> {
@@ -230,27 +180,5 @@ impl<const N: usize> Nystrom<N> {
     /// The error norm that keeps a step of size `h` (s) where the fastest oscillation is stable.
     pub(crate) fn reach(&self, h: f64) -> f64 {
         self.ring.reach(h)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn lengths<const N: usize>() {
-        let of: [f64; N] = std::array::from_fn(|i| (0.7 + i as f64).sqrt() - 2.3);
-        assert_eq!(length(&of).to_bits(), SVector::from(of).norm().to_bits(), "{N}");
-    }
-
-    #[test]
-    fn a_length_is_that_of_nalgebra() {
-        lengths::<1>();
-        lengths::<2>();
-        lengths::<3>();
-        lengths::<4>();
-        lengths::<5>();
-        lengths::<8>();
-        lengths::<29>();
-        lengths::<81>();
     }
 }

@@ -21,7 +21,7 @@ use core::ops::Range;
 use crate::solve::integrator::Arch;
 use nalgebra::SVector;
 
-use super::dense::{FROM_ENDS, Polynomial};
+use super::dense::{FROM_ENDS, Polynomial, write_sum};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl};
@@ -171,14 +171,14 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         self.stages.k[END].0 = end.rate;
         OfFlow(flow).at_start(&end.x, &mut self.stages.k[END].0);
         let Self { stages: Stages { k }, second, polynomial, .. } = self;
-        polynomial.set(start, h, end, |m, i, [_, first, third]| {
-            if second.contains(&i) {
+        polynomial.set(start, h, end, |m, ends, out| {
+            write_sum(h, DENSE[m].iter().copied().zip(k.iter().map(|k| &k.0)), out);
+            for i in second.clone() {
+                let [first, third] = [1, 2].map(|m| ends[m].data.0[0][i]);
                 // The polynomial of degree 5 through the second derivatives at both ends, too.
                 let [before, behind] = [k[0].0[i], k[END].0[i]].map(|second| 0.5 * h * h * second);
                 let at_start = before + first - third;
-                if m == 0 { at_start } else { behind + first + 2.0 * third - at_start }
-            } else {
-                h * DENSE[m].iter().zip(k.iter()).map(|(weight, k)| weight * k.0[i]).sum::<f64>()
+                out[i] = if m == 0 { at_start } else { behind + first + 2.0 * third - at_start };
             }
         });
     }

@@ -11,6 +11,7 @@ use nalgebra::SVector;
 
 use super::tableau;
 use crate::model::capability::SecondOrder;
+use crate::model::scalar::Scalar;
 use crate::model::scalar::double::{fraction, power, root};
 use crate::solve::integrator::{Flow, Point};
 
@@ -19,7 +20,7 @@ const FIRST_STEPS: u32 = 8;
 /// Steps between iterations later on.
 const PAUSE: u32 = 4;
 /// The size of the trial displacement, in parts of the largest position.
-pub(super) const DISPLACEMENT: f64 = 1e-7;
+const DISPLACEMENT: f64 = 1e-7;
 /// The fractional part of the golden ratio: its multiples lie evenly, so that no oscillation of equal parts has no share in them.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -34,6 +35,64 @@ pub(super) struct Ring<const N: usize> {
     steps: u32,
     /// Whether the present step has been looked at.
     is_done: bool,
+}
+
+/// What pulls back along a direction.
+#[derive(Clone, Debug)]
+pub(super) struct Pull<S, const N: usize> {
+    /// Its strength, rad^2/s^2.
+    pub stiffness: S,
+    /// The change of the second derivatives in a trial displacement, and its length.
+    change: [S; N],
+    length: S,
+}
+
+impl<S: Scalar, const N: usize> Pull<S, N> {
+    /// What pulls back along `direction` at a state with its rate, by what writes the rates of a state and what replaces the rates of
+    /// `states` by their second derivatives.
+    #[inline(always)]
+    pub fn along(
+        direction: &SVector<S, N>,
+        states: &Range<usize>,
+        (x, rate): (&SVector<S, N>, &SVector<S, N>),
+        second_derivatives: impl Fn(&SVector<S, N>, &mut SVector<S, N>),
+        write_rates: impl Fn(&SVector<S, N>, &mut SVector<S, N>),
+    ) -> Self {
+        let zero = x.data.0[0][0].alike(0.0);
+        let largest = states.clone().fold(zero, |largest, i| x.data.0[0][i].abs().larger(largest));
+        let size = largest.larger(zero.alike(DISPLACEMENT)).times(DISPLACEMENT);
+        let (mut displaced, mut before, mut behind) = (*x, *rate, *rate);
+        for i in states.clone() {
+            displaced.data.0[0][i] = x.data.0[0][i] + direction.data.0[0][i] * size;
+        }
+        second_derivatives(x, &mut before);
+        write_rates(&displaced, &mut behind);
+        second_derivatives(&displaced, &mut behind);
+        let mut change = [zero; N];
+        for i in states.clone() {
+            change[i] = behind.data.0[0][i] - before.data.0[0][i];
+        }
+        let length = length(&change);
+        Self { stiffness: length / size, change, length }
+    }
+
+    /// The part of state `i` in the direction in which it pulls.
+    #[inline(always)]
+    pub fn direction(&self, i: usize) -> S {
+        self.change[i] / self.length
+    }
+}
+
+/// The length of a vector; its squares are summed side by side, for none to wait for another.
+#[inline(always)]
+fn length<S: Scalar, const N: usize>(of: &[S; N]) -> S {
+    const SIDE_BY_SIDE: usize = 8;
+    let mut sums = [of[0].alike(0.0); SIDE_BY_SIDE];
+    for (i, &entry) in of.iter().enumerate() {
+        sums[i % SIDE_BY_SIDE] = sums[i % SIDE_BY_SIDE] + entry * entry;
+    }
+    let [first, others @ ..] = sums;
+    others.into_iter().fold(first, |sum, other| sum + other).sqrt()
 }
 
 impl<const N: usize> Ring<N> {
@@ -62,26 +121,30 @@ impl<const N: usize> Ring<N> {
         if !self.is_due() {
             return;
         }
-        let masked =
-            |x: &SVector<f64, N>| SVector::<f64, N>::from_fn(|i, _| if states.contains(&i) { x[i] } else { 0.0 });
         if self.begins() {
-            // What rang before the branch changed, and a share of everything else.
-            let any = SVector::<f64, N>::from_fn(|i, _| 1.0 + fraction(GOLDEN * i as f64));
-            self.direction = (self.direction + masked(&any).normalize()).normalize();
+            self.begin(states);
         }
-        let size = DISPLACEMENT * masked(&point.x).amax().max(DISPLACEMENT);
-        let x = point.x + self.direction * size;
-        let (mut moved, mut second) = (SVector::zeros(), point.rate);
-        second_order.second_derivatives(&point.x, &mut second);
+        let Point { t, x, rate } = point;
+        let second_derivatives = |x: &_, dx: &mut _| second_order.second_derivatives(x, dx);
         // Not `SecondOrder::forces`, which may round otherwise: their difference is small.
-        flow.rate(point.t, &x, &mut moved);
-        second_order.second_derivatives(&x, &mut moved);
-        let change = masked(&(moved - second));
-        let stiffness = change.norm() / size;
+        let pull = Pull::along(&self.direction, states, (x, rate), second_derivatives, |x, dx| flow.rate(*t, x, dx));
+        let stiffness = pull.stiffness;
         if stiffness.is_finite() {
-            self.direction = if stiffness > 0.0 { change.normalize() } else { SVector::zeros() };
+            self.direction = SVector::zeros();
+            for i in states.clone().filter(|_| stiffness > 0.0) {
+                self.direction[i] = pull.direction(i);
+            }
         }
         self.found(stiffness);
+    }
+
+    /// The direction of what rang before the branch changed, and a share of everything else.
+    fn begin(&mut self, states: &Range<usize>) {
+        let mut any = SVector::<f64, N>::zeros();
+        for i in states.clone() {
+            any[i] = 1.0 + fraction(GOLDEN * i as f64);
+        }
+        self.direction = (self.direction + any.normalize()).normalize();
     }
 
     /// Whether it is time to iterate.
@@ -105,5 +168,23 @@ impl<const N: usize> Ring<N> {
     /// The error norm that holds a step of size `h` (s) to where the oscillation is stable.
     pub fn reach(&self, h: f64) -> f64 {
         power(h * self.frequency / tableau::REACH, tableau::ERROR_ORDER as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_that_of_nalgebra<const N: usize>() {
+        let of: [f64; N] = core::array::from_fn(|i| root(0.7 + i as f64) - 2.3);
+        let expected = SVector::from(of).norm();
+        assert!((length(&of) - expected).abs() <= 4.0 * f64::EPSILON * expected, "{N}");
+    }
+
+    #[test]
+    fn lengths() {
+        is_that_of_nalgebra::<1>();
+        is_that_of_nalgebra::<8>();
+        is_that_of_nalgebra::<29>();
     }
 }

@@ -111,12 +111,12 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
         self.evaluate(forces, second, from);
         self.reach::<END>(second, 1.0, from, end);
         let h = from.h;
+        let (start, reached) = (&from.x.data.0[0], &end.data.0[0]);
+        let part = |i: usize, sum: S| (h * sum / scale.allowed(i, start[i], reached[i])).abs();
         let mut errors = [h.alike(0.0); N];
-        for (i, error) in errors.iter_mut().enumerate() {
-            let sum =
-                if second.contains(&i) { h * self.combine(SECOND[ERROR], i) } else { self.combine(FIRST[ERROR], i) };
-            *error = (h * sum / scale.allowed(i, from.x.data.0[0][i], end.data.0[0][i])).abs();
-        }
+        let of_first = (0..second.start).chain(second.end..N);
+        of_first.for_each(|i| errors[i] = part(i, self.combine(FIRST[ERROR], i)));
+        second.clone().for_each(|i| errors[i] = part(i, h * self.combine(SECOND[ERROR], i)));
         errors
     }
 }
