@@ -172,12 +172,11 @@ impl Pass {
     /// The name in those of its parts, and what these are handed: declared, and in the body of `expand`.
     fn arguments(self, reads: &Reads) -> (&'static str, Vec<[TokenStream; 2]>) {
         let [n, g] = reads.shape;
-        let mut arguments = vec![[quote!(at: S), quote!(at)]];
+        let mut arguments = vec![[quote!(at: S), quote!(at)], [quote!(negative: &[S::Switch; #g]), quote!(negative)]];
         if let Self::Start { places } | Self::Order { places, .. } = self {
             arguments.extend([
                 [quote!(t: S), quote!(t)],
                 [quote!(x: &[S; #n]), quote!(x)],
-                [quote!(negative: &[S::Switch; #g]), quote!(negative)],
                 [quote!(k: usize), quote!(k)],
                 [quote!(rows: &mut [[S; #places]]), quote!(rows)],
             ]);
