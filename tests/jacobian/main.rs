@@ -7,14 +7,13 @@
 use bg_model::bond_graph;
 use bg_model::capability::{Elimination, Linearised, SecondOrder};
 use bg_model::input::Input;
-use bg_model::integrator::Dop853;
 use bg_model::linear::{Field, SMALLEST_PIVOT, Sparsity};
 use bg_model::nalgebra::{Complex, DMatrix, DVector, SVector};
 use bg_model::scalar::Dual;
-use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::{Model, System};
 use bond_graph_tests::models;
 use bond_graph_tests::support::power::{Draw, state};
+use bond_graph_tests::support::record::along;
 use bond_graph_tests::{each_example, each_scene};
 use hacksaw::mechanism::{
     Angles, AnglesParameters, FreeRun, FreeRunParameters, Full, FullParameters, Hacksaw, HacksawParameters, Motion,
@@ -291,21 +290,26 @@ fn along_the_trajectory<Mo, const N: usize, const G: usize, const M: usize>(mode
 where
     Mo: Model<f64, N, G, M>,
 {
-    let start = model.start().expect("the mechanism closes");
-    let mut samples = Vec::new();
-    let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &[bool; G]| samples.push((t, *x, *negative)));
-    let settings =
-        Settings { samples: Samples::At((0..20).map(|k| 0.005 * f64::from(k)).collect()), ..Settings::default() };
-    let span = Span { t0: 0.0, t_end: 0.1 };
-    integrate(model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the run ends");
-    assert_eq!(samples.len(), 20);
     let mut draw = Draw::new(4);
     let mut solved = Solved::default();
-    for (t, x, negative) in samples {
+    for (t, x, negative) in along(model, 0.1) {
         solve(model, t, &x, &negative, &mut draw, &mut solved);
     }
     println!("{}: along the trajectory {solved:?}", model.description().name);
     assert_eq!(solved.refused, 0);
+}
+
+/// Its functions are in parts, and depend on switches.
+#[test]
+fn a_long_model_along_its_motion() {
+    use models::long::{Whip, WhipParameters};
+    let model = Whip::new(WhipParameters::default()).unwrap();
+    let twin = Whip::<Dual>::in_scalar(WhipParameters::default()).unwrap();
+    for (t, x, negative) in along(&model, 0.5) {
+        is_the_derivative((&model, &twin), t, &x, &negative);
+        second_derivatives_agree((&model, &twin), t, &x, &negative);
+    }
+    along_the_trajectory(&model);
 }
 
 #[test]

@@ -5,6 +5,7 @@ pub mod brakes;
 pub mod drives;
 pub mod hacksaw_with_motor;
 pub mod joints;
+pub mod long;
 pub mod loops;
 pub mod mechanisms;
 pub mod modulated;

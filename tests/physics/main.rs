@@ -15,6 +15,7 @@ mod gearbox;
 mod hacksaw_with_motor;
 mod hydraulic_cylinder;
 mod joints;
+mod long;
 mod loops;
 mod mass_spring_damper;
 mod mechanisms;

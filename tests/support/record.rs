@@ -3,7 +3,7 @@
 use bg_model::failure::Failure;
 use bg_model::integrator::{Dop853, Tolerances};
 use bg_model::nalgebra::SVector;
-use bg_model::simulation::{Part, Recorder, Recording, Samples, Settings, Span, integrate};
+use bg_model::simulation::{EachSample, Part, Recorder, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 
@@ -132,4 +132,26 @@ where
     let recording = recorder.recording;
     let (times, events) = (recording.times.clone(), recording.events.clone());
     Ok(Record { times, events, statistics: finish.statistics, recording })
+}
+
+/// Times, states and branches of switches at 20 even instants of a run by DOP853 from the start, the last one before `end`, s.
+///
+/// # Panics
+/// The start does not close, or the run fails.
+pub fn along<Mo, const N: usize, const G: usize, const M: usize>(
+    model: &Mo,
+    end: f64,
+) -> Vec<(f64, SVector<f64, N>, [bool; G])>
+where
+    Mo: Model<f64, N, G, M>,
+{
+    let start = model.start().expect("the mechanism closes");
+    let mut samples = Vec::new();
+    let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &[bool; G]| samples.push((t, *x, *negative)));
+    let times = (0..20).map(|k| end / 20.0 * f64::from(k)).collect();
+    let settings = Settings { samples: Samples::At(times), ..Settings::default() };
+    integrate(model, &mut Dop853::new(), &start, Span { t0: 0.0, t_end: end }, &settings, &mut observer)
+        .expect("the run ends");
+    assert_eq!(samples.len(), 20);
+    samples
 }

@@ -250,10 +250,8 @@ fn assignment_text(equations: &StateEquations, assignment: &Assignment) -> Strin
 
 /// What the reverse sweeps cost, and by what they differentiate.
 fn reversed_text(reversed: &Reversed) -> String {
-    let Reversed { rate, outputs, project, settle } = reversed;
     let mut out = String::new();
-    let sweeps = [rate].into_iter().chain(outputs).chain([project, settle]);
-    for Reverse { routine, leaves } in sweeps.filter(|sweep| !sweep.leaves.is_empty()) {
+    for Reverse { routine, leaves } in reversed.sweeps().filter(|sweep| !sweep.leaves.is_empty()) {
         let states = leaves.iter().filter(|leaf| matches!(leaf, Operand::Symbol(_))).count();
         let (name, constants) = (&routine.name, leaves.len() - states);
         let operations = routine.counts.total();

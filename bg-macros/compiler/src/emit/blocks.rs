@@ -7,10 +7,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::routine::{Names, operand};
+use super::routine::{self, Names, operand};
 use crate::program::{Assignment, Operand};
 
 /// Assignments of a block.
@@ -45,30 +45,31 @@ impl Blocks {
     }
 
     /// The `definitions` of a group's temporaries between what they read from `v` and what they hand on in it.
-    pub(super) fn block(&self, group: &[Assignment], definitions: &TokenStream, names: &Names) -> TokenStream {
-        let reads = read_from_others(group).into_iter().map(|temporary| {
-            let (name, place) = (operand(&Operand::Temporary(temporary), names), self.place(temporary));
-            quote!(let #name = #place;)
-        });
-        let written =
-            group.iter().map(|assignment| assignment.target).filter(|target| self.places.contains_key(target));
-        let written: Vec<u32> = written.collect();
+    pub(super) fn block(&self, group: &[Assignment], definitions: &str, names: &Names) -> String {
+        let reads: String = read_from_others(group)
+            .into_iter()
+            .map(|temporary| routine::definition(temporary, &self.place(temporary)))
+            .collect();
+        let written: Vec<u32> = group
+            .iter()
+            .map(|assignment| assignment.target)
+            .filter(|target| self.places.contains_key(target))
+            .collect();
         let writes = written.first().map(|first| {
-            let values = written.iter().map(|&temporary| operand(&Operand::Temporary(temporary), names));
-            let at = Literal::usize_unsuffixed(self.places[first]);
-            quote!(::bg_model::__private::store(v, #at, [#(#values),*]);)
+            let values: Vec<String> =
+                written.iter().map(|&temporary| operand(&Operand::Temporary(temporary), names)).collect();
+            format!("::bg_model::__private::store(v, {}, [{}]);", self.places[first], values.join(", "))
         });
-        quote! { #(#reads)* #definitions #writes }
+        reads + definitions + &writes.unwrap_or_default()
     }
 
     /// A result of the routine, behind its blocks.
-    pub(super) fn result(&self, result: &Operand, names: &Names) -> TokenStream {
+    pub(super) fn result(&self, result: &Operand, names: &Names) -> String {
         temporary(result).map_or_else(|| operand(result, names), |temporary| self.place(temporary))
     }
 
-    fn place(&self, temporary: u32) -> TokenStream {
-        let place = Literal::usize_unsuffixed(self.places[&temporary]);
-        quote!(v[#place])
+    fn place(&self, temporary: u32) -> String {
+        format!("v[{}]", self.places[&temporary])
     }
 }
 

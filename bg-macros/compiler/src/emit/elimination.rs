@@ -6,6 +6,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::routine::parsed;
 use crate::program::elimination::{Elimination, Row, Step, Substep};
 
 /// The value in a slot.
@@ -107,59 +108,45 @@ pub(super) fn substitution(elimination: &Elimination, n: usize) -> TokenStream {
     }
 }
 
-/// A number without suffix.
-fn index(of: usize) -> Literal {
-    Literal::usize_unsuffixed(of)
-}
-
 fn factorisation_table(elimination: &Elimination) -> TokenStream {
     let mut products = Vec::new();
-    let slots: Vec<TokenStream> = elimination
+    let slots: Vec<String> = elimination
         .factorisation
         .chunk_by(|left, right| left.slot() == right.slot())
         .map(|steps| {
-            let (mut entry, mut scale, mut is_pivot, mut of_unknown) = (quote!(None), quote!(None), false, false);
+            let (mut entry, mut scale, mut is_pivot, mut of_unknown) = (None, None, false, false);
             for step in steps {
                 if let Step::Enter { of, .. } | Step::Fill { of, .. } = *step {
                     of_unknown = of == Row::Unknown;
                 }
                 match *step {
-                    Step::Enter { entry: number, .. } => {
-                        let number = index(number);
-                        entry = quote!(Some(#number));
-                    }
-                    Step::Fill { product: (left, right), .. } | Step::Update { product: (left, right), .. } => {
-                        let (left, right) = (index(left), index(right));
-                        products.push(quote!((#left, #right)));
-                    }
+                    Step::Enter { entry: number, .. } => entry = Some(number),
+                    Step::Fill { product, .. } | Step::Update { product, .. } => products.push(format!("{product:?}")),
                     Step::Invert { .. } => is_pivot = true,
-                    Step::Scale { by, .. } => {
-                        let by = index(by);
-                        scale = quote!(Some(#by));
-                    }
+                    Step::Scale { by, .. } => scale = Some(by),
                 }
             }
-            let end = index(products.len());
-            quote!(Slot { entry: #entry, end: #end, is_pivot: #is_pivot, of_unknown: #of_unknown, scale: #scale })
+            let end = products.len();
+            format!(
+                "Slot {{ entry: {entry:?}, end: {end}, is_pivot: {is_pivot}, of_unknown: {of_unknown}, scale: {scale:?} }}"
+            )
         })
         .collect();
+    let [slots, products] = [slots, products].map(|rows| parsed(&rows.join(", ")));
     quote! {
         use ::bg_model::__private::table::{self, Slot};
-        static SLOTS: &[Slot] = &[#(#slots),*];
-        static PRODUCTS: &[(u32, u32)] = &[#(#products),*];
+        static SLOTS: &[Slot] = &[#slots];
+        static PRODUCTS: &[(u32, u32)] = &[#products];
         table::eliminate(SLOTS, PRODUCTS, c, entries, factors)
     }
 }
 
 fn substitution_table(elimination: &Elimination, n: usize) -> TokenStream {
-    let steps = elimination.substitution.iter().map(|step| {
-        let (row, slot, column) = match *step {
-            Substep::Subtract { row, slot, column } => (row, slot, column),
-            Substep::Scale { row, slot } => (row, slot, row),
-        };
-        let (row, slot, column) = (index(row), index(slot), index(column));
-        quote!((#row, #slot, #column))
+    let steps = elimination.substitution.iter().map(|step| match *step {
+        Substep::Subtract { row, slot, column } => (row, slot, column),
+        Substep::Scale { row, slot } => (row, slot, row),
     });
+    let steps = parsed(&steps.map(|step| format!("{step:?}")).collect::<Vec<_>>().join(", "));
     let rows = elimination.order.len();
     let whole = (rows > n).then(|| {
         quote! {
@@ -172,7 +159,7 @@ fn substitution_table(elimination: &Elimination, n: usize) -> TokenStream {
         None => (quote!(b), TokenStream::new()),
     };
     quote! {
-        static STEPS: &[(u32, u32, u32)] = &[#(#steps),*];
+        static STEPS: &[(u32, u32, u32)] = &[#steps];
         #whole
         ::bg_model::__private::table::substitute::<S, F>(STEPS, factors, #right);
         #back

@@ -5,6 +5,7 @@
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
+use super::routine::parsed;
 use crate::graph::{Input, Parameter};
 use crate::source::ast::Name;
 use crate::source::names::{self, INPUTS, PARAMETERS};
@@ -40,15 +41,21 @@ pub(super) fn declared(name: &Name) -> Ident {
 
 /// A literal `f64`; infinities and not-a-number by their names.
 pub(super) fn number(value: f64) -> TokenStream {
+    if !value.is_finite() {
+        return parsed(&number_text(value));
+    }
+    let literal = Literal::f64_suffixed(value.abs());
+    if value.is_sign_negative() { quote!(-#literal) } else { quote!(#literal) }
+}
+
+/// The text of the same.
+pub(super) fn number_text(value: f64) -> String {
     if value.is_nan() {
-        quote!(f64::NAN)
-    } else if value == f64::INFINITY {
-        quote!(f64::INFINITY)
-    } else if value == f64::NEG_INFINITY {
-        quote!(f64::NEG_INFINITY)
+        "f64::NAN".to_owned()
+    } else if value.is_infinite() {
+        (if value > 0.0 { "f64::INFINITY" } else { "f64::NEG_INFINITY" }).to_owned()
     } else {
-        let literal = Literal::f64_suffixed(value.abs());
-        if value.is_sign_negative() { quote!(-#literal) } else { quote!(#literal) }
+        format!("{value}f64")
     }
 }
 

@@ -10,6 +10,7 @@ mod linear;
 pub(super) mod mechanism;
 mod names;
 mod outputs;
+mod parts;
 mod required;
 mod reversed;
 mod routines;
@@ -110,7 +111,7 @@ impl Emission<'_> {
         let constructors = self.constructors(given, tables);
         let (system, capabilities, model, reversed) =
             (self.system(), self.capabilities(), self.model(), self.reversed());
-        let mechanism = self.mechanism();
+        let (mechanism, parts) = (self.mechanism(), self.parts());
         let import_pair = tables.has_pairs.then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
@@ -124,6 +125,7 @@ impl Emission<'_> {
             static DESCRIPTION: ::bg_model::description::Description = #description;
 
             #constructors
+            #parts
             #system
             #capabilities
             #model

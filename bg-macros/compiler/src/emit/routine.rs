@@ -1,112 +1,115 @@
-//! Straight-line code as tokens.
+//! Straight-line code as text and as tokens.
 //!
-//! In: a [`Routine`] and the tokens of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`; a long
-//! routine is cut into `blocks`.
+//! In: a [`Routine`] and the text of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`; a long
+//! routine is cut into `blocks`. Statements are written as text, which becomes tokens at once: inside of rustc each piece that is
+//! quoted is handed over and copied several times, which takes three times as long.
 
-use proc_macro2::{Ident, Span, TokenStream};
-use quote::{format_ident, quote};
+extern crate proc_macro;
+
+use proc_macro2::{TokenStream, TokenTree};
+use quote::quote;
 
 use super::blocks::{BLOCK, Blocks};
-use super::items::number;
+use super::items::number_text;
 use crate::expr::{Function, Symbol};
 use crate::program::{Assignment, Operand, Operation, Routine};
 
-/// The tokens of what a routine refers to.
+/// The text of what a routine refers to.
 #[derive(Clone, Copy)]
 pub struct Names<'a> {
     /// A symbol.
-    pub symbol: &'a dyn Fn(Symbol) -> TokenStream,
+    pub symbol: &'a dyn Fn(Symbol) -> String,
     /// An entry of the constant table.
-    pub constant: &'a dyn Fn(u32) -> TokenStream,
+    pub constant: &'a dyn Fn(u32) -> String,
     /// What says whether a switch's guard is negative.
-    pub switch: &'a dyn Fn(u32) -> TokenStream,
+    pub switch: &'a dyn Fn(u32) -> String,
+}
+
+/// The tokens of generated text. Inside of rustc its own lexer reads them; that of `proc_macro2` would read them first, to be sure.
+pub(super) fn parsed(text: &str) -> TokenStream {
+    const FAILED: &str = "generated text is made of tokens";
+    if proc_macro::is_available() {
+        return text.parse::<proc_macro::TokenStream>().expect(FAILED).into();
+    }
+    text.parse().expect(FAILED)
+}
+
+/// The tokens of each of these values.
+pub(super) fn parsed_each(values: impl IntoIterator<Item = String>) -> Vec<TokenStream> {
+    let ended = values.into_iter().map(|value| value + ";").collect::<String>();
+    let tokens: Vec<TokenTree> = parsed(&ended).into_iter().collect();
+    let is_end = |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ';');
+    let values = tokens.split_inclusive(is_end);
+    values.map(|value| value[..value.len() - 1].iter().cloned().collect()).collect()
 }
 
 /// The assignments of the routine, and its results behind them.
 pub fn statements(routine: &Routine, names: &Names) -> (TokenStream, Vec<TokenStream>) {
     if !routine.is_long() {
-        let results = routine.results.iter().map(|result| operand(result, names)).collect();
-        return (assignments(&routine.assignments, names), results);
+        let results = routine.results.iter().map(|result| operand(result, names));
+        return (parsed(&assignments(&routine.assignments, names)), parsed_each(results));
     }
     let groups = routine.assignments.chunks(BLOCK);
     let blocks = Blocks::of(groups.clone(), &routine.results);
     let array = blocks.array();
-    let statements = groups.map(|group| blocks.block(group, &assignments(group, names), names));
-    let results = routine.results.iter().map(|result| blocks.result(result, names)).collect();
-    (quote! { #array #({ #statements })* }, results)
+    let statements = groups.map(|group| parsed(&blocks.block(group, &assignments(group, names), names)));
+    let results = routine.results.iter().map(|result| blocks.result(result, names));
+    (quote! { #array #({ #statements })* }, parsed_each(results))
 }
 
 /// These assignments, one `let` for each.
-pub fn assignments(of: &[Assignment], names: &Names) -> TokenStream {
+pub fn assignments(of: &[Assignment], names: &Names) -> String {
     let value = |of: &Assignment| operation(&of.operation, names, &|value| operand(value, names));
     of.iter().map(|assignment| definition(assignment.target, &value(assignment))).collect()
 }
 
 /// The definition of a temporary.
-pub fn definition(target: u32, value: &TokenStream) -> TokenStream {
-    let target = temporary(target);
-    quote!(let #target = #value;)
+pub fn definition(target: u32, value: &str) -> String {
+    format!("let {} = {value};\n", temporary(target))
 }
 
-/// The tokens of an operand.
-pub fn operand(operand: &Operand, names: &Names) -> TokenStream {
+/// The text of an operand.
+pub fn operand(operand: &Operand, names: &Names) -> String {
     match *operand {
-        Operand::Number(value) => {
-            let value = number(value);
-            quote! { S::from_f64(#value) }
-        }
+        Operand::Number(value) => format!("S::from_f64({})", number_text(value)),
         Operand::Symbol(symbol) => (names.symbol)(symbol),
         Operand::Constant(index) => (names.constant)(index),
-        Operand::Temporary(index) => {
-            let name = temporary(index);
-            quote!(#name)
-        }
+        Operand::Temporary(index) => temporary(index),
     }
 }
 
-/// The tokens of an operation; `token` gives those of its operands.
-pub fn operation(operation: &Operation, names: &Names, token: &dyn Fn(&Operand) -> TokenStream) -> TokenStream {
+/// The text of an operation; `text` gives that of its operands.
+pub fn operation(operation: &Operation, names: &Names, text: &dyn Fn(&Operand) -> String) -> String {
     match operation {
-        Operation::Add(left, right) => binary(token(left), quote! { + }, token(right)),
-        Operation::Subtract(left, right) => binary(token(left), quote! { - }, token(right)),
+        Operation::Add(left, right) => format!("{} + {}", text(left), text(right)),
+        Operation::Subtract(left, right) => format!("{} - {}", text(left), text(right)),
         Operation::Multiply(Operand::Number(factor), other) | Operation::Multiply(other, Operand::Number(factor)) => {
-            let (other, factor) = (token(other), number(*factor));
-            quote! { #other.times(#factor) }
+            format!("{}.times({})", text(other), number_text(*factor))
         }
-        Operation::Multiply(left, right) => binary(token(left), quote! { * }, token(right)),
-        Operation::Divide(left, right) => binary(token(left), quote! { / }, token(right)),
-        Operation::Negate(only) => {
-            let only = token(only);
-            quote! { -#only }
-        }
+        Operation::Multiply(left, right) => format!("{} * {}", text(left), text(right)),
+        Operation::Divide(left, right) => format!("{} / {}", text(left), text(right)),
+        Operation::Negate(only) => format!("-{}", text(only)),
         Operation::Call(function, arguments) => {
-            let method = method(*function);
-            let receiver = token(&arguments[0]);
-            let others = arguments[1..].iter().map(token);
-            quote! { #receiver.#method(#(#others),*) }
+            let others: Vec<String> = arguments[1..].iter().map(text).collect();
+            format!("{}.{}({})", text(&arguments[0]), method(*function), others.join(", "))
         }
         Operation::Select { switch, negative, positive } => {
-            let (switch, negative, positive) = ((names.switch)(*switch), token(negative), token(positive));
-            quote! { S::select(#switch, #negative, #positive) }
+            format!("S::select({}, {}, {})", (names.switch)(*switch), text(negative), text(positive))
         }
     }
 }
 
-fn binary(left: TokenStream, operator: TokenStream, right: TokenStream) -> TokenStream {
-    quote! { #left #operator #right }
-}
-
-fn temporary(index: u32) -> Ident {
-    format_ident!("v{index}")
+/// The name of a temporary.
+pub(super) fn temporary(index: u32) -> String {
+    format!("v{index}")
 }
 
 /// The scalar's method for a function.
-fn method(function: Function) -> Ident {
-    let name = match function {
+fn method(function: Function) -> &'static str {
+    match function {
         Function::Pow => "powf",
         other => other.name(),
-    };
-    Ident::new(name, Span::call_site())
+    }
 }
 
 #[cfg(test)]
@@ -118,17 +121,11 @@ mod tests {
     fn rendered(routine: &Routine) -> (String, Vec<String>) {
         let names = Names {
             symbol: &|symbol| match symbol {
-                Symbol::State(index) => {
-                    let name = format_ident!("x{index}");
-                    quote! { #name }
-                }
-                _ => quote! { p },
+                Symbol::State(index) => format!("x{index}"),
+                _ => "p".to_owned(),
             },
-            constant: &|index| {
-                let index = proc_macro2::Literal::u32_unsuffixed(index);
-                quote! { c[#index] }
-            },
-            switch: &|_| quote! { below },
+            constant: &|index| format!("c[{index}]"),
+            switch: &|_| "below".to_owned(),
         };
         let (text, results) = statements(routine, &names);
         (text.to_string(), results.iter().map(ToString::to_string).collect())

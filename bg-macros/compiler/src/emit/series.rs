@@ -9,26 +9,28 @@
 //! where all lower ones are right and that one is 0 (Brent and Kung 1978, Fast algorithms for manipulating formal power series),
 //! so each order is gone through twice: for that coefficient, then with it.
 
+use std::slice::Chunks;
+
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::blocks::{BLOCK, Blocks};
-use super::routine::{self, Names};
+use super::routine::{self, Names, parsed, parsed_each};
 use crate::expr::{Function, Symbol};
 use crate::program::{Assignment, Operand, Operation, Routine};
 
-/// Products whose places are read and written together. rustc checks this faster than each place for itself. More of them cost
-/// time in a step: in the rigid hacksaw 3 % with 4, 8 % with 8, 13 % with all.
-const TOGETHER: usize = 4;
-
 /// What a series reads, beside constants.
-pub(super) struct Reads {
+pub(super) struct Reads<'a> {
     /// `let`s of the inputs that the rates read, from the time `t`.
     pub values: TokenStream,
     /// `let`s of the states' coefficients, from `x`.
     pub states: Option<TokenStream>,
     /// How many unknowns iterations find; they are the last results of the routine.
     pub found: usize,
+    /// The numbers of states and of switches.
+    pub shape: [&'a Literal; 2],
+    /// `let`s of what some assignments read: inputs from the time `at`, the states' coefficients from `x`.
+    pub by: &'a dyn Fn(&[Assignment]) -> TokenStream,
 }
 
 /// The code of a series.
@@ -39,6 +41,8 @@ pub(super) struct Expansion {
     pub operations: TokenStream,
     /// The body of `expand`.
     pub body: TokenStream,
+    /// The functions of the model that the body of a long one calls.
+    pub parts: TokenStream,
 }
 
 /// The code of a series, from the routine of the rates.
@@ -49,26 +53,33 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
     let length = if routine.is_long() { BLOCK } else { usize::MAX };
     let (fixed, moving) = (fixed.chunks(length), moving.chunks(length));
     let blocks = routine.is_long().then(|| Blocks::of(fixed.clone().chain(moving.clone()), &routine.results));
-    let block = |group: &[Assignment], definitions: TokenStream| match &blocks {
-        Some(blocks) => {
-            let block = blocks.block(group, &definitions, names);
-            quote!({ #block })
-        }
-        None => definitions,
-    };
     let written = |is_start| {
         let mut writer = Writer::new(names, &changes, is_start, moving.clone().flatten());
-        let groups: TokenStream = moving.clone().map(|group| block(group, writer.group(group))).collect();
+        let groups: Vec<_> = moving.clone().map(|group| writer.group(group)).collect();
         let rates = routine.results.iter().map(|result| match &blocks {
             Some(blocks) if is_start || writer.is_changing(result) => blocks.result(result, names),
             _ => writer.value(result),
         });
-        let rates: Vec<_> = rates.collect();
+        let rates = parsed_each(rates);
         (groups, rates, writer)
     };
     let ((start, start_rates, counted), (order, order_rates, _)) = (written(true), written(false));
     let (products, places) = (counted.products, (2 * counted.products + counted.others).max(1));
-    let Reads { values, states, found } = reads;
+    let mut parts = TokenStream::new();
+    let mut statements = |pass: Pass, groups: Chunks<Assignment>, definitions: Vec<String>| match &blocks {
+        Some(blocks) => {
+            let (functions, calls) = pass.parts(groups, &definitions, blocks, names, reads);
+            parts.extend(functions);
+            calls
+        }
+        None => parsed(&definitions.concat()),
+    };
+    // What does not change with time, and yet is no constant of the model: it depends on inputs.
+    let definitions = fixed.clone().map(|group| routine::assignments(group, names)).collect();
+    let fixed = statements(Pass::Fixed, fixed, definitions);
+    let start = statements(Pass::Start { places }, moving.clone(), start);
+    let order = statements(Pass::Order { places, products }, moving, order);
+    let Reads { values, states, found, .. } = reads;
     let (start_rates, _) = start_rates.split_at(start_rates.len() - found);
     let (order_rates, coefficients) = order_rates.split_at(order_rates.len() - found);
     let order = if *found == 0 {
@@ -81,15 +92,14 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
             #order
         }
     };
-    let array = blocks.as_ref().map(Blocks::array);
-    // What does not change with time, and yet is no constant of the model: it depends on inputs.
-    let fixed: TokenStream = fixed.map(|group| block(group, routine::assignments(group, names))).collect();
+    let (array, at) = (blocks.as_ref().map(Blocks::array), blocks.as_ref().map(|_| quote!(let at = t;)));
     let body = quote! {
-        use ::bg_model::__private::{load, store};
+        use ::bg_model::series::{first_product, next_product};
         let c = &self.constants;
         let table = rows.as_chunks_mut::<#places>().0;
         #values
         #array
+        #at
         #fixed
         {
             let k = 0;
@@ -101,7 +111,7 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
         }
         for k in 1..series.len() - 1 {
             let t = if k == 1 { h } else { S::from_f64(0.0) };
-            let inner = ::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
+            let inner = &::bg_model::series::inner_products::<S, #products, #places>(&table[..k]);
             let rows = &mut table[..=k];
             let [x] = &series[k].data.0;
             #states
@@ -111,7 +121,76 @@ pub(super) fn expansion(routine: &Routine, names: &Names, reads: &Reads) -> Expa
         }
     };
     let operations = operations(routine, &counted, *found > 0);
-    Expansion { width: places, operations, body }
+    Expansion { width: places, operations, body, parts }
+}
+
+/// What is gone through once or for each order.
+#[derive(Clone, Copy)]
+enum Pass {
+    /// What does not change.
+    Fixed,
+    /// The values at the start.
+    Start { places: usize },
+    /// The coefficients of an order.
+    Order { places: usize, products: usize },
+}
+
+impl Pass {
+    /// The functions of these groups, and their calls in the body of `expand`.
+    fn parts(
+        self,
+        groups: Chunks<Assignment>,
+        definitions: &[String],
+        blocks: &Blocks,
+        names: &Names,
+        reads: &Reads,
+    ) -> (TokenStream, TokenStream) {
+        let (pass, arguments) = self.arguments(reads);
+        let (declared, handed): (Vec<_>, Vec<_>) =
+            arguments.into_iter().map(|[declared, handed]| (declared, handed)).unzip();
+        let array = blocks.array_type();
+        let part = |(index, (group, definitions)): (usize, (_, &String))| {
+            let (name, read, block) = (
+                format_ident!("series_{pass}_part_{index}"),
+                (reads.by)(group),
+                parsed(&blocks.block(group, definitions, names)),
+            );
+            let function = quote! {
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                fn #name(&self, #(#declared,)* v: &mut #array) {
+                    use ::bg_model::series::{first_product, next_product};
+                    let c = &self.constants;
+                    #read
+                    #block
+                }
+            };
+            (function, quote!(self.#name(#(#handed,)* v);))
+        };
+        groups.zip(definitions).enumerate().map(part).unzip()
+    }
+
+    /// The name in those of its parts, and what these are handed: declared, and in the body of `expand`.
+    fn arguments(self, reads: &Reads) -> (&'static str, Vec<[TokenStream; 2]>) {
+        let [n, g] = reads.shape;
+        let mut arguments = vec![[quote!(at: S), quote!(at)], [quote!(negative: &[S::Switch; #g]), quote!(negative)]];
+        if let Self::Start { places } | Self::Order { places, .. } = self {
+            arguments.extend([
+                [quote!(t: S), quote!(t)],
+                [quote!(x: &[S; #n]), quote!(x)],
+                [quote!(k: usize), quote!(k)],
+                [quote!(rows: &mut [[S; #places]]), quote!(rows)],
+            ]);
+            arguments.extend((reads.found > 0).then(|| [quote!(found: &[S]), quote!(&found)]));
+        }
+        match self {
+            Self::Fixed => ("fixed", arguments),
+            Self::Start { .. } => ("start", arguments),
+            Self::Order { products, .. } => {
+                arguments.push([quote!(inner: &[S; #products]), quote!(inner)]);
+                ("order", arguments)
+            }
+        }
+    }
 }
 
 /// What an order costs beside a rate; where iterations find something, it is gone through twice.
@@ -172,8 +251,6 @@ struct Writer<'w, 'n> {
     product: usize,
     /// The places behind those of the products.
     others: usize,
-    /// The factors of the products of a group.
-    factors: Vec<(TokenStream, TokenStream)>,
 }
 
 impl<'w, 'n> Writer<'w, 'n> {
@@ -183,7 +260,7 @@ impl<'w, 'n> Writer<'w, 'n> {
         is_start: bool,
         assignments: impl Iterator<Item = &'a Assignment>,
     ) -> Self {
-        let mut writer = Self { names, changes, is_start, products: 0, product: 0, others: 0, factors: Vec::new() };
+        let mut writer = Self { names, changes, is_start, products: 0, product: 0, others: 0 };
         writer.products = assignments.filter(|assignment| writer.is_product(&assignment.operation)).count();
         writer
     }
@@ -198,71 +275,32 @@ impl<'w, 'n> Writer<'w, 'n> {
     }
 
     /// The coefficient of an operand.
-    fn value(&self, operand: &Operand) -> TokenStream {
+    fn value(&self, operand: &Operand) -> String {
         if self.is_start || self.is_changing(operand) {
             routine::operand(operand, self.names)
         } else {
-            quote!(S::from_f64(0.0))
+            "S::from_f64(0.0)".to_owned()
         }
     }
 
     /// The value of an operand at the start, which is its value at all times if it does not change.
-    fn fixed(&self, operand: &Operand) -> TokenStream {
+    fn fixed(&self, operand: &Operand) -> String {
         routine::operand(operand, self.names)
     }
 
     /// The definitions of a group.
-    fn group(&mut self, group: &[Assignment]) -> TokenStream {
-        let mut products = 0;
-        let is_last = |assignment: &Assignment| {
-            let is_product = self.is_product(&assignment.operation);
-            products += usize::from(is_product);
-            is_product && products.is_multiple_of(TOGETHER)
-        };
-        let some: Vec<_> = group.split_inclusive(is_last).collect();
-        some.into_iter().map(|some| self.some(some)).collect()
+    fn group(&mut self, group: &[Assignment]) -> String {
+        let definition = |of: &Assignment| routine::definition(of.target, &self.operation(&of.operation));
+        group.iter().map(definition).collect()
     }
 
-    /// Definitions with few products. What is known of these is read before them, their factors are kept behind them.
-    fn some(&mut self, some: &[Assignment]) -> TokenStream {
-        let first = self.product;
-        let definitions: TokenStream = some
-            .iter()
-            .map(|assignment| routine::definition(assignment.target, &self.operation(&assignment.operation)))
-            .collect();
-        let (left, right): (Vec<_>, Vec<_>) = std::mem::take(&mut self.factors).into_iter().unzip();
-        if left.is_empty() {
-            return definitions;
-        }
-        let known = (!self.is_start).then(|| {
-            let named = |prefix: &str| {
-                let names = (first..self.product).map(|product| format_ident!("{prefix}{product}"));
-                quote!([#(#names),*])
-            };
-            let [inner, lefts, rights] = ["i", "l", "r"].map(named);
-            let [at, at_right] = [first, self.products + first].map(Literal::usize_unsuffixed);
-            quote! {
-                let #inner = load(&inner, #at);
-                let #lefts = load(&rows[0], #at);
-                let #rights = load(&rows[0], #at_right);
-            }
-        });
-        let [at, at_right] = [first, self.products + first].map(Literal::usize_unsuffixed);
-        quote! {
-            #known
-            #definitions
-            store(&mut rows[k], #at, [#(#left),*]);
-            store(&mut rows[k], #at_right, [#(#right),*]);
-        }
-    }
-
-    fn operation(&mut self, operation: &Operation) -> TokenStream {
+    fn operation(&mut self, operation: &Operation) -> String {
         match operation {
             Operation::Multiply(a, b) if self.is_product(operation) => self.product(a, b),
             Operation::Divide(a, b) if self.is_changing(b) => {
                 let at = self.reserve(2);
                 let (a, b) = (self.value(a), self.value(b));
-                quote!(::bg_model::series::quotient(rows, k, #at, #a, #b))
+                format!("::bg_model::series::quotient(rows, k, {at}, {a}, {b})")
             }
             Operation::Call(function, arguments) => self.call(*function, arguments),
             // In the loop only what changes is left of a sum.
@@ -270,7 +308,7 @@ impl<'w, 'n> Writer<'w, 'n> {
             Operation::Add(a, b) | Operation::Subtract(a, b) if !self.is_start && !self.is_changing(b) => self.value(a),
             Operation::Subtract(a, b) if !self.is_start && !self.is_changing(a) => {
                 let b = self.value(b);
-                quote!(-#b)
+                format!("-{b}")
             }
             Operation::Multiply(..) | Operation::Divide(..) => {
                 routine::operation(operation, self.names, &|operand| self.fixed(operand))
@@ -279,45 +317,47 @@ impl<'w, 'n> Writer<'w, 'n> {
         }
     }
 
-    fn product(&mut self, a: &Operand, b: &Operand) -> TokenStream {
+    fn product(&mut self, a: &Operand, b: &Operand) -> String {
         let (a, b) = (self.value(a), self.value(b));
-        let [inner, left, right] = ["i", "l", "r"].map(|prefix| format_ident!("{prefix}{}", self.product));
+        let (left, right) = (self.product, self.products + self.product);
         self.product += 1;
-        let value = if self.is_start { quote!(#a * #b) } else { quote!(#inner + (#a * #right + #left * #b)) };
-        self.factors.push((a, b));
-        value
+        if self.is_start {
+            format!("first_product(rows, {left}, {right}, {a}, {b})")
+        } else {
+            format!("next_product(inner, rows, k, {left}, {a}, {b})")
+        }
     }
 
     /// The first of `count` places.
-    fn reserve(&mut self, count: usize) -> Literal {
+    fn reserve(&mut self, count: usize) -> usize {
         let at = 2 * self.products + self.others;
         self.others += count;
-        Literal::usize_unsuffixed(at)
+        at
     }
 
-    fn call(&mut self, function: Function, arguments: &[Operand]) -> TokenStream {
+    fn call(&mut self, function: Function, arguments: &[Operand]) -> String {
         let is_fixed_power = function == Function::Pow && !self.is_changing(&arguments[1]);
         let (name, places) = match function {
-            Function::Sqrt => (quote!(sqrt), 1),
-            Function::Abs => (quote!(abs), 1),
-            Function::Exp => (quote!(exp), 2),
-            Function::Ln => (quote!(ln), 2),
-            Function::Sin => (quote!(sin), 3),
-            Function::Cos => (quote!(cos), 3),
-            Function::Tan => (quote!(tan), 3),
-            Function::Tanh => (quote!(tanh), 3),
-            Function::Asin => (quote!(asin), 3),
-            Function::Acos => (quote!(acos), 3),
-            Function::Atan2 => (quote!(atan2), 4),
-            Function::Pow if is_fixed_power => (quote!(powf), 2),
-            Function::Pow => (quote!(power), 6),
+            Function::Sqrt => ("sqrt", 1),
+            Function::Abs => ("abs", 1),
+            Function::Exp => ("exp", 2),
+            Function::Ln => ("ln", 2),
+            Function::Sin => ("sin", 3),
+            Function::Cos => ("cos", 3),
+            Function::Tan => ("tan", 3),
+            Function::Tanh => ("tanh", 3),
+            Function::Asin => ("asin", 3),
+            Function::Acos => ("acos", 3),
+            Function::Atan2 => ("atan2", 4),
+            Function::Pow if is_fixed_power => ("powf", 2),
+            Function::Pow => ("power", 6),
         };
         let at = self.reserve(places);
         let first = self.value(&arguments[0]);
         let second = arguments.get(1).map(|second| {
             let second = if is_fixed_power { self.fixed(second) } else { self.value(second) };
-            quote!(, #second)
+            format!(", {second}")
         });
-        quote!(::bg_model::series::#name(rows, k, #at, #first #second))
+        format!("::bg_model::series::{name}(rows, k, {at}, {first}{})", second.unwrap_or_default())
     }
 }

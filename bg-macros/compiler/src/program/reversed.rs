@@ -20,6 +20,13 @@ pub struct Reversed {
     pub settle: Reverse,
 }
 
+impl Reversed {
+    /// All of them.
+    pub fn sweeps(&self) -> impl Iterator<Item = &Reverse> {
+        [&self.rate].into_iter().chain(&self.outputs).chain([&self.project, &self.settle])
+    }
+}
+
 /// The reverse sweeps of the functions of a model with so many states. None where rates are not inlined: of longer ones the sweeps, three
 /// times as long, are too much to check in each build.
 pub fn reversed(running: &Running, states: usize) -> Option<Reversed> {

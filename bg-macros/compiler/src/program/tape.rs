@@ -4,9 +4,9 @@
 //! are those of `bg_model::tape`, which reads it. A table of numbers costs the user's build next to nothing, and a picture
 //! asks for few evaluations.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::expr::{Function, Id, Node, Number, Pool, Symbol};
+use crate::expr::{Function, Id, Node, Number, Pool, Symbol, children};
 use crate::system::equations::{Quantity, Solution};
 
 /// The steps and what is wanted of them.
@@ -25,9 +25,17 @@ pub struct Tape {
 /// The tape that gives `quantities`, those with a symbol that has no value in a running model left out.
 #[must_use]
 pub fn tape(pool: &Pool, solution: &Solution, quantities: &[&Quantity]) -> Tape {
-    let has_values = |ids: &Vec<Id>| pool.symbols(ids).into_iter().all(|symbol| leaf(symbol, solution).is_some());
-    let known: Vec<Option<&Vec<Id>>> =
-        quantities.iter().map(|quantity| quantity.as_ref().filter(|ids| has_values(ids))).collect();
+    let all: Vec<Id> = quantities.iter().copied().flatten().flatten().copied().collect();
+    let mut without_value = BTreeSet::new();
+    for id in pool.reachable(&all) {
+        let node = pool.node(id);
+        let is_unknown = matches!(node, Node::Symbol(symbol) if leaf(*symbol, solution).is_none());
+        if is_unknown || children(node).into_iter().any(|child| without_value.contains(&child)) {
+            without_value.insert(id);
+        }
+    }
+    let has_values = |ids: &&Vec<Id>| !ids.iter().any(|id| without_value.contains(id));
+    let known: Vec<Option<&Vec<Id>>> = quantities.iter().map(|quantity| quantity.as_ref().filter(has_values)).collect();
     let roots: Vec<Id> = known.iter().flatten().copied().flatten().copied().collect();
     let mut writer = Writer { solution, tape: Tape::default(), steps: BTreeMap::new(), numbers: BTreeMap::new() };
     for id in pool.reachable(&roots) {

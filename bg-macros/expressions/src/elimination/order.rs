@@ -6,6 +6,8 @@
 //! 2017, chapter 7; Davis, Direct Methods for Sparse Linear Systems, 2006, section 7.1). Pivots stay on the diagonal, so
 //! one permutation orders rows and columns.
 
+use std::collections::BTreeSet;
+
 use super::pattern::Pattern;
 
 /// What the next pivot has least of; the second decides between equal ones.
@@ -28,12 +30,15 @@ pub(super) fn best(pattern: &Pattern) -> Vec<usize> {
 
 /// The order that takes the pivot with the least measure at each step.
 fn greedy(mut pattern: Pattern, measure: Measure) -> Vec<usize> {
-    let mut left: Vec<usize> = (0..pattern.rows.len()).collect();
+    let mut measures: Vec<[usize; 2]> = (0..pattern.rows.len()).map(|pivot| measure(&pattern, pivot)).collect();
+    let mut left: BTreeSet<([usize; 2], usize)> = measures.iter().copied().zip(0..).collect();
     let mut order = Vec::with_capacity(left.len());
-    while !left.is_empty() {
-        let best = (0..left.len()).min_by_key(|&at| measure(&pattern, left[at])).expect("some are left");
-        let pivot = left.remove(best);
-        pattern.eliminate(pivot);
+    while let Some((_, pivot)) = left.pop_first() {
+        for changed in pattern.eliminate(pivot) {
+            let measure = measure(&pattern, changed);
+            left.remove(&(std::mem::replace(&mut measures[changed], measure), changed));
+            left.insert((measure, changed));
+        }
         order.push(pivot);
     }
     order

@@ -41,16 +41,16 @@ impl Pattern {
         filled
     }
 
-    /// Eliminates a pivot: fills what that fills, then takes its row and column out.
-    pub(super) fn eliminate(&mut self, pivot: usize) {
+    /// Eliminates a pivot: fills what that fills, then takes its row and column out. Gives the pivots whose updates or fill that may
+    /// have changed: those of the rows and columns that it has changed, and those that fill the rows.
+    pub(super) fn eliminate(&mut self, pivot: usize) -> BTreeSet<usize> {
         for place in self.fill_of(pivot) {
             self.fill(place);
         }
-        for row in std::mem::take(&mut self.columns[pivot]) {
-            self.rows[row].remove(&pivot);
-        }
-        for column in std::mem::take(&mut self.rows[pivot]) {
-            self.columns[column].remove(&pivot);
-        }
+        let (rows, columns) = (std::mem::take(&mut self.columns[pivot]), std::mem::take(&mut self.rows[pivot]));
+        rows.iter().for_each(|&row| _ = self.rows[row].remove(&pivot));
+        columns.iter().for_each(|&column| _ = self.columns[column].remove(&pivot));
+        let filling = rows.iter().flat_map(|&row| &self.rows[row]).copied();
+        filling.chain(rows.iter().copied()).chain(columns.iter().copied()).collect()
     }
 }

@@ -222,6 +222,7 @@ pub fn schedule<const R: usize>(pool: &mut Pool, requests: [Request; R]) -> Prog
 /// The cheapest plan of the roots.
 fn plan(statics: &mut Statics, roots: &[Id], parameters: Parameters) -> Plan {
     let (graph, values) = build::build(statics, roots, parameters);
+    let (graph, values) = rebuild::rebuild(statics, &graph, &values, Grouping::Off);
     let candidates = [Grouping::Shared, Grouping::Local, Grouping::Off];
     let plans = candidates.map(|grouping| grouped(statics, &graph, &values, grouping));
     plans.into_iter().min_by_key(Plan::cost).expect("there is a candidate")
@@ -229,13 +230,16 @@ fn plan(statics: &mut Statics, roots: &[Id], parameters: Parameters) -> Plan {
 
 /// The plan that one way of grouping gives.
 fn grouped(statics: &mut Statics, graph: &Graph, roots: &[Value], grouping: Grouping) -> Plan {
-    let (mut graph, mut roots) = rebuild::rebuild(statics, graph, roots, Grouping::Off);
-    for _ in 0..ROUNDS {
-        (graph, roots) = rebuild::rebuild(statics, &graph, &roots, grouping);
-        addends::share_addends(statics, &mut graph, &roots);
-        (graph, roots) = rebuild::rebuild(statics, &graph, &roots, Grouping::Off);
-    }
+    let first = round(statics, graph, roots, grouping);
+    let (graph, roots) = (1..ROUNDS).fold(first, |(graph, roots), _| round(statics, &graph, &roots, grouping));
     let mut plan = Plan::new(statics, &graph, &roots);
     factors::share_factors(&mut plan);
     plan
+}
+
+/// The graph with sums grouped and terms shared.
+fn round(statics: &mut Statics, graph: &Graph, roots: &[Value], grouping: Grouping) -> (Graph, Vec<Value>) {
+    let (mut graph, roots) = rebuild::rebuild(statics, graph, roots, grouping);
+    addends::share_addends(statics, &mut graph, &roots);
+    rebuild::rebuild(statics, &graph, &roots, Grouping::Off)
 }

@@ -20,12 +20,6 @@ pub fn constant<S: Scalar>(k: usize, value: S) -> S {
     if k == 0 { value } else { S::from_f64(0.0) }
 }
 
-/// `K` numbers side by side, from `at` on.
-#[inline(always)]
-pub fn load<S: Scalar, const K: usize>(from: &[S], at: usize) -> [S; K] {
-    *from[at..].first_chunk().expect("generated code has the places that it reads")
-}
-
 /// Writes numbers side by side, from `at` on.
 #[inline(always)]
 pub fn store<S: Scalar, const K: usize>(to: &mut [S], at: usize, values: [S; K]) {
@@ -37,6 +31,27 @@ pub fn store<S: Scalar, const K: usize>(to: &mut [S], at: usize, values: [S; K])
 pub fn product<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, left: S, right: S) -> S {
     (rows[k][at], rows[k][at + 1]) = (left, right);
     sum(rows, 0, k + 1, k, at, at + 1)
+}
+
+/// The first coefficient of a product. Its factors are kept at the places `left` and `right`.
+#[inline(always)]
+pub fn first_product<S: Scalar, const W: usize>(rows: &mut [[S; W]], left: usize, right: usize, a: S, b: S) -> S {
+    (rows[0][left], rows[0][right]) = (a, b);
+    a * b
+}
+
+/// The coefficient of order `k` of one of `P` products, from that of the factors and what [`inner_products`] gave for it.
+#[inline(always)]
+pub fn next_product<S: Scalar, const P: usize, const W: usize>(
+    inner: &[S; P],
+    rows: &mut [[S; W]],
+    k: usize,
+    at: usize,
+    a: S,
+    b: S,
+) -> S {
+    (rows[k][at], rows[k][P + at]) = (a, b);
+    inner[at] + (a * rows[0][P + at] + rows[0][at] * b)
 }
 
 /// The parts of `P` products at the next order, `k`, that only need the orders from 1 to `k` - 1 of their factors: what is

@@ -7,6 +7,7 @@ use quote::{format_ident, quote};
 
 use super::super::items::identifier;
 use super::super::series;
+use super::parts::alone;
 use super::{Emission, Shape, names};
 use crate::program::Programs;
 
@@ -116,11 +117,23 @@ impl Emission<'_> {
                 };
             }
         });
-        let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
-        let reads = series::Reads { values: quote!(#inputs #first), states, found };
-        let series::Expansion { width, operations, body } =
+        let (inputs, states) = (self.input_bindings(routine, "t"), self.state_bindings(routine));
+        let reads = series::Reads {
+            values: quote!(#inputs #first),
+            states,
+            found,
+            shape: [n, g],
+            by: &|group| {
+                let part = alone(routine, group, &[]);
+                let (inputs, states) = (self.input_bindings(&part, "at"), self.state_bindings(&part));
+                quote!(#inputs #states)
+            },
+        };
+        let series::Expansion { width, operations, body, parts } =
             self.with_names(|names| series::expansion(routine, names, &reads));
+        let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
+            #parts
             impl<S: Scalar> ::bg_model::capability::Series<S, #n, #g> for Model<S> {
                 fn width(&self) -> usize {
                     #width

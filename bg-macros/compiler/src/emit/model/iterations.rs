@@ -42,7 +42,7 @@ impl Emission<'_> {
             }
         });
         let groups: TokenStream = groups.collect();
-        let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
+        let (inputs, states) = (self.input_bindings(routine, "t"), self.state_bindings(routine));
         let (statements, results) = self.body(routine);
         let length = results.len();
         (count > 0).then(|| {

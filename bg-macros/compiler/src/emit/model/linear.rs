@@ -2,12 +2,12 @@
 //!
 //! In: the program of the derivatives, the planned elimination. Out: `Linearised` and `Elimination` for the model.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::super::elimination;
+use super::super::routine::parsed;
 use super::capabilities::accessor;
-use super::routines::Parts;
 use super::{Emission, Shape};
 
 impl Emission<'_> {
@@ -16,17 +16,15 @@ impl Emission<'_> {
         quote! { #linearised #elimination }
     }
 
-    /// The Jacobian with its sparsity; before it the parts of a long one.
+    /// The Jacobian with its sparsity.
     fn linearised(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let places = self.model.jacobian.entries.iter().map(|entry| {
-            let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
-            quote!((#row, #column))
-        });
+        let places = self.model.jacobian.entries.iter().map(|entry| format!("({}, {})", entry.row, entry.column));
+        let places = parsed(&places.collect::<Vec<_>>().join(", "));
         let count = self.model.jacobian.entries.len();
-        let Parts { functions, body, results } = self.derivatives();
+        let [routine] = &self.model.programs.jacobian.routines;
+        let (body, results) = self.running(routine, &format_ident!("slope_constants"));
         let (entries, slopes) = results.split_at(count);
-        let parts = (!functions.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #functions }));
         let unknowns = self.model.jacobian.unknowns.len();
         let sparsity = if unknowns == 0 {
             quote!(::bg_model::linear::Sparsity::Places(&ENTRIES))
@@ -35,10 +33,9 @@ impl Emission<'_> {
         };
         let elimination = accessor("elimination", &quote!(Elimination<S, #n>), &quote!(Some(self)));
         quote! {
-            #parts
             impl<S: Scalar> ::bg_model::capability::Linearised<S, #n, #g> for Model<S> {
                 fn sparsity(&self) -> ::bg_model::linear::Sparsity {
-                    static ENTRIES: [(u16, u16); #count] = [#(#places),*];
+                    static ENTRIES: [(u16, u16); #count] = [#places];
                     #sparsity
                 }
                 #[inline(never)]
@@ -53,17 +50,6 @@ impl Emission<'_> {
                 #elimination
             }
         }
-    }
-
-    /// The derivatives of the rates by states, then by time; in parts where there are many.
-    fn derivatives(&self) -> Parts {
-        let [routine] = &self.model.programs.jacobian.routines;
-        let constants = format_ident!("slope_constants");
-        if routine.is_long() {
-            return self.in_parts(routine, &constants);
-        }
-        let (body, results) = self.running(routine, &constants);
-        Parts { functions: TokenStream::new(), body, results }
     }
 
     fn elimination(&self) -> TokenStream {

@@ -2,7 +2,7 @@
 //!
 //! In: symbols of a program. Out: identifiers, and the `let`s that read parameters, states and inputs under them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -11,7 +11,7 @@ use super::super::items::identifier;
 use super::super::routine::Names;
 use super::Emission;
 use crate::expr::Symbol;
-use crate::program::{Operand, Routine};
+use crate::program::{Assignment, Operand, Operation, Routine};
 use crate::source::names;
 use crate::system::equations::StateEquations;
 
@@ -23,6 +23,11 @@ pub(super) fn bindings(routines: &[&Routine], binding: &dyn Fn(Symbol) -> Option
 /// Whether the routine reads what iterations have found.
 pub(super) fn reads_found(routine: &Routine) -> bool {
     symbols(&[routine]).iter().any(|symbol| matches!(symbol, Symbol::Found(_)))
+}
+
+/// `let found`, where the routine reads what iterations find.
+pub(super) fn found(routine: &Routine) -> Option<TokenStream> {
+    reads_found(routine).then(|| quote!(let found = self.found(t, x, negative);))
 }
 
 /// The symbols that some routines use.
@@ -52,22 +57,50 @@ impl Emission<'_> {
 
     /// Inputs, their slopes and states that the routine uses, and what iterations find for it.
     pub(super) fn dynamic_bindings(&self, routine: &Routine) -> TokenStream {
-        let found = reads_found(routine).then(|| quote!(let found = self.found(t, x, negative);));
-        let (inputs, states) = (self.input_bindings(routine), self.state_bindings(routine));
+        let found = found(routine);
+        let (inputs, states) = (self.input_bindings(routine, "t"), self.state_bindings(routine));
         quote! { #found #inputs #states }
     }
 
-    /// Inputs that the routine uses, and their slopes, at time `t`.
-    pub(super) fn input_bindings(&self, routine: &Routine) -> TokenStream {
+    /// What the routine reads beside states and constants, each as it is declared as an argument and as it is handed over: time, switches,
+    /// reactions, what iterations find, rates, weights.
+    pub(super) fn arguments(&self, routine: &Routine) -> BTreeMap<&'static str, [TokenStream; 2]> {
+        let g = &self.shape.g;
+        let of_symbols = symbols(&[routine]).into_iter().filter_map(|symbol| {
+            let (name, is_array) = match symbol {
+                Symbol::Time | Symbol::Input(_) | Symbol::Slope(_) => ("t", false),
+                Symbol::Multiplier(_) => ("reactions", true),
+                Symbol::Found(_) => ("found", true),
+                Symbol::Rate(_) => ("r", true),
+                Symbol::Weight(_) => ("weights", true),
+                _ => return None,
+            };
+            let ident = format_ident!("{name}");
+            let tokens = if is_array {
+                [quote!(#ident: &[S]), quote!(&#ident[..])]
+            } else {
+                [quote!(#ident: S), quote!(#ident)]
+            };
+            Some((name, tokens))
+        });
+        let is_choice = |of: &Assignment| matches!(of.operation, Operation::Select { .. });
+        let chooses = routine.assignments.iter().any(is_choice);
+        let switches = chooses.then(|| ("negative", [quote!(negative: &[S::Switch; #g]), quote!(negative)]));
+        of_symbols.chain(switches).collect()
+    }
+
+    /// Inputs that the routine uses, and their slopes, at the time of this name.
+    pub(super) fn input_bindings(&self, routine: &Routine, time: &str) -> TokenStream {
+        let time = format_ident!("{time}");
         let input = |index: u32| identifier(&self.model.equations.inputs[index as usize].name.text);
         bindings(&[routine], &|symbol| match symbol {
             Symbol::Input(index) => {
                 let (name, field) = (self.symbol_name(symbol), input(index));
-                Some(quote!(let #name = self.inputs.#field.value(t);))
+                Some(quote!(let #name = self.inputs.#field.value(#time);))
             }
             Symbol::Slope(index) => {
                 let (name, field) = (self.symbol_name(symbol), input(index));
-                Some(quote!(let #name = self.inputs.#field.slope(t);))
+                Some(quote!(let #name = self.inputs.#field.slope(#time);))
             }
             _ => None,
         })
@@ -78,16 +111,18 @@ impl Emission<'_> {
         let state = |symbol| if let Symbol::State(index) = symbol { Some(index) } else { None };
         let used: BTreeSet<u32> = symbols(&[routine]).into_iter().filter_map(state).collect();
         let behind = used.last()? + 1;
-        let names = (0..behind)
-            .map(|index| if used.contains(&index) { self.symbol_name(Symbol::State(index)) } else { quote!(_) });
+        let names = (0..behind).map(|index| {
+            if used.contains(&index) { self.symbol_name(Symbol::State(index)) } else { format_ident!("_") }
+        });
         let rest = ((behind as usize) < self.states.len()).then(|| quote!(, ..));
         Some(quote!(let [#(#names),* #rest] = *x;))
     }
 
-    fn symbol_name(&self, symbol: Symbol) -> TokenStream {
+    /// The name of a symbol that is a variable.
+    fn symbol_name(&self, symbol: Symbol) -> Ident {
         let equations = &self.model.equations;
         let input = |index: u32| names::field(&equations.inputs[index as usize].name.text);
-        let ident = match symbol {
+        match symbol {
             Symbol::Time => format_ident!("t"),
             Symbol::State(index) => self.states[index as usize].clone(),
             Symbol::Parameter(index) => {
@@ -96,25 +131,32 @@ impl Emission<'_> {
             Symbol::Input(index) => format_ident!("u_{}", input(index)),
             Symbol::Slope(index) => format_ident!("slope_{}", input(index)),
             Symbol::Kept(index) => format_ident!("kept_{index}"),
+            _ => unreachable!("{symbol:?} is no variable"),
+        }
+    }
+
+    /// The text of a symbol.
+    fn symbol_text(&self, symbol: Symbol) -> String {
+        match symbol {
             Symbol::Multiplier(_) => {
-                let row = equations.solution.row(symbol).expect("a reaction that is solved for");
-                return entry("reactions", u32::try_from(row).expect("fewer than 2^32 reactions"));
+                let row = self.model.equations.solution.row(symbol).expect("a reaction that is solved for");
+                entry("reactions", u32::try_from(row).expect("fewer than 2^32 reactions"))
             }
             Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Unsolved(_) => {
                 unreachable!("a model's equations contain no {symbol:?}")
             }
-            Symbol::Found(index) => return entry("found", index),
-            Symbol::Unknown(index) => return entry("u", index),
-            Symbol::Rate(index) => return entry("r", index),
-            Symbol::Weight(index) => return entry("weights", index),
-        };
-        quote!(#ident)
+            Symbol::Found(index) => entry("found", index),
+            Symbol::Unknown(index) => entry("u", index),
+            Symbol::Rate(index) => entry("r", index),
+            Symbol::Weight(index) => entry("weights", index),
+            _ => self.symbol_name(symbol).to_string(),
+        }
     }
 
-    /// Hands the tokens of what a routine refers to to `then`.
+    /// Hands the text of what a routine refers to to `then`.
     pub(super) fn with_names<T>(&self, then: impl FnOnce(&Names) -> T) -> T {
         then(&Names {
-            symbol: &|symbol| self.symbol_name(symbol),
+            symbol: &|symbol| self.symbol_text(symbol),
             constant: &|index| entry("c", index),
             switch: &|index| entry("negative", index),
         })
@@ -122,15 +164,14 @@ impl Emission<'_> {
 }
 
 /// An entry of an array.
-fn entry(array: &str, index: u32) -> TokenStream {
-    let (array, index) = (format_ident!("{array}"), Literal::u32_unsuffixed(index));
-    quote!(#array[#index])
+fn entry(array: &str, index: u32) -> String {
+    format!("{array}[{index}]")
 }
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
-    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner load store reactions kept found weights by_state by_constants \
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner at first_product next_product reactions kept found weights by_state by_constants \
         DESCRIPTION Some None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {

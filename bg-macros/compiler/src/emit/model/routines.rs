@@ -5,19 +5,11 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::super::blocks::{BLOCK, Blocks};
 use super::super::pairs;
-use super::super::routine::{assignments, statements};
-use super::{Emission, Shape};
+use super::super::routine::statements;
+use super::Emission;
 use crate::program::pairs::Paired;
-use crate::program::{Assignment, Operand, Program, Routine};
-
-/// A long routine in parts: functions, the body that calls them, and the results.
-pub(super) struct Parts {
-    pub(super) functions: TokenStream,
-    pub(super) body: TokenStream,
-    pub(super) results: Vec<TokenStream>,
-}
+use crate::program::{Program, Routine};
 
 impl Emission<'_> {
     /// The bare statements of a routine, and its results.
@@ -42,14 +34,19 @@ impl Emission<'_> {
         self.running(routine, &format_ident!("constants"))
     }
 
-    /// The statements of a routine that reads states and this table of constants, and its results.
+    /// The statements of a routine that reads states and this table of constants, and its results; of a long one the calls of its
+    /// [parts](Self::parts).
     pub(super) fn running(&self, routine: &Routine, constants: &Ident) -> (TokenStream, Vec<TokenStream>) {
-        let bindings = self.dynamic_bindings(routine);
-        let (statements, results) = self.body(routine);
+        let (statements, results) = if routine.is_long() {
+            self.in_parts(routine)
+        } else {
+            let bindings = self.dynamic_bindings(routine);
+            let (statements, results) = self.body(routine);
+            (quote!(#bindings #statements), results)
+        };
         let body = quote! {
             let c = &self.#constants;
             let [x] = &x.data.0;
-            #bindings
             #statements
         };
         (body, results)
@@ -73,46 +70,7 @@ impl Emission<'_> {
                 #bindings
                 #statements
             };
-            (body, paired.results.iter().map(|result| pairs::half(result, names)).collect())
+            (body, pairs::results(paired, names))
         })
     }
-
-    /// A long routine of the running model in parts: its blocks, each a function of its own.
-    pub(super) fn in_parts(&self, routine: &Routine, constants: &Ident) -> Parts {
-        let Shape { n, g, .. } = &self.shape;
-        let groups = routine.assignments.chunks(BLOCK);
-        let blocks = Blocks::of(groups.clone(), &routine.results);
-        let (array, array_type) = (blocks.array(), blocks.array_type());
-        let (mut functions, mut calls) = (TokenStream::new(), TokenStream::new());
-        for (index, group) in groups.enumerate() {
-            let name = format_ident!("{}_part_{index}", routine.name);
-            let bindings = self.dynamic_bindings(&alone(routine, group, &[]));
-            let block = self.with_names(|names| blocks.block(group, &assignments(group, names), names));
-            functions.extend(quote! {
-                #[inline(never)]
-                fn #name(&self, t: S, x: &[S; #n], negative: &[S::Switch; #g], v: &mut #array_type) {
-                    let c = &self.#constants;
-                    #bindings
-                    #block
-                }
-            });
-            calls.extend(quote!(self.#name(t, x, negative, v);));
-        }
-        let bindings = self.dynamic_bindings(&alone(routine, &[], &routine.results));
-        let body = quote! {
-            let c = &self.#constants;
-            let [x] = &x.data.0;
-            #array
-            #calls
-            #bindings
-        };
-        let results =
-            self.with_names(|names| routine.results.iter().map(|result| blocks.result(result, names)).collect());
-        Parts { functions, body, results }
-    }
-}
-
-/// The routine with these assignments and results only.
-fn alone(routine: &Routine, assignments: &[Assignment], results: &[Operand]) -> Routine {
-    Routine { assignments: assignments.to_vec(), results: results.to_vec(), ..routine.clone() }
 }

@@ -1,0 +1,97 @@
+//! Long routines in parts: their blocks, each a function of its own.
+//!
+//! In: the routines of the running model that are long. Out: the functions of their blocks, and the calls that stand in the routine's
+//! place. rustc checks a function of fifty thousand assignments five times as long as fifty of a thousand.
+
+use std::slice::Chunks;
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+use super::super::blocks::{BLOCK, Blocks};
+use super::super::routine::{assignments, parsed, parsed_each};
+use super::{Emission, names};
+use crate::program::{Assignment, Operand, Reversed, Routine, SecondOrderPrograms};
+
+impl Emission<'_> {
+    /// The functions of the parts of all long routines that [`Self::running`] calls.
+    pub(super) fn parts(&self) -> Option<TokenStream> {
+        let programs = &self.model.programs;
+        let running = &programs.running;
+        // The equations of iterations are written out where their unknowns are found.
+        let functions = running.routines().into_iter().filter(|routine| !std::ptr::eq(*routine, &running.loops));
+        let sweeps = programs.reversed.iter().flat_map(Reversed::sweeps).map(|sweep| &sweep.routine);
+        let second_order = programs.second_order.iter().flat_map(SecondOrderPrograms::routines);
+        let tables: [(&str, Vec<&Routine>); 5] = [
+            ("constants", functions.chain(sweeps).collect()),
+            ("slope_constants", programs.jacobian.routines.iter().collect()),
+            ("second_constants", second_order.collect()),
+            ("holding_constants", programs.holding.iter().flat_map(|program| &program.routines).collect()),
+            ("impact_constants", programs.impacts.iter().flat_map(|program| &program.routines).collect()),
+        ];
+        let long = tables.iter().flat_map(|(constants, routines)| {
+            let constants = format_ident!("{constants}");
+            let long = routines.iter().filter(|routine| routine.is_long());
+            long.map(move |routine| self.functions(routine, &constants))
+        });
+        let functions: TokenStream = long.collect();
+        (!functions.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #functions }))
+    }
+
+    fn functions(&self, routine: &Routine, constants: &Ident) -> TokenStream {
+        let n = &self.shape.n;
+        let (groups, blocks) = blocks(routine);
+        let array_type = blocks.array_type();
+        let declared: Vec<_> = self.arguments(routine).into_values().map(|[declared, _]| declared).collect();
+        let functions = groups.enumerate().map(|(index, group)| {
+            let name = name(routine, index);
+            let part = alone(routine, group, &[]);
+            let (inputs, states) = (self.input_bindings(&part, "t"), self.state_bindings(&part));
+            let block = self.with_names(|names| parsed(&blocks.block(group, &assignments(group, names), names)));
+            quote! {
+                #[inline(never)]
+                fn #name(&self, x: &[S; #n], #(#declared,)* v: &mut #array_type) {
+                    let c = &self.#constants;
+                    #inputs
+                    #states
+                    #block
+                }
+            }
+        });
+        functions.collect()
+    }
+
+    /// The statements and results of a long routine: calls of its parts.
+    pub(super) fn in_parts(&self, routine: &Routine) -> (TokenStream, Vec<TokenStream>) {
+        let (groups, blocks) = blocks(routine);
+        let array = blocks.array();
+        let handed: Vec<_> = self.arguments(routine).into_values().map(|[_, handed]| handed).collect();
+        let (found, read) = (names::found(routine), alone(routine, &[], &routine.results));
+        let (inputs, states) = (self.input_bindings(&read, "t"), self.state_bindings(&read));
+        let calls = (0..groups.len()).map(|index| {
+            let name = name(routine, index);
+            quote!(self.#name(x, #(#handed,)* v);)
+        });
+        let statements = quote!(#array #found #(#calls)* #inputs #states);
+        let results =
+            self.with_names(|names| parsed_each(routine.results.iter().map(|result| blocks.result(result, names))));
+        (statements, results)
+    }
+}
+
+/// The function of a part.
+fn name(routine: &Routine, index: usize) -> Ident {
+    format_ident!("{}_part_{index}", routine.name)
+}
+
+/// The assignments of the parts, and what these hand on.
+fn blocks(routine: &Routine) -> (Chunks<'_, Assignment>, Blocks) {
+    let groups = routine.assignments.chunks(BLOCK);
+    (groups.clone(), Blocks::of(groups, &routine.results))
+}
+
+/// The routine with these assignments and results only.
+pub(super) fn alone(routine: &Routine, assignments: &[Assignment], results: &[Operand]) -> Routine {
+    let Routine { name, counts, .. } = routine;
+    Routine { name: name.clone(), assignments: assignments.to_vec(), results: results.to_vec(), counts: *counts }
+}
