@@ -2,12 +2,12 @@
 //!
 //! In: steps that change. Out: their definitions.
 
-use super::super::pairs;
-use super::super::routine::{self, Names};
-use super::changes::Changes;
+use super::pairs;
+use super::routine::{self, Names};
+
 use crate::expr::Function;
 use crate::program::pairs::{Half, Step, Value};
-use crate::program::{Operand, Operation};
+use crate::program::{Changes, Operand, Operation};
 
 /// The coefficient at an order of what does not change.
 const ZERO: &str = "S::from_f64(0.0)";

@@ -9,20 +9,16 @@
 //! where all lower ones are right and that one is 0 (Brent and Kung 1978, Fast algorithms for manipulating formal power series),
 //! so each order is gone through twice: for that coefficient, then with it.
 
-mod changes;
-mod coefficients;
-
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use self::changes::Changes;
-use self::coefficients::Writer;
 use super::blocks::{BLOCK, Blocks};
+use super::coefficients::Writer;
 use super::pairs;
 use super::routine::{Names, parsed, parsed_each};
 use crate::expr::Function;
 use crate::program::pairs::{Half, Paired, Step};
-use crate::program::{Assignment, Operation, Routine};
+use crate::program::{Assignment, Changes, Operation, Routine};
 
 /// What a series reads, beside constants.
 pub(super) struct Reads<'a> {

@@ -4,19 +4,20 @@
 
 use std::collections::BTreeSet;
 
+use super::pairs::{Half, Step, Value};
+use super::{Operand, Operation};
 use crate::expr::Symbol;
-use crate::program::pairs::{Half, Step, Value};
-use crate::program::{Operand, Operation};
 
 /// What changes.
-pub(super) struct Changes {
+#[derive(Debug)]
+pub struct Changes {
     temporaries: BTreeSet<u32>,
     pairs: BTreeSet<u32>,
 }
 
 impl Changes {
     /// What changes of these steps.
-    pub(super) fn of(steps: &[Step]) -> Self {
+    pub fn of(steps: &[Step]) -> Self {
         let mut changes = Self { temporaries: BTreeSet::new(), pairs: BTreeSet::new() };
         for step in steps {
             match step {
@@ -41,7 +42,7 @@ impl Changes {
     }
 
     /// Whether what a step gives changes.
-    pub(super) fn includes(&self, step: &Step) -> bool {
+    pub fn includes(&self, step: &Step) -> bool {
         match step {
             Step::Single(assignment) => self.temporary(assignment.target),
             Step::Half { target, .. } => self.temporary(*target),
@@ -49,15 +50,18 @@ impl Changes {
         }
     }
 
-    pub(super) fn temporary(&self, index: u32) -> bool {
+    /// Whether a temporary changes.
+    pub fn temporary(&self, index: u32) -> bool {
         self.temporaries.contains(&index)
     }
 
-    pub(super) fn pair(&self, index: u32) -> bool {
+    /// Whether a pair changes.
+    pub fn pair(&self, index: u32) -> bool {
         self.pairs.contains(&index)
     }
 
-    pub(super) fn operand(&self, operand: &Operand) -> bool {
+    /// Whether an operand changes.
+    pub fn operand(&self, operand: &Operand) -> bool {
         match *operand {
             Operand::Temporary(index) => self.temporary(index),
             Operand::Symbol(Symbol::Input(_)) | Operand::Number(_) | Operand::Constant(_) => false,
@@ -65,7 +69,8 @@ impl Changes {
         }
     }
 
-    pub(super) fn half(&self, half: &Half) -> bool {
+    /// Whether one of the numbers of pairs, or one by itself, changes.
+    pub fn half(&self, half: &Half) -> bool {
         match half {
             Half::Of(operand) => self.operand(operand),
             Half::In(index, _) => self.pair(*index),
@@ -73,12 +78,12 @@ impl Changes {
     }
 
     /// Whether both factors of a product change.
-    pub(super) fn is_product(&self, operation: &Operation) -> bool {
+    pub fn is_product(&self, operation: &Operation) -> bool {
         matches!(operation, Operation::Multiply(a, b) if self.operand(a) && self.operand(b))
     }
 
     /// The same of pairs.
-    pub(super) fn is_product_of_pairs(&self, value: &Value) -> bool {
+    pub fn is_product_of_pairs(&self, value: &Value) -> bool {
         matches!(value, Value::Multiply(a, b) if self.pair(*a) && self.pair(*b))
     }
 
