@@ -21,7 +21,7 @@ pub(super) struct Writer<'w, 'n> {
     /// The places of products, one for each number: their sums are made in fours.
     pub products: usize,
     /// The products written so far.
-    product: usize,
+    pub product: usize,
     /// The places behind those of the products.
     others: usize,
 }

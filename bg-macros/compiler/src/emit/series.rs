@@ -133,7 +133,7 @@ pub(super) fn expansion(routine: &Routine, paired: Option<&Paired>, names: &Name
             series[k + 1].data.0 = [[#(#order_rates * part),*]];
         }
     };
-    let operations = operations(routine, products, *found > 0);
+    let operations = operations(routine, counted.product, *found > 0);
     Expansion { width: places, operations, body, parts }
 }
 
