@@ -4,6 +4,7 @@
 
 mod anchors;
 mod blocks;
+mod coefficients;
 mod description;
 mod documentation;
 mod drawing;

@@ -3,6 +3,7 @@
 //! In: equations and their derivatives. Out: [`Programs`], straight-line code for each function, and a [`Tape`] for pictures.
 //! Method: `bg_expressions::schedule`.
 
+mod changes;
 mod programs;
 mod reversed;
 mod tape;
@@ -11,6 +12,7 @@ pub use bg_expressions::elimination;
 pub use bg_expressions::schedule::{
     Assignment, Counts, Operand, Operation, Program, Request, Reverse, Routine, pairs, reverse, schedule,
 };
+pub use changes::Changes;
 pub use programs::{Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
 pub use reversed::Reversed;
 pub use tape::Tape;

@@ -12,7 +12,7 @@ mod tests;
 
 pub use functions::{acos, asin, atan2, cos, exp, ln, power, powf, sin, sqrt, tan, tanh};
 
-use crate::model::scalar::Scalar;
+use crate::model::scalar::{Pair, Scalar};
 
 /// A number's coefficients: itself, and zeros.
 #[inline(always)]
@@ -40,7 +40,7 @@ pub fn first_product<S: Scalar, const W: usize>(rows: &mut [[S; W]], left: usize
     a * b
 }
 
-/// The coefficient of order `k` of one of `P` products, from that of the factors and what [`inner_products`] gave for it.
+/// The coefficient of order `k` of one of `P` products, from that of the factors and what [`InnerProducts`] gives for it.
 #[inline(always)]
 pub fn next_product<S: Scalar, const P: usize, const W: usize>(
     inner: &[S; P],
@@ -54,45 +54,135 @@ pub fn next_product<S: Scalar, const P: usize, const W: usize>(
     inner[at] + (a * rows[0][P + at] + rows[0][at] * b)
 }
 
-/// The parts of `P` products at the next order, `k`, that only need the orders from 1 to `k` - 1 of their factors: what is
-/// added to them is left of order 0 times right of order `k` and the other way round. In `rows`, of orders 0 to `k` - 1, the
-/// left factors have the first places, the right ones the next.
-///
-/// Many products in one loop do not wait for each other; nor do they wait for the factors of order `k`.
+/// The first coefficients of two products side by side: their left factors are kept from the place `left` on, the right ones from `right` on.
 #[inline(always)]
-pub fn inner_products<S: Scalar, const P: usize, const W: usize>(rows: &[[S; W]]) -> [S; P] {
-    let inner = &rows[1..];
-    let mut sums = [S::from_f64(0.0); P];
-    let mut at = 0;
-    // As many sums at once as fit the registers of any machine, then what remains in halves.
-    at = passes::<S, 16, P, W>(inner, at, &mut sums);
-    at = passes::<S, 8, P, W>(inner, at, &mut sums);
-    at = passes::<S, 4, P, W>(inner, at, &mut sums);
-    at = passes::<S, 2, P, W>(inner, at, &mut sums);
-    passes::<S, 1, P, W>(inner, at, &mut sums);
-    // Else the sums stand side by side in the order in which they are read, and what they are made of has to be put in that order.
-    core::hint::black_box(&mut sums);
-    sums
+pub fn first_products<S: Scalar, const W: usize>(
+    rows: &mut [[S; W]],
+    left: usize,
+    right: usize,
+    a: S::Pair,
+    b: S::Pair,
+) -> S::Pair {
+    put::<S>(&mut rows[0], left, a);
+    put::<S>(&mut rows[0], right, b);
+    a * b
 }
 
-/// Passes of `M` of the `P` sums side by side, from the sum `at` on, as long as there are so many. Gives the next one.
+/// The coefficients of order `k` of two products side by side, as by [`next_product`].
 #[inline(always)]
-fn passes<S: Scalar, const M: usize, const P: usize, const W: usize>(
-    inner: &[[S; W]],
-    mut at: usize,
-    sums: &mut [S; P],
-) -> usize {
-    while at + M <= P {
-        let mut some = [S::from_f64(0.0); M];
-        for (ascending, descending) in inner.iter().zip(inner.iter().rev()) {
-            for (i, sum) in some.iter_mut().enumerate() {
-                *sum = *sum + ascending[at + i] * descending[at + P + i];
+pub fn next_products<S: Scalar, const P: usize, const W: usize>(
+    inner: &[S; P],
+    rows: &mut [[S; W]],
+    k: usize,
+    at: usize,
+    a: S::Pair,
+    b: S::Pair,
+) -> S::Pair {
+    put::<S>(&mut rows[k], at, a);
+    put::<S>(&mut rows[k], P + at, b);
+    let [left, right] = [at, P + at].map(|at| get::<S>(&rows[0], at));
+    get::<S>(inner, at) + (a * right + left * b)
+}
+
+/// The pair at the places from `at` on.
+#[inline(always)]
+fn get<S: Scalar>(from: &[S], at: usize) -> S::Pair {
+    S::Pair::new(from[at], from[at + 1])
+}
+
+/// Writes a pair to the places from `at` on.
+#[inline(always)]
+fn put<S: Scalar>(to: &mut [S], at: usize, pair: S::Pair) {
+    (to[at], to[at + 1]) = (pair.first(), pair.second());
+}
+
+/// The parts of `P` products at an order `k` that only need the orders from 1 to `k` - 1 of their factors: what is added to them is
+/// left of order 0 times right of order `k` and the other way round. `P` is a multiple of 4.
+///
+/// Many products in one loop do not wait for each other; nor do they wait for the factors of order `k`. What is read for one order serves
+/// the next one, too: its sums are made at the same time, but for the products with the factors of order `k`.
+#[derive(Debug)]
+pub struct InnerProducts<S, const P: usize> {
+    sums: [S; P],
+    /// Those of the next order as far as they are known.
+    next: [S; P],
+}
+
+impl<S: Scalar, const P: usize> InnerProducts<S, P> {
+    /// Those of order 1, which are 0.
+    #[inline(always)]
+    pub fn first() -> Self {
+        const { assert!(P.is_multiple_of(4)) }
+        let zeros = [S::from_f64(0.0); P];
+        Self { sums: zeros, next: zeros }
+    }
+
+    /// The sums of the order `k`, after those of the order before it. In `rows`, of orders 0 to `k` - 1, the left factors have the first
+    /// places, the right ones the next.
+    #[inline(always)]
+    pub fn at_next_order<const W: usize>(&mut self, rows: &[[S; W]]) -> &[S; P] {
+        if let [_, first, .., last] = rows {
+            if rows.len().is_multiple_of(2) {
+                self.begin_two(&rows[1..]);
+            } else {
+                for (i, sum) in self.sums.iter_mut().enumerate() {
+                    *sum = self.next[i] + (first[i] * last[P + i] + last[i] * first[P + i]);
+                }
+            }
+        } else if let [_, only] = rows {
+            for (i, sum) in self.sums.iter_mut().enumerate() {
+                *sum = only[i] * only[P + i];
             }
         }
-        sums[at..at + M].copy_from_slice(&some);
-        at += M;
+        // Else the sums stand side by side in the order in which they are read, and what they are made of has to be put in that order.
+        core::hint::black_box(&mut *self);
+        &self.sums
     }
-    at
+
+    /// The sums of an order, and of the next one as far as these `rows` go, which begin with order 1.
+    #[inline(always)]
+    fn begin_two<const W: usize>(&mut self, rows: &[[S; W]]) {
+        let mut at = 0;
+        // As many at once as fit the registers of a machine with AVX2, then what remains.
+        while at + 12 <= P {
+            self.pass::<12, W>(rows, at);
+            at += 12;
+        }
+        if at + 8 <= P {
+            self.pass::<8, W>(rows, at);
+            at += 8;
+        }
+        if at < P {
+            self.pass::<4, W>(rows, at);
+        }
+    }
+
+    /// `M` of the sums side by side, from the sum `at` on.
+    #[inline(always)]
+    fn pass<const M: usize, const W: usize>(&mut self, rows: &[[S; W]], at: usize) {
+        let zeros = [S::from_f64(0.0); M];
+        let (mut sums, mut next) = (zeros, zeros);
+        add_products(&mut sums, &rows[0], at, &rows[rows.len() - 1], at + P);
+        // Two left factors at a time: what they are multiplied by is read once for both and for both orders.
+        let ascending = rows[1..].as_chunks::<2>().0;
+        let descending = rows.array_windows::<3>().rev().step_by(2);
+        for ([left, then_left], [then_below, below, right]) in ascending.iter().zip(descending) {
+            add_products(&mut next, left, at, right, at + P);
+            add_products(&mut sums, left, at, below, at + P);
+            add_products(&mut next, then_left, at, below, at + P);
+            add_products(&mut sums, then_left, at, then_below, at + P);
+        }
+        self.sums[at..at + M].copy_from_slice(&sums);
+        self.next[at..at + M].copy_from_slice(&next);
+    }
+}
+
+/// Adds products of the factors side by side in `left`, from its place `at` on, and in `right`, from `to` on.
+#[inline(always)]
+fn add_products<S: Scalar, const M: usize>(sums: &mut [S; M], left: &[S], at: usize, right: &[S], to: usize) {
+    for (i, sum) in sums.iter_mut().enumerate() {
+        *sum = *sum + left[at + i] * right[to + i];
+    }
 }
 
 /// The quotient of `dividend` and `divisor`. Places: 2.

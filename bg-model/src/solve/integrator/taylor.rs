@@ -22,6 +22,9 @@ use crate::model::capability::Series;
 /// The highest order.
 const HIGHEST: usize = 30;
 
+/// Numbers in a line of the cache. The work space of a series begins with one, so that no vector lies across two.
+const LINE: usize = 8;
+
 /// The Taylor series method.
 #[derive(Clone, Debug)]
 pub struct Taylor<const N: usize> {
@@ -82,10 +85,11 @@ impl<const N: usize> Taylor<N> {
         let Some(series) = series else { return };
         let order = self.asked.unwrap_or_else(|| order_for(relative));
         self.series.resize(order + 1, SVector::zeros());
-        self.rows.resize(order * series.width(), 0.0);
+        self.rows.resize(order * series.width() + LINE - 1, 0.0);
+        let first = self.rows.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE - 1);
         self.unit = h;
         self.series[0] = start.x;
-        series.expand(start.t, h, &[], &mut self.rows, &mut self.series);
+        series.expand(start.t, h, &[], &mut self.rows[first..], &mut self.series);
     }
 
     /// At the part `theta` of the unit: the state less that at the start, and the slope of the series, in the state's unit.

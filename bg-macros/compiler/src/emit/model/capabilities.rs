@@ -129,8 +129,9 @@ impl Emission<'_> {
                 quote!(#inputs #states)
             },
         };
-        let series::Expansion { width, operations, body, parts } =
-            self.with_names(|names| series::expansion(routine, names, &reads));
+        let series::Expansion { width, operations, body, parts } = self.with_names(|names| {
+            series::expansion(routine, self.model.programs.running.paired_rate.as_ref(), names, &reads)
+        });
         let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
             #parts

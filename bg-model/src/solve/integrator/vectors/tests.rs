@@ -6,13 +6,13 @@ use nalgebra::SVector;
 use super::rate_in;
 use crate::model::capability::{Elimination, Linearised, Series};
 use crate::model::linear::{Field, Pivot};
-use crate::model::series::{inner_products, load, quotient, store};
+use crate::model::series::{InnerProducts, quotient, store};
 use crate::model::system::System;
 use crate::solve::integrator::{Flow, Gauss6, Method, Radau5, Radau9, Rodas5p, Ros2, Taylor, Tolerances};
 use crate::solve::simulation::{Settings, Span, integrate};
 
 /// Masses, and the states: momenta, then displacements.
-const M: usize = 5;
+const M: usize = 6;
 const N: usize = 2 * M;
 /// The places of a series: squares and cubes of the displacements' differences, two quotients each.
 const PRODUCTS: usize = 2 * M;
@@ -65,9 +65,10 @@ impl Series<f64, N, 0> for Row {
     #[inline(always)]
     fn expand(&self, _t: f64, h: f64, _: &[bool; 0], rows: &mut [f64], series: &mut [SVector<f64, N>]) {
         let rows = rows.as_chunks_mut::<PLACES>().0;
+        let mut inner = InnerProducts::<f64, PRODUCTS>::first();
         for k in 0..series.len() - 1 {
             let [x] = series[k].data.0;
-            let inner = if k > 0 { inner_products::<f64, PRODUCTS, PLACES>(&rows[..k]) } else { [0.0; PRODUCTS] };
+            let inner = inner.at_next_order(&rows[..k]);
             let stretches: [f64; M] = core::array::from_fn(|i| Self::stretch(&x, i));
             let mut lefts = [0.0; PRODUCTS];
             let mut rights = [0.0; PRODUCTS];
@@ -85,7 +86,8 @@ impl Series<f64, N, 0> for Row {
                 quotient(&mut rows[..=k], k, 2 * PRODUCTS + 2 * i, x[i], divisor)
             });
             let part = h / (k + 1) as f64;
-            series[k + 1].data.0 = [Self::rates(&x, &load(&products, M), &quotients).map(|rate| rate * part)];
+            series[k + 1].data.0 =
+                [Self::rates(&x, &core::array::from_fn(|i| products[M + i]), &quotients).map(|rate| rate * part)];
         }
     }
 }
