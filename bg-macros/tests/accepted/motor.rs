@@ -25,7 +25,8 @@ bond_graph! {
     }
 }
 
-fn main() {
+#[test]
+fn a_motor_has_what_its_graph_promises() {
     let mut parameters = MotorParameters::default();
     parameters.winding = 2.0;
     let motor = Motor::new(parameters, MotorInputs { voltage: Input::constant(12.0) }).expect("in range");

@@ -48,7 +48,7 @@ bond_graph! {
     /// Two wheels, of which one has a stiffer spring.
     pub graph Cart {
         part left: self::Round { mass = 5; }
-        part right: crate::wheels::Wheel { strut.stiffness = 300; }
+        part right: crate::parts::wheels::Wheel { strut.stiffness = 300; }
         Sf push = 1 * sin(t / 1);
         1 frame: translation;
         push -> frame; frame -> left.axle; frame -> right.axle;
@@ -57,7 +57,8 @@ bond_graph! {
     }
 }
 
-fn main() {
+#[test]
+fn parts_are_found_by_their_paths() {
     bond_graph! {
         graph Local {
             part wheel: wheels::Wheel;

@@ -136,7 +136,8 @@ fn rates<const N: usize, const G: usize, const M: usize>(model: &impl Runs<f64, 
     format!("{} {:?}", model.description().name, rate.as_slice())
 }
 
-fn main() {
+#[test]
+fn no_name_is_taken() {
     let models = all();
     assert_eq!(models.len(), 33);
     for (name, rates) in models {
@@ -145,7 +146,8 @@ fn main() {
     }
     let coil = own::Coil::new(own::CoilParameters {}, own::CoilInputs { voltage: 1.0.into() }).expect("in range");
     assert_eq!(rates(&coil), format!("Coil [{:?}]", 1.0 - bg_model::scalar::Scalar::tanh(0.25)));
-    let tank = bare::Tank::new(bare::TankParameters::default(), bare::TankInputs { inflow: 8.0.into() }).expect("in range");
+    let tank =
+        bare::Tank::new(bare::TankParameters::default(), bare::TankInputs { inflow: 8.0.into() }).expect("in range");
     assert_eq!(rates(&tank), "Tank [2.0, 72.0]");
     let level = bare::Level::new(bare::LevelParameters {}, bare::LevelInputs { inflow: 8.0.into() }).expect("in range");
     assert_eq!(rates(&level), "Level [2.0]");
