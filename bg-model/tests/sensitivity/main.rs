@@ -1,6 +1,5 @@
 //! Derivatives by parameters and start values against five-point differences in double-double arithmetic, and closed forms.
 
-#[path = "sensitivity/adjoint.rs"]
 mod adjoint;
 
 use bg_model::bond_graph;

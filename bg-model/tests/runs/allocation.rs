@@ -1,11 +1,9 @@
 //! A run allocates nothing: neither for steps nor for samples, events and rejected attempts.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::integrator::{Ark5, Dop853, Gauss6, Method, Radau5, Radau9, Rk4};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Ended, Samples, Settings, Span, integrate, integrate_until};
-use problems::*;
 
 fn allocations<M: Method<2>>(mut method: M) -> (u64, u64, u64) {
     let settings = Settings { samples: Samples::Every(0.01), ..settings(1e-9) };

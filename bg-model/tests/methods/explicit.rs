@@ -1,12 +1,10 @@
 //! The explicit pairs beside DOP853: observed orders, also with time in the rate, errors that follow the tolerance, and
 //! what they cost on a lightly damped oscillation.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
-use problems::*;
 
 /// The slope of the error over the step between two steps, in logarithms.
 fn order(errors: [f64; 2]) -> f64 {

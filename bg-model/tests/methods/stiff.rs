@@ -3,13 +3,11 @@
 //! References: shared collection of hard cases, A01 and A02, Radau IIA of orders 13 and 17 in quad precision, 18 and more
 //! digits. Problems: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.10.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::integrator::{Absolute, Method, Radau5, Radau9, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
 use bg_model::statistics::Statistics;
-use problems::*;
 
 /// Van der Pol's oscillator with eps = 1e-6 from (2, 0): instants and states.
 const VAN_DER_POL: [(f64, [f64; 2]); 4] = [

@@ -1,13 +1,11 @@
 //! The choice between an explicit, a partly implicit and an implicit method.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::bond_graph;
 use bg_model::integrator::{Auto, Cfmr7, Dop853, Method, Radau9, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Finish, Settings, Span, integrate};
 use bg_model::system::Model;
-use problems::*;
 
 /// A run to `t_end` (s) from t = 0, and when which method took over.
 fn chosen<const N: usize>(

@@ -1,11 +1,9 @@
 //! Rosenbrock methods: orders, stiff problems, dense output, cost.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::integrator::{Method, Rodas5p, Ros2};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
-use problems::*;
 
 /// The errors at t = 2 of x' = x cos t, x(0) = 1.
 fn smooth_errors<M: Method<1>>(method: impl Fn(f64) -> M, steps: &[f64]) -> Vec<f64> {

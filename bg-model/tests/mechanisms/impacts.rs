@@ -1,14 +1,12 @@
 //! Stops with a restitution: impacts against closed forms, by every integrator; rest, release, many at once.
 
-mod random;
-
+use crate::random::random_numbers;
 use bg_model::bond_graph;
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::run::Simulation;
 use bg_model::simulation::{Observer, Settings, Span, integrate};
 use bg_model::system::Model;
-use random::random_numbers;
 
 bond_graph! {
     /// A ball that falls on a floor.

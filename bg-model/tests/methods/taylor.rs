@@ -1,8 +1,7 @@
 //! The Taylor series method: its orders, also with time in the rate, precision near rounding, dense output, what a series
 //! cannot know, and systems without one.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::capability::Series;
 use bg_model::failure::{BadInput, Cause};
 use bg_model::integrator::{Dop853, Method, Taylor};
@@ -10,7 +9,6 @@ use bg_model::nalgebra::SVector;
 use bg_model::series;
 use bg_model::simulation::{Samples, Settings, Span, integrate};
 use bg_model::system::System;
-use problems::*;
 
 /// One order of a system's series: from order `k`, the part of the unit at order 0 and 1 that time has, and the states'
 /// coefficients to the rates' coefficients.

@@ -1,15 +1,13 @@
 //! Collocation methods: orders, dense output, counts, events.
 
-mod problems;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::problems::*;
 use bg_model::failure::Cause;
 use bg_model::integrator::{Flow as _, Gauss6, Method, Point, Radau5, Radau9, Scale, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
-use problems::*;
 
 fn assert_orders(errors: &[f64], expected: std::ops::Range<f64>) {
     let found = orders(errors);

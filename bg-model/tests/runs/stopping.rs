@@ -1,9 +1,8 @@
 //! Runs that end before their span: by a condition, by their observer.
 
-mod problems;
-
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
 
+use crate::problems::*;
 use bg_model::bond_graph;
 use bg_model::failure::{Cause, Failure};
 use bg_model::integrator::{Bs5, Dop853, Integrator, Method, Radau5, Rk4, Tolerances};
@@ -11,7 +10,6 @@ use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Ended, Finish, Observer, Samples, Settings, Span, integrate, integrate_until};
 use bg_model::statistics::Statistics;
 use bg_model::system::{Model, System};
-use problems::*;
 
 /// A run from t = 0 until `condition` is zero, and what it told.
 fn until<Sys, M, C, const N: usize, const G: usize>(

@@ -1,17 +1,15 @@
 //! The Runge-Kutta-Nystrom method: observed orders with and without states of second order, errors that stay near the
 //! tolerance, steps that end where stability does and follow it, and what it costs on stiff, lightly damped joints.
 
-mod problems;
-
 use std::ops::Range;
 
+use crate::problems::*;
 use bg_model::capability::SecondOrder;
 use bg_model::integrator::{AnyMethod, Cfmr7, Dop853, Method, Nystrom};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
 use bg_model::statistics::Statistics;
 use bg_model::system::System;
-use problems::*;
 
 /// The slope of the error over the step between two steps, in logarithms.
 fn order(errors: [f64; 2]) -> f64 {

@@ -1,16 +1,14 @@
 //! What a user sees of an error: its sentence, by `Display` and by `Debug`, which is what a `main` that gives it back prints.
 
-mod problems;
-
 use std::error::Error;
 
+use crate::problems::*;
 use bg_model::assembly::{Gap, close};
 use bg_model::failure::Cause;
 use bg_model::integrator::{Dop853, Radau5};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings, Span, integrate};
 use bg_model::{bond_graph, parameters::Parameters};
-use problems::*;
 
 bond_graph! {
     /// A mass on a spring.

@@ -1,12 +1,10 @@
 //! Observed orders, and errors that follow the tolerance.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::integrator::{Absolute, Dop853, Method, Rk4, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
 use bg_model::system::System;
-use problems::*;
 
 /// The slope of the error over the step between two steps, in logarithms.
 fn order(coarse: (f64, f64), fine: (f64, f64)) -> f64 {

@@ -1,15 +1,13 @@
 //! Events against closed forms.
 
-mod problems;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::problems::*;
 use bg_model::failure::{Cause, Quantity};
 use bg_model::integrator::{Dop853, Rk4};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings, Span, integrate};
 use bg_model::system::System;
-use problems::*;
 
 /// What the sums of a step of size 1 are off by rounding; the weights of DOP853 go up to 30.
 const ROUNDING: f64 = 5e-15;

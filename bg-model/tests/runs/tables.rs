@@ -1,7 +1,6 @@
 //! Inputs from tables: against closed forms, and the steps that end at their rows.
 
-mod problems;
-
+use crate::problems::{Record, settings};
 use bg_model::bond_graph;
 use bg_model::extended::{self, Accuracy};
 use bg_model::input::{Input, Table, TableError};
@@ -10,7 +9,6 @@ use bg_model::nalgebra::SVector;
 use bg_model::scalar::{DoubleDouble, Scalar};
 use bg_model::simulation::{Ended, Finish, Samples, Settings, Span, integrate, integrate_until};
 use bg_model::system::{Model, System};
-use problems::{Record, settings};
 
 bond_graph! {
     /// A mass that two forces push.

@@ -1,14 +1,12 @@
 //! Orifices at rest: laws with an infinite derivative at zero, by every kind of method, against closed forms.
 
-mod problems;
-
+use crate::problems::{Record, settings};
 use bg_model::bond_graph;
 use bg_model::integrator::{AnyMethod, Auto, Bs5, Dop853, Gauss6, Radau5, Radau9, Rodas5p, Ros2, Taylor};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::{Model, System};
-use problems::{Record, settings};
 
 bond_graph! {
     /// A tank, empty at the start, with a pump and an orifice in its floor.

@@ -1,13 +1,11 @@
 //! Dry friction that sticks: known motions, by every integrator; rest, reversal, many at once.
 
-mod random;
-
+use crate::random::random_numbers;
 use bg_model::bond_graph;
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Observer, Settings, Span, integrate};
 use bg_model::system::Model;
-use random::random_numbers;
 
 bond_graph! {
     /// A block on an incline, thrown up it at the start.

@@ -1,12 +1,10 @@
 //! The driver: counts, samples, refused input, failures.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::failure::{BadInput, Cause, Failure, Quantity};
 use bg_model::integrator::{Absolute, Dop853, Rk4, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
-use problems::*;
 
 #[test]
 fn the_counts_of_kepler_are_those_of_the_method() {

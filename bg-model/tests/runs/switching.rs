@@ -1,15 +1,12 @@
 //! Random switched oscillators: at every instant the branches agree with the guards, or the run ends in a true chatter.
 
-mod problems;
-mod random;
-
+use crate::problems::*;
+use crate::random::random_numbers;
 use bg_model::failure::Cause;
 use bg_model::integrator::Dop853;
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::System;
-use problems::*;
-use random::random_numbers;
 
 /// Three oscillators with position x_i and velocity x_(3+i), their damping and drive switched by a plane each.
 struct Oscillators {

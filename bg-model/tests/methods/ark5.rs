@@ -1,11 +1,9 @@
 //! The method that is implicit in the damped states alone: order, strong dampers, dense output, switches, cost.
 
-mod problems;
-
+use crate::problems::*;
 use bg_model::integrator::{Ark5, Dop853, Radau9, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
-use problems::*;
 
 /// Two masses of 1 kg and 2 kg with a damper of `r` (N s/m) between them, the first on a hardening spring that is pulled to and
 /// fro: momenta, kg m/s, and displacements, m.
@@ -89,7 +87,7 @@ fn the_dense_output_has_order_4() {
             Dop853::new(),
             START,
             step,
-            &Settings { samples: settings.samples, ..problems::settings(1e-13) },
+            &Settings { samples: settings.samples, ..crate::problems::settings(1e-13) },
         );
         record
             .samples
