@@ -1,17 +1,14 @@
 //! Units as hosts find them, where these are installed: packed, validated and simulated by FMPy (`pip install fmpy`), in steps by libcosim
 //! (`pip install libcosimpy`). The variable `FMPY_PYTHON` names a Python that is not `python3`.
 
-#[path = "../examples/machines/mod.rs"]
-mod machines;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use crate::machines::{Ball, Pendulum, Shaker};
 use bg_fmi::archive::archive;
 use bg_fmi::{Described, Of, Packing, Version};
 use bg_model::mechanism::Mechanism;
 use bg_model::run::Simulation;
-use machines::{Ball, Pendulum, Shaker};
 
 static PENDULUM: Of<Pendulum> = Of::NEW;
 static BALL: Of<Ball> = Of::NEW;
@@ -55,7 +52,7 @@ fn host(unit: &Path, arguments: &[&str]) -> Vec<String> {
 
 /// What a host's script prints.
 fn told_by(script: &str, unit: &Path, arguments: &[&str]) -> Vec<String> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts").join(script);
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/units/hosts").join(script);
     let output: Output = Command::new(python()).arg(script).arg(unit).args(arguments).output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));

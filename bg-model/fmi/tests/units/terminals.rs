@@ -352,7 +352,7 @@ fn hosts_can_read_it() {
         println!("skipped: fmpy is not installed");
         return;
     }
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts/terminals_check.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/units/hosts/terminals_check.py");
     let folder = tempfile::tempdir().unwrap();
     for (model, count) in [
         (&MOTOR as &dyn Described, "3"),

@@ -1,8 +1,6 @@
 //! An instance through its safe layer: trajectories, events, derivatives, saved states, refusals.
 
-#[path = "../examples/machines/mod.rs"]
-mod machines;
-
+use crate::machines::{Ball, Pendulum, Shaker};
 use bg_fmi::variables::Kind;
 use bg_fmi::{Exported, Instance, Interface, Of, Packing, Version, model_description, token};
 use bg_model::bond_graph;
@@ -12,7 +10,6 @@ use bg_model::nalgebra::SVector;
 use bg_model::run::Simulation;
 use bg_model::scalar::{DoubleDouble, Scalar};
 use bg_model::system::{Model, branches_by_sign};
-use machines::{Ball, Pendulum, Shaker};
 
 static PENDULUM: Of<Pendulum> = Of::NEW;
 static BALL: Of<Ball> = Of::NEW;
@@ -186,7 +183,7 @@ fn an_input_holds_from_one_step_to_the_next() {
     set(&mut shaker, &SHAKER, Kind::Parameter(2), 0.0);
     shaker.enter_initialization(0.0, Some(1e-10)).unwrap();
     shaker.exit_initialization().unwrap();
-    let parameters = machines::ShakerParameters { stretch: 0.0, ..Default::default() };
+    let parameters = crate::machines::ShakerParameters { stretch: 0.0, ..Default::default() };
     let force = |t: f64| (3.0 * t).sin() * 5.0;
     let mut state = None;
     for k in 0..50 {
