@@ -1,12 +1,8 @@
 //! Equilibrium and linearisation against closed forms.
 
-#[path = "linear/equilibria.rs"]
 mod equilibria;
-#[path = "linear/files.rs"]
 mod files;
-#[path = "linear/models.rs"]
 mod models;
-#[path = "linear/spectra.rs"]
 mod spectra;
 
 use bg_model::input::Input;

@@ -4,8 +4,8 @@ use std::io::Read;
 
 use bg_workbench::linear::{StateSpace, logarithmic, responses_csv, responses_json};
 
-use crate::models::*;
-use crate::{at_rest, model};
+use super::models::*;
+use super::{at_rest, model};
 
 fn oscillator() -> StateSpace {
     at_rest::<Oscillator>(&model(&[], &[3.0])).1

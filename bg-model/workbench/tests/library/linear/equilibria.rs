@@ -2,8 +2,8 @@
 
 use bg_workbench::linear::{LinearError, equilibrium, linearise};
 
-use crate::models::*;
-use crate::{at_rest, model, naturals, near, start};
+use super::models::*;
+use super::{at_rest, model, naturals, near, start};
 
 #[test]
 fn a_rod_is_found_hanging_wherever_it_starts() {
@@ -112,7 +112,7 @@ fn a_steady_motion_is_found_where_there_is_no_rest() {
     assert_eq!(name, "disc.rotation_z");
     near(*speed, 0.2 * 12.0 / (2.0 * 0.01 + 0.2 * 0.2), 1e-9);
     assert!(rest.sentence().ends_with("`disc.rotation_z` goes on by 40 per s"), "{}", rest.sentence());
-    near(linear.c[(1, crate::place(&linear.states, "disc.angular.p_z"))], 50.0, 1e-12);
+    near(linear.c[(1, super::place(&linear.states, "disc.angular.p_z"))], 50.0, 1e-12);
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn a_root_without_a_slope_is_named() {
     // An output without one is no reason to stop.
     let table = model::<Turntable>(&[], &[0.0]);
     let at_start = linearise(&table, 0.0, &start(&table)).unwrap();
-    let shift = crate::place(&at_start.outputs, "shift");
+    let shift = super::place(&at_start.outputs, "shift");
     assert!(at_start.c.row(shift).iter().all(|entry| entry.is_nan()));
     assert!(at_start.json().contains("null"));
 }

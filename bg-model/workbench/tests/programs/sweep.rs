@@ -8,12 +8,9 @@ use std::process::{Child, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::example::program;
+use crate::outcome::text_of;
 use bg_workbench::sweep::parquet::{Table, Values};
-use example::program;
-use outcome::text_of;
-
-mod example;
-mod outcome;
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
     program("pendulum").current_dir(directory).args(arguments).output().expect("the example was built")

@@ -4,9 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use example::program;
-
-mod example;
+use crate::example::program;
 
 /// The names of the examples, sorted.
 fn examples() -> Vec<String> {

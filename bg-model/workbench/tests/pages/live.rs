@@ -6,19 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
+use crate::browser;
+use crate::example::program;
+use crate::pendulum::Pendulum;
 use bg_workbench::{Program, live};
-use example::program;
 use serde_json::{Value, json};
-
-#[path = "page/browser.rs"]
-mod browser;
-#[path = "../examples/pendulum.rs"]
-#[allow(dead_code, unused_attributes)]
-mod pendulum;
-
-mod example;
-
-use pendulum::Pendulum;
 
 /// What a report of 2 s orders, with this length of the rod, m.
 fn order(length: f64) -> String {

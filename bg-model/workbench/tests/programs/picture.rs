@@ -1,21 +1,16 @@
 //! The pictures of the examples' graphs, read back from their files and compared with the table of bonds that is
 //! printed.
 //!
-//! Cargo builds the examples with `cargo test -p bg-workbench`; a run with `--test picture` alone takes those built
+//! Cargo builds the examples with `cargo test -p bg-workbench`; a run with `--test programs` alone takes those built
 //! before.
-
-#[path = "../../../bg-macros/picture/tests/support/mod.rs"]
-mod support;
-
-mod example;
 
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use crate::example::program;
+use crate::support::{self, Picture, faults, faults_in_words};
 use bg_picture::{Graph, Level};
-use example::program;
-use support::{Picture, faults, faults_in_words};
 
 /// The names of the examples, sorted.
 fn examples() -> Vec<String> {

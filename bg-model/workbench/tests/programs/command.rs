@@ -4,11 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use example::program;
-use outcome::text_of;
-
-mod example;
-mod outcome;
+use crate::example::program;
+use crate::outcome::text_of;
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
     program("pendulum").current_dir(directory).args(arguments).output().expect("the example was built")

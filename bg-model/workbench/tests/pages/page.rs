@@ -1,13 +1,10 @@
 //! The report page: its numbers are the CSV's, nothing in a text breaks it, and a browser shows it, plays it and scrubs it.
 
-#[path = "page/browser.rs"]
-mod browser;
-#[path = "page/machine.rs"]
-mod machine;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::browser;
+use crate::machine::{self, DoublePendulum};
 use base64::Engine;
 use bg_model::description::{Description, ParameterInfo};
 use bg_model::mechanism::Mechanism;
@@ -17,7 +14,6 @@ use bg_workbench::extras::{Extras, Page, Plain};
 use bg_workbench::page::{Linearised, Parameter, Report, Views, glb, page};
 use bg_workbench::samples;
 use bg_workbench::summary::{Additions, Summary};
-use machine::DoublePendulum;
 use serde_json::Value;
 
 /// What `report` would write of a run, with these views.
@@ -265,7 +261,7 @@ fn the_script_is_what_the_sources_give() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Keeps pages for whoever wants to look at them: `PAGES=folder cargo test -p bg-workbench --test page`.
+/// Keeps pages for whoever wants to look at them: `PAGES=folder cargo test -p bg-workbench --test pages`.
 #[test]
 fn pages_can_be_kept() {
     let Some(folder) = std::env::var_os("PAGES") else { return };

@@ -4,15 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use example::program;
-use outcome::text_of;
+use crate::browser;
+use crate::example::program;
+use crate::outcome::text_of;
 use serde_json::Value;
-
-mod example;
-mod outcome;
-
-#[path = "page/browser.rs"]
-mod browser;
 
 fn run(example: &str, directory: &Path, arguments: &[&str]) -> Output {
     program(example).current_dir(directory).args(arguments).output().expect("the example was built")
