@@ -1,14 +1,11 @@
 //! The pictures of the hacksaw's graph, read back from their files and compared with the table of bonds that is
 //! printed.
 
-#[path = "../../bg-macros/picture/tests/support/mod.rs"]
-mod support;
-
 use std::fs;
 
+use crate::support::{Picture, faults, faults_in_words, tables};
 use assert_cmd::Command;
 use bg_picture::Graph;
-use support::{Picture, faults, faults_in_words, tables};
 
 fn printed(arguments: &[&str]) -> String {
     let output = Command::cargo_bin("hacksaw").unwrap().args(arguments).assert().success().get_output().clone();
