@@ -8,6 +8,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use bond_graph_tests::fuzz::{Input, KINDS, Kind, Outcome, Tally, corpus, examine, joined, lexemes, seeds, shrink};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// The folder of this package.
 fn here() -> &'static Path {
@@ -35,12 +36,11 @@ fn the_corpus_has_the_outcomes_it_had() {
 /// Fresh inputs of one kind and what became of them.
 fn fresh(tally: &mut Tally, kind: Kind, count: u64) {
     let seeds = seeds(&here().join("..")).expect("the models are there");
-    for number in 0..count {
-        let input = kind.input(&seeds, 2026, number);
-        let result = examine(&input);
+    let examined = (0..count).into_par_iter().map(|number| examine(&kind.input(&seeds, 2026, number)));
+    for (number, result) in (0..count).zip(examined.collect::<Vec<_>>()) {
         tally.count(kind, &result);
         if let Err(violation) = result {
-            panic!("{} {number}: {}\n{}", kind.name(), violation.0, input.text());
+            panic!("{} {number}: {}\n{}", kind.name(), violation.0, kind.input(&seeds, 2026, number).text());
         }
     }
 }

@@ -2,8 +2,10 @@
 
 use std::sync::OnceLock;
 
-use bond_graph_tests::hardcases::case::{Outcome, Verdict};
+use bg_model::integrator::Integrator;
+use bond_graph_tests::hardcases::case::{Case, Outcome, Verdict};
 use bond_graph_tests::hardcases::{integrator, integrators, kinetics, short_cases};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// The attempted steps that an integrator may take which is not made for the case.
 const FEW: u64 = 600;
@@ -27,33 +29,33 @@ const WRONG_BETWEEN: &[(&str, &str)] = &[
 ];
 
 /// A case run by an integrator.
-struct Entry {
-    case: &'static str,
-    integrator: String,
+pub struct Entry {
+    pub case: &'static str,
+    pub integrator: String,
     is_fitting: bool,
-    outcome: Outcome,
+    pub outcome: Outcome,
 }
 
-/// All of them, run once.
-fn entries() -> &'static [Entry] {
+/// All of them, run once, cases side by side.
+pub fn entries() -> &'static [Entry] {
     static ENTRIES: OnceLock<Vec<Entry>> = OnceLock::new();
     ENTRIES.get_or_init(|| {
-        let mut entries = Vec::new();
-        for case in short_cases() {
-            for integrator in integrators() {
-                let name = integrator.name();
-                let is_fitting = case.fitting.contains(&name);
-                let outcome = case.run(*integrator, case.moderate, if is_fitting { ENOUGH } else { FEW });
-                let Outcome { error, between, statistics, verdict, .. } = &outcome;
-                println!(
-                    "{} by {name}: {verdict:?}, error {error:.1e}, between {between:.1e}, {statistics}",
-                    case.name
-                );
-                entries.push(Entry { case: case.name, integrator: name.to_owned(), is_fitting, outcome });
-            }
-        }
-        entries
+        let of_cases = (0..short_cases().len()).into_par_iter().map_init(short_cases, |cases, k| of_case(&cases[k]));
+        of_cases.flatten_iter().collect()
     })
+}
+
+/// The case run by every integrator.
+fn of_case(case: &Case) -> Vec<Entry> {
+    let entry = |integrator: &Integrator| {
+        let name = integrator.name();
+        let is_fitting = case.fitting.contains(&name);
+        let outcome = case.run(*integrator, case.moderate, if is_fitting { ENOUGH } else { FEW });
+        let Outcome { error, between, statistics, verdict, .. } = &outcome;
+        println!("{} by {name}: {verdict:?}, error {error:.1e}, between {between:.1e}, {statistics}", case.name);
+        Entry { case: case.name, integrator: name.to_owned(), is_fitting, outcome }
+    };
+    integrators().iter().map(entry).collect()
 }
 
 /// Those of which `is_one` holds are exactly these.

@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use bond_graph_tests::hardcases::{integrator, short_cases};
+use bond_graph_tests::hardcases::short_cases;
+
+use crate::verdicts::entries;
 
 #[test]
 fn counts_are_what_they_were() {
@@ -12,7 +14,8 @@ fn counts_are_what_they_were() {
     );
     for case in short_cases() {
         for name in [case.fitting[0], case.fitting[1]] {
-            let of = case.run(integrator(name), case.moderate, 20_000).statistics;
+            let entry = entries().iter().find(|entry| entry.case == case.name && entry.integrator == name);
+            let of = &entry.expect("every integrator runs every case").outcome.statistics;
             writeln!(
                 text,
                 "{:<26} {name:<8} {:>7} {:>8} {:>8} {:>9} {:>7}",

@@ -1,0 +1,19 @@
+//! Runs: the driver, events, samples, what ends them, what they say and that they allocate nothing; tables, values and drawings of a model.
+
+mod allocation;
+mod drawing;
+mod driver;
+mod events;
+mod messages;
+mod origins;
+mod parameters;
+#[path = "../problems/mod.rs"]
+mod problems;
+#[path = "../random/mod.rs"]
+mod random;
+mod recording;
+mod run;
+mod stopping;
+mod switching;
+mod tables;
+mod values;

@@ -1,0 +1,187 @@
+//! Derivatives by parameters and start values against five-point differences in double-double arithmetic, and closed forms.
+
+mod adjoint;
+
+use bg_model::bond_graph;
+use bg_model::extended::Accuracy;
+use bg_model::integrator::Integrator;
+use bg_model::mechanism::Mechanism;
+use bg_model::parameters::Parameters;
+use bg_model::run::Request;
+use bg_model::scalar::{Gradient, Scalar};
+use bg_model::sensitivity::{Direction, differences, sensitivities};
+use bg_model::simulation::Samples;
+
+bond_graph! {
+    /// A rod on a hinge that does not give, with what it loses.
+    graph Pendulum {
+        param angle: rad = 0.4; param length: m = 0.6, above 0; param friction: N*m*s/rad = 0.05; param gravity: m/s^2 = 9.81;
+        param spin: rad/s = 1;
+        gravity [0, -gravity, 0];
+        ground { point pivot = [0, 0, 0]; }
+        body rod {
+            cuboid [length, 0.03, 0.03] density 7850; point end = [-length / 2, 0, 0];
+            start end at [0, 0, 0]; start turned rotation_z(angle);
+            start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin];
+        }
+        joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
+        drive brake on pin torque = -friction * pin.speed;
+        observe { angle: rad = rod.angle; x: m = rod.position.x; force: N = pin.force.y; lost: J = integral(brake.power) }
+        scenes only;
+        scene Pendulum { expect planar; }
+    }
+    /// A block on a spring, whose contact resists its two directions differently, with a jump between them.
+    graph Block {
+        param mass: kg = 1, above 0; param stiffness: N/m = 100, above 0; param cut: N*s/m = 5; param back: N*s/m = 1; param drop: N = 0.2; param start: m = 0.5;
+        1 slide: translation; I block = mass; C spring = stiffness start start;
+        R saw(v) = if v < 0 { cut * v - drop } else { back * v + drop };
+        slide -> block; slide -> spring; slide -> saw;
+        observe { x: m = spring.q; v: m/s = slide.flow; force: N = saw.effort; lost: J = integral(dissipated_power) }
+    }
+    /// A mass that a belt carries until its spring tears it off.
+    graph Belt {
+        param mass: kg = 2, above 0; param stiffness: N/m = 50, above 0; param belt: m/s = 0.1; param still: N = 6; param kinetic: N = 4;
+        1 slide: translation; I body = mass start mass * belt; C spring = stiffness;
+        Sf drum = belt; 0 between: translation; 1 slip: translation;
+        drum -> between -> slide -> body; slide -> spring; between -> slip;
+        friction rub on slip { coulomb kinetic; static still; }
+        observe { x: m = spring.q; v: m/s = slide.flow; force: N = rub.effort; lost: J = integral(dissipated_power) }
+    }
+    /// A ball that falls on a floor.
+    graph Ball {
+        param mass: kg = 2, above 0; param height: m = 1.25; param gravity: m/s^2 = 9.81; param give: 1 = 0.8;
+        1 fall: translation; I ball = mass; Se weight = -mass * gravity; weight -> fall -> ball;
+        stop floor on fall { at least 0; start height; restitution give; }
+        observe { y: m = floor.place; v: m/s = fall.flow; lost: J = integral(dissipated_power) }
+    }
+    /// A slider and a crank of rigid joints, whose loop the assembly closes.
+    graph Crank {
+        param radius: m = 0.2, above 0; param rod: m = 0.6, above 0; param angle: rad = 1; param spin: rad/s = -8; param drag: N*s/m = 2;
+        ground { point O = [0, 0, 0]; }
+        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-radius / 2, 0, 0]; point b = [radius / 2, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin]; }
+        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-rod / 2, 0, 0]; point c = [rod / 2, 0, 0]; start b at [radius * cos(angle), radius * sin(angle), 0]; start turned rotation_z(guess(-0.3)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
+        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0]; start velocity [guess(0), guess(0), 0]; }
+        joint pin_o: revolute z (ground.O -> crank.a) { rigid; }
+        joint pin_a: revolute z (crank.b -> link.b) { rigid; }
+        joint pin_b: revolute z (link.c -> slider) { rigid; }
+        joint guide: prismatic x (ground.O -> slider) { rigid; }
+        drive load on guide force = -drag * slider.velocity.x;
+        observe { x: m = guide.travel; v: m/s = slider.velocity.x; angle: rad = crank.angle; force: N = pin_a.force.x }
+        scenes only;
+        scene Crank { expect planar; }
+    }
+}
+
+fn request(t: f64, method: Integrator) -> Request {
+    Request { method, t_end: t, rtol: 1e-12, atol: Some(1e-13), samples: Samples::At(vec![t]), ..Request::default() }
+}
+
+/// The largest difference of an exact derivative from differences, in parts of the largest derivative of its output at `t` (s)
+/// per part of its parameter; and how many events there were.
+fn deviation<Me: Mechanism>(model: &Me, t: f64, method: Integrator) -> (f64, u64) {
+    let directions = Direction::parameters::<Me>();
+    let found = sensitivities(model, &request(t, method), &directions).expect("derivatives");
+    let values: Vec<f64> = (0..directions.len()).map(|k| model.parameters().value(k)).collect();
+    let mut worst = 0.0_f64;
+    let accuracy = Accuracy { columns: 8, tolerance: 1e-20 };
+    let expected: Vec<Vec<f64>> = (0..directions.len())
+        .map(|parameter| differences(model, parameter, t, 1e-4, accuracy).expect("runs"))
+        .collect();
+    for output in 0..Me::describe().outputs.len() {
+        let size = |k: usize| (expected[k][output] * values[k]).abs();
+        let largest = (0..directions.len()).map(size).fold(0.0, f64::max);
+        for (k, expected) in expected.iter().enumerate() {
+            let error = ((found.of(k, output)[0] - expected[output]) * values[k]).abs() / largest;
+            worst = worst.max(error);
+        }
+    }
+    (worst, found.trajectory.statistics.events)
+}
+
+#[test]
+fn a_pendulum_on_a_rigid_hinge() {
+    let (error, _) = deviation(&Pendulum::new(PendulumParameters::default()).unwrap(), 1.5, Integrator::Dop853);
+    assert!(error < 1e-9, "{error:e}");
+}
+
+#[test]
+fn a_closed_loop_from_its_assembled_start() {
+    let (error, _) = deviation(&Crank::new(CrankParameters::default()).unwrap(), 0.5, Integrator::Dop853);
+    assert!(error < 1e-9, "{error:e}");
+}
+
+#[test]
+fn a_law_with_two_branches() {
+    let (error, events) = deviation(&Block::new(BlockParameters::default()).unwrap(), 2.0, Integrator::Auto);
+    assert!(error < 1e-9 && events > 5, "{error:e} {events}");
+}
+
+#[test]
+fn sticking_and_slipping() {
+    let (error, events) = deviation(&Belt::new(BeltParameters::default()).unwrap(), 4.0, Integrator::Dop853);
+    assert!(error < 1e-9 && events > 3, "{error:e} {events}");
+}
+
+/// Place and speed of the ball at `t` (s) after it has bounced: from h, g and e.
+fn bounced<S: Scalar>(height: S, gravity: S, give: S, t: S) -> [S; 2] {
+    let number = S::from_f64;
+    let first = (number(2.0) * gravity * height).sqrt();
+    let (mut since, mut speed) = (t - first / gravity, give * first);
+    loop {
+        let flight = number(2.0) * speed / gravity;
+        if since.to_f64() < flight.to_f64() {
+            return [speed * since - number(0.5) * gravity * since * since, speed - gravity * since];
+        }
+        (since, speed) = (since - flight, speed * give);
+    }
+}
+
+#[test]
+fn impacts_against_the_closed_form() {
+    let model = Ball::new(BallParameters::default()).unwrap();
+    let by = |name| Direction::parameter::<Ball>(name).unwrap();
+    let place = Ball::describe().states.iter().position(|state| state.unit == "m").expect("the place of the stop");
+    let directions = [by("height"), by("gravity"), by("give"), by("mass"), Direction::Start(place)];
+    for method in [Integrator::Dop853, Integrator::Radau9] {
+        let found = sensitivities(&model, &request(3.0, method), &directions).unwrap();
+        assert!(found.trajectory.statistics.events >= 3, "{}", found.trajectory.statistics.events);
+        let along = |k: usize| std::array::from_fn(|l| f64::from(u8::from(k == l)));
+        let [height, gravity, give] = [(1.25, 0), (9.81, 1), (0.8, 2)].map(|(value, k)| Gradient::new(value, along(k)));
+        let expected = bounced(height, gravity, give, Gradient::from_f64(3.0));
+        for (output, expected) in expected.iter().enumerate() {
+            assert!((found.trajectory.columns[output].values[0] - expected.value).abs() < 1e-9);
+            for (k, slope) in expected.slopes().iter().take(3).enumerate() {
+                let error = (found.of(k, output)[0] - slope).abs() / slope.abs();
+                assert!(error < 1e-9, "{} by {k}: {error:e}", method.name());
+            }
+            // A heavier ball bounces alike.
+            assert!(found.of(3, output)[0].abs() < 1e-9, "{}", found.of(3, output)[0]);
+        }
+        // The stop's place is the state that starts at the height.
+        assert!((found.of(4, 0)[0] - found.of(0, 0)[0]).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn each_direction_is_the_same_beside_others_and_alone() {
+    let model = Block::new(BlockParameters::default()).unwrap();
+    let all = Direction::parameters::<Block>();
+    let together = sensitivities(&model, &request(1.0, Integrator::Dop853), &all).unwrap();
+    for (k, &direction) in all.iter().enumerate() {
+        let alone = sensitivities(&model, &request(1.0, Integrator::Dop853), &[direction]).unwrap();
+        for output in 0..4 {
+            let difference = (together.of(k, output)[0] - alone.of(0, output)[0]).abs();
+            assert!(difference <= 1e-11 * (1.0 + alone.of(0, output)[0].abs()), "{difference:e}");
+        }
+    }
+}
+
+#[test]
+fn the_run_is_the_one_without_derivatives() {
+    let model = Belt::new(BeltParameters::default()).unwrap();
+    let request = Request { samples: Samples::Every(0.1), ..request(4.0, Integrator::Auto) };
+    let plain = bg_model::run::Simulation::of(&model, request.clone()).run().unwrap();
+    let found = sensitivities(&model, &request, &Direction::parameters::<Belt>()).unwrap();
+    assert_eq!(found.trajectory.recording, plain.recording);
+    assert_eq!(found.trajectory.statistics, plain.statistics);
+}

@@ -1,0 +1,261 @@
+//! Sweeps as a user meets them: plans, shards, a sweep that is killed and goes on, runs that fail. The program is the example
+//! `pendulum`.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use crate::example::program;
+use crate::outcome::text_of;
+use bg_workbench::sweep::parquet::{Table, Values};
+
+fn run(directory: &Path, arguments: &[&str]) -> Output {
+    program("pendulum").current_dir(directory).args(arguments).output().expect("the example was built")
+}
+
+fn text(directory: &Path, arguments: &[&str]) -> String {
+    text_of(run(directory, arguments), arguments)
+}
+
+/// A folder with `plan` as plan.toml.
+fn with_plan(plan: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("plan.toml"), plan).unwrap();
+    folder
+}
+
+/// The files of a folder, hidden ones among them, with their bytes.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.map(|path| (path.file_name().unwrap().to_str().unwrap().to_owned(), fs::read(path).unwrap())).collect()
+}
+
+fn table(path: PathBuf) -> Table {
+    Table::read(&fs::read(path).unwrap()).unwrap()
+}
+
+fn reals(table: &Table, name: &str) -> Vec<f64> {
+    match &table.columns.iter().find(|column| column.name == name).unwrap().values {
+        Values::Real(values) => values.clone(),
+        other => panic!("`{name}` is {other:?}"),
+    }
+}
+
+const PLAN: &str = r#"
+t_end = 0.2
+shard = 7
+[grid]
+length = { from = 0.4, to = 0.8, count = 6 }
+angle = [0.1, 0.5, 1.0, 1.5, 2.0]
+[columns]
+angle = ["final", "max"]
+force_x = ["mean", "integral"]
+"#;
+
+#[test]
+fn a_row_has_what_a_single_run_has() {
+    let folder = with_plan(PLAN);
+    let path = folder.path();
+    let said = text(path, &["sweep", "--plan", "plan.toml", "--out", "o"]);
+    assert!(said.starts_with("sweep of 30 runs: 5 files made; 30 runs, 0 of them failed\n"), "{said}");
+    // Run 13 is the third length with the fourth angle, the last of the second shard.
+    let shard = table(path.join("o/runs-000001.parquet"));
+    let names: Vec<&str> = shard.columns.iter().map(|column| column.name.as_str()).collect();
+    let own = ["run", "length", "angle", "failure", "reached", "steps", "events"];
+    assert_eq!(names, [&own[..], &["angle_max", "angle_final", "force_x_mean", "force_x_integral"]].concat());
+    assert_eq!(shard.columns[0].values, Values::Whole((7..14).collect()));
+    let length = reals(&shard, "length")[6];
+    assert_eq!((length, reals(&shard, "angle")[6]), (0.4 + 0.4 * 0.4, 1.5));
+    let [length, angle] = [format!("length={length:?}"), "angle=1.5".to_owned()];
+    text(path, &["run", "--t-end", "0.2", "--set", &length, "--set", &angle, "--csv", "t.csv", "--no-figures"]);
+    let csv = fs::read_to_string(path.join("t.csv")).unwrap();
+    let last: Vec<f64> = csv.lines().last().unwrap().split(',').map(|field| field.parse().unwrap()).collect();
+    assert_eq!((last[0], last[1]), (0.2, reals(&shard, "angle_final")[6]));
+    let said = |name: &str| &shard.texts.iter().find(|(text, _)| text == name).unwrap().1;
+    assert!(said("units").contains(r#""force_x_integral":"N*s""#) && said("rtol") == "1e-8");
+}
+
+#[test]
+fn files_do_not_depend_on_threads_or_on_who_makes_them() {
+    let folder = with_plan(PLAN);
+    let path = folder.path();
+    text(path, &["sweep", "--plan", "plan.toml", "--out", "one", "--threads", "1"]);
+    text(path, &["sweep", "--plan", "plan.toml", "--out", "many", "--threads", "5"]);
+    let two = ["2/2", "1/2"].map(|part| text(path, &["sweep", "--plan", "plan.toml", "--out", "two", "--shard", part]));
+    assert!(two[0].contains("2 of its 5 files are of this part; 2 files made; 14 runs"), "{}", two[0]);
+    let [one, many, two] = ["one", "many", "two"].map(|name| files(&path.join(name)));
+    assert_eq!(one.len(), 6);
+    assert!(one == many && one == two);
+}
+
+#[test]
+fn what_is_there_is_not_made_again_and_what_is_cut_is() {
+    let folder = with_plan(PLAN);
+    let path = folder.path();
+    let sweep = ["sweep", "--plan", "plan.toml", "--out", "o"];
+    text(path, &sweep);
+    let before = files(&path.join("o"));
+    assert!(text(path, &sweep).starts_with("sweep of 30 runs: 0 files made, 5 were there; 0 runs"));
+    let shard = path.join("o/runs-000003.parquet");
+    let bytes = &before["runs-000003.parquet"];
+    let mut flipped = bytes.clone();
+    flipped[60] ^= 4;
+    for bad in [&bytes[..bytes.len() - 1], &bytes[1..], &flipped, b""] {
+        fs::write(&shard, bad).unwrap();
+        assert!(text(path, &sweep).contains(": 1 files made, 4 were there; 7 runs"));
+        assert_eq!(files(&path.join("o")), before);
+    }
+}
+
+#[test]
+fn a_sweep_that_is_killed_at_any_instant_goes_on_to_the_same_bytes() {
+    let plan = PLAN.replace("count = 6", "count = 60").replace("t_end = 0.2", "t_end = 0.02");
+    let folder = with_plan(&format!("trajectories = ['angle', 'stored']{plan}"));
+    let path = folder.path();
+    text(path, &["sweep", "--plan", "plan.toml", "--out", "whole"]);
+    let whole = files(&path.join("whole"));
+    assert_eq!(whole.len(), 1 + 2 * 43);
+    let start = |arguments: &[&str]| -> Child {
+        let mut command = program("pendulum");
+        command.current_dir(path).args(arguments).stdout(Stdio::null()).stderr(Stdio::null());
+        command.spawn().expect("the example was built")
+    };
+    // Later and later, each from where the one before was killed, until one comes to its end.
+    let mut kills = 0;
+    fs::create_dir(path.join("killed")).unwrap();
+    loop {
+        let mut child = start(&["sweep", "--plan", "plan.toml", "--out", "killed", "--threads", "1"]);
+        sleep(Duration::from_millis(7 + 31 * kills));
+        if child.try_wait().unwrap().is_some() {
+            break;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        kills += 1;
+        // What has a shard's name is one, at any time.
+        for (name, bytes) in files(&path.join("killed")).iter().filter(|(name, _)| name.ends_with(".parquet")) {
+            assert_eq!(Some(bytes), whole.get(name), "{name} after {kills} kills");
+        }
+    }
+    assert!(kills > 0);
+    text(path, &["sweep", "--plan", "plan.toml", "--out", "killed"]);
+    assert_eq!(files(&path.join("killed")), whole);
+}
+
+#[test]
+fn a_run_that_fails_is_a_row_with_its_reason() {
+    // A hundred steps are enough for the first run, not for the second.
+    let plan = "t_end = 0.11\nstep_limit = 100\nlist = \"runs.csv\"\ntrajectories = ['angle']\ncolumns = ['max']\n";
+    let folder = with_plan(&format!("event_times = 2\n{plan}"));
+    let path = folder.path();
+    fs::write(path.join("runs.csv"), "angle, length\n0.5, 0.6\n1.57, 0.4\n").unwrap();
+    let said = text(path, &["sweep", "--plan", "plan.toml", "--out", "o"]);
+    assert!(said.contains("2 runs, 1 of them failed"), "{said}");
+    let shard = table(path.join("o/runs-000000.parquet"));
+    let Values::Text(failures) = &shard.columns[3].values else { panic!("a column of texts") };
+    assert!(failures[0].is_empty() && failures[1].starts_with("the limit of 100 attempted steps"), "{failures:?}");
+    assert_eq!(reals(&shard, "angle_max").iter().map(|value| value.is_nan()).collect::<Vec<_>>(), [false, true]);
+    let reached = reals(&shard, "reached");
+    assert!(reached[0] == 0.11 && 0.0 < reached[1] && reached[1] < 0.11, "{reached:?}");
+    // The trajectory of what was reached is there.
+    let samples = table(path.join("o/trajectories-000000.parquet"));
+    let Values::Whole(runs) = &samples.columns[0].values else { panic!("whole numbers") };
+    let count = |run: i64| runs.iter().filter(|&&of| of == run).count();
+    assert!(count(0) == 12 && count(1) == 1 + (100.0 * reached[1]) as usize, "{} {}", count(0), count(1));
+    let said = text(path, &["sweep", "show", "o", "--csv", "o.csv"]);
+    assert!(said.contains("runs     2 of 2 in 1 of 1 shards\nfailed   1\n         run 1: the limit of 100"), "{said}");
+    let csv = fs::read_to_string(path.join("o.csv")).unwrap();
+    assert!(csv.starts_with("run,angle,length,failure,reached,steps,events,angle_max,"), "{csv}");
+    assert!(csv.lines().nth(1).unwrap().starts_with("0,0.5,0.6,,0.11,"), "{csv}");
+}
+
+#[test]
+fn trajectories_are_those_of_single_runs() {
+    let folder = with_plan("t_end = 0.1\ntrajectories = true\n[grid]\nangle = [0.2, 0.7]\n");
+    let path = folder.path();
+    text(path, &["sweep", "--plan", "plan.toml", "--out", "o"]);
+    text(path, &["sweep", "show", "o", "--trajectories", "all.csv"]);
+    text(path, &["run", "--t-end", "0.1", "--set", "angle=0.7", "--csv", "t.csv", "--no-figures"]);
+    let [all, one] = ["all.csv", "t.csv"].map(|name| fs::read_to_string(path.join(name)).unwrap());
+    let second: Vec<&str> = all.lines().filter_map(|line| line.strip_prefix("1,")).collect();
+    assert_eq!(second, one.lines().skip(1).collect::<Vec<_>>());
+    assert_eq!(all.lines().next().unwrap(), format!("run,{}", one.lines().next().unwrap()));
+}
+
+/// The one line of a refusal.
+fn refused(path: &Path, arguments: &[&str]) -> String {
+    let output = run(path, arguments);
+    let line = String::from_utf8(output.stderr).expect("text");
+    assert_eq!((output.status.code(), line.lines().count()), (Some(2), 1), "{line}");
+    line
+}
+
+#[test]
+fn bad_plans_are_one_line_each() {
+    let plans = [
+        "",
+        "t_end = 5\n[grid",
+        "tend = 5\n[grid]\nlength = [1]\n",
+        "[grid]\nlength = [1]\n[sobol]\ncount = 3\nseed = 1\nranges = { angle = { from = 0, to = 1 } }\n",
+        "[grid]\n",
+        "[grid]\nlength = []\n",
+        "[grid]\nlength = 3\n",
+        "[grid]\nlenght = [1]\n",
+        "[grid]\nlength = [1, -1]\n",
+        "[grid]\nlength = { from = 0.1, to = 1 }\n",
+        "[grid]\nlength = { from = 0, to = 1, count = 3, scale = 'log' }\n",
+        "[latin_hypercube]\ncount = 3\nranges = { angle = { from = 0, to = 1 } }\n",
+        "[latin_hypercube]\ncount = 0\nseed = 1\nranges = { angle = { from = 0, to = 1 } }\n",
+        "[sobol]\ncount = 100000\nseed = 1\nranges = { angle = { from = 0, to = 1 } }\n",
+        "list = 'absent.csv'\n",
+        "list = 'bad.csv'\n",
+        "[set]\nmass = 1\n[grid]\nlength = [1]\n",
+        "[set]\nlength = 2\n[grid]\nlength = [1]\n",
+        "[inputs]\nforce = 3\n[grid]\nlength = [1]\n",
+        "scene = 'paper'\n[grid]\nlength = [1]\n",
+        "method = 'euler'\n[grid]\nlength = [1]\n",
+        "rtol = 2\n[grid]\nlength = [1]\n",
+        "step = 1e-9\n[grid]\nlength = [1]\n",
+        "shard = 0\n[grid]\nlength = [1]\n",
+        "[grid]\nlength = [1]\n[columns]\nforce = ['max']\n",
+        "[grid]\nlength = [1]\n[columns]\nforce_x = ['most']\n",
+        "trajectories = ['force']\n[grid]\nlength = [1]\n",
+    ];
+    let mut lines = String::new();
+    for plan in plans {
+        let folder = with_plan(plan);
+        fs::write(folder.path().join("bad.csv"), "length\none\n").unwrap();
+        let line = refused(folder.path(), &["sweep", "--plan", "plan.toml"]);
+        assert!(!folder.path().join("out").exists());
+        lines += &format!("{plan}{line}\n");
+    }
+    insta::assert_snapshot!("plans", lines);
+}
+
+#[test]
+fn another_plan_needs_another_folder() {
+    let folder = with_plan(PLAN);
+    let path = folder.path();
+    let sweep = ["sweep", "--plan", "plan.toml", "--out", "o"];
+    text(path, &sweep);
+    // Other words for the same.
+    fs::write(path.join("plan.toml"), format!("# Again.\nrtol = 1e-8{PLAN}")).unwrap();
+    assert!(text(path, &sweep).contains("5 were there"));
+    for (old, new, difference) in [
+        ("t_end = 0.2", "t_end = 0.3", "`t_end` is 0.2 there and 0.3 here"),
+        ("count = 6", "count = 7", "`runs` is 30 there and 35 here"),
+        ("angle = [0.1", "angle = [0.2", "`values` is"),
+        ("\"mean\", ", "", "`columns` is"),
+    ] {
+        fs::write(path.join("plan.toml"), PLAN.replace(old, new)).unwrap();
+        let line = refused(path, &sweep);
+        assert!(line.starts_with(&format!("error: o has another sweep: {difference}")), "{line}");
+        assert!(line.ends_with("; choose another folder with --out\n"), "{line}");
+    }
+    assert!(refused(path, &["sweep", "show", "."]).starts_with("error: . has no sweep: "));
+    assert!(refused(path, &["sweep"]).contains("--plan"));
+    assert!(refused(path, &["sweep", "--plan", "plan.toml", "--shard", "3/2"]).starts_with("error: --shard 3/2: "));
+}
