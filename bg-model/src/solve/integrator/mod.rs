@@ -45,7 +45,7 @@ pub(crate) use hermite::between;
 pub(crate) use hermite::hermite;
 pub use nystrom::Nystrom;
 #[cfg(feature = "std")]
-pub(crate) use nystrom::{Begin, NystromInLanes, Side};
+pub(crate) use nystrom::{Begin, Forces, NystromInLanes, Side};
 pub use partitioned::Ark5;
 pub use radau::{Radau, Radau5, Radau9};
 pub use rk4::Rk4;

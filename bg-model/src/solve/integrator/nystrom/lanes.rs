@@ -43,6 +43,11 @@ where
             None => self.system.always_inlined_rate(t, x, self.negative, dx),
         }
     }
+
+    #[inline(never)]
+    fn rate(&self, t: Lanes<V>, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>) {
+        V::vectorized(Rate { side: self, t, x, dx });
+    }
 }
 
 struct Rate<'a, Sys, V: Vector, const N: usize, const G: usize> {
@@ -66,15 +71,6 @@ where
 }
 
 impl<Sys, V: Vector, const G: usize> Side<'_, Sys, V, G> {
-    /// Writes the rates at time `t` (s) and state `x` into `dx`. Compiled once.
-    #[inline(never)]
-    pub fn rate<const N: usize>(&self, t: Lanes<V>, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>)
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
-        V::vectorized(Rate { side: self, t, x, dx });
-    }
-
     /// The states of second order.
     pub fn second<const N: usize>(&self) -> Range<usize>
     where
@@ -124,8 +120,7 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
     {
         let states = side.second();
         let zero = t.alike(0.0);
-        let second_derivatives = |x: &_, dx: &mut _| side.at_start(x, dx);
-        let pull = Pull::along(&self.direction, &states, (x, rate), second_derivatives, |x, dx| side.rate(t, x, dx));
+        let pull = Pull::along(&self.direction, &states, side, t, (x, rate));
         let stiffness = pull.stiffness;
         let infinity = t.alike(f64::INFINITY);
         let is_finite = V::below(stiffness.abs().0, infinity.0);

@@ -31,8 +31,8 @@ use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
 pub(crate) use lanes::{NystromInLanes, Side};
 use ring::Ring;
-pub(crate) use stages::Begin;
-use stages::{END, Forces, Stages};
+pub(crate) use stages::{Begin, Forces};
+use stages::{END, Stages};
 use tableau::{DENSE, STAGES};
 
 /// The coefficients of the dense output: it has degree 5 in the part of the step.
@@ -96,6 +96,11 @@ impl<F: Flow<N>, const N: usize> Forces<f64, N> for OfFlow<'_, F> {
             None => self.0.inlined_rate(t, x, dx),
         }
     }
+
+    #[inline(always)]
+    fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        self.0.rate(t, x, dx);
+    }
 }
 
 impl<const N: usize> Default for Nystrom<N> {
@@ -138,7 +143,7 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         end: &mut SVector<f64, N>,
     ) -> f64 {
         self.second = states_of_second_order(flow);
-        self.ring.follow(flow, start, &self.second);
+        self.ring.follow(&OfFlow(flow), start, &self.second);
         let reach = self.ring.reach(h);
         if reach > 1.0 {
             return reach;

@@ -27,6 +27,9 @@ pub(crate) trait Forces<S, const N: usize> {
 
     /// Writes the rates at time `t` (s) and state `x` into `dx`, of the states of second order their second derivatives.
     fn at_stage(&self, t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>);
+
+    /// Writes the rates at time `t` (s) and state `x` into `dx`. Compiled once.
+    fn rate(&self, t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>);
 }
 
 /// The start of a step.
@@ -111,12 +114,22 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
         self.evaluate(forces, second, from);
         self.reach::<END>(second, 1.0, from, end);
         let h = from.h;
-        let (start, reached) = (&from.x.data.0[0], &end.data.0[0]);
-        let part = |i: usize, sum: S| (h * sum / scale.allowed(i, start[i], reached[i])).abs();
         let mut errors = [h.alike(0.0); N];
-        let of_first = (0..second.start).chain(second.end..N);
-        of_first.for_each(|i| errors[i] = part(i, self.combine(FIRST[ERROR], i)));
-        second.clone().for_each(|i| errors[i] = part(i, h * self.combine(SECOND[ERROR], i)));
+        for i in 0..second.start {
+            errors[i] = self.part(h * self.combine(FIRST[ERROR], i), i, from, scale, end);
+        }
+        for i in second.clone() {
+            errors[i] = self.part(h * (h * self.combine(SECOND[ERROR], i)), i, from, scale, end);
+        }
+        for i in second.end..N {
+            errors[i] = self.part(h * self.combine(FIRST[ERROR], i), i, from, scale, end);
+        }
         errors
+    }
+
+    /// The magnitude of state `i`'s error in parts of what is allowed.
+    #[inline(always)]
+    fn part(&self, error: S, i: usize, from: &Begin<'_, S, N>, scale: &Scale<N>, end: &SVector<S, N>) -> S {
+        (error / scale.allowed(i, from.x.data.0[0][i], end.data.0[0][i])).abs()
     }
 }

@@ -10,7 +10,7 @@ use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
 use crate::solve::event::{Readings, Steps};
-use crate::solve::integrator::{Begin, Nystrom, NystromInLanes, Point, Scale, Side};
+use crate::solve::integrator::{Begin, Forces, Nystrom, NystromInLanes, Point, Scale, Side};
 
 /// How much less than the projection that is looked at a projection may move a state.
 const CERTAIN: f64 = 0.99;
