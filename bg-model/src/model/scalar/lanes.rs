@@ -7,6 +7,8 @@ use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use nalgebra::SVector;
+
 use super::slopes::Slopes;
 use super::{Both, Scalar};
 
@@ -62,6 +64,19 @@ impl<V: Vector> Lanes<V> {
         numbers.as_mut().iter_mut().zip(others.as_ref()).for_each(|(number, other)| *number = of(*number, *other));
         Self(V::new(numbers))
     }
+}
+
+/// Replaces numbers at the places of `mask`.
+#[inline(always)]
+pub fn replace<V: Vector, const N: usize>(to: &mut SVector<Lanes<V>, N>, mask: V::Mask, from: &SVector<Lanes<V>, N>) {
+    for i in 0..N {
+        to.data.0[0][i] = Lanes::select(mask, from.data.0[0][i], to.data.0[0][i]);
+    }
+}
+
+/// The numbers of all states at a place.
+pub fn at<V: Vector, const N: usize>(lane: usize, of: &SVector<Lanes<V>, N>) -> SVector<f64, N> {
+    SVector::from_fn(|i, _| of[i].get(lane))
 }
 
 /// All numbers are equal.

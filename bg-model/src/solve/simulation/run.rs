@@ -104,8 +104,14 @@ where
         outcome.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))
     }
 
-    /// Sees to it that the joints which close loops say where the mechanism goes.
-    fn check_joints(&mut self) -> Result<(), Cause> {
+    /// Whether joints close loops.
+    #[cfg(feature = "std")]
+    pub fn has_loops(&self) -> bool {
+        self.loops.is_some()
+    }
+
+    /// Sees to it that the joints which close loops say where the mechanism goes at the end of the step.
+    pub fn check_joints(&mut self) -> Result<(), Cause> {
         let Stepper { system, end, negative, .. } = &self.stepper;
         let (Some(loops), Some(joints)) = (&mut self.loops, system.joints()) else { return Ok(()) };
         match loops.check(joints, (end.t, &end.x), negative) {
@@ -205,7 +211,7 @@ where
     }
 
     /// Whether the step begins or ends in the neighbourhood of a singular pose.
-    fn is_around_singular(&mut self) -> bool {
+    pub fn is_around_singular(&mut self) -> bool {
         let Stepper { system, start, end, negative, .. } = &self.stepper;
         let (Some(loops), Some(joints)) = (&mut self.loops, system.joints()) else { return false };
         [start, end].into_iter().any(|point| loops.is_around(joints, (point.t, &point.x), negative))

@@ -9,11 +9,11 @@ use core::ops::Range;
 
 use nalgebra::SVector;
 
-use super::stages::Forces;
 use super::tableau;
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::{fraction, power, root};
 use crate::solve::integrator::Point;
+use crate::solve::integrator::steps::Forces;
 
 /// Steps after a restart that each iterate once.
 const FIRST_STEPS: u32 = 8;

@@ -10,6 +10,7 @@ use nalgebra::SVector;
 use super::tableau::{FIRST, INSTANTS, SECOND, STAGES};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::Scale;
+use crate::solve::integrator::steps::{Begin, Forces};
 
 /// Behind the rows of the stages: those of the state at the end, and of the error estimate.
 pub(super) const END: usize = STAGES;
@@ -19,31 +20,6 @@ pub(super) const ERROR: usize = STAGES + 1;
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(super) struct Aligned<S, const N: usize>(pub SVector<S, N>);
-
-/// What stages are evaluated of.
-pub(crate) trait Forces<S, const N: usize> {
-    /// Replaces the rates `dx` of the states of second order at state `x` by their second derivatives.
-    fn at_start(&self, x: &SVector<S, N>, dx: &mut SVector<S, N>);
-
-    /// Writes the rates at time `t` (s) and state `x` into `dx`, of the states of second order their second derivatives.
-    fn at_stage(&self, t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>);
-
-    /// Writes the rates at time `t` (s) and state `x` into `dx`. Compiled once.
-    fn rate(&self, t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>);
-}
-
-/// The start of a step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Begin<'a, S, const N: usize> {
-    /// Time, s.
-    pub t: S,
-    /// The step, s.
-    pub h: S,
-    /// State.
-    pub x: &'a SVector<S, N>,
-    /// Its rate.
-    pub rate: &'a SVector<S, N>,
-}
 
 /// The second derivatives of the states of second order and the rates of the others, at the stages and at the end.
 #[derive(Clone, Debug)]
@@ -106,11 +82,11 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
     pub fn step(
         &mut self,
         forces: &impl Forces<S, N>,
-        second: &Range<usize>,
         from: &Begin<'_, S, N>,
         scale: &Scale<N>,
         end: &mut SVector<S, N>,
     ) -> [S; N] {
+        let second = &forces.second();
         self.evaluate(forces, second, from);
         self.reach::<END>(second, 1.0, from, end);
         let h = from.h;

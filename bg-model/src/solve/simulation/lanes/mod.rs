@@ -12,12 +12,11 @@ use nalgebra::SVector;
 use super::observer::Observer;
 use super::run::{MOVED, Run};
 use super::settings::{self, Settings, Span};
-use crate::model::reactions::LoopWatch;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
 use crate::solve::event::Never;
 use crate::solve::finish::{Ended, Finish};
-use crate::solve::integrator::{AnyMethod, Method, Nystrom, Point, Scale};
+use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, Scale};
 use crate::solve::simulation::Samples;
 use crate::solve::stepper::Stepper;
 use group::{Group, Tried};
@@ -43,9 +42,8 @@ pub(crate) fn fits<Mo, const N: usize, const G: usize>(model: &Mo, settings: &Se
 where
     Mo: System<f64, N, G>,
 {
-    let has_loops = model.joints().and_then(LoopWatch::new).is_some();
     let each_step = settings.samples == Samples::Steps;
-    model.runs_in_lanes() && !has_loops && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
+    model.runs_in_lanes() && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
 }
 
 /// A run at its place.
@@ -83,8 +81,8 @@ where
         Ok(Self { number, values, run, observer })
     }
 
-    fn method(&mut self) -> &mut Nystrom<N> {
-        self.run.stepper.method.nystrom().expect("only runs by this method are side by side")
+    fn method(&mut self) -> &mut dyn OfOne<N> {
+        self.run.stepper.method.of_one().expect("only runs by such methods are side by side")
     }
 
     fn is_at_end(&self) -> bool {
@@ -115,6 +113,23 @@ where
         self.run.pace.reject(h, error);
     }
 
+    /// Whether a step to `t` (s) begins or ends in the neighbourhood of a singular pose.
+    fn is_around_singular<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
+        self.run.has_loops() && {
+            [self.run.stepper.start.x, _] = group.start(place);
+            self.run.stepper.end = Point { t, x: group.reached(place), ..self.run.stepper.end };
+            self.run.is_around_singular()
+        }
+    }
+
+    /// Whether joints that close loops say where the mechanism goes at the end of a step to `t` (s).
+    fn holds_together<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
+        !self.run.has_loops() || {
+            self.run.stepper.end = Point { t, x: group.end(place), ..self.run.stepper.end };
+            self.run.check_joints().is_ok()
+        }
+    }
+
     /// Takes over a step of size `h` (s) to `t` (s) with this error.
     fn accept(&mut self, h: f64, t: f64, error: f64) {
         self.run.attempts += 1;
@@ -122,14 +137,15 @@ where
         self.run.pace.accept(t, h, error);
         self.run.stepper.statistics.record(h);
         self.run.stepper.start.t = t;
-        self.method().advance();
+        self.run.stepper.method.advance();
     }
 }
 
-/// Makes the `jobs`, whose method is [`Nystrom`]; `lifted` makes a model of parameters side by side. `done` is told the number of
+/// Makes the `jobs`, whose methods are those of `method`; `lifted` makes a model of parameters side by side. `done` is told the number of
 /// each run with its observer, and where it has come to: nothing of one that is to be made by itself.
 pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
     mut jobs: impl Iterator<Item = Job<'a, Mo, O, N>>,
+    method: AnyInLanes<V, N>,
     lifted: impl Fn(&[Lanes<V>]) -> Li,
     span: Span,
     settings: &'a Settings<N>,
@@ -141,7 +157,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
     O: Observer<N, G>,
 {
     let scale = Scale::from(&settings.tolerances);
-    let mut group = Box::new(Group::<V, N, G>::new());
+    let mut group = Box::new(Group::<V, N, G>::new(method));
     let mut lanes: Vec<Option<Lane<'a, Mo, O, N, G>>> = (0..V::LANES).map(|_| None).collect();
     let mut system: Option<Li> = None;
     loop {
@@ -177,7 +193,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             }
             let Some(mut lane) = slot.take() else { continue };
             if !ended {
-                store(&group, place, &mut lane);
+                store(&mut group, place, &mut lane);
             }
             let Lane { number, run, observer, .. } = lane;
             done(number, observer, is_at_end.then(|| run.finish(Ended::AtEnd)));
@@ -233,29 +249,32 @@ where
     }
     let mut accepted = 0_u8;
     if tried != 0 {
-        let Tried { norms, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
+        let Tried { differences, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
         for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| tried & 1 << place != 0) {
             let Some(lane) = lane else { continue };
             let (bit, h, t_new) = (1 << place, sizes.as_ref()[place], ends.as_ref()[place]);
-            let (norm, reach) = (norms.as_ref()[place], lane.method().reach(h));
+            let norm = lane.method().norm(h, differences.each_ref().map(|of| of.as_ref()[place]));
+            let reach = lane.method().reach(h);
             let error = if norm < reach { reach } else { norm };
-            if error > 1.0 {
+            if error > 1.0 && !lane.is_around_singular(group, place, t_new) {
                 lane.reject(h, error);
-                lane.run.stepper.statistics.rate_evaluations += STAGES;
+                lane.run.stepper.statistics.rate_evaluations += lane.method().rates();
                 continue;
             }
-            let is_quiet = fine & bit != 0 && !lane.run.sampling.is_due(t_new) && {
+            let is_quiet = error <= 1.0 && fine & bit != 0 && !lane.run.sampling.is_due(t_new) && {
                 let (end, middle) = group.guards(place);
                 let negative = lane.run.stepper.negative;
                 lane.run.watch.pass(negative, end, &middle, h, clear & bit != 0)
             };
-            if is_quiet {
-                lane.run.stepper.statistics.rate_evaluations += STAGES + 1;
+            if !is_quiet {
+                alone |= bit;
+            } else if lane.holds_together(group, place, t_new) {
+                lane.run.stepper.statistics.rate_evaluations += lane.method().rates() + 1;
                 lane.run.stepper.statistics.guard_evaluations += if G == 0 { 0 } else { GUARDS };
                 lane.accept(h, t_new, error);
                 accepted |= bit;
             } else {
-                alone |= bit;
+                failed |= bit;
             }
         }
     }
@@ -271,8 +290,6 @@ where
     failed
 }
 
-/// The rates of an attempt, without that at its start.
-const STAGES: u64 = 8;
 /// The evaluations of the guards in a step that has no event.
 const GUARDS: u64 = 3;
 
@@ -287,12 +304,12 @@ fn load<V, Mo, O, const N: usize, const G: usize>(
     O: Observer<N, G>,
 {
     let (start, negative, guards) = (lane.run.stepper.start, lane.run.stepper.negative, lane.run.watch.at_start());
-    group.load(place, &start, negative, guards, lane.method());
+    group.load(place, &start, negative, guards, lane.method().carried());
 }
 
 /// Gives a run back what the group knows of it.
 fn store<V, Mo, O, const N: usize, const G: usize>(
-    group: &Group<V, N, G>,
+    group: &mut Group<V, N, G>,
     place: usize,
     lane: &mut Lane<'_, Mo, O, N, G>,
 ) where
@@ -300,6 +317,7 @@ fn store<V, Mo, O, const N: usize, const G: usize>(
     Mo: System<f64, N, G>,
     O: Observer<N, G>,
 {
-    let t = lane.run.stepper.start.t;
-    lane.run.stepper.start = group.store(place, t, lane.method());
+    let [x, rate] = group.start(place);
+    lane.run.stepper.start = Point { x, rate, ..lane.run.stepper.start };
+    *lane.method().carried() = group.carried(place);
 }
