@@ -7,6 +7,7 @@
 use nalgebra::SVector;
 
 use super::guarded::Guarded;
+use super::locate::{Found, Shortening};
 use super::minimum::minimum;
 use super::noise::larger;
 use super::{Crossing, Reading, Watch, check_finite, clearance, read};
@@ -59,6 +60,31 @@ impl<const G: usize> Watch<G> {
         &mut self,
         step: &mut impl Guarded<N, G>,
     ) -> Result<Option<Crossing<G>>, (usize, f64)> {
+        Ok(self.look(step)?.map(|found| match found {
+            Found::AtStart(crossing) => crossing,
+            Found::Inside(shortening) => self.shorten(step, shortening),
+        }))
+    }
+
+    /// Shortens the step to its first event.
+    pub fn shorten<const N: usize>(
+        &mut self,
+        step: &mut impl Guarded<N, G>,
+        mut shortening: Shortening<G>,
+    ) -> Crossing<G> {
+        loop {
+            // The last attempt may be of this size.
+            if step.size() != shortening.size() {
+                step.resize(shortening.size());
+            }
+            if shortening.take(self, step) {
+                return self.crossing(step, shortening);
+            }
+        }
+    }
+
+    /// Looks for events in the step just made, as [`Watch::inspect`] does, but leaves it as it is.
+    pub fn look<const N: usize>(&mut self, step: &mut impl Guarded<N, G>) -> Result<Option<Found<G>>, (usize, f64)> {
         if G == 0 {
             return Ok(None);
         }
@@ -82,7 +108,7 @@ impl<const G: usize> Watch<G> {
             return Ok(None);
         }
         let courses = self.courses(step, &suspects);
-        Ok(self.first_crossing(step, &courses))
+        Ok(self.first_crossing(step, courses))
     }
 
     /// Takes over a step of size `h` (s) at whose ends and in whose `middle` all guards keep to their sides; gives whether they do,

@@ -14,7 +14,7 @@ use super::steps::{Begin, Forces, Rates};
 use super::{AnyMethod, Scale};
 use crate::model::capability::SecondOrder;
 use crate::model::scalar::Scalar;
-use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::model::scalar::lanes::{Lanes, Vector, at};
 use crate::model::system::System;
 
 /// A system side by side, its switches frozen.
@@ -91,16 +91,23 @@ pub(crate) trait OfOne<const N: usize> {
     /// What it carries over from step to step, state by state.
     fn carried(&mut self) -> &mut SVector<f64, N>;
 
+    /// Takes over what it would carry over from an attempt, and the rates of the attempt's stages, of which `stage` gives each.
+    fn keep(&mut self, carried: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>);
+
     /// The rates of an attempt, without that at its start.
     fn rates(&self) -> u64;
 
     /// The norm of the error of a step of size `h` (s), from the largest of the differences to two embedded methods.
     fn norm(&self, h: f64, differences: [f64; 2]) -> f64;
 
-    /// Whether the fastest oscillation is to be looked at before the next step, whose flow has no states of second order unless
-    /// `second`; nothing where that is to begin anew.
-    fn is_due(&self, _second: bool) -> Option<bool> {
-        Some(false)
+    /// Whether the fastest oscillation of the states of second order is to be looked at before the next step.
+    fn is_due(&self) -> bool {
+        false
+    }
+
+    /// Begins anew to look for it, where that is called for; gives whether it is.
+    fn begins(&mut self, _second: &Range<usize>) -> bool {
+        false
     }
 
     /// Takes note of the stiffness of the fastest oscillation.
@@ -136,8 +143,31 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         match self {
             Self::Cfmr7(method) => method.carried(),
             Self::Dop853(method) => method.carried(),
-            Self::Nystrom(method) => method.direction(),
+            Self::Nystrom(method) => method.carried(),
         }
+    }
+
+    /// What each run's method would carry over from its attempt.
+    fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
+        match self {
+            Self::Cfmr7(method) => method.to_be_carried(),
+            Self::Dop853(method) => method.to_be_carried(),
+            Self::Nystrom(method) => method.to_be_carried(),
+        }
+    }
+
+    /// The rates of a stage of the last attempts.
+    fn stage(&self, stage: usize) -> &SVector<Lanes<V>, N> {
+        match self {
+            Self::Cfmr7(method) => method.stage(stage),
+            Self::Dop853(method) => method.stage(stage),
+            Self::Nystrom(method) => method.stage(stage),
+        }
+    }
+
+    /// Hands the attempt at a place over to its run's own `method`.
+    pub fn hand_over(&self, lane: usize, method: &mut dyn OfOne<N>) {
+        method.keep(at(lane, self.to_be_carried()), &|stage| at(lane, self.stage(stage)));
     }
 
     /// Iterates towards the fastest oscillations at the places of `due`, from states `x` with rates `rate` at time `t` (s); gives their

@@ -138,10 +138,18 @@ where
             return Ok(Some(Ended::AtEnd));
         }
         self.try_steps()?;
-        let crossing = match self.watch.inspect(&mut self.stepper) {
-            Ok(crossing) => crossing,
-            Err(guard) => return self.retreat(Faulty::Guard(guard)).map(|()| None),
-        };
+        match self.watch.inspect(&mut self.stepper) {
+            Ok(crossing) => self.conclude(crossing, observer),
+            Err(guard) => self.retreat(Faulty::Guard(guard)).map(|()| None),
+        }
+    }
+
+    /// Takes over the step that was made, which ends at `crossing` or has none; gives why the run ends, if it does.
+    pub fn conclude(
+        &mut self,
+        crossing: Option<Crossing<G>>,
+        observer: &mut impl Observer<N, G>,
+    ) -> Result<Option<Ended>, Cause> {
         if crossing.as_ref().is_some_and(|crossing| crossing.is_at_start) {
             let jumps = self.change_branches(crossing, observer)?;
             return Ok(jumps.then(|| self.end_at_start(observer)));
@@ -250,7 +258,7 @@ where
     }
 
     /// Gives up a step at whose end something is not finite, for a shorter one.
-    fn retreat(&mut self, faulty: Faulty) -> Result<(), Cause> {
+    pub fn retreat(&mut self, faulty: Faulty) -> Result<(), Cause> {
         let h = self.stepper.h;
         self.stepper.statistics.rejected += 1;
         self.pace.reject(h, f64::NAN);

@@ -31,6 +31,16 @@ impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
         &mut self.carry.start
     }
 
+    /// What it has kept at their ends.
+    pub fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
+        &self.carry.end
+    }
+
+    /// The rates of a stage.
+    pub fn stage(&self, stage: usize) -> &SVector<Lanes<V>, N> {
+        &self.stages.k[stage]
+    }
+
     /// Tries a step at each place; gives the largest of the differences to the embedded methods.
     #[inline(always)]
     pub fn attempt(
@@ -55,6 +65,11 @@ impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
 impl<T: Tableau, const N: usize> OfOne<N> for Explicit<T, N> {
     fn carried(&mut self) -> &mut SVector<f64, N> {
         &mut self.carry.start
+    }
+
+    fn keep(&mut self, carried: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>) {
+        self.carry.end = carried;
+        self.stages.k[..T::END].iter_mut().enumerate().for_each(|(index, k)| *k = stage(index));
     }
 
     fn rates(&self) -> u64 {

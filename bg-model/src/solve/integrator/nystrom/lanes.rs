@@ -2,6 +2,8 @@
 //!
 //! In: a system that calculates with numbers side by side. Out: the steps that each run makes by itself, to the bit.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use super::Nystrom;
@@ -30,9 +32,19 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
         Self { stages: Stages::new(), direction: SVector::from([Lanes::from_f64(0.0); N]) }
     }
 
-    /// What the methods know of the flow: the directions of the fastest oscillations.
-    pub fn direction(&mut self) -> &mut SVector<Lanes<V>, N> {
+    /// The directions of the fastest oscillations.
+    pub fn carried(&mut self) -> &mut SVector<Lanes<V>, N> {
         &mut self.direction
+    }
+
+    /// The same: no step changes them.
+    pub fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
+        &self.direction
+    }
+
+    /// The second derivatives, or rates, of a stage.
+    pub fn stage(&self, stage: usize) -> &SVector<Lanes<V>, N> {
+        &self.stages.k[stage].0
     }
 
     /// One iteration towards the fastest oscillation at the places of `due`, from states `x` with rates `rate` at time `t` (s): see
@@ -86,6 +98,11 @@ impl<const N: usize> OfOne<N> for Nystrom<N> {
         &mut self.ring.direction
     }
 
+    fn keep(&mut self, carried: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>) {
+        self.ring.direction = carried;
+        self.stages.k[..STAGES].iter_mut().enumerate().for_each(|(index, k)| k.0 = stage(index));
+    }
+
     fn rates(&self) -> u64 {
         (STAGES - 1) as u64
     }
@@ -94,9 +111,17 @@ impl<const N: usize> OfOne<N> for Nystrom<N> {
         difference
     }
 
-    fn is_due(&self, second: bool) -> Option<bool> {
-        let due = second && self.ring.is_due();
-        (!due || !self.ring.begins()).then_some(due)
+    fn is_due(&self) -> bool {
+        self.ring.is_due()
+    }
+
+    fn begins(&mut self, second: &Range<usize>) -> bool {
+        self.second = second.clone();
+        let begins = self.ring.begins();
+        if begins {
+            self.ring.begin(second);
+        }
+        begins
     }
 
     fn stiffness(&mut self, stiffness: f64) {

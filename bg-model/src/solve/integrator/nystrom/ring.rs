@@ -143,7 +143,7 @@ impl<const N: usize> Ring<N> {
     }
 
     /// The direction of what rang before the branch changed, and a share of everything else.
-    fn begin(&mut self, states: &Range<usize>) {
+    pub fn begin(&mut self, states: &Range<usize>) {
         let mut any = SVector::<f64, N>::zeros();
         for i in states.clone() {
             any[i] = 1.0 + fraction(GOLDEN * i as f64);

@@ -10,7 +10,7 @@ use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector, at, replace};
 use crate::model::system::System;
 use crate::solve::event::{Readings, Steps};
-use crate::solve::integrator::{AnyInLanes, Begin, Point, Rates, Scale, Side};
+use crate::solve::integrator::{AnyInLanes, Begin, OfOne, Point, Rates, Scale, Side};
 
 /// How much less than the projection that is looked at a projection may move a state.
 const CERTAIN: f64 = 0.99;
@@ -89,14 +89,24 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         at(lane, self.method.carried())
     }
 
+    /// What a run's method carries over is this now.
+    pub fn carry(&mut self, lane: usize, carried: &SVector<f64, N>) {
+        V::vectorized(Carry { group: self, bit: 1 << lane, carried });
+    }
+
+    /// Hands the stages of a run's step over to its own method.
+    pub fn hand_over(&self, lane: usize, method: &mut dyn OfOne<N>) {
+        self.method.hand_over(lane, method);
+    }
+
     /// The state at the end of a run's step before it was projected.
     pub fn reached(&self, lane: usize) -> SVector<f64, N> {
         at(lane, &self.reached)
     }
 
-    /// The state at the end of a run's step.
-    pub fn end(&self, lane: usize) -> SVector<f64, N> {
-        at(lane, &self.end[0])
+    /// The state and the rate at the end of a run's step.
+    pub fn end(&self, lane: usize) -> [SVector<f64, N>; 2] {
+        self.end.each_ref().map(|states| at(lane, states))
     }
 
     /// The readings of the guards at the end of a run's step: values, slopes (per s), values in its middle.
@@ -156,6 +166,21 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Load<'_, V, N,
             put(to, from, mask);
         }
         put(method.carried(), carried, mask);
+    }
+}
+
+struct Carry<'a, V: Vector, const N: usize, const G: usize> {
+    group: &'a mut Group<V, N, G>,
+    bit: u8,
+    carried: &'a SVector<f64, N>,
+}
+
+impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Carry<'_, V, N, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        put(self.group.method.carried(), self.carried, V::mask(self.bit));
     }
 }
 

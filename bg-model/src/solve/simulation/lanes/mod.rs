@@ -10,11 +10,12 @@ mod group;
 use nalgebra::SVector;
 
 use super::observer::Observer;
-use super::run::{MOVED, Run};
+use super::run::{Faulty, MOVED, Run};
 use super::settings::{self, Settings, Span};
+use crate::model::capability::SecondOrder;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
-use crate::solve::event::Never;
+use crate::solve::event::{Crossing, Found, Never, Shortening};
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, Scale};
 use crate::solve::simulation::Samples;
@@ -52,12 +53,36 @@ struct Lane<'a, Mo, O, const N: usize, const G: usize> {
     values: &'a [f64],
     run: Run<'a, Mo, AnyMethod<N>, Never, N, G>,
     observer: O,
+    /// Its step is being shortened to an event.
+    shortening: Option<Shortening<G>>,
 }
 
 /// What a run does next.
 enum Next {
     /// The step of this size to this time, s.
     Step(f64, f64),
+    /// Nothing more in company.
+    Fails,
+}
+
+/// An attempt at a step of one run: its size (s), its end (s), and the norm of its error.
+#[derive(Clone, Copy)]
+struct Attempted {
+    h: f64,
+    t: f64,
+    error: f64,
+}
+
+/// What an attempt leads to.
+enum Outcome {
+    /// Its end is the next start.
+    Accepted,
+    /// Another one from the same start.
+    Again,
+    /// The run makes it by itself.
+    Alone,
+    /// The run has gone on by itself.
+    Elsewhere,
     /// Nothing more in company.
     Fails,
 }
@@ -78,7 +103,7 @@ where
             return Err((number, observer));
         }
         run.sample(&mut observer, span.t0);
-        Ok(Self { number, values, run, observer })
+        Ok(Self { number, values, run, observer, shortening: None })
     }
 
     fn method(&mut self) -> &mut dyn OfOne<N> {
@@ -92,6 +117,9 @@ where
     /// The next step, not longer than is stable.
     fn next(&mut self) -> Next {
         let t = self.run.stepper.start.t;
+        if let Some(shortening) = &self.shortening {
+            return Next::Step(shortening.size(), t + shortening.size());
+        }
         let next_break = self.run.next_break(t);
         loop {
             if self.run.pace.is_lost(t) || self.run.attempts >= self.run.limit {
@@ -113,6 +141,106 @@ where
         self.run.pace.reject(h, error);
     }
 
+    /// What an attempt leads to that the group has made; `is_fine` says whether it leads to finite numbers, `is_clear` whether the guards keep to
+    /// their sides.
+    fn attempted<V: Vector>(
+        &mut self,
+        group: &mut Group<V, N, G>,
+        place: usize,
+        attempted: Attempted,
+        [is_fine, is_clear]: [bool; 2],
+    ) -> Outcome {
+        let Attempted { h, t, error } = attempted;
+        if self.shortening.is_some() {
+            return self.shortened(group, place, attempted);
+        }
+        if error > 1.0 && !self.is_around_singular(group, place, t) {
+            self.run.stepper.statistics.rate_evaluations += self.method().rates();
+            self.reject(h, error);
+            return Outcome::Again;
+        }
+        if !(error <= 1.0 && is_fine) {
+            return Outcome::Alone;
+        }
+        self.run.attempts += 1;
+        self.run.pace.accept(t, h, error);
+        self.run.stepper.statistics.rate_evaluations += self.method().rates() + 1;
+        let is_quiet = !self.run.sampling.is_due(t) && {
+            let (end, middle) = group.guards(place);
+            let negative = self.run.stepper.negative;
+            self.run.watch.pass(negative, end, &middle, h, is_clear)
+        };
+        if !is_quiet {
+            return self.inspected(group, place, attempted);
+        }
+        if !self.holds_together(group, place, t) {
+            return Outcome::Fails;
+        }
+        self.run.stepper.statistics.guard_evaluations += if G == 0 { 0 } else { GUARDS };
+        self.run.faulty = None;
+        self.run.stepper.statistics.record(h);
+        self.run.stepper.start.t = t;
+        self.run.stepper.method.advance();
+        Outcome::Accepted
+    }
+
+    /// Takes an attempt over that satisfies the tolerances, and looks for events in it.
+    fn inspected<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize, attempted: Attempted) -> Outcome {
+        let Attempted { h, t, .. } = attempted;
+        self.take_start(group, place);
+        group.hand_over(place, self.method());
+        let [x, rate] = group.end(place);
+        let run = &mut self.run;
+        run.stepper.take_over(h, Point { t, x, rate });
+        let crossing = match run.watch.look(&mut run.stepper) {
+            Ok(None) => None,
+            Ok(Some(Found::AtStart(crossing))) => Some(crossing),
+            Ok(Some(Found::Inside(shortening))) if run.sampling.is_due(t) => {
+                Some(run.watch.shorten(&mut run.stepper, shortening))
+            }
+            Ok(Some(Found::Inside(shortening))) => {
+                self.shortening = Some(shortening);
+                return Outcome::Again;
+            }
+            Err(guard) => {
+                return if run.retreat(Faulty::Guard(guard)).is_ok() { Outcome::Again } else { Outcome::Fails };
+            }
+        };
+        self.concluded(crossing)
+    }
+
+    /// Looks at an attempt at the step that is being shortened.
+    fn shortened<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, attempted: Attempted) -> Outcome {
+        let Attempted { h, t, .. } = attempted;
+        let (reached, [x, rate]) = (group.reached(place), group.end(place));
+        self.run.stepper.statistics.rate_evaluations += self.method().rates();
+        let Some(mut shortening) = self.shortening.take() else { return Outcome::Again };
+        let run = &mut self.run;
+        run.stepper.take_over(h, Point { t, x, rate });
+        let moved = run.stepper.moved(&reached, &x);
+        run.stepper.settle_further(moved);
+        while !shortening.take(&run.watch, &mut run.stepper) {
+            if shortening.size() != h {
+                self.shortening = Some(shortening);
+                return Outcome::Again;
+            }
+        }
+        let crossing = run.watch.crossing(&mut run.stepper, shortening);
+        self.concluded(Some(crossing))
+    }
+
+    /// The run takes its step over, and goes on after it.
+    fn concluded(&mut self, crossing: Option<Crossing<G>>) -> Outcome {
+        if self.run.conclude(crossing, &mut self.observer).is_ok() { Outcome::Elsewhere } else { Outcome::Fails }
+    }
+
+    /// Takes over from the group where the run stands.
+    fn take_start<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+        let [x, rate] = group.start(place);
+        self.run.stepper.start = Point { x, rate, ..self.run.stepper.start };
+        *self.method().carried() = group.carried(place);
+    }
+
     /// Whether a step to `t` (s) begins or ends in the neighbourhood of a singular pose.
     fn is_around_singular<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
         self.run.has_loops() && {
@@ -125,19 +253,10 @@ where
     /// Whether joints that close loops say where the mechanism goes at the end of a step to `t` (s).
     fn holds_together<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
         !self.run.has_loops() || {
-            self.run.stepper.end = Point { t, x: group.end(place), ..self.run.stepper.end };
+            let [x, _] = group.end(place);
+            self.run.stepper.end = Point { t, x, ..self.run.stepper.end };
             self.run.check_joints().is_ok()
         }
-    }
-
-    /// Takes over a step of size `h` (s) to `t` (s) with this error.
-    fn accept(&mut self, h: f64, t: f64, error: f64) {
-        self.run.attempts += 1;
-        self.run.faulty = None;
-        self.run.pace.accept(t, h, error);
-        self.run.stepper.statistics.record(h);
-        self.run.stepper.start.t = t;
-        self.run.stepper.method.advance();
     }
 }
 
@@ -167,6 +286,9 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             while slot.is_none() {
                 let Some(job) = jobs.next() else { break };
                 match Lane::new(job, span, settings) {
+                    Ok(lane) if lane.is_at_end() => {
+                        done(lane.number, lane.observer, Some(lane.run.finish(Ended::AtEnd)))
+                    }
                     Ok(lane) => *slot = Some(lane),
                     Err((number, observer)) => done(number, observer, None),
                 }
@@ -193,7 +315,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             }
             let Some(mut lane) = slot.take() else { continue };
             if !ended {
-                store(&mut group, place, &mut lane);
+                lane.take_start(&mut group, place);
             }
             let Lane { number, run, observer, .. } = lane;
             done(number, observer, is_at_end.then(|| run.finish(Ended::AtEnd)));
@@ -214,31 +336,27 @@ where
     Li: System<Lanes<V>, N, G>,
     O: Observer<N, G>,
 {
-    let has_second = model.second_order().is_some();
-    let (mut due, mut alone, mut failed) = (0_u8, 0_u8, 0_u8);
-    for (place, lane) in lanes.iter_mut().enumerate().filter_map(|(place, lane)| Some((place, lane.as_mut()?))) {
-        match lane.method().is_due(has_second) {
-            Some(true) => due |= 1 << place,
-            Some(false) => {}
-            None => alone |= 1 << place,
+    let second = model.second_order().map_or(0..0, |second| second.states());
+    let (mut due, mut tried, mut accepted, mut failed) = (0_u8, 0_u8, 0_u8, 0_u8);
+    for (place, lane) in occupied(lanes) {
+        if second.is_empty() || !lane.method().is_due() {
+            continue;
+        }
+        due |= 1 << place;
+        if lane.method().begins(&second) {
+            group.carry(place, lane.method().carried());
         }
     }
     if due != 0 {
         let stiffnesses = group.follow(model, due);
-        for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| due & 1 << place != 0) {
-            let Some(lane) = lane else { continue };
+        for (place, lane) in occupied(lanes).filter(|(place, _)| due & 1 << place != 0) {
             lane.method().stiffness(stiffnesses.as_ref()[place]);
             lane.run.stepper.statistics.rate_evaluations += 1;
         }
     }
     let mut sizes = V::filled(0.0).numbers();
     let mut ends = sizes;
-    let mut tried = 0_u8;
-    for (place, lane) in lanes.iter_mut().enumerate() {
-        let Some(lane) = lane else { continue };
-        if alone & 1 << place != 0 {
-            continue;
-        }
+    for (place, lane) in occupied(lanes) {
         match lane.next() {
             Next::Step(h, t_new) => {
                 (sizes.as_mut()[place], ends.as_mut()[place]) = (h, t_new);
@@ -247,47 +365,36 @@ where
             Next::Fails => failed |= 1 << place,
         }
     }
-    let mut accepted = 0_u8;
-    if tried != 0 {
-        let Tried { differences, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
-        for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| tried & 1 << place != 0) {
-            let Some(lane) = lane else { continue };
-            let (bit, h, t_new) = (1 << place, sizes.as_ref()[place], ends.as_ref()[place]);
-            let norm = lane.method().norm(h, differences.each_ref().map(|of| of.as_ref()[place]));
-            let reach = lane.method().reach(h);
-            let error = if norm < reach { reach } else { norm };
-            if error > 1.0 && !lane.is_around_singular(group, place, t_new) {
-                lane.reject(h, error);
-                lane.run.stepper.statistics.rate_evaluations += lane.method().rates();
-                continue;
+    if tried == 0 {
+        return failed;
+    }
+    let Tried { differences, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
+    for (place, lane) in occupied(lanes).filter(|(place, _)| tried & 1 << place != 0) {
+        let (bit, h, t) = (1 << place, sizes.as_ref()[place], ends.as_ref()[place]);
+        let norm = lane.method().norm(h, differences.each_ref().map(|of| of.as_ref()[place]));
+        let reach = lane.method().reach(h);
+        let error = if norm < reach { reach } else { norm };
+        match lane.attempted(group, place, Attempted { h, t, error }, [fine, clear].map(|bits| bits & bit != 0)) {
+            Outcome::Accepted => accepted |= bit,
+            Outcome::Again => {}
+            Outcome::Elsewhere => load(group, place, lane),
+            Outcome::Alone => {
+                lane.take_start(group, place);
+                match lane.run.advance(&mut lane.observer) {
+                    Ok(_) => load(group, place, lane),
+                    Err(_) => failed |= bit,
+                }
             }
-            let is_quiet = error <= 1.0 && fine & bit != 0 && !lane.run.sampling.is_due(t_new) && {
-                let (end, middle) = group.guards(place);
-                let negative = lane.run.stepper.negative;
-                lane.run.watch.pass(negative, end, &middle, h, clear & bit != 0)
-            };
-            if !is_quiet {
-                alone |= bit;
-            } else if lane.holds_together(group, place, t_new) {
-                lane.run.stepper.statistics.rate_evaluations += lane.method().rates() + 1;
-                lane.run.stepper.statistics.guard_evaluations += if G == 0 { 0 } else { GUARDS };
-                lane.accept(h, t_new, error);
-                accepted |= bit;
-            } else {
-                failed |= bit;
-            }
+            Outcome::Fails => failed |= bit,
         }
     }
     group.advance(accepted);
-    for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| alone & 1 << place != 0) {
-        let Some(lane) = lane else { continue };
-        store(group, place, lane);
-        match lane.run.advance(&mut lane.observer) {
-            Ok(_) => load(group, place, lane),
-            Err(_) => failed |= 1 << place,
-        }
-    }
     failed
+}
+
+/// The runs at their places.
+fn occupied<'l, T>(lanes: &'l mut [Option<T>]) -> impl Iterator<Item = (usize, &'l mut T)> {
+    lanes.iter_mut().enumerate().filter_map(|(place, lane)| Some((place, lane.as_mut()?)))
 }
 
 /// The evaluations of the guards in a step that has no event.
@@ -305,19 +412,4 @@ fn load<V, Mo, O, const N: usize, const G: usize>(
 {
     let (start, negative, guards) = (lane.run.stepper.start, lane.run.stepper.negative, lane.run.watch.at_start());
     group.load(place, &start, negative, guards, lane.method().carried());
-}
-
-/// Gives a run back what the group knows of it.
-fn store<V, Mo, O, const N: usize, const G: usize>(
-    group: &mut Group<V, N, G>,
-    place: usize,
-    lane: &mut Lane<'_, Mo, O, N, G>,
-) where
-    V: Vector,
-    Mo: System<f64, N, G>,
-    O: Observer<N, G>,
-{
-    let [x, rate] = group.start(place);
-    lane.run.stepper.start = Point { x, rate, ..lane.run.stepper.start };
-    *lane.method().carried() = group.carried(place);
 }
