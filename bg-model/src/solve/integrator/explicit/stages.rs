@@ -16,7 +16,7 @@ use crate::solve::integrator::steps::{Begin, Rates};
 use crate::solve::integrator::tolerances::largest;
 
 /// The most stages of a method.
-const STAGES: usize = 16;
+pub(super) const STAGES: usize = 16;
 /// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
 const AT_START: f64 = 0.02;
 

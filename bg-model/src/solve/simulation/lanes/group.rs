@@ -27,7 +27,7 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     /// States and rates at the start and at the end of the steps.
     start: [States<V, N>; 2],
     end: [States<V, N>; 2],
-    /// States at the end before they were projected.
+    /// States at the end before they were projected, where joints may be rigid.
     reached: States<V, N>,
     negative: [V::Mask; G],
     readings: Readings<V, G>,
@@ -79,9 +79,10 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         V::vectorized(Load { group: self, bit, point, guards: &guards, carried });
     }
 
-    /// The state and the rate at the start of a run's step.
-    pub fn start(&self, lane: usize) -> [SVector<f64, N>; 2] {
-        self.start.each_ref().map(|states| at(lane, states))
+    /// The start of a run's step at time `t` (s).
+    pub fn start(&self, lane: usize, t: f64) -> Point<N> {
+        let [x, rate] = self.start.each_ref().map(|states| at(lane, states));
+        Point { t, x, rate }
     }
 
     /// What a run's method carries over from step to step.
@@ -99,14 +100,19 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         self.method.hand_over(lane, method);
     }
 
-    /// The state at the end of a run's step before it was projected.
+    /// The state at the end of a run's step before it was projected, where joints may be rigid.
     pub fn reached(&self, lane: usize) -> SVector<f64, N> {
         at(lane, &self.reached)
     }
 
-    /// The state and the rate at the end of a run's step.
-    pub fn end(&self, lane: usize) -> [SVector<f64, N>; 2] {
-        self.end.each_ref().map(|states| at(lane, states))
+    /// The state at the end of a run's step.
+    pub fn end(&self, lane: usize) -> SVector<f64, N> {
+        at(lane, &self.end[0])
+    }
+
+    /// The rate there.
+    pub fn rate(&self, lane: usize) -> SVector<f64, N> {
+        at(lane, &self.end[1])
     }
 
     /// The readings of the guards at the end of a run's step: values, slopes (per s), values in its middle.
@@ -233,9 +239,12 @@ where
         let side = Side { system, negative };
         let [first, second] = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
         let mut fine = finite(end);
-        *reached = *end;
+        let has_joints = system.joints().is_some();
+        if has_joints {
+            *reached = *end;
+        }
         system.inlined_project(t_end, negative, end);
-        if system.joints().is_some() {
+        if has_joints {
             fine &= near(reached, end, scale, CERTAIN * moved);
         }
         side.rate(t_end, end, end_rate);

@@ -10,10 +10,11 @@ mod group;
 use nalgebra::SVector;
 
 use super::observer::Observer;
+use super::pace::Judgement;
 use super::run::{Faulty, MOVED, Run};
 use super::settings::{self, Settings, Span};
 use crate::model::capability::SecondOrder;
-use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::model::scalar::lanes::{Lanes, Vector, exponentials, logarithms};
 use crate::model::system::System;
 use crate::solve::event::{Crossing, Found, Never, Shortening};
 use crate::solve::finish::{Ended, Finish};
@@ -59,18 +60,26 @@ struct Lane<'a, Mo, O, const N: usize, const G: usize> {
 
 /// What a run does next.
 enum Next {
-    /// The step of this size to this time, s.
-    Step(f64, f64),
+    /// This step.
+    Step(Step),
     /// Nothing more in company.
     Fails,
 }
 
-/// An attempt at a step of one run: its size (s), its end (s), and the norm of its error.
+/// A step of one run: its size (s), its end (s), and the error norm by which it is stable.
 #[derive(Clone, Copy)]
-struct Attempted {
+struct Step {
     h: f64,
     t: f64,
+    reach: f64,
+}
+
+/// An attempt at it: the norm of its error, and what follows from that.
+#[derive(Clone, Copy)]
+struct Attempted {
+    step: Step,
     error: f64,
+    judgement: Judgement,
 }
 
 /// What an attempt leads to.
@@ -118,27 +127,28 @@ where
     fn next(&mut self) -> Next {
         let t = self.run.stepper.start.t;
         if let Some(shortening) = &self.shortening {
-            return Next::Step(shortening.size(), t + shortening.size());
+            let h = shortening.size();
+            return Next::Step(Step { h, t: t + h, reach: 0.0 });
         }
         let next_break = self.run.next_break(t);
         loop {
             if self.run.pace.is_lost(t) || self.run.attempts >= self.run.limit {
                 return Next::Fails;
             }
-            let t_new = self.run.pace.next_end(t, next_break);
-            let h = t_new - t;
+            let end = self.run.pace.next_end(t, next_break);
+            let h = end - t;
             let reach = self.method().reach(h);
             if reach <= 1.0 {
-                return Next::Step(h, t_new);
+                return Next::Step(Step { h, t: end, reach });
             }
-            self.reject(h, reach);
+            self.rejected();
+            self.run.pace.reject(h, reach);
         }
     }
 
-    fn reject(&mut self, h: f64, error: f64) {
+    fn rejected(&mut self) {
         self.run.attempts += 1;
         self.run.stepper.statistics.rejected += 1;
-        self.run.pace.reject(h, error);
     }
 
     /// What an attempt leads to that the group has made; `is_fine` says whether it leads to finite numbers, `is_clear` whether the guards keep to
@@ -150,20 +160,25 @@ where
         attempted: Attempted,
         [is_fine, is_clear]: [bool; 2],
     ) -> Outcome {
-        let Attempted { h, t, error } = attempted;
+        let Attempted { step: Step { h, t, .. }, error, judgement } = attempted;
         if self.shortening.is_some() {
-            return self.shortened(group, place, attempted);
+            return self.shortened(group, place, attempted.step);
         }
         if error > 1.0 && !self.is_around_singular(group, place, t) {
             self.run.stepper.statistics.rate_evaluations += self.method().rates();
-            self.reject(h, error);
+            self.rejected();
+            if error < f64::INFINITY {
+                self.run.pace.reject_by(h, judgement);
+            } else {
+                self.run.pace.reject(h, error);
+            }
             return Outcome::Again;
         }
         if !(error <= 1.0 && is_fine) {
             return Outcome::Alone;
         }
         self.run.attempts += 1;
-        self.run.pace.accept(t, h, error);
+        self.run.pace.accept_by(t, h, judgement);
         self.run.stepper.statistics.rate_evaluations += self.method().rates() + 1;
         let is_quiet = !self.run.sampling.is_due(t) && {
             let (end, middle) = group.guards(place);
@@ -171,7 +186,7 @@ where
             self.run.watch.pass(negative, end, &middle, h, is_clear)
         };
         if !is_quiet {
-            return self.inspected(group, place, attempted);
+            return self.inspected(group, place, attempted.step);
         }
         if !self.holds_together(group, place, t) {
             return Outcome::Fails;
@@ -185,13 +200,12 @@ where
     }
 
     /// Takes an attempt over that satisfies the tolerances, and looks for events in it.
-    fn inspected<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize, attempted: Attempted) -> Outcome {
-        let Attempted { h, t, .. } = attempted;
+    fn inspected<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize, Step { h, t, .. }: Step) -> Outcome {
         self.take_start(group, place);
         group.hand_over(place, self.method());
-        let [x, rate] = group.end(place);
+        let end = Point { t, x: group.end(place), rate: group.rate(place) };
         let run = &mut self.run;
-        run.stepper.take_over(h, Point { t, x, rate });
+        run.stepper.take_over(h, end);
         let crossing = match run.watch.look(&mut run.stepper) {
             Ok(None) => None,
             Ok(Some(Found::AtStart(crossing))) => Some(crossing),
@@ -210,15 +224,16 @@ where
     }
 
     /// Looks at an attempt at the step that is being shortened.
-    fn shortened<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, attempted: Attempted) -> Outcome {
-        let Attempted { h, t, .. } = attempted;
-        let (reached, [x, rate]) = (group.reached(place), group.end(place));
+    fn shortened<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, Step { h, t, .. }: Step) -> Outcome {
+        let x = group.end(place);
         self.run.stepper.statistics.rate_evaluations += self.method().rates();
         let Some(mut shortening) = self.shortening.take() else { return Outcome::Again };
         let run = &mut self.run;
-        run.stepper.take_over(h, Point { t, x, rate });
-        let moved = run.stepper.moved(&reached, &x);
-        run.stepper.settle_further(moved);
+        run.stepper.take_over(h, Point::at(t, x));
+        if run.stepper.system.joints().is_some() {
+            let moved = run.stepper.moved(&group.reached(place), &x);
+            run.stepper.settle_further(moved);
+        }
         while !shortening.take(&run.watch, &mut run.stepper) {
             if shortening.size() != h {
                 self.shortening = Some(shortening);
@@ -236,15 +251,15 @@ where
 
     /// Takes over from the group where the run stands.
     fn take_start<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
-        let [x, rate] = group.start(place);
-        self.run.stepper.start = Point { x, rate, ..self.run.stepper.start };
+        let Point { t, .. } = self.run.stepper.start;
+        self.run.stepper.start = group.start(place, t);
         *self.method().carried() = group.carried(place);
     }
 
     /// Whether a step to `t` (s) begins or ends in the neighbourhood of a singular pose.
     fn is_around_singular<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
         self.run.has_loops() && {
-            [self.run.stepper.start.x, _] = group.start(place);
+            self.run.stepper.start = group.start(place, self.run.stepper.start.t);
             self.run.stepper.end = Point { t, x: group.reached(place), ..self.run.stepper.end };
             self.run.is_around_singular()
         }
@@ -253,8 +268,7 @@ where
     /// Whether joints that close loops say where the mechanism goes at the end of a step to `t` (s).
     fn holds_together<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
         !self.run.has_loops() || {
-            let [x, _] = group.end(place);
-            self.run.stepper.end = Point { t, x, ..self.run.stepper.end };
+            self.run.stepper.end = Point { t, x: group.end(place), ..self.run.stepper.end };
             self.run.check_joints().is_ok()
         }
     }
@@ -337,7 +351,7 @@ where
     O: Observer<N, G>,
 {
     let second = model.second_order().map_or(0..0, |second| second.states());
-    let (mut due, mut tried, mut accepted, mut failed) = (0_u8, 0_u8, 0_u8, 0_u8);
+    let (mut due, mut accepted, mut failed) = (0_u8, 0_u8, 0_u8);
     for (place, lane) in occupied(lanes) {
         if second.is_empty() || !lane.method().is_due() {
             continue;
@@ -356,25 +370,38 @@ where
     }
     let mut sizes = V::filled(0.0).numbers();
     let mut ends = sizes;
+    let mut steps = [None; PLACES];
     for (place, lane) in occupied(lanes) {
         match lane.next() {
-            Next::Step(h, t_new) => {
-                (sizes.as_mut()[place], ends.as_mut()[place]) = (h, t_new);
-                tried |= 1 << place;
+            Next::Step(step) => {
+                (sizes.as_mut()[place], ends.as_mut()[place]) = (step.h, step.t);
+                steps[place] = Some(step);
             }
             Next::Fails => failed |= 1 << place,
         }
     }
-    if tried == 0 {
+    if steps.iter().all(Option::is_none) {
         return failed;
     }
     let Tried { differences, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
-    for (place, lane) in occupied(lanes).filter(|(place, _)| tried & 1 << place != 0) {
-        let (bit, h, t) = (1 << place, sizes.as_ref()[place], ends.as_ref()[place]);
+    let mut errors = V::filled(1.5).numbers();
+    for (place, lane) in occupied(lanes) {
+        let Some(Step { h, reach, .. }) = steps[place].filter(|_| lane.shortening.is_none()) else { continue };
         let norm = lane.method().norm(h, differences.each_ref().map(|of| of.as_ref()[place]));
-        let reach = lane.method().reach(h);
-        let error = if norm < reach { reach } else { norm };
-        match lane.attempted(group, place, Attempted { h, t, error }, [fine, clear].map(|bits| bits & bit != 0)) {
+        errors.as_mut()[place] = if norm < reach { reach } else { norm };
+    }
+    let logarithms = logarithms::<V>(errors);
+    let mut factors = logarithms;
+    for (place, lane) in occupied(lanes) {
+        let is_accepted = errors.as_ref()[place] <= 1.0;
+        factors.as_mut()[place] = lane.run.pace.exponent(logarithms.as_ref()[place], is_accepted);
+    }
+    let factors = exponentials::<V>(factors);
+    for (place, lane) in occupied(lanes) {
+        let Some(step) = steps[place] else { continue };
+        let [error, logarithm, factor] = [&errors, &logarithms, &factors].map(|of| of.as_ref()[place]);
+        let (bit, attempted) = (1 << place, Attempted { step, error, judgement: Judgement { logarithm, factor } });
+        match lane.attempted(group, place, attempted, [fine, clear].map(|bits| bits & bit != 0)) {
             Outcome::Accepted => accepted |= bit,
             Outcome::Again => {}
             Outcome::Elsewhere => load(group, place, lane),
@@ -397,6 +424,8 @@ fn occupied<'l, T>(lanes: &'l mut [Option<T>]) -> impl Iterator<Item = (usize, &
     lanes.iter_mut().enumerate().filter_map(|(place, lane)| Some((place, lane.as_mut()?)))
 }
 
+/// The most places of a vector.
+const PLACES: usize = u8::BITS as usize;
 /// The evaluations of the guards in a step that has no event.
 const GUARDS: u64 = 3;
 
