@@ -63,6 +63,22 @@ bond_graph! {
         scenes only;
         scene Crank { expect planar; }
     }
+    /// A slider and a crank with a link as long as the crank: where they lie on each other its pose is singular.
+    graph Folding {
+        param angle: rad = 1; param spin: rad/s = -8; param drag: N*s/m = 2;
+        ground { point O = [0, 0, 0]; }
+        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin]; }
+        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.1, 0, 0]; point c = [0.1, 0, 0]; start b at [0.2 * cos(angle), 0.2 * sin(angle), 0]; start turned rotation_z(guess(-1)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(8)]; }
+        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.2), 0, 0]; start velocity [guess(0), guess(0), 0]; }
+        joint pin_o: revolute z (ground.O -> crank.a) { rigid; }
+        joint pin_a: revolute z (crank.b -> link.b) { rigid; }
+        joint pin_b: revolute z (link.c -> slider) { rigid; }
+        joint guide: prismatic x (ground.O -> slider) { rigid; }
+        drive load on guide force = -drag * slider.velocity.x;
+        observe { x: m = guide.travel; angle: rad = crank.angle }
+        scenes only;
+        scene Folding { expect planar; }
+    }
     /// A ball that falls on a floor.
     graph Ball {
         param mass: kg = 2, above 0; param height: m = 1.25; param give: 1 = 0.8;
@@ -200,9 +216,14 @@ fn other_explicit_methods_take_the_steps_of_each_run() {
 #[test]
 fn joints_that_close_loops_are_looked_at_in_each_run() {
     let crank = Crank::new(CrankParameters::default()).unwrap();
+    let folding = Folding::new(FoldingParameters::default()).unwrap();
     let swept = [("spin", [-9.0, 9.0]), ("angle", [0.3, 1.3])];
     for method in [Integrator::Nystrom, Integrator::Dop853] {
         assert_eq!(compared(&crank, &by(method, 1.5, 1e-6), &swept).1, 0, "{method}");
+        // It goes through its singular poses, with samples in steps there.
+        let (runs, _) = compared(&folding, &by(method, 1.5, 1e-6), &swept);
+        let passes = |run: &&Trajectory| run.columns[0].values.iter().any(|x| *x < 0.0);
+        assert!(runs.iter().filter(passes).count() > 5, "{method}");
     }
 }
 

@@ -139,6 +139,18 @@ impl<const G: usize> Watch<G> {
         [self.start.value, self.start.slope]
     }
 
+    /// Takes these over, of a start that steps have led to in which all guards kept to their sides.
+    #[cfg(feature = "std")]
+    pub fn take_start(&mut self, [value, slope]: [SVector<f64, G>; 2]) {
+        (self.start.value, self.start.slope) = (value, slope);
+    }
+
+    /// Whether nothing is known of the guards but what they are at the start of the step: no noise there, nothing that events have left.
+    #[cfg(feature = "std")]
+    pub fn is_plain(&self) -> bool {
+        self.start.noise == [0.0; G] && self.remainder == [0.0; G]
+    }
+
     /// The guards that are on the wrong side at the end of the step or may have been in it.
     fn suspects(&self, negative: [bool; G], middle: &SVector<f64, G>, h: f64) -> [bool; G] {
         core::array::from_fn(|k| {

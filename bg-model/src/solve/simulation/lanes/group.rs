@@ -120,6 +120,11 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         (self.readings.end.each_ref().map(|guards| at(lane, guards)), at(lane, &self.readings.middle))
     }
 
+    /// The readings of the guards at the start of a run's step: values, slopes (per s).
+    pub fn guards_at_start(&self, lane: usize) -> [SVector<f64, G>; 2] {
+        self.readings.start.each_ref().map(|guards| at(lane, guards))
+    }
+
     /// Iterates towards the fastest oscillations of the runs at the places of `due`; gives their stiffnesses.
     pub fn follow<Sys>(&mut self, system: &Sys, due: u8) -> V::Numbers
     where

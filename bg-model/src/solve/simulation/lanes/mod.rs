@@ -180,11 +180,14 @@ where
         self.run.attempts += 1;
         self.run.pace.accept_by(t, h, judgement);
         self.run.stepper.statistics.rate_evaluations += self.method().rates() + 1;
-        let is_quiet = !self.run.sampling.is_due(t) && {
-            let (end, middle) = group.guards(place);
-            let negative = self.run.stepper.negative;
-            self.run.watch.pass(negative, end, &middle, h, is_clear)
-        };
+        // Of a plain step the group alone keeps what the guards are.
+        let is_quiet = !self.run.sampling.is_due(t)
+            && (is_clear && self.run.watch.is_plain() || {
+                let (end, middle) = group.guards(place);
+                let negative = self.run.stepper.negative;
+                self.run.watch.take_start(group.guards_at_start(place));
+                self.run.watch.pass(negative, end, &middle, h, is_clear)
+            });
         if !is_quiet {
             return self.inspected(group, place, attempted.step);
         }
@@ -253,6 +256,7 @@ where
     fn take_start<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
         let Point { t, .. } = self.run.stepper.start;
         self.run.stepper.start = group.start(place, t);
+        self.run.watch.take_start(group.guards_at_start(place));
         *self.method().carried() = group.carried(place);
     }
 
