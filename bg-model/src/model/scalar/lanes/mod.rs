@@ -96,8 +96,8 @@ impl<V: Vector, const N: usize> NullaryFnOnce for At<'_, V, N> {
     #[inline(always)]
     fn call(self) -> SVector<f64, N> {
         let mut numbers = [0.0; N];
-        for i in 0..N {
-            numbers[i] = self.of.data.0[0][i].0.only(self.mask);
+        for (number, of) in numbers.iter_mut().zip(&self.of.data.0[0]) {
+            *number = of.0.only(self.mask);
         }
         SVector::from(numbers)
     }

@@ -90,22 +90,23 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
         self.evaluate(forces, second, from);
         self.reach::<END>(second, 1.0, from, end);
         let h = from.h;
+        let (start, reached) = (&from.x.data.0[0], &end.data.0[0]);
         let mut errors = [h.alike(0.0); N];
         for i in 0..second.start {
-            errors[i] = self.part(h * self.combine(FIRST[ERROR], i), i, from, scale, end);
+            errors[i] = part(h * self.combine(FIRST[ERROR], i), scale.allowed(i, start[i], reached[i]));
         }
         for i in second.clone() {
-            errors[i] = self.part(h * (h * self.combine(SECOND[ERROR], i)), i, from, scale, end);
+            errors[i] = part(h * (h * self.combine(SECOND[ERROR], i)), scale.allowed(i, start[i], reached[i]));
         }
         for i in second.end..N {
-            errors[i] = self.part(h * self.combine(FIRST[ERROR], i), i, from, scale, end);
+            errors[i] = part(h * self.combine(FIRST[ERROR], i), scale.allowed(i, start[i], reached[i]));
         }
         errors
     }
+}
 
-    /// The magnitude of state `i`'s error in parts of what is allowed.
-    #[inline(always)]
-    fn part(&self, error: S, i: usize, from: &Begin<'_, S, N>, scale: &Scale<N>, end: &SVector<S, N>) -> S {
-        (error / scale.allowed(i, from.x.data.0[0][i], end.data.0[0][i])).abs()
-    }
+/// The magnitude of an error in parts of what is allowed.
+#[inline(always)]
+fn part<S: Scalar>(error: S, allowed: S) -> S {
+    (error / allowed).abs()
 }

@@ -424,7 +424,7 @@ where
 }
 
 /// The runs at their places.
-fn occupied<'l, T>(lanes: &'l mut [Option<T>]) -> impl Iterator<Item = (usize, &'l mut T)> {
+fn occupied<T>(lanes: &mut [Option<T>]) -> impl Iterator<Item = (usize, &mut T)> {
     lanes.iter_mut().enumerate().filter_map(|(place, lane)| Some((place, lane.as_mut()?)))
 }
 
