@@ -33,7 +33,8 @@ const ERROR: f64 = 1e-6;
 /// Which of the two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Solver {
-    Lanes,
+    /// Ours, by this method.
+    Lanes(Integrator),
     Heyoka,
 }
 
@@ -55,13 +56,14 @@ pub fn compared(python: &Path, problem: &Problem, runs: usize, rounds: usize) ->
     let values: Vec<[f64; 4]> = (0..runs.next_multiple_of(FULL)).map(values).collect();
     let exact: Poses = values.iter().take(EXACT).map(exactly).collect::<Result<_, _>>()?;
     let row = |solver| move |tolerance| Row { solver, tolerance, milliseconds: f64::INFINITY, error: f64::NAN };
-    let mut rows: Vec<Row> = [1e-3, 3e-4, 1e-4, 1e-5].map(row(Solver::Lanes)).into();
+    let mut rows: Vec<Row> = [1e-3, 1e-4, 2e-5, 1e-5].map(row(Solver::Lanes(Integrator::Nystrom))).into();
+    rows.extend([1e-4, 1e-5, 5e-6, 1e-6].map(row(Solver::Lanes(Integrator::Cfmr7))));
     rows.extend([1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(row(Solver::Heyoka)));
     for round in 1..=rounds {
         eprintln!("round {round} of {rounds}");
         for row in &mut rows {
             let (seconds, poses) = match row.solver {
-                Solver::Lanes => in_our_lanes(&model, row.tolerance, &values)?,
+                Solver::Lanes(method) => in_our_lanes(&model, &request(method, row.tolerance), &values)?,
                 Solver::Heyoka => heyoka.run(row.tolerance, &values)?,
             };
             row.milliseconds = row.milliseconds.min(seconds * 1e3 / values.len() as f64);
@@ -103,10 +105,10 @@ fn exactly(values: &[f64; 4]) -> Result<Pose, String> {
 }
 
 /// Our runs with the time that they take, s.
-fn in_our_lanes(model: &Motion, rtol: f64, values: &[[f64; 4]]) -> Result<(f64, Poses), String> {
+fn in_our_lanes(model: &Motion, request: &Request, values: &[[f64; 4]]) -> Result<(f64, Poses), String> {
     let all: Vec<Vec<f64>> = values.iter().map(|values| parameters(values).values()).collect();
     let clock = Instant::now();
-    let runs = in_lanes(model, &request(Integrator::Nystrom, rtol), &all);
+    let runs = in_lanes(model, request, &all);
     let seconds = clock.elapsed().as_secs_f64();
     let poses = runs.into_iter().map(|run| end(&run.map_err(|fault| fault.to_string())?)).collect::<Result<_, _>>()?;
     Ok((seconds, poses))
@@ -134,16 +136,16 @@ fn text(rows: &[Row], runs: usize, version: &str) -> String {
     text += "| solver | tolerance | ms | error |\n|---|---|---|---|\n";
     for Row { solver, tolerance, milliseconds, error } in rows {
         let name = match solver {
-            Solver::Lanes => "this project, `nystrom` in lanes".to_owned(),
+            Solver::Lanes(method) => format!("this project, `{method}` in lanes"),
             Solver::Heyoka => format!("heyoka {version} in batches, `fast_math`"),
         };
         text += &format!("| {name} | {tolerance:.0e} | {milliseconds:.2} | {error:.1e} |\n");
     }
-    let best = |solver| {
-        let good = rows.iter().filter(|row| row.solver == solver && row.error <= ERROR);
+    let best = |is_ours: bool| {
+        let good = rows.iter().filter(|row| (row.solver != Solver::Heyoka) == is_ours && row.error <= ERROR);
         good.map(|row| row.milliseconds).min_by(f64::total_cmp)
     };
-    if let (Some(ours), Some(theirs)) = (best(Solver::Lanes), best(Solver::Heyoka)) {
+    if let (Some(ours), Some(theirs)) = (best(true), best(false)) {
         text += &format!("\nAt an error of at most {ERROR:.0e}: ours over heyoka's {:.2}.\n", ours / theirs);
     }
     text

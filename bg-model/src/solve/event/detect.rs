@@ -7,6 +7,7 @@
 use nalgebra::SVector;
 
 use super::guarded::Guarded;
+use super::locate::{Found, Shortening};
 use super::minimum::minimum;
 use super::noise::larger;
 use super::{Crossing, Reading, Watch, check_finite, clearance, read};
@@ -59,6 +60,31 @@ impl<const G: usize> Watch<G> {
         &mut self,
         step: &mut impl Guarded<N, G>,
     ) -> Result<Option<Crossing<G>>, (usize, f64)> {
+        Ok(self.look(step)?.map(|found| match found {
+            Found::AtStart(crossing) => crossing,
+            Found::Inside(shortening) => self.shorten(step, shortening),
+        }))
+    }
+
+    /// Shortens the step to its first event.
+    pub fn shorten<const N: usize>(
+        &mut self,
+        step: &mut impl Guarded<N, G>,
+        mut shortening: Shortening<G>,
+    ) -> Crossing<G> {
+        loop {
+            // The last attempt may be of this size.
+            if step.size() != shortening.size() {
+                step.resize(shortening.size());
+            }
+            if shortening.take(self, step) {
+                return self.crossing(step, shortening);
+            }
+        }
+    }
+
+    /// Looks for events in the step just made, as [`Watch::inspect`] does, but leaves it as it is.
+    pub fn look<const N: usize>(&mut self, step: &mut impl Guarded<N, G>) -> Result<Option<Found<G>>, (usize, f64)> {
         if G == 0 {
             return Ok(None);
         }
@@ -82,7 +108,7 @@ impl<const G: usize> Watch<G> {
             return Ok(None);
         }
         let courses = self.courses(step, &suspects);
-        Ok(self.first_crossing(step, &courses))
+        Ok(self.first_crossing(step, courses))
     }
 
     /// Takes over a step of size `h` (s) at whose ends and in whose `middle` all guards keep to their sides; gives whether they do,
@@ -111,6 +137,18 @@ impl<const G: usize> Watch<G> {
     #[cfg(feature = "std")]
     pub fn at_start(&self) -> [SVector<f64, G>; 2] {
         [self.start.value, self.start.slope]
+    }
+
+    /// Takes these over, of a start that steps have led to in which all guards kept to their sides.
+    #[cfg(feature = "std")]
+    pub fn take_start(&mut self, [value, slope]: [SVector<f64, G>; 2]) {
+        (self.start.value, self.start.slope) = (value, slope);
+    }
+
+    /// Whether nothing is known of the guards but what they are at the start of the step: no noise there, nothing that events have left.
+    #[cfg(feature = "std")]
+    pub fn is_plain(&self) -> bool {
+        self.start.noise == [0.0; G] && self.remainder == [0.0; G]
     }
 
     /// The guards that are on the wrong side at the end of the step or may have been in it.

@@ -82,9 +82,9 @@ impl<V: Vector, const G: usize> Readings<V, G> {
         let [to, arriving] = [clearance(&self.end[0], k, negative), clearance(&self.end[1], k, negative)];
         let middle = clearance(&self.middle, k, negative);
         let (mut low, mut high) = (h.alike(f64::INFINITY), h.alike(f64::NEG_INFINITY));
-        for coefficient in enclosing([from, to], middle, [h * leaving, h * arriving]) {
-            low = Lanes::select(V::below(coefficient.0, low.0), coefficient, low);
-            high = high.larger(coefficient);
+        for coefficient in &enclosing([from, to], middle, [h * leaving, h * arriving]) {
+            low = Lanes::select(V::below(coefficient.0, low.0), *coefficient, low);
+            high = high.larger(*coefficient);
         }
         let is_far = V::below((high - low).times(FAR).0, low.0);
         let is_finite = V::below(to.abs().0, h.alike(f64::INFINITY).0);

@@ -8,46 +8,122 @@ use nalgebra::SVector;
 use super::detect::{Bracket, Course};
 use super::guarded::Guarded;
 use super::noise::larger;
-use super::zero::{Precision, zero};
+use super::zero::{Precision, Search, zero};
 use super::{Crossing, Watch, clearance};
 
 /// The part of a guard's values around a zero up to which what is left of it there is rounding, of the states that stiff forces
 /// lead to, where it stops falling. A guard of which more is left jumps there.
 const REMAINDER: f64 = 1e-7;
 
-/// A crossing that the dense output foresees.
+/// A crossing that the dense output foresees: where the guard of `switch` comes to zero after `guess` (s) of the step.
 #[derive(Clone, Copy, Debug)]
 struct Foreseen {
     switch: usize,
-    /// Step sizes, s, on the right side and on the wrong side.
-    right: f64,
-    wrong: f64,
-    /// The step size at the crossing, s, and the slope of the clearance there, per s.
     guess: f64,
-    slope: f64,
-    precision: Precision,
+    search: Search,
+}
+
+/// A step that is being shortened to its first event: it says which size it is to be tried with, and looks at what that gives.
+#[derive(Clone, Debug)]
+pub(crate) struct Shortening<const G: usize> {
+    courses: [Course; G],
+    /// The end of the whole step, s.
+    latest: f64,
+    /// The switch whose guard is to vanish.
+    switch: usize,
+    /// The search for its zero; none once that is found.
+    search: Option<Search>,
+    /// The size to be tried, s.
+    size: f64,
+    /// The searches made.
+    rounds: usize,
+    /// The guards at the end.
+    value: SVector<f64, G>,
+}
+
+impl<const G: usize> Shortening<G> {
+    /// The size that the step is to be tried with, s.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Looks at the step, which has this size; gives whether it ends at the first event: where the guard that was foreseen vanishes, or
+    /// one that turns out to cross before it. Else it is to be tried again, with another size unless that is the same.
+    pub fn take<const N: usize>(&mut self, watch: &Watch<G>, step: &mut impl Guarded<N, G>) -> bool {
+        let end = *step.end();
+        self.value = step.guards(end.t, &end.x);
+        let (value, negative) = (self.value, step.negative());
+        let side = |k: usize| clearance(value[k], negative[k]);
+        if let Some(search) = &mut self.search {
+            self.size = match search.take(side(self.switch)) {
+                Some((size, _)) => {
+                    self.search = None;
+                    self.rounds += 1;
+                    size
+                }
+                None => search.at(),
+            };
+            return false;
+        }
+        if self.rounds > G {
+            return true;
+        }
+        let noise = watch.noise_after(step, &value);
+        let Some(earlier) = (0..G).find(|&k| k != self.switch && side(k) < -noise[k]) else { return true };
+        self.switch = earlier;
+        if self.rounds == G {
+            self.rounds += 1;
+            return false;
+        }
+        let (h, behind) = (step.size(), side(earlier));
+        let slope = -(watch.start.slope[earlier].abs().max(f64::MIN_POSITIVE));
+        let size = larger(watch.start.value[earlier].abs(), behind.abs());
+        let precision = precise_to(size, noise[earlier], end.t * slope);
+        let search = Search::new(0.0, h, h - behind / slope, slope, precision);
+        (self.size, self.search) = (search.at(), Some(search));
+        false
+    }
+}
+
+/// What is to be done about a step in which guards cross.
+#[derive(Debug)]
+pub(crate) enum Found<const G: usize> {
+    /// The event is at its start.
+    AtStart(Crossing<G>),
+    /// It is to be shortened to the first event.
+    Inside(Shortening<G>),
 }
 
 impl<const G: usize> Watch<G> {
-    /// Shortens the step to the first of the crossings in `courses`, if there is one; the rate at its end is known then.
+    /// The first of the crossings in `courses`, if there is one.
     pub(super) fn first_crossing<const N: usize>(
-        &mut self,
+        &self,
         step: &mut impl Guarded<N, G>,
-        courses: &[Course; G],
-    ) -> Option<Crossing<G>> {
+        courses: [Course; G],
+    ) -> Option<Found<G>> {
         let switches = courses.map(|course| matches!(course, Course::WrongFromStart));
         if switches.contains(&true) {
-            return Some(Crossing { switches, is_at_start: true });
+            return Some(Found::AtStart(Crossing { switches, is_at_start: true }));
         }
         let crossing = |(k, course): (usize, &Course)| match course {
             Course::Crosses(bracket) => Some(self.foresee(step, k, *bracket)),
             Course::Clear | Course::WrongFromStart => None,
         };
-        let first = courses.iter().enumerate().filter_map(crossing).min_by(|a, b| a.guess.total_cmp(&b.guess))?;
-        let latest = step.end().t;
-        let (first, value) = self.shorten(step, first);
+        let crossings = courses.iter().enumerate().filter_map(crossing);
+        let Foreseen { switch, search, .. } = crossings.min_by(|a, b| a.guess.total_cmp(&b.guess))?;
+        let (latest, size) = (step.end().t, search.at());
+        let (search, value) = (Some(search), self.end.value);
+        Some(Found::Inside(Shortening { courses, latest, switch, search, size, rounds: 0, value }))
+    }
+
+    /// The event at the end of the step that was shortened to it; the rate there is known then.
+    pub fn crossing<const N: usize>(
+        &mut self,
+        step: &mut impl Guarded<N, G>,
+        Shortening { courses, latest, switch, value, .. }: Shortening<G>,
+    ) -> Crossing<G> {
         step.close(latest);
-        Some(Crossing { switches: self.concerned(step, courses, first, &value), is_at_start: false })
+        Crossing { switches: self.concerned(step, &courses, switch, &value), is_at_start: false }
     }
 
     /// Where guard `k` crosses in its bracket by the dense output.
@@ -61,31 +137,11 @@ impl<const G: usize> Watch<G> {
         let mut at = |part: f64| clearance(step.dense_guards(part)[k], step.negative()[k]);
         let size = larger(right.1.abs(), wrong.1.abs());
         let coarse = precise_to(size, 0.0, t * chord / h);
-        let (part, _) = zero(right.0, wrong.0, guess, chord, coarse, &mut at);
+        let (part, _) = zero(Search::new(right.0, wrong.0, guess, chord, coarse), &mut at);
         let slope = (at(part + ASIDE) - at(part - ASIDE)) / (2.0 * ASIDE * h);
         let precision = precise_to(size, self.noise_inside(step, k, part), t * slope);
-        Foreseen { switch: k, right: right.0 * h, wrong: wrong.0 * h, guess: part * h, slope, precision }
-    }
-
-    /// Shortens the step until the guard of `foreseen` vanishes, or one that turns out to cross before it; gives the
-    /// switch and the guards at the end.
-    fn shorten<const N: usize>(&self, step: &mut impl Guarded<N, G>, foreseen: Foreseen) -> (usize, SVector<f64, G>) {
-        let Foreseen { mut switch, mut right, mut wrong, mut guess, mut slope, mut precision } = foreseen;
-        for _ in 0..G {
-            let (h, _) = zero(right, wrong, guess, slope, precision, |h| {
-                clearance(guards_after(step, h)[switch], step.negative()[switch])
-            });
-            let value = guards_after(step, h);
-            let noise = self.noise_after(step, &value);
-            let is_earlier = |k: &usize| *k != switch && clearance(value[*k], step.negative()[*k]) < -noise[*k];
-            let Some(earlier) = (0..G).find(is_earlier) else { return (switch, value) };
-            let behind = clearance(value[earlier], step.negative()[earlier]);
-            slope = -(self.start.slope[earlier].abs().max(f64::MIN_POSITIVE));
-            (switch, right, wrong, guess) = (earlier, 0.0, h, h - behind / slope);
-            let size = larger(self.start.value[earlier].abs(), behind.abs());
-            precision = precise_to(size, noise[earlier], step.end().t * slope);
-        }
-        (switch, guards_after(step, step.size()))
+        let search = Search::new(right.0 * h, wrong.0 * h, part * h, slope, precision);
+        Foreseen { switch: k, guess: part * h, search }
     }
 
     /// The rounding errors of the guards at the end of the step just tried, where they have this `value`.
@@ -124,14 +180,4 @@ fn precise_to(size: f64, noise: f64, drift: f64) -> Precision {
         zero: larger(larger(f64::EPSILON * size, noise / 16.0), drift / 16.0),
         rounding: larger(larger(REMAINDER * size, noise), 4.0 * drift),
     }
-}
-
-/// The guards at the projected end of a step of size `h` (s).
-fn guards_after<const N: usize, const G: usize>(step: &mut impl Guarded<N, G>, h: f64) -> SVector<f64, G> {
-    // The last attempt may be this one.
-    if step.size() != h {
-        step.resize(h);
-    }
-    let end = *step.end();
-    step.guards(end.t, &end.x)
 }

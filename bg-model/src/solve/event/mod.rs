@@ -26,6 +26,8 @@ use guarded::Guarded;
 pub(crate) use impact::Struck;
 #[cfg(feature = "std")]
 pub(crate) use lanes::{Readings, Steps};
+#[cfg(feature = "std")]
+pub(crate) use locate::{Found, Shortening};
 
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;

@@ -8,6 +8,8 @@ use alloc::boxed::Box;
 use nalgebra::SVector;
 
 use super::hand_on::hand_on;
+#[cfg(feature = "std")]
+use super::lanes::OfOne;
 use super::{
     Ark5, Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2,
     Scale, StepControl, Taylor,
@@ -54,10 +56,15 @@ macro_rules! inside {
 }
 
 impl<const N: usize> AnyMethod<N> {
-    /// The method that runs side by side are made by.
+    /// The method of one of several runs side by side; none of a method whose runs cannot be.
     #[cfg(feature = "std")]
-    pub(crate) fn nystrom(&mut self) -> Option<&mut Nystrom<N>> {
-        if let Self::Nystrom(method) = self { Some(method) } else { None }
+    pub(crate) fn of_one(&mut self) -> Option<&mut dyn OfOne<N>> {
+        match self {
+            Self::Cfmr7(method) => Some(&mut **method),
+            Self::Dop853(method) => Some(&mut **method),
+            Self::Nystrom(method) => Some(&mut **method),
+            _ => None,
+        }
     }
 }
 

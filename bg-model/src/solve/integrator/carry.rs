@@ -5,24 +5,27 @@
 
 use nalgebra::SVector;
 
+use crate::model::scalar::Scalar;
+
 /// What rounding has kept from the states.
 #[derive(Clone, Debug)]
-pub(super) struct Carry<const N: usize> {
+pub(super) struct Carry<S, const N: usize> {
     /// At the start of the step.
-    start: SVector<f64, N>,
+    pub start: SVector<S, N>,
     /// At the end of the step that was tried last.
-    end: SVector<f64, N>,
+    pub end: SVector<S, N>,
 }
 
-impl<const N: usize> Carry<N> {
+impl<S: Scalar, const N: usize> Carry<S, N> {
     /// Nothing yet.
     pub fn new() -> Self {
-        Self { start: SVector::zeros(), end: SVector::zeros() }
+        let nothing = SVector::from([S::from_f64(0.0); N]);
+        Self { start: nothing, end: nothing }
     }
 
     /// State `i` after a step that starts at `from` and changes it by `change`.
     #[inline(always)]
-    pub fn add(&mut self, i: usize, from: f64, change: f64) -> f64 {
+    pub fn add(&mut self, i: usize, from: S, change: S) -> S {
         let change = change + self.start.data.0[0][i];
         let to = from + change;
         self.end.data.0[0][i] = change - (to - from);
@@ -36,6 +39,6 @@ impl<const N: usize> Carry<N> {
 
     /// Nothing is carried over to the next step.
     pub fn restart(&mut self) {
-        self.start.fill(0.0);
+        self.start.fill(S::from_f64(0.0));
     }
 }

@@ -121,6 +121,12 @@ impl Integrator {
     pub const fn needs_series(self) -> bool {
         matches!(self, Self::Taylor)
     }
+
+    /// Whether runs by it can be made side by side in the vectors of the machine.
+    #[must_use]
+    pub const fn is_for_lanes(self) -> bool {
+        matches!(self, Self::Cfmr7 | Self::Dop853 | Self::Nystrom)
+    }
 }
 
 impl fmt::Display for Integrator {

@@ -17,12 +17,15 @@ mod explicit;
 mod gauss;
 mod hand_on;
 mod hermite;
+#[cfg(feature = "std")]
+mod lanes;
 mod linear;
 mod nystrom;
 mod partitioned;
 mod radau;
 pub(crate) mod rk4;
 mod rosenbrock;
+mod steps;
 mod taylor;
 mod tolerances;
 mod vectors;
@@ -43,13 +46,15 @@ pub use gauss::Gauss6;
 #[cfg(feature = "std")]
 pub(crate) use hermite::between;
 pub(crate) use hermite::hermite;
-pub use nystrom::Nystrom;
 #[cfg(feature = "std")]
-pub(crate) use nystrom::{Begin, NystromInLanes, Side};
+pub(crate) use lanes::{AnyInLanes, OfOne, Side};
+pub use nystrom::Nystrom;
 pub use partitioned::Ark5;
 pub use radau::{Radau, Radau5, Radau9};
 pub use rk4::Rk4;
 pub use rosenbrock::{Rodas5p, Ros2};
+#[cfg(feature = "std")]
+pub(crate) use steps::{Begin, Rates};
 pub use taylor::Taylor;
 pub(crate) use tolerances::rounding;
 pub use tolerances::{Absolute, Scale, Tolerances};

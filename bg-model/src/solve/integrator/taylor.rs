@@ -39,7 +39,7 @@ pub struct Taylor<const N: usize> {
     /// Whether the series is that of the present start.
     is_current: bool,
     /// What rounding has kept from the states.
-    carry: Carry<N>,
+    carry: Carry<f64, N>,
     /// The method that makes the step where the series is not of numbers, and whether it does.
     other: Bs5<N>,
     is_by_other: bool,
@@ -110,7 +110,7 @@ impl<const N: usize> Taylor<N> {
     #[inline(always)]
     fn term(&self, k: usize, theta: f64, weights: &[f64; N]) -> f64 {
         let power = if theta == 1.0 { 1.0 } else { libm::pow(theta, k as f64) };
-        power * largest::<N>(&core::array::from_fn(|i| (self.series[k].data.0[0][i] * weights[i]).abs()))
+        power * largest::<f64, N>(&core::array::from_fn(|i| (self.series[k].data.0[0][i] * weights[i]).abs()))
     }
 
     /// Whether a step of the series of `h` (s) from `start` meets the tolerances. The method begins anew after it.
@@ -191,7 +191,7 @@ impl<const N: usize> Vectorised<N> for Taylor<N> {
         rate_in(self.arch, flow, start.t + h, end, &mut rate);
         let unit = self.unit;
         let defect = theta
-            * largest::<N>(&core::array::from_fn(|i| ((unit * rate.data.0[0][i] - slope[i]) * weights[i]).abs()))
+            * largest::<f64, N>(&core::array::from_fn(|i| ((unit * rate.data.0[0][i] - slope[i]) * weights[i]).abs()))
             / slack(scale.relative);
         if defect > 1.0 { defect } else { norm }
     }

@@ -79,22 +79,27 @@ impl<const N: usize> Scale<N> {
     /// The largest `|v_i|` divided by the allowed error at state `x`.
     #[must_use]
     pub fn norm(&self, v: &SVector<f64, N>, x: &SVector<f64, N>) -> f64 {
-        largest::<N>(&core::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i], 0.0)))
+        largest::<f64, N>(&core::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i], 0.0)))
     }
 }
 
 /// The largest of some numbers that are not negative; a NaN is passed over, it shows in the state itself.
 ///
 /// The maximum norm, and not a mean, so that states which repeat others or stay constant do not change the steps.
-pub(super) fn largest<const N: usize>(of: &[f64; N]) -> f64 {
+#[inline(always)]
+pub(super) fn largest<S: Scalar, const N: usize>(of: &[S; N]) -> S {
     // Several maxima side by side, for none to wait for another; of all orders the result is the same.
-    const LANES: usize = 8;
-    let larger = |largest: f64, value: f64| if value > largest { value } else { largest };
-    let mut lanes = [0.0; LANES];
+    const SIDE_BY_SIDE: usize = 8;
+    let Some(nothing) = of.first().map(|first| first.alike(0.0)) else { return S::from_f64(0.0) };
+    let mut maxima = [nothing; SIDE_BY_SIDE];
     for (i, &value) in of.iter().enumerate() {
-        lanes[i % LANES] = larger(lanes[i % LANES], value);
+        maxima[i % SIDE_BY_SIDE] = value.larger(maxima[i % SIDE_BY_SIDE]);
     }
-    lanes.into_iter().fold(0.0, larger)
+    let mut largest = nothing;
+    for maximum in &maxima {
+        largest = maximum.larger(largest);
+    }
+    largest
 }
 
 /// The largest change of each rate at `start` where every state is rounded up or down, in some patterns: what rounding may add to the

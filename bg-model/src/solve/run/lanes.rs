@@ -18,7 +18,7 @@ use crate::model::scalar::lanes::{Lanes, Vector};
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::slopes::Slopes;
 use crate::model::system::Model;
-use crate::solve::integrator::{AnyMethod, Change, Integrator, Method};
+use crate::solve::integrator::{AnyInLanes, AnyMethod, Change, Method};
 use crate::solve::simulation::{Span, lanes};
 
 /// A run that was not made, or not to its end.
@@ -36,9 +36,9 @@ pub enum LaneError {
 /// time on a machine with AVX-512, four with AVX2. Each gives the bits that it gives by itself, but for the wall clock, of which
 /// each has an equal share.
 ///
-/// They are made one after the other where that is not possible: on other machines, by another method than
-/// [`Integrator::Nystrom`], with a sample at each step, at relative tolerances up to 1e-10, of models with joints that close loops rigidly,
-/// with an input that changes, with an iteration in their rate, or of more than some 400 operations.
+/// They are made one after the other where that is not possible: on other machines, by another method than those of
+/// [`Integrator::is_for_lanes`](crate::integrator::Integrator::is_for_lanes), with a sample at each step, at relative tolerances up to 1e-10,
+/// of models with an input that changes, with an iteration in their rate, or of more than some 400 operations.
 pub fn in_lanes<Me: Mechanism>(
     model: &Me,
     request: &Request,
@@ -46,7 +46,7 @@ pub fn in_lanes<Me: Mechanism>(
 ) -> Vec<Result<Trajectory, LaneError>> {
     let many = Many { model, request, values };
     #[cfg(target_arch = "x86_64")]
-    if request.method == Integrator::Nystrom {
+    if request.method.is_for_lanes() {
         if Avx512::is_at_hand() {
             return model.visit_lifted::<Lanes<Avx512>, Lanes<Avx512>, _>(many);
         }
@@ -94,16 +94,16 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
         Ot: Model<Lanes<V>, N, G, M>,
     {
         let settings = self.request.settings(0.0);
-        if !lanes::fits(model, &settings) {
+        let method: AnyMethod<N> = self.request.method.method(self.request.fixed_step);
+        let Some(together) = AnyInLanes::of(&method).filter(|_| lanes::fits(model, &settings)) else {
             return self.all_alone();
-        }
+        };
         let clock = Clock::started();
         // What each run has of its own: its model, its start, its method.
         let made = |values: &Vec<f64>| {
             let model = other(values).ok()?;
             let start: SVector<f64, N> = model.start().ok()?;
-            let method: AnyMethod<N> = self.request.method.method(self.request.fixed_step);
-            Some((model, start, method))
+            Some((model, start, method.clone()))
         };
         let mut own: Vec<Option<(Mo, SVector<f64, N>, AnyMethod<N>)>> = self.values.iter().map(made).collect();
         let jobs = own.iter_mut().zip(self.values).enumerate().filter_map(|(number, (own, values))| {
@@ -115,10 +115,10 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
         let span = Span { t0: 0.0, t_end: self.request.t_end };
         let mut finished: Vec<_> = self.values.iter().map(|_| None).collect();
         let pack = |values: &[Lanes<V>]| lifted(values).expect("models were made of these parameters");
-        lanes::integrate(jobs, pack, span, &settings, |number, (recorder, _), finish| {
+        lanes::integrate(jobs, together, pack, span, &settings, |number, (recorder, _), finish| {
             finished[number] = finish.map(|finish| (recorder, finish));
         });
-        let method = self.request.method.method::<N>(self.request.fixed_step).name();
+        let method = method.name();
         let wall = clock.elapsed() / u32::try_from(self.values.len().max(1)).unwrap_or(u32::MAX);
         let results = finished.into_iter().zip(self.values).map(|(finished, values)| {
             let Some((recorder, finish)) = finished else { return self.alone(values) };

@@ -32,6 +32,18 @@ const STRETCH: f64 = 0.01;
 /// A part of a fixed step that rounding may make: such a sliver is no step.
 const SLIVER: f64 = 1e-9;
 
+/// What the size of the next step follows from: the logarithm of an error norm, and the exponential of [`Pace::exponent`] of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Judgement {
+    pub logarithm: f64,
+    pub factor: f64,
+}
+
+impl Judgement {
+    /// That the next step is as long.
+    pub const NONE: Self = Self { logarithm: 0.0, factor: 1.0 };
+}
+
 /// Chooses steps.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
@@ -134,8 +146,13 @@ impl Pace {
     /// The step `h` (s) to `t` (s) satisfied the tolerances with the error norm `error`. The next one is at least tried with
     /// a size that rounding allows.
     pub fn accept(&mut self, t: f64, h: f64, error: f64) {
+        self.accept_by(t, h, if self.is_adaptive() { self.judge(error, true) } else { Judgement::NONE });
+    }
+
+    /// The same where the error has been judged.
+    pub fn accept_by(&mut self, t: f64, h: f64, judgement: Judgement) {
         if self.is_adaptive() {
-            let next = if self.is_cut { self.after_cut(h, error) } else { h * self.ratio_after(h, error) };
+            let next = if self.is_cut { self.after_cut(h, judgement) } else { h * self.ratio_after(h, judgement) };
             let longest = if self.is_cut { self.step } else { h };
             let next = if self.rejected { next.min(longest) } else { next };
             self.step = next.max(2.0 * self.least(t)).min(self.largest);
@@ -146,26 +163,34 @@ impl Pace {
 
     /// The step after one of size `h` (s) that was cut short: as long as that was to be, unless its error says
     /// otherwise.
-    fn after_cut(&self, h: f64, error: f64) -> f64 {
-        let logarithm = libm::log(error);
-        let order = self.control.order().unwrap_or(1.0);
-        let allowed = h * SAFETY * libm::exp(-logarithm / order);
-        (h * self.ratio(logarithm)).max(self.step.min(allowed))
+    fn after_cut(&self, h: f64, Judgement { factor, .. }: Judgement) -> f64 {
+        (h * bounded(factor)).max(self.step.min(h * SAFETY * factor))
     }
 
     /// The step `h` (s) did not satisfy the tolerances; `error` is not a number where the step gave none, infinite where
     /// an iteration did not converge.
     pub fn reject(&mut self, h: f64, error: f64) {
-        self.rejected = true;
-        let next = h * match error {
+        let ratio = match error {
             _ if error.is_nan() => RETREAT,
             f64::INFINITY => HALF,
-            _ => self.ratio(libm::log(error)).min(SAFETY),
+            _ if self.is_adaptive() => shortening(self.judge(error, false).factor),
+            _ => SAFETY,
         };
+        self.shorten(h, ratio);
+    }
+
+    /// The same where the error has been judged, and is finite.
+    #[cfg(feature = "std")]
+    pub fn reject_by(&mut self, h: f64, Judgement { factor, .. }: Judgement) {
+        self.shorten(h, shortening(factor));
+    }
+
+    fn shorten(&mut self, h: f64, ratio: f64) {
+        self.rejected = true;
         if self.is_adaptive() {
-            self.step = next;
+            self.step = h * ratio;
         } else {
-            self.short = next;
+            self.short = h * ratio;
         }
     }
 
@@ -180,26 +205,39 @@ impl Pace {
         16.0 * f64::EPSILON * t.abs().max(f64::EPSILON * span)
     }
 
-    /// The ratio after a step whose error norm has this logarithm: an exponential, where powers of the norms of this step and the
-    /// one before would take a tenth of the hacksaw's time.
-    fn ratio(&self, logarithm: f64) -> f64 {
-        let Some(order) = self.control.order() else { return 1.0 };
-        (SAFETY * libm::exp(-logarithm / order)).clamp(RATIO[0], RATIO[1])
+    fn judge(&self, error: f64, is_accepted: bool) -> Judgement {
+        let logarithm = libm::log(error);
+        Judgement { logarithm, factor: libm::exp(self.exponent(logarithm, is_accepted)) }
+    }
+
+    /// The exponent of the factor in the size of the next step, after an attempt whose error norm has this logarithm: an exponential, where
+    /// powers of the norms of this step and the one before would take a tenth of the hacksaw's time.
+    pub fn exponent(&self, logarithm: f64, is_accepted: bool) -> f64 {
+        let before = self.accepted.map_or(0.0, |(_, before)| before);
+        let combined = match self.control {
+            StepControl::Stabilised { .. } if is_accepted && !self.is_cut => {
+                (1.0 - 0.75 * DAMPING) * logarithm - DAMPING * before
+            }
+            _ => logarithm,
+        };
+        -combined / self.control.order().unwrap_or(1.0)
     }
 
     /// The ratio after the accepted step `h` (s).
-    fn ratio_after(&mut self, h: f64, error: f64) -> f64 {
-        let now = libm::log(error);
+    fn ratio_after(&mut self, h: f64, Judgement { logarithm, factor }: Judgement) -> f64 {
+        let ratio = bounded(factor);
         match self.control {
-            StepControl::Fixed { .. } | StepControl::Adaptive { .. } => self.ratio(now),
+            StepControl::Fixed { .. } | StepControl::Adaptive { .. } => ratio,
             StepControl::Stabilised { .. } => {
-                let before = self.accept_norm(h, now).map_or(0.0, |(_, before)| before);
-                self.ratio((1.0 - 0.75 * DAMPING) * now - DAMPING * before)
+                self.accept_norm(h, logarithm);
+                ratio
             }
             StepControl::Predictive { .. } => {
-                let ratio = self.ratio(now);
-                let ratio = match self.accept_norm(h, now) {
-                    Some((h_before, before)) => ratio.min(h / h_before * self.ratio(2.0 * now - before)),
+                let ratio = match self.accept_norm(h, logarithm) {
+                    Some((h_before, before)) => {
+                        let foreseen = libm::exp(self.exponent(2.0 * logarithm - before, true));
+                        ratio.min(h / h_before * bounded(foreseen))
+                    }
                     None => ratio,
                 };
                 if (1.0..=HOLD).contains(&ratio) { 1.0 } else { ratio.max(RATIO[0]) }
@@ -211,6 +249,16 @@ impl Pace {
     fn accept_norm(&mut self, h: f64, logarithm: f64) -> Option<(f64, f64)> {
         self.accepted.replace((h, if logarithm > LEAST { logarithm } else { LEAST }))
     }
+}
+
+/// The ratio of the next step to this one by this factor.
+fn bounded(factor: f64) -> f64 {
+    (SAFETY * factor).clamp(RATIO[0], RATIO[1])
+}
+
+/// The same after a rejected one.
+fn shortening(factor: f64) -> f64 {
+    bounded(factor).min(SAFETY)
 }
 
 /// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.

@@ -104,8 +104,14 @@ where
         outcome.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))
     }
 
-    /// Sees to it that the joints which close loops say where the mechanism goes.
-    fn check_joints(&mut self) -> Result<(), Cause> {
+    /// Whether joints close loops.
+    #[cfg(feature = "std")]
+    pub fn has_loops(&self) -> bool {
+        self.loops.is_some()
+    }
+
+    /// Sees to it that the joints which close loops say where the mechanism goes at the end of the step.
+    pub fn check_joints(&mut self) -> Result<(), Cause> {
         let Stepper { system, end, negative, .. } = &self.stepper;
         let (Some(loops), Some(joints)) = (&mut self.loops, system.joints()) else { return Ok(()) };
         match loops.check(joints, (end.t, &end.x), negative) {
@@ -132,10 +138,18 @@ where
             return Ok(Some(Ended::AtEnd));
         }
         self.try_steps()?;
-        let crossing = match self.watch.inspect(&mut self.stepper) {
-            Ok(crossing) => crossing,
-            Err(guard) => return self.retreat(Faulty::Guard(guard)).map(|()| None),
-        };
+        match self.watch.inspect(&mut self.stepper) {
+            Ok(crossing) => self.conclude(crossing, observer),
+            Err(guard) => self.retreat(Faulty::Guard(guard)).map(|()| None),
+        }
+    }
+
+    /// Takes over the step that was made, which ends at `crossing` or has none; gives why the run ends, if it does.
+    pub fn conclude(
+        &mut self,
+        crossing: Option<Crossing<G>>,
+        observer: &mut impl Observer<N, G>,
+    ) -> Result<Option<Ended>, Cause> {
         if crossing.as_ref().is_some_and(|crossing| crossing.is_at_start) {
             let jumps = self.change_branches(crossing, observer)?;
             return Ok(jumps.then(|| self.end_at_start(observer)));
@@ -205,7 +219,7 @@ where
     }
 
     /// Whether the step begins or ends in the neighbourhood of a singular pose.
-    fn is_around_singular(&mut self) -> bool {
+    pub fn is_around_singular(&mut self) -> bool {
         let Stepper { system, start, end, negative, .. } = &self.stepper;
         let (Some(loops), Some(joints)) = (&mut self.loops, system.joints()) else { return false };
         [start, end].into_iter().any(|point| loops.is_around(joints, (point.t, &point.x), negative))
@@ -244,7 +258,7 @@ where
     }
 
     /// Gives up a step at whose end something is not finite, for a shorter one.
-    fn retreat(&mut self, faulty: Faulty) -> Result<(), Cause> {
+    pub fn retreat(&mut self, faulty: Faulty) -> Result<(), Cause> {
         let h = self.stepper.h;
         self.stepper.statistics.rejected += 1;
         self.pace.reject(h, f64::NAN);

@@ -66,6 +66,12 @@ where
         method.attempt(&flow, start, h, scale, &mut end.x)
     }
 
+    /// Takes over an attempt of size `h` (s) to `end`, which was made elsewhere. Its method is to know its stages.
+    #[cfg(feature = "std")]
+    pub fn take_over(&mut self, h: f64, end: Point<N>) {
+        (self.h, self.end, self.dense_is_ready) = (h, end, false);
+    }
+
     /// The norm of what the projection leaves of the last attempt's error, at most 1 where that is rounding; none where the
     /// method does not say.
     pub fn error_after_projection(&mut self) -> Option<f64> {
@@ -95,16 +101,32 @@ where
     /// The same until it moves no more. What one of Newton's steps leaves is below the tolerances, but not below what a guard at zero
     /// is known by: another projection would move a state at an event to either side of it.
     pub fn settle(&mut self) {
-        const MOST: usize = 4;
+        let moved = self.project();
+        self.settle_further(moved);
+    }
+
+    /// The same where one projection has been made, with this norm of what it has changed.
+    pub fn settle_further(&mut self, mut moved: f64) {
+        const MORE: usize = 3;
         let allowed = self.scale.relative.max(self.scale.absolute.amax());
-        let _ = (0..MOST).find(|_| self.project() * allowed <= SETTLED);
+        for _ in 0..MORE {
+            if moved * allowed <= SETTLED {
+                return;
+            }
+            moved = self.project();
+        }
     }
 
     /// The same with any state, at time `t` (s).
     pub fn project_state(&self, t: f64, x: &mut SVector<f64, N>) -> f64 {
         let before = *x;
         self.system.project(t, &self.negative, x);
-        if self.system.joints().is_some() { self.scale.norm(&(*x - before), x) } else { 0.0 }
+        self.moved(&before, x)
+    }
+
+    /// The norm of what a projection has changed where joints may be rigid, else 0.
+    pub fn moved(&self, before: &SVector<f64, N>, after: &SVector<f64, N>) -> f64 {
+        if self.system.joints().is_some() { self.scale.norm(&(after - before), after) } else { 0.0 }
     }
 
     /// The norm of what the projection makes of the rounding of a state `x` at the end of the step, which grows into a singular pose.

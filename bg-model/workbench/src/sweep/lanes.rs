@@ -6,7 +6,6 @@
 use std::marker::PhantomData;
 
 use bg_model::input::Input;
-use bg_model::integrator::Integrator;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::Parameters;
 use bg_model::run::{LaneError, Request, RunError, Stopped, Trajectory, in_lanes};
@@ -36,7 +35,7 @@ pub type Many = fn(Asked<'_>, &[Vec<f64>]) -> Vec<Result<Outcome, String>>;
 
 /// Whether the runs of a plan may gain by it. Which can be made side by side, only the model tells.
 pub fn may_gain<P>(plan: &Plan<'_, P>) -> bool {
-    plan.request.method == Integrator::Nystrom && plan.begin == Begin::Model
+    plan.request.method.is_for_lanes() && plan.begin == Begin::Model
 }
 
 /// [`Many`] for a mechanism.

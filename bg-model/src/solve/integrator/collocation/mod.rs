@@ -208,7 +208,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         if !super::is_finite(&self.error) {
             return f64::NAN;
         }
-        largest::<N>(&core::array::from_fn(|i| self.scaled_error(i, start, scale, end)))
+        largest::<f64, N>(&core::array::from_fn(|i| self.scaled_error(i, start, scale, end)))
     }
 
     fn scaled_error(&self, i: usize, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> f64 {

@@ -9,13 +9,13 @@ mod cfmr7;
 mod dop853;
 #[cfg(test)]
 mod estimate;
+#[cfg(feature = "std")]
+mod lanes;
 #[cfg(test)]
 mod order;
+mod stages;
 #[cfg(test)]
 mod vectors;
-
-use core::marker::PhantomData;
-use core::ops::Range;
 
 use crate::solve::integrator::Arch;
 use nalgebra::SVector;
@@ -26,10 +26,15 @@ pub use dop853::DormandPrince;
 
 use super::carry::Carry;
 use super::dense::{FROM_ENDS, Polynomial, write_sum};
+use super::steps::{Begin, OfFlow};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 use crate::model::scalar::double::root;
+#[cfg(feature = "std")]
+pub(super) use lanes::ExplicitInLanes;
+pub(super) use stages::Complete;
+use stages::Stages;
 
 /// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
 /// for.
@@ -84,113 +89,36 @@ pub trait Tableau {
     const GAMMA: f64 = 0.0;
 }
 
-/// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
-const AT_START: f64 = 0.02;
-
-/// What a method adds to the states of an explicit one.
-pub(super) trait Complete<const N: usize> {
-    /// Completes the state `x` of stage `stage`, at the part `c` of the step.
-    fn complete(&mut self, stage: usize, c: f64, x: &mut SVector<f64, N>);
-
-    /// Corrects the magnitudes of the errors in parts of what is allowed, `errors`. `error` gives the error of a state, `allowed`
-    /// what is allowed of it.
-    fn correct(&mut self, errors: &mut [f64; N], error: impl Fn(usize) -> f64, allowed: impl Fn(usize) -> f64);
-}
-
-/// Nothing.
-impl<const N: usize> Complete<N> for () {
-    #[inline(always)]
-    fn complete(&mut self, _stage: usize, _c: f64, _x: &mut SVector<f64, N>) {}
-
-    #[inline(always)]
-    fn correct(&mut self, _errors: &mut [f64; N], _error: impl Fn(usize) -> f64, _allowed: impl Fn(usize) -> f64) {}
-}
-
-/// The most stages of a method, and the most coefficients of its dense output.
-const STAGES: usize = 16;
+/// The most coefficients of a dense output.
 const COEFFICIENTS: usize = 7;
-
-/// The rates of all stages.
-type Stages<const N: usize> = [SVector<f64, N>; STAGES];
 
 /// The explicit method of tableau `T`.
 #[derive(Clone, Debug)]
 pub struct Explicit<T, const N: usize> {
-    /// The stages' rates.
-    k: Stages<N>,
+    stages: Stages<T, f64, N>,
     /// The dense output's coefficients.
     polynomial: Polynomial<N, COEFFICIENTS>,
     /// What rounding has kept from the states.
-    carry: Carry<N>,
+    carry: Carry<f64, N>,
     /// The machine's vectors.
     arch: Arch,
-    tableau: PhantomData<T>,
 }
 
-impl<T, const N: usize> Explicit<T, N> {
+impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        let k = [SVector::zeros(); STAGES];
-        Self { k, polynomial: Polynomial::zero(), carry: Carry::new(), arch: Arch::new(), tableau: PhantomData }
+        Self { stages: Stages::new(), polynomial: Polynomial::zero(), carry: Carry::new(), arch: Arch::new() }
     }
 }
 
-impl<T, const N: usize> Default for Explicit<T, N> {
+impl<T: Tableau, const N: usize> Default for Explicit<T, N> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-/// Entry `i` of the linear combination of the stages `k`, summed in the order of the stages.
-#[inline(always)]
-fn combine<const N: usize>(row: Row, k: &Stages<N>, i: usize) -> f64 {
-    // Adding to -0 changes nothing, not even the sign of a zero.
-    row.iter().fold(-0.0, |sum, (stage, weight)| sum + weight * k[*stage].data.0[0][i])
-}
-
 impl<T: Tableau, const N: usize> Explicit<T, N> {
-    /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its weights
-    /// as constants; the rate stands there once, which is less to compile and takes no longer. It is called where not `IS_INLINED`.
-    #[inline(always)]
-    fn evaluate<const IS_INLINED: bool>(
-        &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
-        h: f64,
-        stages: Range<usize>,
-        completed: &mut impl Complete<N>,
-    ) {
-        let mut x = start.x;
-        for stage in stages {
-            macro_rules! written_out {
-                ($($stage:literal)*) => {
-                    match stage {
-                        $( $stage if $stage < T::A.len() => self.reach::<$stage>(start, h, &mut x), )*
-                        _ => unreachable!("a tableau has fewer stages than there is room for"),
-                    }
-                };
-            }
-            written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
-            completed.complete(stage, T::C[stage], &mut x);
-            let t = start.t + T::C[stage] * h;
-            if IS_INLINED {
-                flow.inlined_rate(t, &x, &mut self.k[stage]);
-            } else {
-                flow.rate(t, &x, &mut self.k[stage]);
-            }
-        }
-    }
-
-    /// Writes the state of a stage, without what completes it.
-    #[inline(always)]
-    fn reach<const STAGE: usize>(&self, start: &Point<N>, h: f64, x: &mut SVector<f64, N>) {
-        let (start, x) = (&start.x.data.0[0], &mut x.data.0[0]);
-        for i in 0..N {
-            x[i] = start[i] + h * combine(T::A[STAGE], &self.k, i);
-        }
-    }
-
     /// A step whose stages' states `completed` completes: see [`Method::attempt`].
     #[inline(always)]
     pub(super) fn step(
@@ -200,60 +128,23 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         h: f64,
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
-        completed: &mut impl Complete<N>,
+        completed: &mut impl Complete<f64, N>,
     ) -> f64 {
-        self.k[0] = start.rate;
-        self.evaluate::<true>(flow, start, h, 1..T::END, completed);
-        self.finish_step(start, h, scale, end, completed)
+        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
+        norm::<T>(h, self.stages.step(&OfFlow(flow), &from, scale, &mut self.carry, end, completed))
     }
 
     /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
     fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
-        core::array::from_fn(|i| (combine(row, &self.k, i) / scale.allowed(i, start.x[i], end[i])).abs())
+        core::array::from_fn(|i| (self.stages.combine(row, i) / scale.allowed(i, start.x[i], end[i])).abs())
     }
+}
 
-    /// Writes the state at the end of the step and gives the norm of its error.
-    ///
-    /// The norm: h e1, with the largest e1 of the scaled differences to the embedded method. With a second one, whose
-    /// largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer, Norsett, Wanner, section II.10).
-    #[inline(always)]
-    fn finish_step(
-        &mut self,
-        start: &Point<N>,
-        h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
-        completed: &mut impl Complete<N>,
-    ) -> f64 {
-        let (mut difference, mut first, mut second) = ([0.0; N], [0.0; N], [0.0; N]);
-        for i in 0..N {
-            let from = start.x.data.0[0][i];
-            let slope = combine(T::B, &self.k, i);
-            let change = h * slope;
-            let to = if T::IS_COMPENSATED { self.carry.add(i, from, change) } else { from + change };
-            let allowed = scale.allowed(i, from, to);
-            end.data.0[0][i] = to;
-            difference[i] = combine(T::ERROR, &self.k, i);
-            first[i] = (difference[i] / allowed).abs();
-            if !T::SECOND.is_empty() {
-                second[i] = ((slope - combine(T::SECOND, &self.k, i)) / allowed).abs();
-            }
-        }
-        let allowed = |i: usize| scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i]);
-        completed.correct(&mut first, |i| difference[i], allowed);
-        let first = largest(&first);
-        if !T::START.is_empty() {
-            difference = core::array::from_fn(|i| combine(T::START, &self.k, i));
-            let mut start: [f64; N] = core::array::from_fn(|i| (difference[i] / allowed(i)).abs());
-            completed.correct(&mut start, |i| difference[i], allowed);
-            let start = AT_START * largest(&start);
-            return h.abs() * if start > first { start } else { first };
-        }
-        if T::SECOND.is_empty() {
-            return h.abs() * first;
-        }
-        both(h.abs(), first, largest(&second))
-    }
+/// The norm of a step's error, of size `h` (s): h e1, with the largest e1 of the scaled differences to the embedded method. With a second one,
+/// whose largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer, Norsett, Wanner, section II.10).
+#[inline(always)]
+fn norm<T: Tableau>(h: f64, [first, second]: [f64; 2]) -> f64 {
+    if T::SECOND.is_empty() { h.abs() * first } else { both(h.abs(), first, second) }
 }
 
 /// The error of a method with two estimates, that of the higher order first, `scale` times theirs: the first one, the smaller the larger the second is
@@ -299,7 +190,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         if T::LATE.is_empty() || norm > 1.0 {
             return norm;
         }
-        flow.rate(start.t + h, end, &mut self.k[T::END]);
+        flow.rate(start.t + h, end, &mut self.stages.k[T::END]);
         let late = h.abs() * largest(&self.errors(T::LATE, start, scale, end));
         if late > norm { late } else { norm }
     }
@@ -318,20 +209,20 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         let left = |difference: &dyn Fn(usize) -> f64| {
             let mut other = SVector::from_fn(|i, _| end[i] - h * difference(i));
             project(&mut other);
-            largest::<N>(&core::array::from_fn(|i| {
+            largest::<f64, N>(&core::array::from_fn(|i| {
                 (reached[i] - other[i]).abs() / scale.allowed(i, start.x[i], end[i])
             }))
         };
-        let first = left(&|i| combine(T::ERROR, &self.k, i));
+        let first = left(&|i| self.stages.combine(T::ERROR, i));
         if !T::SECOND.is_empty() {
-            let second = left(&|i| combine(T::B, &self.k, i) - combine(T::SECOND, &self.k, i));
+            let second = left(&|i| self.stages.combine(T::B, i) - self.stages.combine(T::SECOND, i));
             return Some(both(1.0, first, second));
         }
         if T::LATE.is_empty() || first > 1.0 {
             return Some(first);
         }
-        flow.rate(start.t + h, end, &mut self.k[T::END]);
-        Some(first.max(left(&|i| combine(T::LATE, &self.k, i))))
+        flow.rate(start.t + h, end, &mut self.stages.k[T::END]);
+        Some(first.max(left(&|i| self.stages.combine(T::LATE, i))))
     }
 
     fn advance(&mut self) {
@@ -348,15 +239,16 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
-        self.k[1..T::END].iter().find_map(first_not_finite)
+        self.stages.k[1..T::END].iter().find_map(first_not_finite)
     }
 
     fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        self.k[T::END] = end.rate;
-        self.evaluate::<false>(flow, start, h, T::END + 1..T::A.len(), &mut ());
+        self.stages.k[T::END] = end.rate;
+        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
+        self.stages.evaluate::<false>(&OfFlow(flow), &from, T::END + 1..T::A.len(), &mut ());
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
         self.polynomial.set(start, h, end, |m, _, out| {
-            write_sum(h, row(m).iter().map(|&(stage, weight)| (weight, &self.k[stage])), out);
+            write_sum(h, row(m).iter().map(|&(stage, weight)| (weight, &self.stages.k[stage])), out);
         });
     }
 

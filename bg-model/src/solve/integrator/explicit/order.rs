@@ -4,7 +4,8 @@
 //! elementary weight is 1 / density(t). With an implicit companion each branch takes the coefficients of one of the two methods,
 //! in all ways (C. A. Kennedy, M. H. Carpenter, Applied Numerical Mathematics 44 (2003), 139-181, section 2).
 
-use super::{BogackiShampine, CalvoFrancoMontijanoRandez, DormandPrince, FROM_ENDS, Row, STAGES, Tableau};
+use super::stages::STAGES;
+use super::{BogackiShampine, CalvoFrancoMontijanoRandez, DormandPrince, FROM_ENDS, Row, Tableau};
 use crate::solve::integrator::partitioned::KennedyCarpenter;
 
 type Stages = [f64; STAGES];

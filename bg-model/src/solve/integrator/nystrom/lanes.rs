@@ -5,84 +5,18 @@
 use std::ops::Range;
 
 use nalgebra::SVector;
-use pulp::NullaryFnOnce;
 
 use super::Nystrom;
 use super::ring::Pull;
-use super::stages::{Begin, Forces, Stages};
-use crate::model::capability::SecondOrder;
+use super::stages::Stages;
+use super::tableau::STAGES;
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
 use crate::solve::integrator::Scale;
-
-/// A system side by side, its switches frozen.
-#[derive(Debug)]
-pub(crate) struct Side<'a, Sys, V: Vector, const G: usize> {
-    /// The system.
-    pub system: &'a Sys,
-    /// Where the guard of each switch is negative.
-    pub negative: &'a [V::Mask; G],
-}
-
-impl<Sys, V: Vector, const N: usize, const G: usize> Forces<Lanes<V>, N> for Side<'_, Sys, V, G>
-where
-    Sys: System<Lanes<V>, N, G>,
-{
-    #[inline(always)]
-    fn at_start(&self, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>) {
-        if let Some(second) = self.system.second_order() {
-            second.second_derivatives(x, dx);
-        }
-    }
-
-    #[inline(always)]
-    fn at_stage(&self, t: Lanes<V>, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>) {
-        match self.system.second_order() {
-            Some(second) => second.forces(t, x, self.negative, dx),
-            None => self.system.always_inlined_rate(t, x, self.negative, dx),
-        }
-    }
-}
-
-struct Rate<'a, Sys, V: Vector, const N: usize, const G: usize> {
-    side: &'a Side<'a, Sys, V, G>,
-    t: Lanes<V>,
-    x: &'a SVector<Lanes<V>, N>,
-    dx: &'a mut SVector<Lanes<V>, N>,
-}
-
-impl<Sys, V: Vector, const N: usize, const G: usize> NullaryFnOnce for Rate<'_, Sys, V, N, G>
-where
-    Sys: System<Lanes<V>, N, G>,
-{
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { side, t, x, dx } = self;
-        side.system.always_inlined_rate(t, x, side.negative, dx);
-    }
-}
-
-impl<Sys, V: Vector, const G: usize> Side<'_, Sys, V, G> {
-    /// Writes the rates at time `t` (s) and state `x` into `dx`. Compiled once.
-    #[inline(never)]
-    pub fn rate<const N: usize>(&self, t: Lanes<V>, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>)
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
-        V::vectorized(Rate { side: self, t, x, dx });
-    }
-
-    /// The states of second order.
-    pub fn second<const N: usize>(&self) -> Range<usize>
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
-        self.system.second_order().map_or(0..0, |second| second.states())
-    }
-}
+use crate::solve::integrator::lanes::{OfOne, Side};
+use crate::solve::integrator::steps::{Begin, Forces};
+use crate::solve::integrator::tolerances::largest;
 
 /// The method for runs side by side.
 #[derive(Debug)]
@@ -98,14 +32,19 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
         Self { stages: Stages::new(), direction: SVector::from([Lanes::from_f64(0.0); N]) }
     }
 
-    /// What the methods know of the flow: the directions of the fastest oscillations.
-    pub fn direction(&mut self) -> &mut SVector<Lanes<V>, N> {
+    /// The directions of the fastest oscillations.
+    pub fn carried(&mut self) -> &mut SVector<Lanes<V>, N> {
         &mut self.direction
     }
 
-    /// Gives back to `method` what is known of the flow at a place.
-    pub fn store(&self, lane: usize, method: &mut Nystrom<N>) {
-        method.ring.direction = SVector::from_fn(|i, _| self.direction[i].get(lane));
+    /// The same: no step changes them.
+    pub fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
+        &self.direction
+    }
+
+    /// The second derivatives, or rates, of a stage.
+    pub fn stage(&self, stage: usize) -> &SVector<Lanes<V>, N> {
+        &self.stages.k[stage].0
     }
 
     /// One iteration towards the fastest oscillation at the places of `due`, from states `x` with rates `rate` at time `t` (s): see
@@ -122,10 +61,9 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
     where
         Sys: System<Lanes<V>, N, G>,
     {
-        let states = side.second();
+        let states = Forces::<Lanes<V>, N>::second(side);
         let zero = t.alike(0.0);
-        let second_derivatives = |x: &_, dx: &mut _| side.at_start(x, dx);
-        let pull = Pull::along(&self.direction, &states, (x, rate), second_derivatives, |x, dx| side.rate(t, x, dx));
+        let pull = Pull::along(&self.direction, &states, side, t, (x, rate));
         let stiffness = pull.stiffness;
         let infinity = t.alike(f64::INFINITY);
         let is_finite = V::below(stiffness.abs().0, infinity.0);
@@ -150,35 +88,47 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
     where
         Sys: System<Lanes<V>, N, G>,
     {
-        let errors = self.stages.step(side, &side.second(), begin, scale, end);
-        let mut largest = begin.h.alike(0.0);
-        for error in &errors {
-            largest = error.larger(largest);
-        }
-        largest
+        largest(&self.stages.step(side, begin, scale, end))
     }
 }
 
-impl<const N: usize> Nystrom<N> {
-    /// What the method knows of the flow: the direction of the fastest oscillation.
-    pub(crate) fn direction(&self) -> &SVector<f64, N> {
-        &self.ring.direction
+impl<const N: usize> OfOne<N> for Nystrom<N> {
+    /// The direction of the fastest oscillation.
+    fn carried(&mut self) -> &mut SVector<f64, N> {
+        &mut self.ring.direction
     }
 
-    /// Whether the fastest oscillation is to be looked at before the next step, whose flow has no states of second order unless
-    /// `second`; nothing where that is to begin anew.
-    pub(crate) fn is_due(&self, second: bool) -> Option<bool> {
-        let due = second && self.ring.is_due();
-        (!due || !self.ring.begins()).then_some(due)
+    fn keep(&mut self, carried: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>) {
+        self.ring.direction = carried;
+        self.stages.k[..STAGES].iter_mut().enumerate().for_each(|(index, k)| k.0 = stage(index));
     }
 
-    /// Takes note of the stiffness of the fastest oscillation.
-    pub(crate) fn stiffness(&mut self, stiffness: f64) {
+    fn rates(&self) -> u64 {
+        (STAGES - 1) as u64
+    }
+
+    fn norm(&self, _h: f64, [difference, _]: [f64; 2]) -> f64 {
+        difference
+    }
+
+    fn is_due(&self) -> bool {
+        self.ring.is_due()
+    }
+
+    fn begins(&mut self, second: &Range<usize>) -> bool {
+        self.second = second.clone();
+        let begins = self.ring.begins();
+        if begins {
+            self.ring.begin(second);
+        }
+        begins
+    }
+
+    fn stiffness(&mut self, stiffness: f64) {
         self.ring.found(stiffness);
     }
 
-    /// The error norm that keeps a step of size `h` (s) where the fastest oscillation is stable.
-    pub(crate) fn reach(&self, h: f64) -> f64 {
+    fn reach(&self, h: f64) -> f64 {
         self.ring.reach(h)
     }
 }

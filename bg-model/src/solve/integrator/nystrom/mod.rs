@@ -22,17 +22,16 @@ use crate::solve::integrator::Arch;
 use nalgebra::SVector;
 
 use super::dense::{FROM_ENDS, Polynomial, write_sum};
+use super::steps::{Begin, Forces, OfFlow};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl};
-use crate::model::capability::SecondOrder;
 #[cfg(test)]
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
-pub(crate) use lanes::{NystromInLanes, Side};
+pub(super) use lanes::NystromInLanes;
 use ring::Ring;
-pub(crate) use stages::Begin;
-use stages::{END, Forces, Stages};
+use stages::{END, Stages};
 use tableau::{DENSE, STAGES};
 
 /// The coefficients of the dense output: it has degree 5 in the part of the step.
@@ -72,32 +71,6 @@ impl<const N: usize> Nystrom<N> {
     }
 }
 
-/// The states of second order of a flow; an empty range where there are none.
-#[inline(always)]
-fn states_of_second_order<const N: usize>(flow: &impl Flow<N>) -> Range<usize> {
-    flow.second_order().map_or(0..0, |second| second.states())
-}
-
-/// The forces of a flow.
-struct OfFlow<'a, F>(&'a F);
-
-impl<F: Flow<N>, const N: usize> Forces<f64, N> for OfFlow<'_, F> {
-    #[inline(always)]
-    fn at_start(&self, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        if let Some(second) = self.0.second_order() {
-            second.second_derivatives(x, dx);
-        }
-    }
-
-    #[inline(always)]
-    fn at_stage(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        match self.0.second_order() {
-            Some(second) => second.forces(t, x, &[], dx),
-            None => self.0.inlined_rate(t, x, dx),
-        }
-    }
-}
-
 impl<const N: usize> Default for Nystrom<N> {
     fn default() -> Self {
         Self::new()
@@ -115,7 +88,7 @@ impl<const N: usize> Vectorised<N> for Nystrom<N> {
         end: &mut SVector<f64, N>,
     ) -> f64 {
         let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
-        self.errors = self.stages.step(&OfFlow(flow), &states_of_second_order(flow), &from, scale, end);
+        self.errors = self.stages.step(&OfFlow(flow), &from, scale, end);
         largest(&self.errors)
     }
 }
@@ -137,8 +110,8 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        self.second = states_of_second_order(flow);
-        self.ring.follow(flow, start, &self.second);
+        self.second = OfFlow(flow).second();
+        self.ring.follow(&OfFlow(flow), start, &self.second);
         let reach = self.ring.reach(h);
         if reach > 1.0 {
             return reach;

@@ -10,10 +10,10 @@ use core::ops::Range;
 use nalgebra::SVector;
 
 use super::tableau;
-use crate::model::capability::SecondOrder;
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::{fraction, power, root};
-use crate::solve::integrator::{Flow, Point};
+use crate::solve::integrator::Point;
+use crate::solve::integrator::steps::Forces;
 
 /// Steps after a restart that each iterate once.
 const FIRST_STEPS: u32 = 8;
@@ -48,26 +48,29 @@ pub(super) struct Pull<S, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> Pull<S, N> {
-    /// What pulls back along `direction` at a state with its rate, by what writes the rates of a state and what replaces the rates of
-    /// `states` by their second derivatives.
+    /// What pulls back along `direction`, a part of `states`, at time `t` (s) and a state with its rate.
     #[inline(always)]
     pub fn along(
         direction: &SVector<S, N>,
         states: &Range<usize>,
+        forces: &impl Forces<S, N>,
+        t: S,
         (x, rate): (&SVector<S, N>, &SVector<S, N>),
-        second_derivatives: impl Fn(&SVector<S, N>, &mut SVector<S, N>),
-        write_rates: impl Fn(&SVector<S, N>, &mut SVector<S, N>),
     ) -> Self {
         let zero = x.data.0[0][0].alike(0.0);
-        let largest = states.clone().fold(zero, |largest, i| x.data.0[0][i].abs().larger(largest));
+        let mut largest = zero;
+        for i in states.clone() {
+            largest = x.data.0[0][i].abs().larger(largest);
+        }
         let size = largest.larger(zero.alike(DISPLACEMENT)).times(DISPLACEMENT);
         let (mut displaced, mut before, mut behind) = (*x, *rate, *rate);
         for i in states.clone() {
             displaced.data.0[0][i] = x.data.0[0][i] + direction.data.0[0][i] * size;
         }
-        second_derivatives(x, &mut before);
-        write_rates(&displaced, &mut behind);
-        second_derivatives(&displaced, &mut behind);
+        forces.at_start(x, &mut before);
+        // Not `Forces::at_stage`, which may round otherwise: their difference is small.
+        forces.rate(t, &displaced, &mut behind);
+        forces.at_start(&displaced, &mut behind);
         let mut change = [zero; N];
         for i in states.clone() {
             change[i] = behind.data.0[0][i] - before.data.0[0][i];
@@ -91,8 +94,11 @@ fn length<S: Scalar, const N: usize>(of: &[S; N]) -> S {
     for (i, &entry) in of.iter().enumerate() {
         sums[i % SIDE_BY_SIDE] = sums[i % SIDE_BY_SIDE] + entry * entry;
     }
-    let [first, others @ ..] = sums;
-    others.into_iter().fold(first, |sum, other| sum + other).sqrt()
+    let mut sum = sums[0];
+    for other in &sums[1..] {
+        sum = sum + *other;
+    }
+    sum.sqrt()
 }
 
 impl<const N: usize> Ring<N> {
@@ -113,11 +119,11 @@ impl<const N: usize> Ring<N> {
     }
 
     /// Iterates once if it is time to.
-    pub fn follow(&mut self, flow: &impl Flow<N>, point: &Point<N>, states: &Range<usize>) {
-        let Some(second_order) = flow.second_order().filter(|_| !states.is_empty()) else {
+    pub fn follow(&mut self, forces: &impl Forces<f64, N>, point: &Point<N>, states: &Range<usize>) {
+        if states.is_empty() {
             self.frequency = 0.0;
             return;
-        };
+        }
         if !self.is_due() {
             return;
         }
@@ -125,9 +131,7 @@ impl<const N: usize> Ring<N> {
             self.begin(states);
         }
         let Point { t, x, rate } = point;
-        let second_derivatives = |x: &_, dx: &mut _| second_order.second_derivatives(x, dx);
-        // Not `SecondOrder::forces`, which may round otherwise: their difference is small.
-        let pull = Pull::along(&self.direction, states, (x, rate), second_derivatives, |x, dx| flow.rate(*t, x, dx));
+        let pull = Pull::along(&self.direction, states, forces, *t, (x, rate));
         let stiffness = pull.stiffness;
         if stiffness.is_finite() {
             self.direction = SVector::zeros();
@@ -139,7 +143,7 @@ impl<const N: usize> Ring<N> {
     }
 
     /// The direction of what rang before the branch changed, and a share of everything else.
-    fn begin(&mut self, states: &Range<usize>) {
+    pub fn begin(&mut self, states: &Range<usize>) {
         let mut any = SVector::<f64, N>::zeros();
         for i in states.clone() {
             any[i] = 1.0 + fraction(GOLDEN * i as f64);

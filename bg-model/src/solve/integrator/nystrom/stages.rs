@@ -10,6 +10,7 @@ use nalgebra::SVector;
 use super::tableau::{FIRST, INSTANTS, SECOND, STAGES};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::Scale;
+use crate::solve::integrator::steps::{Begin, Forces};
 
 /// Behind the rows of the stages: those of the state at the end, and of the error estimate.
 pub(super) const END: usize = STAGES;
@@ -19,28 +20,6 @@ pub(super) const ERROR: usize = STAGES + 1;
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(super) struct Aligned<S, const N: usize>(pub SVector<S, N>);
-
-/// What stages are evaluated of.
-pub(crate) trait Forces<S, const N: usize> {
-    /// Replaces the rates `dx` of the states of second order at state `x` by their second derivatives.
-    fn at_start(&self, x: &SVector<S, N>, dx: &mut SVector<S, N>);
-
-    /// Writes the rates at time `t` (s) and state `x` into `dx`, of the states of second order their second derivatives.
-    fn at_stage(&self, t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>);
-}
-
-/// The start of a step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Begin<'a, S, const N: usize> {
-    /// Time, s.
-    pub t: S,
-    /// The step, s.
-    pub h: S,
-    /// State.
-    pub x: &'a SVector<S, N>,
-    /// Its rate.
-    pub rate: &'a SVector<S, N>,
-}
 
 /// The second derivatives of the states of second order and the rates of the others, at the stages and at the end.
 #[derive(Clone, Debug)]
@@ -103,20 +82,31 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
     pub fn step(
         &mut self,
         forces: &impl Forces<S, N>,
-        second: &Range<usize>,
         from: &Begin<'_, S, N>,
         scale: &Scale<N>,
         end: &mut SVector<S, N>,
     ) -> [S; N] {
+        let second = &forces.second();
         self.evaluate(forces, second, from);
         self.reach::<END>(second, 1.0, from, end);
         let h = from.h;
         let (start, reached) = (&from.x.data.0[0], &end.data.0[0]);
-        let part = |i: usize, sum: S| (h * sum / scale.allowed(i, start[i], reached[i])).abs();
         let mut errors = [h.alike(0.0); N];
-        let of_first = (0..second.start).chain(second.end..N);
-        of_first.for_each(|i| errors[i] = part(i, self.combine(FIRST[ERROR], i)));
-        second.clone().for_each(|i| errors[i] = part(i, h * self.combine(SECOND[ERROR], i)));
+        for i in 0..second.start {
+            errors[i] = part(h * self.combine(FIRST[ERROR], i), scale.allowed(i, start[i], reached[i]));
+        }
+        for i in second.clone() {
+            errors[i] = part(h * (h * self.combine(SECOND[ERROR], i)), scale.allowed(i, start[i], reached[i]));
+        }
+        for i in second.end..N {
+            errors[i] = part(h * self.combine(FIRST[ERROR], i), scale.allowed(i, start[i], reached[i]));
+        }
         errors
     }
+}
+
+/// The magnitude of an error in parts of what is allowed.
+#[inline(always)]
+fn part<S: Scalar>(error: S, allowed: S) -> S {
+    (error / allowed).abs()
 }

@@ -144,7 +144,7 @@ impl<const N: usize> Block<N> {
 }
 
 /// Solves for the implicit part of a stage.
-impl<const N: usize> Complete<N> for Block<N> {
+impl<const N: usize> Complete<f64, N> for Block<N> {
     #[inline(always)]
     fn complete(&mut self, stage: usize, c: f64, x: &mut SVector<f64, N>) {
         let Self { states, inverse, from, change, off, solved, parts, h, .. } = self;

@@ -7,10 +7,10 @@ use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
 use crate::model::scalar::Scalar;
-use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::model::scalar::lanes::{Lanes, Vector, at, replace};
 use crate::model::system::System;
 use crate::solve::event::{Readings, Steps};
-use crate::solve::integrator::{Begin, Nystrom, NystromInLanes, Point, Scale, Side};
+use crate::solve::integrator::{AnyInLanes, Begin, OfOne, Point, Rates, Scale, Side};
 
 /// How much less than the projection that is looked at a projection may move a state.
 const CERTAIN: f64 = 0.99;
@@ -27,15 +27,17 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     /// States and rates at the start and at the end of the steps.
     start: [States<V, N>; 2],
     end: [States<V, N>; 2],
+    /// States at the end before they were projected, where joints may be rigid.
+    reached: States<V, N>,
     negative: [V::Mask; G],
     readings: Readings<V, G>,
-    method: NystromInLanes<V, N>,
+    method: AnyInLanes<V, N>,
 }
 
 /// What has come of steps.
 pub(super) struct Tried<V: Vector> {
-    /// The norms of their errors.
-    pub norms: V::Numbers,
+    /// The largest of the differences to two embedded methods, of which each run's method makes the norm of its error.
+    pub differences: [V::Numbers; 2],
     /// A bit for each that leads to finite states and rates, and is moved by the projection by no more than `moved`.
     pub fine: u8,
     /// A bit for each in which all guards keep to their sides.
@@ -43,7 +45,8 @@ pub(super) struct Tried<V: Vector> {
 }
 
 impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
-    pub fn new() -> Self {
+    /// Nobody yet; steps by `method`.
+    pub fn new(method: AnyInLanes<V, N>) -> Self {
         let zero = Lanes::from_f64(0.0);
         let none = [SVector::from([zero; N]); 2];
         Self {
@@ -52,40 +55,74 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             t_end: zero,
             start: none,
             end: none,
+            reached: none[0],
             negative: [false.into(); G],
             readings: Readings::new(),
-            method: NystromInLanes::new(),
+            method,
         }
     }
 
-    /// Takes over a run at a place: where it stands, its branches, the readings of its guards, what its method knows.
+    /// Takes over a run at a place: where it stands, its branches, the readings of its guards, what its method carries over.
     pub fn load(
         &mut self,
         lane: usize,
         point: &Point<N>,
         negative: [bool; G],
         guards: [SVector<f64, G>; 2],
-        method: &Nystrom<N>,
+        carried: &SVector<f64, N>,
     ) {
         let bit = 1 << lane;
         for (mask, is_negative) in self.negative.iter_mut().zip(negative) {
             let others = V::bits(*mask) & !bit;
             *mask = V::mask(others | if is_negative { bit } else { 0 });
         }
-        V::vectorized(Load { group: self, bit, point, guards: &guards, method });
+        V::vectorized(Load { group: self, bit, point, guards: &guards, carried });
     }
 
-    /// Gives back where a run stands at time `t` (s), and what its method knows.
-    pub fn store(&self, lane: usize, t: f64, method: &mut Nystrom<N>) -> Point<N> {
-        self.method.store(lane, method);
-        let of = |states: &States<V, N>| SVector::from_fn(|i, _| states[i].get(lane));
-        Point { t, x: of(&self.start[0]), rate: of(&self.start[1]) }
+    /// The start of a run's step at time `t` (s).
+    pub fn start(&self, lane: usize, t: f64) -> Point<N> {
+        let [x, rate] = self.start.each_ref().map(|states| at(lane, states));
+        Point { t, x, rate }
+    }
+
+    /// What a run's method carries over from step to step.
+    pub fn carried(&mut self, lane: usize) -> SVector<f64, N> {
+        at(lane, self.method.carried())
+    }
+
+    /// What a run's method carries over is this now.
+    pub fn carry(&mut self, lane: usize, carried: &SVector<f64, N>) {
+        V::vectorized(Carry { group: self, bit: 1 << lane, carried });
+    }
+
+    /// Hands the stages of a run's step over to its own method.
+    pub fn hand_over(&self, lane: usize, method: &mut dyn OfOne<N>) {
+        self.method.hand_over(lane, method);
+    }
+
+    /// The state at the end of a run's step before it was projected, where joints may be rigid.
+    pub fn reached(&self, lane: usize) -> SVector<f64, N> {
+        at(lane, &self.reached)
+    }
+
+    /// The state at the end of a run's step.
+    pub fn end(&self, lane: usize) -> SVector<f64, N> {
+        at(lane, &self.end[0])
+    }
+
+    /// The rate there.
+    pub fn rate(&self, lane: usize) -> SVector<f64, N> {
+        at(lane, &self.end[1])
     }
 
     /// The readings of the guards at the end of a run's step: values, slopes (per s), values in its middle.
     pub fn guards(&self, lane: usize) -> ([SVector<f64, G>; 2], SVector<f64, G>) {
-        let of = |guards: &SVector<Lanes<V>, G>| SVector::from_fn(|k, _| guards[k].get(lane));
-        (self.readings.end.each_ref().map(of), of(&self.readings.middle))
+        (self.readings.end.each_ref().map(|guards| at(lane, guards)), at(lane, &self.readings.middle))
+    }
+
+    /// The readings of the guards at the start of a run's step: values, slopes (per s).
+    pub fn guards_at_start(&self, lane: usize) -> [SVector<f64, G>; 2] {
+        self.readings.start.each_ref().map(|guards| at(lane, guards))
     }
 
     /// Iterates towards the fastest oscillations of the runs at the places of `due`; gives their stiffnesses.
@@ -123,7 +160,7 @@ struct Load<'a, V: Vector, const N: usize, const G: usize> {
     bit: u8,
     point: &'a Point<N>,
     guards: &'a [SVector<f64, G>; 2],
-    method: &'a Nystrom<N>,
+    carried: &'a SVector<f64, N>,
 }
 
 impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Load<'_, V, N, G> {
@@ -131,7 +168,7 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Load<'_, V, N,
 
     #[inline(always)]
     fn call(self) {
-        let Self { group: Group { t, start, readings, method, .. }, bit, point, guards, method: own } = self;
+        let Self { group: Group { t, start, readings, method, .. }, bit, point, guards, carried } = self;
         let mask = V::mask(bit);
         *t = Lanes::select(mask, t.alike(point.t), *t);
         put(&mut start[0], &point.x, mask);
@@ -139,7 +176,22 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Load<'_, V, N,
         for (to, from) in readings.start.iter_mut().zip(guards) {
             put(to, from, mask);
         }
-        put(method.direction(), own.direction(), mask);
+        put(method.carried(), carried, mask);
+    }
+}
+
+struct Carry<'a, V: Vector, const N: usize, const G: usize> {
+    group: &'a mut Group<V, N, G>,
+    bit: u8,
+    carried: &'a SVector<f64, N>,
+}
+
+impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Carry<'_, V, N, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        put(self.group.method.carried(), self.carried, V::mask(self.bit));
     }
 }
 
@@ -187,21 +239,24 @@ where
     #[inline(always)]
     fn call(self) -> Tried<V> {
         let Self { group, system, scale, moved } = self;
-        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], negative, readings, method } = group;
+        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, method } = group;
         let (t, h, t_end) = (*t, *h, *t_end);
         let side = Side { system, negative };
-        let norms = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
+        let [first, second] = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
         let mut fine = finite(end);
-        let before = *end;
+        let has_joints = system.joints().is_some();
+        if has_joints {
+            *reached = *end;
+        }
         system.inlined_project(t_end, negative, end);
-        if system.joints().is_some() {
-            fine &= near(&before, end, scale, CERTAIN * moved);
+        if has_joints {
+            fine &= near(reached, end, scale, CERTAIN * moved);
         }
         side.rate(t_end, end, end_rate);
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
         let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
-        Tried { norms: norms.0.numbers(), fine, clear }
+        Tried { differences: [first.0.numbers(), second.0.numbers()], fine, clear }
     }
 }
 
@@ -238,20 +293,13 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Advance<'_, V,
 
     #[inline(always)]
     fn call(self) {
-        let Group { t, t_end, start, end, readings, .. } = self.group;
+        let Group { t, t_end, start, end, readings, method, .. } = self.group;
         let accepted = V::mask(self.accepted);
         *t = Lanes::select(accepted, *t_end, *t);
         for part in 0..2 {
-            take(&mut start[part], &end[part], accepted);
-            take(&mut readings.start[part], &readings.end[part], accepted);
+            replace(&mut start[part], accepted, &end[part]);
+            replace(&mut readings.start[part], accepted, &readings.end[part]);
         }
-    }
-}
-
-/// Replaces the numbers at the places of `mask`.
-#[inline(always)]
-fn take<V: Vector, const N: usize>(to: &mut States<V, N>, from: &States<V, N>, mask: V::Mask) {
-    for i in 0..N {
-        to.data.0[0][i] = Lanes::select(mask, from.data.0[0][i], to.data.0[0][i]);
+        method.advance(accepted);
     }
 }

@@ -10,14 +10,15 @@ mod group;
 use nalgebra::SVector;
 
 use super::observer::Observer;
-use super::run::{MOVED, Run};
+use super::pace::Judgement;
+use super::run::{Faulty, MOVED, Run};
 use super::settings::{self, Settings, Span};
-use crate::model::reactions::LoopWatch;
-use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::model::capability::SecondOrder;
+use crate::model::scalar::lanes::{Lanes, Vector, exponentials, logarithms};
 use crate::model::system::System;
-use crate::solve::event::Never;
+use crate::solve::event::{Crossing, Found, Never, Shortening};
 use crate::solve::finish::{Ended, Finish};
-use crate::solve::integrator::{AnyMethod, Method, Nystrom, Point, Scale};
+use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, Scale};
 use crate::solve::simulation::Samples;
 use crate::solve::stepper::Stepper;
 use group::{Group, Tried};
@@ -43,9 +44,8 @@ pub(crate) fn fits<Mo, const N: usize, const G: usize>(model: &Mo, settings: &Se
 where
     Mo: System<f64, N, G>,
 {
-    let has_loops = model.joints().and_then(LoopWatch::new).is_some();
     let each_step = settings.samples == Samples::Steps;
-    model.runs_in_lanes() && !has_loops && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
+    model.runs_in_lanes() && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
 }
 
 /// A run at its place.
@@ -54,12 +54,44 @@ struct Lane<'a, Mo, O, const N: usize, const G: usize> {
     values: &'a [f64],
     run: Run<'a, Mo, AnyMethod<N>, Never, N, G>,
     observer: O,
+    /// Its step is being shortened to an event.
+    shortening: Option<Shortening<G>>,
 }
 
 /// What a run does next.
 enum Next {
-    /// The step of this size to this time, s.
-    Step(f64, f64),
+    /// This step.
+    Step(Step),
+    /// Nothing more in company.
+    Fails,
+}
+
+/// A step of one run: its size (s), its end (s), and the error norm by which it is stable.
+#[derive(Clone, Copy)]
+struct Step {
+    h: f64,
+    t: f64,
+    reach: f64,
+}
+
+/// An attempt at it: the norm of its error, and what follows from that.
+#[derive(Clone, Copy)]
+struct Attempted {
+    step: Step,
+    error: f64,
+    judgement: Judgement,
+}
+
+/// What an attempt leads to.
+enum Outcome {
+    /// Its end is the next start.
+    Accepted,
+    /// Another one from the same start.
+    Again,
+    /// The run makes it by itself.
+    Alone,
+    /// The run has gone on by itself.
+    Elsewhere,
     /// Nothing more in company.
     Fails,
 }
@@ -80,11 +112,11 @@ where
             return Err((number, observer));
         }
         run.sample(&mut observer, span.t0);
-        Ok(Self { number, values, run, observer })
+        Ok(Self { number, values, run, observer, shortening: None })
     }
 
-    fn method(&mut self) -> &mut Nystrom<N> {
-        self.run.stepper.method.nystrom().expect("only runs by this method are side by side")
+    fn method(&mut self) -> &mut dyn OfOne<N> {
+        self.run.stepper.method.of_one().expect("only runs by such methods are side by side")
     }
 
     fn is_at_end(&self) -> bool {
@@ -94,42 +126,163 @@ where
     /// The next step, not longer than is stable.
     fn next(&mut self) -> Next {
         let t = self.run.stepper.start.t;
+        if let Some(shortening) = &self.shortening {
+            let h = shortening.size();
+            return Next::Step(Step { h, t: t + h, reach: 0.0 });
+        }
         let next_break = self.run.next_break(t);
         loop {
             if self.run.pace.is_lost(t) || self.run.attempts >= self.run.limit {
                 return Next::Fails;
             }
-            let t_new = self.run.pace.next_end(t, next_break);
-            let h = t_new - t;
+            let end = self.run.pace.next_end(t, next_break);
+            let h = end - t;
             let reach = self.method().reach(h);
             if reach <= 1.0 {
-                return Next::Step(h, t_new);
+                return Next::Step(Step { h, t: end, reach });
             }
-            self.reject(h, reach);
+            self.rejected();
+            self.run.pace.reject(h, reach);
         }
     }
 
-    fn reject(&mut self, h: f64, error: f64) {
+    fn rejected(&mut self) {
         self.run.attempts += 1;
         self.run.stepper.statistics.rejected += 1;
-        self.run.pace.reject(h, error);
     }
 
-    /// Takes over a step of size `h` (s) to `t` (s) with this error.
-    fn accept(&mut self, h: f64, t: f64, error: f64) {
+    /// What an attempt leads to that the group has made; `is_fine` says whether it leads to finite numbers, `is_clear` whether the guards keep to
+    /// their sides.
+    fn attempted<V: Vector>(
+        &mut self,
+        group: &mut Group<V, N, G>,
+        place: usize,
+        attempted: Attempted,
+        [is_fine, is_clear]: [bool; 2],
+    ) -> Outcome {
+        let Attempted { step: Step { h, t, .. }, error, judgement } = attempted;
+        if self.shortening.is_some() {
+            return self.shortened(group, place, attempted.step);
+        }
+        if error > 1.0 && !self.is_around_singular(group, place, t) {
+            self.run.stepper.statistics.rate_evaluations += self.method().rates();
+            self.rejected();
+            if error < f64::INFINITY {
+                self.run.pace.reject_by(h, judgement);
+            } else {
+                self.run.pace.reject(h, error);
+            }
+            return Outcome::Again;
+        }
+        if !(error <= 1.0 && is_fine) {
+            return Outcome::Alone;
+        }
         self.run.attempts += 1;
+        self.run.pace.accept_by(t, h, judgement);
+        self.run.stepper.statistics.rate_evaluations += self.method().rates() + 1;
+        // Of a plain step the group alone keeps what the guards are.
+        let is_quiet = !self.run.sampling.is_due(t)
+            && (is_clear && self.run.watch.is_plain() || {
+                let (end, middle) = group.guards(place);
+                let negative = self.run.stepper.negative;
+                self.run.watch.take_start(group.guards_at_start(place));
+                self.run.watch.pass(negative, end, &middle, h, is_clear)
+            });
+        if !is_quiet {
+            return self.inspected(group, place, attempted.step);
+        }
+        if !self.holds_together(group, place, t) {
+            return Outcome::Fails;
+        }
+        self.run.stepper.statistics.guard_evaluations += if G == 0 { 0 } else { GUARDS };
         self.run.faulty = None;
-        self.run.pace.accept(t, h, error);
         self.run.stepper.statistics.record(h);
         self.run.stepper.start.t = t;
-        self.method().advance();
+        self.run.stepper.method.advance();
+        Outcome::Accepted
+    }
+
+    /// Takes an attempt over that satisfies the tolerances, and looks for events in it.
+    fn inspected<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize, Step { h, t, .. }: Step) -> Outcome {
+        self.take_start(group, place);
+        group.hand_over(place, self.method());
+        let end = Point { t, x: group.end(place), rate: group.rate(place) };
+        let run = &mut self.run;
+        run.stepper.take_over(h, end);
+        let crossing = match run.watch.look(&mut run.stepper) {
+            Ok(None) => None,
+            Ok(Some(Found::AtStart(crossing))) => Some(crossing),
+            Ok(Some(Found::Inside(shortening))) if run.sampling.is_due(t) => {
+                Some(run.watch.shorten(&mut run.stepper, shortening))
+            }
+            Ok(Some(Found::Inside(shortening))) => {
+                self.shortening = Some(shortening);
+                return Outcome::Again;
+            }
+            Err(guard) => {
+                return if run.retreat(Faulty::Guard(guard)).is_ok() { Outcome::Again } else { Outcome::Fails };
+            }
+        };
+        self.concluded(crossing)
+    }
+
+    /// Looks at an attempt at the step that is being shortened.
+    fn shortened<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, Step { h, t, .. }: Step) -> Outcome {
+        let x = group.end(place);
+        self.run.stepper.statistics.rate_evaluations += self.method().rates();
+        let Some(mut shortening) = self.shortening.take() else { return Outcome::Again };
+        let run = &mut self.run;
+        run.stepper.take_over(h, Point::at(t, x));
+        if run.stepper.system.joints().is_some() {
+            let moved = run.stepper.moved(&group.reached(place), &x);
+            run.stepper.settle_further(moved);
+        }
+        while !shortening.take(&run.watch, &mut run.stepper) {
+            if shortening.size() != h {
+                self.shortening = Some(shortening);
+                return Outcome::Again;
+            }
+        }
+        let crossing = run.watch.crossing(&mut run.stepper, shortening);
+        self.concluded(Some(crossing))
+    }
+
+    /// The run takes its step over, and goes on after it.
+    fn concluded(&mut self, crossing: Option<Crossing<G>>) -> Outcome {
+        if self.run.conclude(crossing, &mut self.observer).is_ok() { Outcome::Elsewhere } else { Outcome::Fails }
+    }
+
+    /// Takes over from the group where the run stands.
+    fn take_start<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+        let Point { t, .. } = self.run.stepper.start;
+        self.run.stepper.start = group.start(place, t);
+        self.run.watch.take_start(group.guards_at_start(place));
+        *self.method().carried() = group.carried(place);
+    }
+
+    /// Whether a step to `t` (s) begins or ends in the neighbourhood of a singular pose.
+    fn is_around_singular<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
+        self.run.has_loops() && {
+            self.run.stepper.start = group.start(place, self.run.stepper.start.t);
+            self.run.stepper.end = Point { t, x: group.reached(place), ..self.run.stepper.end };
+            self.run.is_around_singular()
+        }
+    }
+
+    /// Whether joints that close loops say where the mechanism goes at the end of a step to `t` (s).
+    fn holds_together<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
+        !self.run.has_loops() || {
+            self.run.stepper.end = Point { t, x: group.end(place), ..self.run.stepper.end };
+            self.run.check_joints().is_ok()
+        }
     }
 }
 
-/// Makes the `jobs`, whose method is [`Nystrom`]; `lifted` makes a model of parameters side by side. `done` is told the number of
+/// Makes the `jobs`, whose methods are those of `method`; `lifted` makes a model of parameters side by side. `done` is told the number of
 /// each run with its observer, and where it has come to: nothing of one that is to be made by itself.
 pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
     mut jobs: impl Iterator<Item = Job<'a, Mo, O, N>>,
+    method: AnyInLanes<V, N>,
     lifted: impl Fn(&[Lanes<V>]) -> Li,
     span: Span,
     settings: &'a Settings<N>,
@@ -141,7 +294,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
     O: Observer<N, G>,
 {
     let scale = Scale::from(&settings.tolerances);
-    let mut group = Box::new(Group::<V, N, G>::new());
+    let mut group = Box::new(Group::<V, N, G>::new(method));
     let mut lanes: Vec<Option<Lane<'a, Mo, O, N, G>>> = (0..V::LANES).map(|_| None).collect();
     let mut system: Option<Li> = None;
     loop {
@@ -151,6 +304,9 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             while slot.is_none() {
                 let Some(job) = jobs.next() else { break };
                 match Lane::new(job, span, settings) {
+                    Ok(lane) if lane.is_at_end() => {
+                        done(lane.number, lane.observer, Some(lane.run.finish(Ended::AtEnd)))
+                    }
                     Ok(lane) => *slot = Some(lane),
                     Err((number, observer)) => done(number, observer, None),
                 }
@@ -177,7 +333,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             }
             let Some(mut lane) = slot.take() else { continue };
             if !ended {
-                store(&group, place, &mut lane);
+                lane.take_start(&mut group, place);
             }
             let Lane { number, run, observer, .. } = lane;
             done(number, observer, is_at_end.then(|| run.finish(Ended::AtEnd)));
@@ -198,81 +354,82 @@ where
     Li: System<Lanes<V>, N, G>,
     O: Observer<N, G>,
 {
-    let has_second = model.second_order().is_some();
-    let (mut due, mut alone, mut failed) = (0_u8, 0_u8, 0_u8);
-    for (place, lane) in lanes.iter_mut().enumerate().filter_map(|(place, lane)| Some((place, lane.as_mut()?))) {
-        match lane.method().is_due(has_second) {
-            Some(true) => due |= 1 << place,
-            Some(false) => {}
-            None => alone |= 1 << place,
+    let second = model.second_order().map_or(0..0, |second| second.states());
+    let (mut due, mut accepted, mut failed) = (0_u8, 0_u8, 0_u8);
+    for (place, lane) in occupied(lanes) {
+        if second.is_empty() || !lane.method().is_due() {
+            continue;
+        }
+        due |= 1 << place;
+        if lane.method().begins(&second) {
+            group.carry(place, lane.method().carried());
         }
     }
     if due != 0 {
         let stiffnesses = group.follow(model, due);
-        for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| due & 1 << place != 0) {
-            let Some(lane) = lane else { continue };
+        for (place, lane) in occupied(lanes).filter(|(place, _)| due & 1 << place != 0) {
             lane.method().stiffness(stiffnesses.as_ref()[place]);
             lane.run.stepper.statistics.rate_evaluations += 1;
         }
     }
     let mut sizes = V::filled(0.0).numbers();
     let mut ends = sizes;
-    let mut tried = 0_u8;
-    for (place, lane) in lanes.iter_mut().enumerate() {
-        let Some(lane) = lane else { continue };
-        if alone & 1 << place != 0 {
-            continue;
-        }
+    let mut steps = [None; PLACES];
+    for (place, lane) in occupied(lanes) {
         match lane.next() {
-            Next::Step(h, t_new) => {
-                (sizes.as_mut()[place], ends.as_mut()[place]) = (h, t_new);
-                tried |= 1 << place;
+            Next::Step(step) => {
+                (sizes.as_mut()[place], ends.as_mut()[place]) = (step.h, step.t);
+                steps[place] = Some(step);
             }
             Next::Fails => failed |= 1 << place,
         }
     }
-    let mut accepted = 0_u8;
-    if tried != 0 {
-        let Tried { norms, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
-        for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| tried & 1 << place != 0) {
-            let Some(lane) = lane else { continue };
-            let (bit, h, t_new) = (1 << place, sizes.as_ref()[place], ends.as_ref()[place]);
-            let (norm, reach) = (norms.as_ref()[place], lane.method().reach(h));
-            let error = if norm < reach { reach } else { norm };
-            if error > 1.0 {
-                lane.reject(h, error);
-                lane.run.stepper.statistics.rate_evaluations += STAGES;
-                continue;
+    if steps.iter().all(Option::is_none) {
+        return failed;
+    }
+    let Tried { differences, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
+    let mut errors = V::filled(1.5).numbers();
+    for (place, lane) in occupied(lanes) {
+        let Some(Step { h, reach, .. }) = steps[place].filter(|_| lane.shortening.is_none()) else { continue };
+        let norm = lane.method().norm(h, differences.each_ref().map(|of| of.as_ref()[place]));
+        errors.as_mut()[place] = if norm < reach { reach } else { norm };
+    }
+    let logarithms = logarithms::<V>(errors);
+    let mut factors = logarithms;
+    for (place, lane) in occupied(lanes) {
+        let is_accepted = errors.as_ref()[place] <= 1.0;
+        factors.as_mut()[place] = lane.run.pace.exponent(logarithms.as_ref()[place], is_accepted);
+    }
+    let factors = exponentials::<V>(factors);
+    for (place, lane) in occupied(lanes) {
+        let Some(step) = steps[place] else { continue };
+        let [error, logarithm, factor] = [&errors, &logarithms, &factors].map(|of| of.as_ref()[place]);
+        let (bit, attempted) = (1 << place, Attempted { step, error, judgement: Judgement { logarithm, factor } });
+        match lane.attempted(group, place, attempted, [fine, clear].map(|bits| bits & bit != 0)) {
+            Outcome::Accepted => accepted |= bit,
+            Outcome::Again => {}
+            Outcome::Elsewhere => load(group, place, lane),
+            Outcome::Alone => {
+                lane.take_start(group, place);
+                match lane.run.advance(&mut lane.observer) {
+                    Ok(_) => load(group, place, lane),
+                    Err(_) => failed |= bit,
+                }
             }
-            let is_quiet = fine & bit != 0 && !lane.run.sampling.is_due(t_new) && {
-                let (end, middle) = group.guards(place);
-                let negative = lane.run.stepper.negative;
-                lane.run.watch.pass(negative, end, &middle, h, clear & bit != 0)
-            };
-            if is_quiet {
-                lane.run.stepper.statistics.rate_evaluations += STAGES + 1;
-                lane.run.stepper.statistics.guard_evaluations += if G == 0 { 0 } else { GUARDS };
-                lane.accept(h, t_new, error);
-                accepted |= bit;
-            } else {
-                alone |= bit;
-            }
+            Outcome::Fails => failed |= bit,
         }
     }
     group.advance(accepted);
-    for (place, lane) in lanes.iter_mut().enumerate().filter(|(place, _)| alone & 1 << place != 0) {
-        let Some(lane) = lane else { continue };
-        store(group, place, lane);
-        match lane.run.advance(&mut lane.observer) {
-            Ok(_) => load(group, place, lane),
-            Err(_) => failed |= 1 << place,
-        }
-    }
     failed
 }
 
-/// The rates of an attempt, without that at its start.
-const STAGES: u64 = 8;
+/// The runs at their places.
+fn occupied<T>(lanes: &mut [Option<T>]) -> impl Iterator<Item = (usize, &mut T)> {
+    lanes.iter_mut().enumerate().filter_map(|(place, lane)| Some((place, lane.as_mut()?)))
+}
+
+/// The most places of a vector.
+const PLACES: usize = u8::BITS as usize;
 /// The evaluations of the guards in a step that has no event.
 const GUARDS: u64 = 3;
 
@@ -287,19 +444,5 @@ fn load<V, Mo, O, const N: usize, const G: usize>(
     O: Observer<N, G>,
 {
     let (start, negative, guards) = (lane.run.stepper.start, lane.run.stepper.negative, lane.run.watch.at_start());
-    group.load(place, &start, negative, guards, lane.method());
-}
-
-/// Gives a run back what the group knows of it.
-fn store<V, Mo, O, const N: usize, const G: usize>(
-    group: &Group<V, N, G>,
-    place: usize,
-    lane: &mut Lane<'_, Mo, O, N, G>,
-) where
-    V: Vector,
-    Mo: System<f64, N, G>,
-    O: Observer<N, G>,
-{
-    let t = lane.run.stepper.start.t;
-    lane.run.stepper.start = group.store(place, t, lane.method());
+    group.load(place, &start, negative, guards, lane.method().carried());
 }

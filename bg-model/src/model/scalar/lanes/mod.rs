@@ -3,9 +3,15 @@
 //! In: nothing. Out: the operations of generated code on four numbers in AVX2 and on eight in AVX-512. Each operation is rounded
 //! alone and functions are those of `f64`, one number after the other: so in each place there are the bits of `f64`.
 
+mod functions;
+
 use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use nalgebra::SVector;
+
+use pulp::NullaryFnOnce;
 
 use super::slopes::Slopes;
 use super::{Both, Scalar};
@@ -30,6 +36,8 @@ pub trait Vector: Slopes {
     /// The square roots.
     #[must_use]
     fn sqrt(self) -> Self;
+    /// The number at the only place of `mask`.
+    fn only(self, mask: Self::Mask) -> f64;
 }
 
 /// Numbers side by side.
@@ -61,6 +69,85 @@ impl<V: Vector> Lanes<V> {
         let (mut numbers, others) = (self.0.numbers(), other.0.numbers());
         numbers.as_mut().iter_mut().zip(others.as_ref()).for_each(|(number, other)| *number = of(*number, *other));
         Self(V::new(numbers))
+    }
+}
+
+/// Replaces numbers at the places of `mask`.
+#[inline(always)]
+pub fn replace<V: Vector, const N: usize>(to: &mut SVector<Lanes<V>, N>, mask: V::Mask, from: &SVector<Lanes<V>, N>) {
+    for i in 0..N {
+        to.data.0[0][i] = Lanes::select(mask, from.data.0[0][i], to.data.0[0][i]);
+    }
+}
+
+/// The numbers of all states at a place.
+pub fn at<V: Vector, const N: usize>(lane: usize, of: &SVector<Lanes<V>, N>) -> SVector<f64, N> {
+    V::vectorized(At { mask: V::mask(1 << lane), of })
+}
+
+struct At<'a, V: Vector, const N: usize> {
+    mask: V::Mask,
+    of: &'a SVector<Lanes<V>, N>,
+}
+
+impl<V: Vector, const N: usize> NullaryFnOnce for At<'_, V, N> {
+    type Output = SVector<f64, N>;
+
+    #[inline(always)]
+    fn call(self) -> SVector<f64, N> {
+        let mut numbers = [0.0; N];
+        for (number, of) in numbers.iter_mut().zip(&self.of.data.0[0]) {
+            *number = of.0.only(self.mask);
+        }
+        SVector::from(numbers)
+    }
+}
+
+/// The natural logarithms of numbers, those of `libm` to the bit.
+pub fn logarithms<V: Vector>(of: V::Numbers) -> V::Numbers {
+    V::vectorized(Function::<V, _> { of, function: Logarithm })
+}
+
+/// Their exponentials, those of `libm` to the bit.
+pub fn exponentials<V: Vector>(of: V::Numbers) -> V::Numbers {
+    V::vectorized(Function::<V, _> { of, function: Exponential })
+}
+
+/// A function of numbers side by side.
+trait OfAll {
+    fn replace(self, numbers: &mut [f64]);
+}
+
+struct Logarithm;
+
+impl OfAll for Logarithm {
+    #[inline(always)]
+    fn replace(self, numbers: &mut [f64]) {
+        functions::ln(numbers);
+    }
+}
+
+struct Exponential;
+
+impl OfAll for Exponential {
+    #[inline(always)]
+    fn replace(self, numbers: &mut [f64]) {
+        functions::exp(numbers);
+    }
+}
+
+struct Function<V: Vector, F> {
+    of: V::Numbers,
+    function: F,
+}
+
+impl<V: Vector, F: OfAll> NullaryFnOnce for Function<V, F> {
+    type Output = V::Numbers;
+
+    #[inline(always)]
+    fn call(mut self) -> V::Numbers {
+        self.function.replace(self.of.as_mut());
+        self.of
     }
 }
 
@@ -163,10 +250,10 @@ impl<V: Vector> Scalar for Lanes<V> {
         self.map_both(x, Scalar::atan2)
     }
     fn exp(self) -> Self {
-        self.map(Scalar::exp)
+        Self(V::new(exponentials::<V>(self.0.numbers())))
     }
     fn ln(self) -> Self {
-        self.map(Scalar::ln)
+        Self(V::new(logarithms::<V>(self.0.numbers())))
     }
     fn tanh(self) -> Self {
         self.map(Scalar::tanh)
@@ -326,6 +413,10 @@ mod machines {
         fn sqrt(self) -> Self {
             Self { all: self.machine.avx._mm256_sqrt_pd(self.all), ..self }
         }
+        fn only(self, mask: Mask4) -> f64 {
+            let numbers = self.numbers();
+            numbers[(Self::bits(mask).trailing_zeros() % 4) as usize]
+        }
     }
 
     vector! {
@@ -360,6 +451,10 @@ mod machines {
         }
         fn sqrt(self) -> Self {
             Self { all: self.machine.avx512f._mm512_sqrt_pd(self.all), ..self }
+        }
+        fn only(self, mask: Mask8) -> f64 {
+            let [first, ..]: [f64; 8] = pulp::cast(self.machine.avx512f._mm512_maskz_compress_pd(mask.0, self.all));
+            first
         }
     }
 }
@@ -406,6 +501,9 @@ mod tests {
             }
             for bits in [0, 0b101, 0b1010] {
                 assert_eq!(V::bits(V::mask(bits)), bits);
+            }
+            for lane in 0..V::LANES {
+                assert!(same(at(lane, &SVector::from([b, a]))[1], a.get(lane)));
             }
         }
         let (x, y) = (Lanes::<V>::each(|lane| 0.3 + 0.1 * lane as f64), Lanes::each(|lane| 0.9 - 0.1 * lane as f64));

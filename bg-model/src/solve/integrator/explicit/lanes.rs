@@ -1,0 +1,82 @@
+//! Steps by an explicit tableau of several runs side by side.
+//!
+//! In: as [`Stages`]. Out: the steps that each run makes by itself, to the bit. Not for tableaus with a late estimate.
+
+use nalgebra::SVector;
+
+use super::stages::Stages;
+use super::{Explicit, Tableau, norm};
+use crate::model::scalar::lanes::{Lanes, Vector, replace};
+use crate::solve::integrator::Scale;
+use crate::solve::integrator::carry::Carry;
+use crate::solve::integrator::lanes::OfOne;
+use crate::solve::integrator::steps::{Begin, Rates};
+
+/// The method of tableau `T` for runs side by side.
+#[derive(Debug)]
+pub(crate) struct ExplicitInLanes<T, V, const N: usize> {
+    stages: Stages<T, Lanes<V>, N>,
+    carry: Carry<Lanes<V>, N>,
+}
+
+impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
+    /// Its work space empty.
+    pub fn new() -> Self {
+        const { assert!(T::LATE.is_empty()) };
+        Self { stages: Stages::new(), carry: Carry::new() }
+    }
+
+    /// What rounding has kept from the states at the starts of the steps.
+    pub fn carried(&mut self) -> &mut SVector<Lanes<V>, N> {
+        &mut self.carry.start
+    }
+
+    /// What it has kept at their ends.
+    pub fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
+        &self.carry.end
+    }
+
+    /// The rates of a stage.
+    pub fn stage(&self, stage: usize) -> &SVector<Lanes<V>, N> {
+        &self.stages.k[stage]
+    }
+
+    /// Tries a step at each place; gives the largest of the differences to the embedded methods.
+    #[inline(always)]
+    pub fn attempt(
+        &mut self,
+        rates: &impl Rates<Lanes<V>, N>,
+        begin: &Begin<'_, Lanes<V>, N>,
+        scale: &Scale<N>,
+        end: &mut SVector<Lanes<V>, N>,
+    ) -> [Lanes<V>; 2] {
+        self.stages.step(rates, begin, scale, &mut self.carry, end, &mut ())
+    }
+
+    /// The attempts at the places of `accepted` were.
+    #[inline(always)]
+    pub fn advance(&mut self, accepted: V::Mask) {
+        if T::IS_COMPENSATED {
+            replace(&mut self.carry.start, accepted, &self.carry.end);
+        }
+    }
+}
+
+impl<T: Tableau, const N: usize> OfOne<N> for Explicit<T, N> {
+    fn carried(&mut self) -> &mut SVector<f64, N> {
+        &mut self.carry.start
+    }
+
+    fn keep(&mut self, carried: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>) {
+        self.carry.end = carried;
+        self.stages.k[..T::END].iter_mut().enumerate().for_each(|(index, k)| *k = stage(index));
+    }
+
+    fn rates(&self) -> u64 {
+        (T::END - 1) as u64
+    }
+
+    fn norm(&self, h: f64, differences: [f64; 2]) -> f64 {
+        norm::<T>(h, differences)
+    }
+}
