@@ -90,10 +90,12 @@ pub(super) fn largest<const N: usize>(of: &[f64; N]) -> f64 {
     // Several maxima side by side, for none to wait for another; of all orders the result is the same.
     const LANES: usize = 8;
     let larger = |largest: f64, value: f64| if value > largest { value } else { largest };
+    let (groups, rest) = of.as_chunks::<LANES>();
     let mut lanes = [0.0; LANES];
-    for (i, &value) in of.iter().enumerate() {
-        lanes[i % LANES] = larger(lanes[i % LANES], value);
+    for group in groups {
+        lanes = core::array::from_fn(|lane| larger(lanes[lane], group[lane]));
     }
+    lanes.iter_mut().zip(rest).for_each(|(largest, &value)| *largest = larger(*largest, value));
     lanes.into_iter().fold(0.0, larger)
 }
 

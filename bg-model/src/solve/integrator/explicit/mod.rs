@@ -92,9 +92,8 @@ pub(super) trait Complete<const N: usize> {
     /// Completes the state `x` of stage `stage`, at the part `c` of the step.
     fn complete(&mut self, stage: usize, c: f64, x: &mut SVector<f64, N>);
 
-    /// Corrects the magnitudes of the errors in parts of what is allowed, `errors`. `error` gives the error of a state, `allowed`
-    /// what is allowed of it.
-    fn correct(&mut self, errors: &mut [f64; N], error: impl Fn(usize) -> f64, allowed: impl Fn(usize) -> f64);
+    /// Corrects `errors`, the magnitudes of `differences` in parts of what is allowed.
+    fn correct(&mut self, errors: &mut [f64; N], differences: &SVector<f64, N>, allowed: &[f64; N]);
 }
 
 /// Nothing.
@@ -103,7 +102,7 @@ impl<const N: usize> Complete<N> for () {
     fn complete(&mut self, _stage: usize, _c: f64, _x: &mut SVector<f64, N>) {}
 
     #[inline(always)]
-    fn correct(&mut self, _errors: &mut [f64; N], _error: impl Fn(usize) -> f64, _allowed: impl Fn(usize) -> f64) {}
+    fn correct(&mut self, _errors: &mut [f64; N], _differences: &SVector<f64, N>, _allowed: &[f64; N]) {}
 }
 
 /// The most stages of a method, and the most coefficients of its dense output.
@@ -225,27 +224,32 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
         end: &mut SVector<f64, N>,
         completed: &mut impl Complete<N>,
     ) -> f64 {
-        let (mut difference, mut first, mut second) = ([0.0; N], [0.0; N], [0.0; N]);
+        let (mut differences, mut allowed) = (SVector::zeros(), [0.0; N]);
+        let (mut first, mut second) = ([0.0; N], [0.0; N]);
         for i in 0..N {
             let from = start.x.data.0[0][i];
             let slope = combine(T::B, &self.k, i);
             let change = h * slope;
             let to = if T::IS_COMPENSATED { self.carry.add(i, from, change) } else { from + change };
-            let allowed = scale.allowed(i, from, to);
+            let difference = combine(T::ERROR, &self.k, i);
             end.data.0[0][i] = to;
-            difference[i] = combine(T::ERROR, &self.k, i);
-            first[i] = (difference[i] / allowed).abs();
+            allowed[i] = scale.allowed(i, from, to);
+            differences.data.0[0][i] = difference;
+            first[i] = (difference / allowed[i]).abs();
             if !T::SECOND.is_empty() {
-                second[i] = ((slope - combine(T::SECOND, &self.k, i)) / allowed).abs();
+                second[i] = ((slope - combine(T::SECOND, &self.k, i)) / allowed[i]).abs();
             }
         }
-        let allowed = |i: usize| scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i]);
-        completed.correct(&mut first, |i| difference[i], allowed);
+        completed.correct(&mut first, &differences, &allowed);
         let first = largest(&first);
         if !T::START.is_empty() {
-            difference = core::array::from_fn(|i| combine(T::START, &self.k, i));
-            let mut start: [f64; N] = core::array::from_fn(|i| (difference[i] / allowed(i)).abs());
-            completed.correct(&mut start, |i| difference[i], allowed);
+            let mut start = [0.0; N];
+            for i in 0..N {
+                let difference = combine(T::START, &self.k, i);
+                differences.data.0[0][i] = difference;
+                start[i] = (difference / allowed[i]).abs();
+            }
+            completed.correct(&mut start, &differences, &allowed);
             let start = AT_START * largest(&start);
             return h.abs() * if start > first { start } else { first };
         }

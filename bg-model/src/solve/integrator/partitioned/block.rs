@@ -9,7 +9,8 @@ use nalgebra::SVector;
 
 use super::inverse::{Inverse, LANES, Lanes};
 use super::pattern::Pattern;
-use super::tableau::{KennedyCarpenter, STAGES};
+use super::stage::Stages;
+use super::tableau::KennedyCarpenter;
 use crate::solve::integrator::explicit::{Complete, Tableau};
 use crate::solve::integrator::linear::Jacobian;
 use crate::solve::integrator::{Flow, Point, Scale};
@@ -40,13 +41,7 @@ pub(super) struct Block<const N: usize> {
     start: (f64, SVector<f64, N>),
     before: Option<(f64, SVector<f64, N>)>,
     h: f64,
-    /// Of each damped state its value at the start of the step, how much the line changes in it, how far a stage is off the
-    /// line, what the inverse makes of that, and stage by stage the implicit part.
-    from: Vec<Lanes>,
-    change: Vec<Lanes>,
-    off: Vec<Lanes>,
-    solved: Vec<Lanes>,
-    parts: Vec<Lanes>,
+    stages: Stages,
 }
 
 impl<const N: usize> Block<N> {
@@ -65,11 +60,7 @@ impl<const N: usize> Block<N> {
             start: (0.0, SVector::zeros()),
             before: None,
             h: 0.0,
-            from: Vec::new(),
-            change: Vec::new(),
-            off: Vec::new(),
-            solved: Vec::new(),
-            parts: Vec::new(),
+            stages: Stages::default(),
         }
     }
 
@@ -97,12 +88,10 @@ impl<const N: usize> Block<N> {
         if self.chosen == 0.0 || h > GROWTH * self.chosen {
             self.choose(flow);
         }
-        let (from, change) = (self.from.as_flattened_mut(), self.change.as_flattened_mut());
-        for (from, &state) in from.iter_mut().zip(&self.states) {
-            *from = start.x[state];
-        }
+        let Stages { from, change, .. } = &mut self.stages;
+        gather(&self.states, &start.x, from);
         let before = self.before.as_ref().map(|(t, x)| (h / (start.t - t), x));
-        for (change, &state) in change.iter_mut().zip(&self.states) {
+        for (change, &state) in change.as_flattened_mut().iter_mut().zip(&self.states) {
             *change = before.map_or(0.0, |(ratio, x)| ratio * (start.x[state] - x[state]));
         }
         true
@@ -117,17 +106,9 @@ impl<const N: usize> Block<N> {
             let (n, groups) = (self.states.len(), self.states.len().div_ceil(LANES));
             self.pattern.sources(&self.states, LANES * groups, &mut self.sources);
             self.inverse.resize(n);
-            for (lanes, length) in [
-                (&mut self.matrix, n * groups),
-                (&mut self.from, groups),
-                (&mut self.change, groups),
-                (&mut self.off, groups),
-                (&mut self.solved, groups),
-                (&mut self.parts, groups * STAGES),
-            ] {
-                lanes.clear();
-                lanes.resize(length, [0.0; LANES]);
-            }
+            self.stages.resize(groups);
+            self.matrix.clear();
+            self.matrix.resize(n * groups, Lanes::default());
         }
         let matrix = self.matrix.as_flattened_mut();
         self.sources.iter().for_each(|&(entry, place)| matrix[place] = entries[entry]);
@@ -143,38 +124,29 @@ impl<const N: usize> Block<N> {
     }
 }
 
+/// Writes these states of `x` side by side.
+#[inline(always)]
+fn gather<const N: usize>(states: &[usize], x: &SVector<f64, N>, to: &mut [Lanes]) {
+    to.as_flattened_mut().iter_mut().zip(states).for_each(|(to, &state)| *to = x.data.0[0][state]);
+}
+
 /// Solves for the implicit part of a stage.
 impl<const N: usize> Complete<N> for Block<N> {
     #[inline(always)]
     fn complete(&mut self, stage: usize, c: f64, x: &mut SVector<f64, N>) {
-        let Self { states, inverse, from, change, off, solved, parts, h, .. } = self;
-        let (groups, reciprocal) = (from.len(), 1.0 / (*h * KennedyCarpenter::GAMMA));
-        let (before, behind) = parts.split_at_mut(stage * groups);
-        for (group, states) in states.chunks(LANES).enumerate() {
-            let off = &mut off[group];
-            off.iter_mut().zip(states).for_each(|(off, &state)| *off = x[state]);
-            let mut more = [0.0; LANES];
-            for &(earlier, weight) in KennedyCarpenter::MORE[stage] {
-                let part = &before[earlier * groups + group];
-                more = core::array::from_fn(|lane| more[lane] + weight * part[lane]);
-            }
-            (0..LANES).for_each(|lane| off[lane] += *h * more[lane] - (from[group][lane] + c * change[group][lane]));
-        }
-        inverse.times(off, solved);
-        for (group, states) in states.chunks(LANES).enumerate() {
-            let solved = solved[group];
-            behind[group] = core::array::from_fn(|lane| (solved[lane] - off[group][lane]) * reciprocal);
-            let line: Lanes = core::array::from_fn(|lane| from[group][lane] + c * change[group][lane]);
-            states.iter().enumerate().for_each(|(lane, &state)| x[state] = line[lane] + solved[lane]);
-        }
+        let Self { states, stages, inverse, h, .. } = self;
+        gather(states, x, &mut stages.at);
+        stages.complete(inverse, stage, c, *h);
+        states.iter().zip(stages.at.as_flattened()).for_each(|(&state, at)| x.data.0[0][state] = *at);
     }
 
     /// What an error of a damped state leaves of itself: its implicit part takes away most of it.
     #[inline(always)]
-    fn correct(&mut self, errors: &mut [f64; N], error: impl Fn(usize) -> f64, allowed: impl Fn(usize) -> f64) {
-        self.off.as_flattened_mut().iter_mut().zip(&self.states).for_each(|(off, &state)| *off = error(state));
-        self.inverse.times(&self.off, &mut self.solved);
-        let left = self.solved.as_flattened().iter().zip(&self.states);
-        left.for_each(|(left, &state)| errors[state] = (left / allowed(state)).abs());
+    fn correct(&mut self, errors: &mut [f64; N], differences: &SVector<f64, N>, allowed: &[f64; N]) {
+        let Self { states, stages, inverse, .. } = self;
+        gather(states, differences, &mut stages.at);
+        stages.reduce(inverse);
+        let left = states.iter().zip(stages.at.as_flattened());
+        left.for_each(|(&state, left)| errors[state] = (left / allowed[state]).abs());
     }
 }

@@ -13,13 +13,40 @@ use crate::solve::integrator::Arch;
 pub(super) const LANES: usize = 4;
 pub(super) type Lanes = [f64; LANES];
 
+/// Takes the common numbers of groups as constants, so that loops over the groups of a column are written out.
+macro_rules! for_groups {
+    ($count:expr, $groups:ident => $then:expr) => {
+        match $count {
+            1 => {
+                let $groups = 1;
+                $then
+            }
+            2 => {
+                let $groups = 2;
+                $then
+            }
+            3 => {
+                let $groups = 3;
+                $then
+            }
+            4 => {
+                let $groups = 4;
+                $then
+            }
+            $groups => $then,
+        }
+    };
+}
+
+pub(super) use for_groups;
+
 /// The inverse, column by column; behind each column are zeros up to whole groups.
 #[derive(Clone, Debug)]
 pub(super) struct Inverse {
-    arch: Arch,
+    pub arch: Arch,
     /// The groups of a column.
     groups: usize,
-    columns: Vec<Lanes>,
+    pub columns: Vec<Lanes>,
     exchanges: Vec<usize>,
 }
 
@@ -40,10 +67,7 @@ impl Inverse {
     /// Inverts I - `factor` B, with `matrix` for B as this one is stored. Gives whether it is regular.
     pub fn invert(&mut self, matrix: &[Lanes], factor: f64) -> bool {
         let Self { arch, groups, columns, exchanges } = self;
-        for (to, from) in columns.iter_mut().zip(matrix) {
-            *to = from.map(|entry| -factor * entry);
-        }
-        arch.dispatch(Invert { groups: *groups, columns, exchanges })
+        arch.dispatch(Invert { matrix, factor, groups: *groups, columns, exchanges })
     }
 
     /// Writes the product with `vector`.
@@ -53,6 +77,8 @@ impl Inverse {
 }
 
 struct Invert<'a> {
+    matrix: &'a [Lanes],
+    factor: f64,
     groups: usize,
     columns: &'a mut [Lanes],
     exchanges: &'a mut [usize],
@@ -63,16 +89,11 @@ impl NullaryFnOnce for Invert<'_> {
 
     #[inline(always)]
     fn call(self) -> bool {
-        let Self { groups, columns, exchanges } = self;
-        // With the common sizes as constants, loops over the groups of a column are written out.
-        match groups {
-            0 => true,
-            1 => invert(1, columns, exchanges),
-            2 => invert(2, columns, exchanges),
-            3 => invert(3, columns, exchanges),
-            4 => invert(4, columns, exchanges),
-            _ => invert(groups, columns, exchanges),
+        let Self { matrix, factor, groups, columns, exchanges } = self;
+        for (to, from) in columns.iter_mut().zip(matrix) {
+            *to = from.map(|entry| -factor * entry);
         }
+        exchanges.is_empty() || for_groups!(groups, groups => invert(groups, columns, exchanges))
     }
 }
 
@@ -128,19 +149,25 @@ impl NullaryFnOnce for Times<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { columns, vector, mut product } = self;
-        let mut first = 0;
-        while !product.is_empty() {
-            let taken = product.len().min(4);
-            let (these, behind) = product.split_at_mut(taken);
-            match taken {
-                1 => rows::<1>(columns, vector, first, these),
-                2 => rows::<2>(columns, vector, first, these),
-                3 => rows::<3>(columns, vector, first, these),
-                _ => rows::<4>(columns, vector, first, these),
-            }
-            (product, first) = (behind, first + taken);
+        let Self { columns, vector, product: out } = self;
+        for_groups!(vector.len(), groups => product(columns, &vector[..groups], &mut out[..groups]));
+    }
+}
+
+/// Writes the product of a matrix, stored as an inverse is, with `vector`.
+#[inline(always)]
+pub(super) fn product(columns: &[Lanes], vector: &[Lanes], mut product: &mut [Lanes]) {
+    let mut first = 0;
+    while !product.is_empty() {
+        let taken = product.len().min(4);
+        let (these, behind) = product.split_at_mut(taken);
+        match taken {
+            1 => rows::<1>(columns, vector, first, these),
+            2 => rows::<2>(columns, vector, first, these),
+            3 => rows::<3>(columns, vector, first, these),
+            _ => rows::<4>(columns, vector, first, these),
         }
+        (product, first) = (behind, first + taken);
     }
 }
 
