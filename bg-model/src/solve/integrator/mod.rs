@@ -77,6 +77,17 @@ pub trait Flow<const N: usize> {
         differences(|t, x: &SVector<f64, N>, dx: &mut SVector<f64, N>| self.rate(t, x, dx), t, x, entries, slope);
     }
 
+    /// Where [`Flow::damping`] can differ from zero.
+    fn damping_sparsity(&self) -> Sparsity {
+        self.sparsity()
+    }
+
+    /// Writes at least the entries of df/dx among states that are not of second order, in the order of [`Flow::damping_sparsity`],
+    /// into `entries`; by default all.
+    fn damping(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64]) {
+        self.jacobian(t, x, entries, &mut SVector::zeros());
+    }
+
     /// The elimination made for the sparsity.
     fn elimination(&self) -> Option<&impl Elimination<f64, N>> {
         None::<&Absent>

@@ -86,6 +86,7 @@ impl<const N: usize> Scale<N> {
 /// The largest of some numbers that are not negative; a NaN is passed over, it shows in the state itself.
 ///
 /// The maximum norm, and not a mean, so that states which repeat others or stay constant do not change the steps.
+#[inline(always)]
 pub(super) fn largest<const N: usize>(of: &[f64; N]) -> f64 {
     // Several maxima side by side, for none to wait for another; of all orders the result is the same.
     const LANES: usize = 8;

@@ -2,13 +2,24 @@
 //!
 //! In: the program of the derivatives, the planned elimination. Out: `Linearised` and `Elimination` for the model.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::super::elimination;
 use super::capabilities::accessor;
 use super::routines::Parts;
 use super::{Emission, Shape};
+use crate::program::Routine;
+use crate::system::Entry;
+
+/// Rows and columns of entries.
+fn places<'a>(entries: impl Iterator<Item = &'a Entry>) -> TokenStream {
+    let places = entries.map(|entry| {
+        let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
+        quote!((#row, #column))
+    });
+    quote!(#(#places),*)
+}
 
 impl Emission<'_> {
     pub(super) fn linear(&self) -> TokenStream {
@@ -16,29 +27,30 @@ impl Emission<'_> {
         quote! { #linearised #elimination }
     }
 
-    /// The Jacobian with its sparsity; before it the parts of a long one.
+    /// The Jacobian with its sparsity, and what dampers do; before them the parts of long ones.
     fn linearised(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let places = self.model.jacobian.entries.iter().map(|entry| {
-            let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
-            quote!((#row, #column))
-        });
-        let count = self.model.jacobian.entries.len();
-        let Parts { functions, body, results } = self.derivatives();
+        let jacobian = &self.model.jacobian;
+        let (places, count) = (places(jacobian.entries.iter()), jacobian.entries.len());
+        let [routine] = &self.model.programs.jacobian.routines;
+        let Parts { functions, body, results } = self.derivatives(routine, &format_ident!("slope_constants"));
         let (entries, slopes) = results.split_at(count);
-        let parts = (!functions.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #functions }));
-        let unknowns = self.model.jacobian.unknowns.len();
+        let unknowns = jacobian.unknowns.len();
         let sparsity = if unknowns == 0 {
             quote!(::bg_model::linear::Sparsity::Places(&ENTRIES))
         } else {
             quote!(::bg_model::linear::Sparsity::Bordered { places: &ENTRIES, unknowns: #unknowns })
         };
         let elimination = accessor("elimination", &quote!(Elimination<S, #n>), &quote!(Some(self)));
+        let (damping_parts, damping) = self.damping().unzip();
+        let functions = functions.into_iter().chain(damping_parts.into_iter().flatten());
+        let functions = functions.collect::<TokenStream>();
+        let parts = (!functions.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #functions }));
         quote! {
             #parts
             impl<S: Scalar> ::bg_model::capability::Linearised<S, #n, #g> for Model<S> {
                 fn sparsity(&self) -> ::bg_model::linear::Sparsity {
-                    static ENTRIES: [(u16, u16); #count] = [#(#places),*];
+                    static ENTRIES: [(u16, u16); #count] = [#places];
                     #sparsity
                 }
                 #[inline(never)]
@@ -50,19 +62,41 @@ impl Emission<'_> {
                     *entries = [#(#entries),*];
                     slope.data.0 = [[#(#slopes),*]];
                 }
+                #damping
                 #elimination
             }
         }
     }
 
-    /// The derivatives of the rates by states, then by time; in parts where there are many.
-    fn derivatives(&self) -> Parts {
-        let [routine] = &self.model.programs.jacobian.routines;
-        let constants = format_ident!("slope_constants");
+    /// The derivatives among states that are not of second order, where they have a routine of their own: the functions of its parts,
+    /// and what the Jacobian's capability has of it.
+    fn damping(&self) -> Option<(TokenStream, TokenStream)> {
+        let Shape { n, g, .. } = &self.shape;
+        let [routine] = &self.model.programs.damping.as_ref()?.routines;
+        let Parts { functions, body, results } = self.derivatives(routine, &format_ident!("damping_constants"));
+        let places = places(self.model.jacobian.among_first_order(&self.model.second_order.states));
+        let count = results.len();
+        let code = quote! {
+            fn damping_sparsity(&self) -> ::bg_model::linear::Sparsity {
+                static ENTRIES: [(u16, u16); #count] = [#places];
+                ::bg_model::linear::Sparsity::Places(&ENTRIES)
+            }
+            #[inline(never)]
+            fn damping(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]) {
+                let entries: &mut [S; #count] = entries.try_into().expect("one entry for each place");
+                #body
+                *entries = [#(#results),*];
+            }
+        };
+        Some((functions, code))
+    }
+
+    /// Derivatives of the rates, in parts where there are many.
+    fn derivatives(&self, routine: &Routine, constants: &Ident) -> Parts {
         if routine.is_long() {
-            return self.in_parts(routine, &constants);
+            return self.in_parts(routine, constants);
         }
-        let (body, results) = self.running(routine, &constants);
+        let (body, results) = self.running(routine, constants);
         Parts { functions: TokenStream::new(), body, results }
     }
 

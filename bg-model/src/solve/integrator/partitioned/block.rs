@@ -4,10 +4,12 @@
 
 use alloc::vec::Vec;
 
+use crate::model::capability::SecondOrder;
+use crate::model::linear::Sparsity;
 use crate::solve::integrator::Arch;
 use nalgebra::SVector;
 
-use super::inverse::{Inverse, LANES, Lanes};
+use super::inverse::{Inverse, LANES, Lanes, groups};
 use super::pattern::Pattern;
 use super::stage::Stages;
 use super::tableau::KennedyCarpenter;
@@ -19,6 +21,28 @@ use crate::solve::integrator::{Flow, Point, Scale};
 const RENEWAL: u32 = 8;
 /// A step longer than this many times the one that the damped states were chosen for chooses them anew.
 const GROWTH: f64 = 2.0;
+
+/// A flow whose Jacobian has what is asked of it here: the entries among states that are not of second order.
+struct Damping<'a, F>(&'a F);
+
+impl<F: Flow<N>, const N: usize> Flow<N> for Damping<'_, F> {
+    fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+        self.0.rate(t, x, dx);
+    }
+
+    fn sparsity(&self) -> Sparsity {
+        self.0.damping_sparsity()
+    }
+
+    fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
+        self.0.damping(t, x, entries);
+        slope.fill(0.0);
+    }
+
+    fn second_order(&self) -> Option<impl SecondOrder<f64, N, 0>> {
+        self.0.second_order()
+    }
+}
 
 /// The damped states of a step, with the work space of their stages.
 #[derive(Clone, Debug)]
@@ -79,7 +103,7 @@ impl<const N: usize> Block<N> {
     pub fn prepare(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         (self.start, self.h) = ((start.t, start.x), h);
         if self.age.is_none_or(|age| age >= RENEWAL) {
-            self.jacobian.evaluate(flow, start, h, scale);
+            self.jacobian.evaluate(&Damping(flow), start, h, scale);
             if !self.jacobian.is_finite() {
                 return false;
             }
@@ -100,10 +124,10 @@ impl<const N: usize> Block<N> {
     /// Chooses the damped states, and takes their block out of the Jacobian.
     fn choose(&mut self, flow: &impl Flow<N>) {
         (self.chosen, self.inverted) = (self.h, 0.0);
-        let entries = self.pattern.entries(flow, &self.jacobian);
+        let entries = self.pattern.entries(&Damping(flow), &self.jacobian);
         let has_changed = self.pattern.choose(&entries, self.h, N, &mut self.states);
         if has_changed {
-            let (n, groups) = (self.states.len(), self.states.len().div_ceil(LANES));
+            let (n, groups) = (self.states.len(), groups(self.states.len()));
             self.pattern.sources(&self.states, LANES * groups, &mut self.sources);
             self.inverse.resize(n);
             self.stages.resize(groups);

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use pulp::NullaryFnOnce;
 
-use super::inverse::{Inverse, Lanes, for_groups, product};
+use super::inverse::{Inverse, Lanes, in_blocks, product};
 use super::tableau::{KennedyCarpenter, STAGES};
 use crate::solve::integrator::explicit::{Row, Tableau};
 
@@ -69,12 +69,13 @@ impl NullaryFnOnce for Complete<'_> {
 
     #[inline(always)]
     fn call(self) {
-        for_groups!(self.at.len(), groups => complete(groups, self));
+        in_blocks!(self.at.len(), G, blocks => complete::<G>(blocks, self));
     }
 }
 
 #[inline(always)]
-fn complete(groups: usize, of: Complete<'_>) {
+fn complete<const G: usize>(blocks: usize, of: Complete<'_>) {
+    let groups = blocks * G;
     let Complete { columns, more, c, h, from, change, before, at, off, part } = of;
     let (from, change) = (&from[..groups], &change[..groups]);
     let (at, off, part) = (&mut at[..groups], &mut off[..groups], &mut part[..groups]);
@@ -87,7 +88,7 @@ fn complete(groups: usize, of: Complete<'_>) {
         }
         off[group] = core::array::from_fn(|lane| at[group][lane] + (h * sum[lane] - line[lane]));
     }
-    product(columns, off, at);
+    product::<G>(blocks, columns, off, at);
     let reciprocal = 1.0 / (h * KennedyCarpenter::GAMMA);
     for group in 0..groups {
         let (solved, line) = (at[group], line(group));
