@@ -113,7 +113,19 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let required = [("required", false), ("required_at_start", true)]
         .map(|(name, is_of_start)| required(equations, name, is_of_start));
     let shown = tape(&equations.pool, &equations.solution, &equations.shown.quantities());
-    Programs { running, reversed, jacobian, damping, second_order, holding, impacts, starting, required, not_finite, shown }
+    Programs {
+        running,
+        reversed,
+        jacobian,
+        damping,
+        second_order,
+        holding,
+        impacts,
+        starting,
+        required,
+        not_finite,
+        shown,
+    }
 }
 
 /// The operations of the rate function as it would be generated from the equations.

@@ -29,7 +29,8 @@ impl Stages {
     /// Makes room for so many groups of states.
     pub fn resize(&mut self, groups: usize) {
         let Self { from, change, at, off, parts } = self;
-        for (lanes, length) in [(from, groups), (change, groups), (at, groups), (off, groups), (parts, groups * STAGES)] {
+        for (lanes, length) in [(from, groups), (change, groups), (at, groups), (off, groups), (parts, groups * STAGES)]
+        {
             lanes.clear();
             lanes.resize(length, Lanes::default());
         }
