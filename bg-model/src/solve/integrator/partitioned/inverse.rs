@@ -153,12 +153,14 @@ fn invert<const G: usize>(
             *pivot = entries.map(|group| group.map(|entry| entry * reciprocal));
         }
         for column in 0..n {
-            let factor = core::mem::take(entry(blocks, columns, column, k));
+            let factor = *entry(blocks, columns, column, k);
             for (entries, pivot) in columns[column * blocks..][..blocks].iter_mut().zip(&*pivot) {
                 for (entries, pivot) in entries.iter_mut().zip(pivot) {
                     *entries = core::array::from_fn(|lane| entries[lane] - factor * pivot[lane]);
                 }
             }
+            // A zero there before would have to wait for its way through memory.
+            *entry(blocks, columns, column, k) = 0.0 - factor * reciprocal;
         }
         columns[k * blocks..][..blocks].copy_from_slice(pivot);
     }

@@ -81,13 +81,17 @@ fn complete<const G: usize>(blocks: usize, of: Complete<'_>) {
     let (from, change) = (&from[..groups], &change[..groups]);
     let (at, off, part) = (&mut at[..groups], &mut off[..groups], &mut part[..groups]);
     let line = |group: usize| -> Lanes { core::array::from_fn(|lane| from[group][lane] + c * change[group][lane]) };
-    for group in 0..groups {
-        let (mut sum, line) = (Lanes::default(), line(group));
+    for block in 0..blocks {
+        let mut sums = [Lanes::default(); G];
         for &(earlier, weight) in more {
-            let part = &before[earlier * groups + group];
-            sum = core::array::from_fn(|lane| sum[lane] + weight * part[lane]);
+            for (sum, part) in sums.iter_mut().zip(&before[earlier * groups + block * G..][..G]) {
+                *sum = core::array::from_fn(|lane| sum[lane] + weight * part[lane]);
+            }
         }
-        off[group] = core::array::from_fn(|lane| at[group][lane] + (h * sum[lane] - line[lane]));
+        for (sum, group) in sums.into_iter().zip(block * G..) {
+            let line = line(group);
+            off[group] = core::array::from_fn(|lane| at[group][lane] + (h * sum[lane] - line[lane]));
+        }
     }
     product::<G>(blocks, columns, off, at);
     let reciprocal = 1.0 / (h * KennedyCarpenter::GAMMA);
