@@ -51,14 +51,21 @@ pub(super) struct Block<const N: usize> {
     pattern: Pattern,
     /// The accepted steps since the Jacobian was made; none where there is none.
     age: Option<u32>,
-    /// The step that the states were chosen for, and the one that the inverse belongs to, s; zero where there is none.
+    /// When it was made, s; how long after the one before, where that says how it changes.
+    time: f64,
+    interval: Option<f64>,
+    /// Its entries, and those of the one before.
+    entries: Vec<f64>,
+    earlier: Vec<f64>,
+    /// The step that the states were chosen for, s; zero where they are to be chosen.
     chosen: f64,
-    inverted: f64,
     states: Vec<usize>,
     /// The entries of the Jacobian that are in B, each with its place there.
     sources: Vec<(usize, usize)>,
-    /// B, column by column; behind each column, as behind other numbers of the states, are zeros up to a multiple of [`LANES`].
+    /// B, column by column; behind each column, as behind other numbers of the states, are zeros up to whole groups.
     matrix: Vec<Lanes>,
+    /// How it changes, per s.
+    slope: Vec<Lanes>,
     /// Of I - h gamma B.
     inverse: Inverse,
     /// The start of the step and of the one before; none where what was known no longer holds.
@@ -75,11 +82,15 @@ impl<const N: usize> Block<N> {
             jacobian: Jacobian::new(),
             pattern: Pattern::default(),
             age: None,
+            time: 0.0,
+            interval: None,
+            entries: Vec::new(),
+            earlier: Vec::new(),
             chosen: 0.0,
-            inverted: 0.0,
             states: Vec::new(),
             sources: Vec::new(),
             matrix: Vec::new(),
+            slope: Vec::new(),
             inverse: Inverse::new(arch),
             start: (0.0, SVector::zeros()),
             before: None,
@@ -107,10 +118,13 @@ impl<const N: usize> Block<N> {
             if !self.jacobian.is_finite() {
                 return false;
             }
-            (self.age, self.chosen) = (Some(0), 0.0);
+            core::mem::swap(&mut self.entries, &mut self.earlier);
+            self.pattern.entries(&Damping(flow), &self.jacobian, &mut self.entries);
+            self.interval = self.age.map(|_| start.t - self.time);
+            (self.time, self.age, self.chosen) = (start.t, Some(0), 0.0);
         }
         if self.chosen == 0.0 || h > GROWTH * self.chosen {
-            self.choose(flow);
+            self.choose();
         }
         let Stages { from, change, .. } = &mut self.stages;
         gather(&self.states, &start.x, from);
@@ -122,29 +136,33 @@ impl<const N: usize> Block<N> {
     }
 
     /// Chooses the damped states, and takes their block out of the Jacobian.
-    fn choose(&mut self, flow: &impl Flow<N>) {
-        (self.chosen, self.inverted) = (self.h, 0.0);
-        let entries = self.pattern.entries(&Damping(flow), &self.jacobian);
-        let has_changed = self.pattern.choose(&entries, self.h, N, &mut self.states);
+    fn choose(&mut self) {
+        self.chosen = self.h;
+        let has_changed = self.pattern.choose(&self.entries, self.h, N, &mut self.states);
         if has_changed {
             let (n, groups) = (self.states.len(), groups(self.states.len()));
             self.pattern.sources(&self.states, LANES * groups, &mut self.sources);
             self.inverse.resize(n);
             self.stages.resize(groups);
-            self.matrix.clear();
-            self.matrix.resize(n * groups, Lanes::default());
+            for matrix in [&mut self.matrix, &mut self.slope] {
+                matrix.clear();
+                matrix.resize(n * groups, Lanes::default());
+            }
         }
-        let matrix = self.matrix.as_flattened_mut();
-        self.sources.iter().for_each(|&(entry, place)| matrix[place] = entries[entry]);
+        let Self { entries, earlier, sources, .. } = self;
+        let (matrix, slope) = (self.matrix.as_flattened_mut(), self.slope.as_flattened_mut());
+        for &(entry, place) in &*sources {
+            matrix[place] = entries[entry];
+            slope[place] = self.interval.map_or(0.0, |interval| (entries[entry] - earlier[entry]) / interval);
+        }
     }
 
     /// Makes the inverse for the step. Gives whether there is one.
     pub fn invert(&mut self) -> bool {
-        if self.inverted != self.h {
-            let is_regular = self.inverse.invert(&self.matrix, self.h * KennedyCarpenter::GAMMA);
-            self.inverted = if is_regular { self.h } else { 0.0 };
-        }
-        self.inverted == self.h
+        let Self { inverse, matrix, slope, h, .. } = self;
+        // In the middle of the step, but no further from the last Jacobian than that is from the one before.
+        let ahead = (self.start.0 + 0.5 * *h - self.time).min(self.interval.unwrap_or(0.0));
+        inverse.invert(matrix, slope, ahead, *h * KennedyCarpenter::GAMMA)
     }
 }
 

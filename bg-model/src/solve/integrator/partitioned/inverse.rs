@@ -81,10 +81,10 @@ impl Inverse {
         self.pivot.resize(self.groups, [0.0; LANES]);
     }
 
-    /// Inverts I - `factor` B, with `matrix` for B as this one is stored. Gives whether it is regular.
-    pub fn invert(&mut self, matrix: &[Lanes], factor: f64) -> bool {
+    /// Inverts I - `factor` B, with `matrix` + `ahead` `slope` for B, which are stored as this one is. Gives whether it is regular.
+    pub fn invert(&mut self, matrix: &[Lanes], slope: &[Lanes], ahead: f64, factor: f64) -> bool {
         let Self { arch, groups, columns, exchanges, pivot } = self;
-        arch.dispatch(Invert { matrix, factor, groups: *groups, columns, exchanges, pivot })
+        arch.dispatch(Invert { matrix, slope, ahead, factor, groups: *groups, columns, exchanges, pivot })
     }
 
     /// Writes the product with `vector`.
@@ -95,6 +95,8 @@ impl Inverse {
 
 struct Invert<'a> {
     matrix: &'a [Lanes],
+    slope: &'a [Lanes],
+    ahead: f64,
     factor: f64,
     groups: usize,
     columns: &'a mut [Lanes],
@@ -107,9 +109,9 @@ impl NullaryFnOnce for Invert<'_> {
 
     #[inline(always)]
     fn call(self) -> bool {
-        let Self { matrix, factor, groups, columns, exchanges, pivot } = self;
-        for (to, from) in columns.iter_mut().zip(matrix) {
-            *to = from.map(|entry| -factor * entry);
+        let Self { matrix, slope, ahead, factor, groups, columns, exchanges, pivot } = self;
+        for ((to, matrix), slope) in columns.iter_mut().zip(matrix).zip(slope) {
+            *to = core::array::from_fn(|lane| -factor * (matrix[lane] + ahead * slope[lane]));
         }
         exchanges.is_empty()
             || in_blocks!(groups, G, blocks => {
@@ -229,13 +231,15 @@ mod tests {
         for n in 1..=21 {
             let matrix =
                 stored(n, |row, column| ((7 * row + 5 * column) % 11) as f64 - 4.0 + (row * column) as f64 * 0.3);
+            let slope = stored(n, |row, column| 0.1 * (row as f64 - column as f64));
             let whole = stored(n, |row, column| {
-                f64::from(row == column) - 0.7 * matrix.as_flattened()[column * groups(n) * LANES + row]
+                let [matrix, slope] = [&matrix, &slope].map(|of| of.as_flattened()[column * groups(n) * LANES + row]);
+                f64::from(row == column) - 0.7 * (matrix + 0.3 * slope)
             });
             let products = [Arch::Scalar, Arch::new()].map(|arch| {
                 let mut inverse = Inverse::new(arch);
                 inverse.resize(n);
-                assert!(inverse.invert(&matrix, 0.7), "{n}");
+                assert!(inverse.invert(&matrix, &slope, 0.3, 0.7), "{n}");
                 let mut products = vec![[0.0; LANES]; whole.len()];
                 let groups = groups(n);
                 for (column, product) in whole.chunks_exact(groups).zip(products.chunks_exact_mut(groups)) {
@@ -254,6 +258,7 @@ mod tests {
     fn a_singular_matrix_is_refused() {
         let mut inverse = Inverse::new(Arch::new());
         inverse.resize(3);
-        assert!(!inverse.invert(&stored(3, |row, column| f64::from(row == column)), 1.0));
+        let one = stored(3, |row, column| f64::from(row == column));
+        assert!(!inverse.invert(&one, &one, 0.0, 1.0));
     }
 }

@@ -2,7 +2,6 @@
 //!
 //! In: a Jacobian and a step. Out: the states, and where their block of the Jacobian is.
 
-use alloc::borrow::Cow;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -39,15 +38,16 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    /// The entries of a Jacobian whose places are known from here on; with unknowns beside the states those of the states alone.
-    pub fn entries<'a, const N: usize>(&mut self, flow: &impl Flow<N>, jacobian: &'a Jacobian<N>) -> Cow<'a, [f64]> {
-        let sparsity = jacobian.sparsity(flow);
-        let (sparsity, entries) = match sparsity {
-            Sparsity::Bordered { .. } => {
-                (Sparsity::Full, Cow::Owned(sparsity.matrix(N, &jacobian.entries).as_slice().to_vec()))
-            }
-            _ => (sparsity, Cow::Borrowed(jacobian.entries.as_slice())),
-        };
+    /// Writes the entries of a Jacobian whose places are known from here on; with unknowns beside the states those of the states alone.
+    pub fn entries<const N: usize>(&mut self, flow: &impl Flow<N>, jacobian: &Jacobian<N>, entries: &mut Vec<f64>) {
+        let mut sparsity = jacobian.sparsity(flow);
+        entries.clear();
+        if let Sparsity::Bordered { .. } = sparsity {
+            entries.extend(sparsity.matrix(N, &jacobian.entries).as_slice());
+            sparsity = Sparsity::Full;
+        } else {
+            entries.extend(&jacobian.entries);
+        }
         if self.places.is_empty() {
             self.places = (0..entries.len()).map(|k| sparsity.place(k, N)).collect();
             let is_of_pose = |state: &usize| flow.second_order().is_some_and(|states| states.states().contains(state));
@@ -58,7 +58,6 @@ impl Pattern {
             let mirrored = upper.filter_map(|(k, &(row, column))| Some((k, numbers[column * N + row]?, (row, column))));
             self.mirrored = mirrored.collect();
         }
-        entries
     }
 
     /// Chooses among `n` states those that are damped stiffly in a step of size `h` (s). Gives whether they are others than before.
