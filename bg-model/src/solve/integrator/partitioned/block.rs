@@ -169,7 +169,23 @@ impl<const N: usize> Block<N> {
 /// Writes these states of `x` side by side.
 #[inline(always)]
 fn gather<const N: usize>(states: &[usize], x: &SVector<f64, N>, to: &mut [Lanes]) {
-    to.as_flattened_mut().iter_mut().zip(states).for_each(|(to, &state)| *to = x.data.0[0][state]);
+    let x = &x.data.0[0];
+    let (whole, rest) = states.as_chunks::<LANES>();
+    to.iter_mut().zip(whole).for_each(|(to, group)| *to = group.map(|state| x[state]));
+    let behind = to[whole.len()..].as_flattened_mut();
+    behind.iter_mut().zip(rest).for_each(|(to, &state)| *to = x[state]);
+}
+
+/// Writes what stands side by side into these states of `x`.
+#[inline(always)]
+fn scatter<const N: usize>(states: &[usize], from: &[Lanes], x: &mut SVector<f64, N>) {
+    let x = &mut x.data.0[0];
+    let (whole, rest) = states.as_chunks::<LANES>();
+    for (from, group) in from.iter().zip(whole) {
+        (0..LANES).for_each(|lane| x[group[lane]] = from[lane]);
+    }
+    let behind = from[whole.len()..].as_flattened();
+    behind.iter().zip(rest).for_each(|(from, &state)| x[state] = *from);
 }
 
 /// Solves for the implicit part of a stage.
@@ -179,7 +195,7 @@ impl<const N: usize> Complete<N> for Block<N> {
         let Self { states, stages, inverse, h, .. } = self;
         gather(states, x, &mut stages.at);
         stages.complete(inverse, stage, c, *h);
-        states.iter().zip(stages.at.as_flattened()).for_each(|(&state, at)| x.data.0[0][state] = *at);
+        scatter(states, &stages.at, x);
     }
 
     /// What an error of a damped state leaves of itself: its implicit part takes away most of it.
