@@ -17,8 +17,9 @@ use crate::solve::integrator::explicit::{Complete, Tableau};
 use crate::solve::integrator::linear::Jacobian;
 use crate::solve::integrator::{Flow, Point, Scale};
 
-/// The accepted steps after which the Jacobian is renewed.
+/// The accepted steps after which the Jacobian is renewed, and the Jacobians after which the damped states are chosen anew.
 const RENEWAL: u32 = 8;
+const CHOICE: u32 = 4;
 /// A step longer than this many times the one that the damped states were chosen for chooses them anew.
 const GROWTH: f64 = 2.0;
 
@@ -57,8 +58,8 @@ pub(super) struct Block<const N: usize> {
     /// Its entries, and those of the one before.
     entries: Vec<f64>,
     earlier: Vec<f64>,
-    /// The step that the states were chosen for, s; zero where they are to be chosen.
-    chosen: f64,
+    /// The step that the states were chosen for, s, and the Jacobians since then; none where they are to be chosen.
+    chosen: Option<(f64, u32)>,
     states: Vec<usize>,
     /// The entries of the Jacobian that are in B, each with its place there.
     sources: Vec<(usize, usize)>,
@@ -86,7 +87,7 @@ impl<const N: usize> Block<N> {
             interval: None,
             entries: Vec::new(),
             earlier: Vec::new(),
-            chosen: 0.0,
+            chosen: None,
             states: Vec::new(),
             sources: Vec::new(),
             matrix: Vec::new(),
@@ -107,7 +108,7 @@ impl<const N: usize> Block<N> {
 
     /// What was known of the flow no longer holds.
     pub fn restart(&mut self) {
-        (self.before, self.age) = (None, None);
+        (self.before, self.age, self.chosen) = (None, None, None);
     }
 
     /// Makes ready for a step of size `h` (s) from `start`. Gives whether the Jacobian is one of numbers.
@@ -121,9 +122,11 @@ impl<const N: usize> Block<N> {
             core::mem::swap(&mut self.entries, &mut self.earlier);
             self.pattern.entries(&Damping(flow), &self.jacobian, &mut self.entries);
             self.interval = self.age.map(|_| start.t - self.time);
-            (self.time, self.age, self.chosen) = (start.t, Some(0), 0.0);
+            (self.time, self.age) = (start.t, Some(0));
+            self.chosen = self.chosen.map(|(step, age)| (step, age + 1)).filter(|(_, age)| *age < CHOICE);
+            self.take();
         }
-        if self.chosen == 0.0 || h > GROWTH * self.chosen {
+        if self.chosen.is_none_or(|(step, _)| h > GROWTH * step) {
             self.choose();
         }
         let Stages { from, change, .. } = &mut self.stages;
@@ -135,9 +138,9 @@ impl<const N: usize> Block<N> {
         true
     }
 
-    /// Chooses the damped states, and takes their block out of the Jacobian.
+    /// Chooses the damped states.
     fn choose(&mut self) {
-        self.chosen = self.h;
+        self.chosen = Some((self.h, 0));
         let has_changed = self.pattern.choose(&self.entries, self.h, N, &mut self.states);
         if has_changed {
             let (n, groups) = (self.states.len(), groups(self.states.len()));
@@ -148,7 +151,12 @@ impl<const N: usize> Block<N> {
                 matrix.clear();
                 matrix.resize(n * groups, Lanes::default());
             }
+            self.take();
         }
+    }
+
+    /// Takes the block of the damped states out of the Jacobian.
+    fn take(&mut self) {
         let Self { entries, earlier, sources, .. } = self;
         let (matrix, slope) = (self.matrix.as_flattened_mut(), self.slope.as_flattened_mut());
         for &(entry, place) in &*sources {

@@ -37,6 +37,7 @@ impl Stages {
     }
 
     /// Adds their implicit part to the values at a stage of a step of size `h` (s), at the part `c` of it.
+    #[inline(always)]
     pub fn complete(&mut self, inverse: &Inverse, stage: usize, c: f64, h: f64) {
         let Self { from, change, at, off, parts } = self;
         let (before, behind) = parts.split_at_mut(stage * at.len());
