@@ -147,7 +147,7 @@ fn invert<const G: usize>(
         if best != k {
             (0..blocks).for_each(|block| columns.swap(k * blocks + block, best * blocks + block));
         }
-        let reciprocal = 1.0 / core::mem::replace(entry(blocks, columns, k, k), 1.0);
+        let reciprocal = -1.0 / core::mem::replace(entry(blocks, columns, k, k), 1.0);
         if !reciprocal.is_finite() {
             return false;
         }
@@ -158,13 +158,15 @@ fn invert<const G: usize>(
             let factor = *entry(blocks, columns, column, k);
             for (entries, pivot) in columns[column * blocks..][..blocks].iter_mut().zip(&*pivot) {
                 for (entries, pivot) in entries.iter_mut().zip(pivot) {
-                    *entries = core::array::from_fn(|lane| entries[lane] - factor * pivot[lane]);
+                    *entries = core::array::from_fn(|lane| entries[lane] + factor * pivot[lane]);
                 }
             }
             // A zero there before would have to wait for its way through memory.
-            *entry(blocks, columns, column, k) = 0.0 - factor * reciprocal;
+            *entry(blocks, columns, column, k) = factor * reciprocal;
         }
-        columns[k * blocks..][..blocks].copy_from_slice(pivot);
+        for (entries, pivot) in columns[k * blocks..][..blocks].iter_mut().zip(&*pivot) {
+            *entries = pivot.map(|group| group.map(|entry| -entry));
+        }
     }
     for (k, &other) in exchanges.iter().enumerate().rev().filter(|(k, other)| *k != **other) {
         for column in 0..n {
