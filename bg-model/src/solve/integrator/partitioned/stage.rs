@@ -9,7 +9,7 @@ use pulp::NullaryFnOnce;
 
 use super::inverse::{Inverse, Lanes, in_blocks, product};
 use super::tableau::{KennedyCarpenter, STAGES};
-use crate::solve::integrator::explicit::{Row, Tableau};
+use crate::solve::integrator::explicit::Tableau;
 
 /// The damped states of a step, in groups; behind them are zeros up to whole groups.
 #[derive(Clone, Debug, Default)]
@@ -39,11 +39,7 @@ impl Stages {
     /// Adds their implicit part to the values at a stage of a step of size `h` (s), at the part `c` of it.
     #[inline(always)]
     pub fn complete(&mut self, inverse: &Inverse, stage: usize, c: f64, h: f64) {
-        let Self { from, change, at, off, parts } = self;
-        let (before, behind) = parts.split_at_mut(stage * at.len());
-        let more = KennedyCarpenter::MORE[stage];
-        let part = &mut behind[..at.len()];
-        inverse.arch.dispatch(Complete { columns: &inverse.columns, more, c, h, from, change, before, at, off, part });
+        inverse.arch.dispatch(Complete { stages: self, inverse, stage, c, h });
     }
 
     /// Replaces an error by what the implicit part leaves of it.
@@ -54,16 +50,11 @@ impl Stages {
 }
 
 struct Complete<'a> {
-    columns: &'a [Lanes],
-    more: Row,
+    stages: &'a mut Stages,
+    inverse: &'a Inverse,
+    stage: usize,
     c: f64,
     h: f64,
-    from: &'a [Lanes],
-    change: &'a [Lanes],
-    before: &'a [Lanes],
-    at: &'a mut [Lanes],
-    off: &'a mut [Lanes],
-    part: &'a mut [Lanes],
 }
 
 impl NullaryFnOnce for Complete<'_> {
@@ -71,16 +62,18 @@ impl NullaryFnOnce for Complete<'_> {
 
     #[inline(always)]
     fn call(self) {
-        in_blocks!(self.at.len(), G, blocks => complete::<G>(blocks, self));
+        in_blocks!(self.stages.at.len(), G, blocks => complete::<G>(blocks, self));
     }
 }
 
 #[inline(always)]
 fn complete<const G: usize>(blocks: usize, of: Complete<'_>) {
+    let Complete { stages: Stages { from, change, at, off, parts }, inverse: Inverse { columns, .. }, stage, c, h } =
+        of;
     let groups = blocks * G;
-    let Complete { columns, more, c, h, from, change, before, at, off, part } = of;
-    let (from, change) = (&from[..groups], &change[..groups]);
-    let (at, off, part) = (&mut at[..groups], &mut off[..groups], &mut part[..groups]);
+    let (before, behind) = parts.split_at_mut(stage * groups);
+    let (from, change, more) = (&from[..groups], &change[..groups], KennedyCarpenter::MORE[stage]);
+    let (at, off, part) = (&mut at[..groups], &mut off[..groups], &mut behind[..groups]);
     let line = |group: usize| -> Lanes { core::array::from_fn(|lane| from[group][lane] + c * change[group][lane]) };
     for block in 0..blocks {
         let mut sums = [Lanes::default(); G];
