@@ -11,6 +11,6 @@ pub mod second_order;
 mod value;
 
 pub use equations::StateEquations;
-pub use jacobian::{Entry, Jacobian};
+pub use jacobian::Jacobian;
 pub use second_order::SecondOrder;
 pub use value::Value;

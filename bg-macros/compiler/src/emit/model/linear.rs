@@ -10,12 +10,11 @@ use super::capabilities::accessor;
 use super::routines::Parts;
 use super::{Emission, Shape};
 use crate::program::Routine;
-use crate::system::Entry;
 
-/// Rows and columns of entries.
-fn places<'a>(entries: impl Iterator<Item = &'a Entry>) -> TokenStream {
-    let places = entries.map(|entry| {
-        let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
+/// Rows and columns.
+fn listed(places: impl IntoIterator<Item = (usize, usize)>) -> TokenStream {
+    let places = places.into_iter().map(|(row, column)| {
+        let (row, column) = (Literal::usize_unsuffixed(row), Literal::usize_unsuffixed(column));
         quote!((#row, #column))
     });
     quote!(#(#places),*)
@@ -31,7 +30,7 @@ impl Emission<'_> {
     fn linearised(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
         let jacobian = &self.model.jacobian;
-        let (places, count) = (places(jacobian.entries.iter()), jacobian.entries.len());
+        let (places, count) = (listed(jacobian.places()), jacobian.entries.len());
         let [routine] = &self.model.programs.jacobian.routines;
         let Parts { functions, body, results } = self.derivatives(routine, &format_ident!("slope_constants"));
         let (entries, slopes) = results.split_at(count);
@@ -74,7 +73,8 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let [routine] = &self.model.programs.damping.as_ref()?.routines;
         let Parts { functions, body, results } = self.derivatives(routine, &format_ident!("damping_constants"));
-        let places = places(self.model.jacobian.among_first_order(&self.model.second_order.states));
+        let entries = self.model.jacobian.among_first_order(&self.model.second_order.states);
+        let places = listed(entries.map(|entry| (entry.row, entry.column)));
         let count = results.len();
         let code = quote! {
             fn damping_sparsity(&self) -> ::bg_model::linear::Sparsity {
