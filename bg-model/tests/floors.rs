@@ -22,7 +22,7 @@ const FLOORS: [&[&str]; 15] = [
     ],
     &["model::capability"],
     &["model::system"],
-    &["model::reactions", "model::mechanism"],
+    &["model::reactions", "model::mechanism", "model::vectorised"],
     &["solve::statistics"],
     &["solve::integrator", "solve::finish"],
     &["solve::stepper", "solve::failure", "solve::fixed_step"],

@@ -47,6 +47,23 @@ where
     (entries, matrix, slope)
 }
 
+/// The entries of df/dx that say what dampers do, as a full matrix.
+fn damping<Mo, const N: usize, const G: usize>(
+    model: &Mo,
+    t: f64,
+    x: &SVector<f64, N>,
+    negative: &[bool; G],
+) -> DMatrix<f64>
+where
+    Mo: System<f64, N, G>,
+{
+    let model = model.linearised().expect("a generated model knows its Jacobian");
+    let sparsity = model.damping_sparsity();
+    let mut entries = vec![f64::NAN; sparsity.len(N)];
+    model.damping(t, x, negative, &mut entries);
+    sparsity.matrix(N, &entries)
+}
+
 /// The derivatives of the rate by dual numbers: df/dx with df/dt as one more column.
 fn differentiated<B, const N: usize, const G: usize>(
     twin: &B,
@@ -83,7 +100,11 @@ where
     model.rate(t, x, negative, &mut rate);
     model.always_inlined_rate(t, x, negative, &mut inlined);
     assert_eq!(rate, inlined, "the rate without pairs at {x:?}");
+    model.paired_rate(t, x, negative, &mut inlined);
+    assert_eq!(rate, inlined, "the rate in pairs at {x:?}");
     let (_, found, slope) = jacobian(model, t, x, negative);
+    let damping = damping(model, t, x, negative);
+    let second_order = model.second_order().map_or(0..0, |second| second.states());
     let expected = differentiated(twin, t, x, negative);
     let opposite = differentiated(twin, t, x, &negative.map(|is_negative| !is_negative));
     let mut largest: f64 = 0.0;
@@ -96,6 +117,11 @@ where
             let error = (found - value).abs() / if scale > 0.0 { scale } else { 1.0 };
             assert!(error <= DERIVATIVE, "entry {row}, {column}: {found:e}, not {value:e}, at {x:?}");
             largest = largest.max(error);
+            if column < N && !second_order.contains(&row) && !second_order.contains(&column) {
+                let found = damping[(row, column)];
+                let error = (found - value).abs() / if scale > 0.0 { scale } else { 1.0 };
+                assert!(error <= DERIVATIVE, "damping {row}, {column}: {found:e}, not {value:e}, at {x:?}");
+            }
         }
     }
     largest

@@ -30,6 +30,18 @@ pub trait Linearised<S: Scalar, const N: usize, const G: usize> {
         slope: &mut SVector<S, N>,
     );
 
+    /// Where [`Linearised::damping`] can differ from zero. By default as [`Linearised::sparsity`].
+    fn damping_sparsity(&self) -> Sparsity {
+        self.sparsity()
+    }
+
+    /// Writes the entries of df/dx that say what dampers do, in the order of [`Linearised::damping_sparsity`], into `entries`: at
+    /// least those among states that are not of second order. By default all of them.
+    fn damping(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]) {
+        let mut slope = *x;
+        self.jacobian(t, x, negative, entries, &mut slope);
+    }
+
     /// An elimination made for the sparsity; none by default.
     #[inline]
     fn elimination(&self) -> Option<&impl Elimination<S, N>> {

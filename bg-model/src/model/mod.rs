@@ -17,3 +17,4 @@ pub mod requirement;
 pub mod scalar;
 pub mod series;
 pub mod system;
+pub(crate) mod vectorised;

@@ -40,6 +40,13 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         self.inlined_rate(t, x, negative, dx);
     }
 
+    /// As [`System::rate`], inlined whatever its length, in pairs of operations where that pays: for the one function in which a rate
+    /// that is too long for steps has the machine's vectors. By default as [`System::always_inlined_rate`].
+    #[inline(always)]
+    fn paired_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
+        self.always_inlined_rate(t, x, negative, dx);
+    }
+
     /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
     fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G], _guards: &mut SVector<S, G>) {}
 

@@ -23,6 +23,9 @@ pub struct Programs {
     pub reversed: Option<Reversed>,
     /// The derivatives of the rates, with a constant table of their own.
     pub jacobian: Program<1>,
+    /// The derivatives among states that are not of second order, with a constant table of their own, where all of them are many:
+    /// what dampers do.
+    pub damping: Option<Program<1>>,
     /// What there is for states of second order, with a constant table of its own.
     pub second_order: Option<SecondOrderPrograms>,
     /// What joints hold, with a constant table of its own.
@@ -96,7 +99,12 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let running = running(equations);
     let reversed = reversed(&running, equations.states.len());
     let derivatives = jacobian.roots();
+    let damping: Vec<Id> = jacobian.among_first_order(&second_order.states).map(|entry| entry.value).collect();
+    let mut pool = jacobian.pool.clone();
+    let is_bordered = !jacobian.unknowns.is_empty();
     let jacobian = schedule(&mut jacobian.pool, [Request { name: "jacobian", roots: &derivatives }]);
+    let has_damping = jacobian.routines[0].is_long() && !is_bordered && damping.len() < derivatives.len();
+    let damping = has_damping.then(|| alone(&mut pool, "damping", &damping));
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
     let (holding, impacts) = (holding(equations), impacts(equations));
     let starting = starting(equations);
@@ -105,7 +113,19 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
     let required = [("required", false), ("required_at_start", true)]
         .map(|(name, is_of_start)| required(equations, name, is_of_start));
     let shown = tape(&equations.pool, &equations.solution, &equations.shown.quantities());
-    Programs { running, reversed, jacobian, second_order, holding, impacts, starting, required, not_finite, shown }
+    Programs {
+        running,
+        reversed,
+        jacobian,
+        damping,
+        second_order,
+        holding,
+        impacts,
+        starting,
+        required,
+        not_finite,
+        shown,
+    }
 }
 
 /// The operations of the rate function as it would be generated from the equations.
@@ -241,7 +261,8 @@ impl Programs {
         let running = self.running.routines().into_iter();
         let second_order = self.second_order.iter().flat_map(SecondOrderPrograms::routines);
         let holding = self.holding.iter().chain(&self.impacts).flat_map(|program| &program.routines);
-        let routines = running.chain(&self.jacobian.routines).chain(second_order).chain(holding);
+        let jacobian = [&self.jacobian].into_iter().chain(&self.damping).flat_map(|program| &program.routines);
+        let routines = running.chain(jacobian).chain(second_order).chain(holding);
         routines.map(|routine| (routine.name.as_str(), routine.counts))
     }
 }

@@ -11,6 +11,7 @@
 //! theorem from the factors that solve for the reactions: where others hold already what sticks, r_l has no inverse.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::expr::{Id, Pool, Symbol, derivative};
 use crate::system::equations::StateEquations;
@@ -47,6 +48,12 @@ impl Jacobian {
     #[must_use]
     pub fn places(&self) -> Vec<(usize, usize)> {
         self.entries.iter().map(|entry| (entry.row, entry.column)).collect()
+    }
+
+    /// The entries whose rates and states are none of `second_order`.
+    pub fn among_first_order(&self, second_order: &Range<usize>) -> impl Iterator<Item = &Entry> {
+        let is_among = |entry: &&Entry| !second_order.contains(&entry.row) && !second_order.contains(&entry.column);
+        self.entries.iter().filter(is_among)
     }
 
     /// All derivatives: the entries, then the slopes.

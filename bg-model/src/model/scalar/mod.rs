@@ -14,12 +14,15 @@ mod dual;
 pub(crate) mod gradient;
 #[cfg(feature = "std")]
 pub(crate) mod lanes;
+pub(crate) mod machine;
 mod pair;
 mod single;
 pub(crate) mod slopes;
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use pulp::NullaryFnOnce;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
@@ -96,6 +99,13 @@ pub trait Scalar:
     }
     /// `self` to the real power `exponent`.
     fn powf(self, exponent: Self) -> Self;
+
+    /// Calls `of`, in the machine's vectors where long calculations with these numbers gain by it.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn in_vectors<F: NullaryFnOnce>(of: F) -> F::Output {
+        of.call()
+    }
 }
 
 impl Scalar for f64 {
@@ -161,6 +171,10 @@ impl Scalar for f64 {
     #[inline]
     fn powf(self, exponent: Self) -> Self {
         libm::pow(self, exponent)
+    }
+    #[inline(always)]
+    fn in_vectors<F: NullaryFnOnce>(of: F) -> F::Output {
+        machine::Arch::new().dispatch(of)
     }
 }
 

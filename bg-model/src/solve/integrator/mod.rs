@@ -31,6 +31,7 @@ mod tolerances;
 mod vectors;
 
 use nalgebra::SVector;
+use pulp::NullaryFnOnce;
 
 use crate::model::capability::{Absent, Elimination, SecondOrder, Series};
 use crate::model::linear::{Sparsity, differences};
@@ -80,6 +81,17 @@ pub trait Flow<const N: usize> {
     /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`; by default by differences.
     fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
         differences(|t, x: &SVector<f64, N>, dx: &mut SVector<f64, N>| self.rate(t, x, dx), t, x, entries, slope);
+    }
+
+    /// Where [`Flow::damping`] can differ from zero.
+    fn damping_sparsity(&self) -> Sparsity {
+        self.sparsity()
+    }
+
+    /// Writes at least the entries of df/dx among states that are not of second order, in the order of [`Flow::damping_sparsity`],
+    /// into `entries`; by default all.
+    fn damping(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64]) {
+        self.jacobian(t, x, entries, &mut SVector::zeros());
     }
 
     /// The elimination made for the sparsity.
@@ -233,6 +245,20 @@ pub(crate) fn first_not_finite<const N: usize>(x: &SVector<f64, N>) -> Option<(u
 
 /// Whether all entries are finite.
 pub(crate) fn is_finite<const N: usize>(x: &SVector<f64, N>) -> bool {
-    // What is finite times 0 is 0, all of whose bits are 0; anything else times 0 is no number. Vectors do this side by side.
-    x.data.0[0].iter().fold(0, |bits, value| bits | (value.abs() * 0.0).to_bits()) == 0
+    all_finite(&x.data.0[0])
+}
+
+/// The same of other numbers.
+fn all_finite(numbers: &[f64]) -> bool {
+    struct AllFinite<'a>(&'a [f64]);
+    impl NullaryFnOnce for AllFinite<'_> {
+        type Output = bool;
+
+        #[inline(always)]
+        fn call(self) -> bool {
+            // What is finite times 0 is 0, all of whose bits are 0; anything else times 0 is no number.
+            self.0.iter().fold(0, |bits, value| bits | (value.abs() * 0.0).to_bits()) == 0
+        }
+    }
+    Arch::new().dispatch(AllFinite(numbers))
 }

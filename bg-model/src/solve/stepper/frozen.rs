@@ -90,6 +90,20 @@ where
         }
     }
 
+    fn damping_sparsity(&self) -> Sparsity {
+        self.system.linearised().map_or(Sparsity::Full, Linearised::damping_sparsity)
+    }
+
+    fn damping(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64]) {
+        match self.system.linearised() {
+            Some(linearised) => {
+                count(self.counters.jacobians, 1);
+                linearised.damping(t, x, self.negative, entries);
+            }
+            None => self.jacobian(t, x, entries, &mut SVector::zeros()),
+        }
+    }
+
     fn elimination(&self) -> Option<&impl Elimination<f64, N>> {
         self.system.linearised().and_then(Linearised::elimination)
     }

@@ -92,10 +92,8 @@ where
     /// Moves the end of the step back onto the invariants. Gives the norm of what that changes where joints may be rigid:
     /// it is of the size of the error, unless the step has led to another branch of the motion.
     pub fn project(&mut self) -> f64 {
-        let Point { t, mut x, .. } = self.end;
-        let moved = self.project_state(t, &mut x);
-        self.end.x = x;
-        moved
+        let Self { system, scale, negative, end, .. } = self;
+        project(*system, scale, negative, end.t, &mut end.x)
     }
 
     /// The same until it moves no more. What one of Newton's steps leaves is below the tolerances, but not below what a guard at zero
@@ -119,14 +117,12 @@ where
 
     /// The same with any state, at time `t` (s).
     pub fn project_state(&self, t: f64, x: &mut SVector<f64, N>) -> f64 {
-        let before = *x;
-        self.system.project(t, &self.negative, x);
-        self.moved(&before, x)
+        project(self.system, &self.scale, &self.negative, t, x)
     }
 
     /// The norm of what a projection has changed where joints may be rigid, else 0.
     pub fn moved(&self, before: &SVector<f64, N>, after: &SVector<f64, N>) -> f64 {
-        if self.system.joints().is_some() { self.scale.norm(&(after - before), after) } else { 0.0 }
+        moved(self.system, &self.scale, before, after)
     }
 
     /// The norm of what the projection makes of the rounding of a state `x` at the end of the step, which grows into a singular pose.
@@ -208,6 +204,31 @@ where
         self.method.dense(&self.start, self.h, &self.end, theta, &mut x);
         x
     }
+}
+
+/// Moves a state at time `t` (s) back onto the invariants; gives the norm of what that changes where joints may be rigid.
+#[inline(always)]
+fn project<const N: usize, const G: usize>(
+    system: &impl System<f64, N, G>,
+    scale: &Scale<N>,
+    negative: &[bool; G],
+    t: f64,
+    x: &mut SVector<f64, N>,
+) -> f64 {
+    let before = *x;
+    system.project(t, negative, x);
+    moved(system, scale, &before, x)
+}
+
+/// The norm of what a projection has changed where joints may be rigid, else 0.
+#[inline(always)]
+fn moved<const N: usize, const G: usize>(
+    system: &impl System<f64, N, G>,
+    scale: &Scale<N>,
+    before: &SVector<f64, N>,
+    after: &SVector<f64, N>,
+) -> f64 {
+    if system.joints().is_some() { scale.norm(&(after - before), after) } else { 0.0 }
 }
 
 /// A state with each number as the next rounding would have it, up or down.

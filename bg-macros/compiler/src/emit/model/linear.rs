@@ -10,28 +10,34 @@ use super::super::routine::parsed;
 use super::capabilities::accessor;
 use super::{Emission, Shape};
 
+/// Rows and columns.
+fn listed(places: impl IntoIterator<Item = (usize, usize)>) -> TokenStream {
+    let places = places.into_iter().map(|(row, column)| format!("({row}, {column})"));
+    parsed(&places.collect::<Vec<_>>().join(", "))
+}
+
 impl Emission<'_> {
     pub(super) fn linear(&self) -> TokenStream {
         let (linearised, elimination) = (self.linearised(), self.elimination());
         quote! { #linearised #elimination }
     }
 
-    /// The Jacobian with its sparsity.
+    /// The Jacobian with its sparsity, and what dampers do.
     fn linearised(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let places = self.model.jacobian.entries.iter().map(|entry| format!("({}, {})", entry.row, entry.column));
-        let places = parsed(&places.collect::<Vec<_>>().join(", "));
-        let count = self.model.jacobian.entries.len();
+        let jacobian = &self.model.jacobian;
+        let (places, count) = (listed(jacobian.places()), jacobian.entries.len());
         let [routine] = &self.model.programs.jacobian.routines;
         let (body, results) = self.running(routine, &format_ident!("slope_constants"));
         let (entries, slopes) = results.split_at(count);
-        let unknowns = self.model.jacobian.unknowns.len();
+        let unknowns = jacobian.unknowns.len();
         let sparsity = if unknowns == 0 {
             quote!(::bg_model::linear::Sparsity::Places(&ENTRIES))
         } else {
             quote!(::bg_model::linear::Sparsity::Bordered { places: &ENTRIES, unknowns: #unknowns })
         };
         let elimination = accessor("elimination", &quote!(Elimination<S, #n>), &quote!(Some(self)));
+        let damping = self.damping();
         quote! {
             impl<S: Scalar> ::bg_model::capability::Linearised<S, #n, #g> for Model<S> {
                 fn sparsity(&self) -> ::bg_model::linear::Sparsity {
@@ -47,9 +53,32 @@ impl Emission<'_> {
                     *entries = [#(#entries),*];
                     slope.data.0 = [[#(#slopes),*]];
                 }
+                #damping
                 #elimination
             }
         }
+    }
+
+    /// The derivatives among states that are not of second order, where they have a routine of their own.
+    fn damping(&self) -> Option<TokenStream> {
+        let Shape { n, g, .. } = &self.shape;
+        let [routine] = &self.model.programs.damping.as_ref()?.routines;
+        let (body, results) = self.running(routine, &format_ident!("damping_constants"));
+        let entries = self.model.jacobian.among_first_order(&self.model.second_order.states);
+        let places = listed(entries.map(|entry| (entry.row, entry.column)));
+        let count = results.len();
+        Some(quote! {
+            fn damping_sparsity(&self) -> ::bg_model::linear::Sparsity {
+                static ENTRIES: [(u16, u16); #count] = [#places];
+                ::bg_model::linear::Sparsity::Places(&ENTRIES)
+            }
+            #[inline(never)]
+            fn damping(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]) {
+                let entries: &mut [S; #count] = entries.try_into().expect("one entry for each place");
+                #body
+                *entries = [#(#results),*];
+            }
+        })
     }
 
     fn elimination(&self) -> TokenStream {

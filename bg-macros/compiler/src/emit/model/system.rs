@@ -79,8 +79,14 @@ impl Emission<'_> {
         };
         let body = self.with_pairs(&running.rate, Some(paired), "constant");
         if !running.is_inlined() {
-            let rate = function(quote!(rate), None, body);
-            return quote!(#rate #always);
+            let paired = function(quote!(paired_rate), Some(Inlined), body);
+            return quote! {
+                fn rate(#arguments) {
+                    ::bg_model::__private::vectorised_rate(self, t, x, negative, dx);
+                }
+                #paired
+                #always
+            };
         }
         let (rate, inlined) =
             (calling(quote!(rate), None, quote!(inlined_rate)), function(quote!(inlined_rate), Some(Inlined), body));

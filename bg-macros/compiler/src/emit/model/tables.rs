@@ -44,7 +44,7 @@ impl Emission<'_> {
     }
 
     fn constant_tables(&self) -> Vec<Table<'_>> {
-        let Programs { running, jacobian, second_order, holding, impacts, .. } = &self.model.programs;
+        let Programs { running, jacobian, damping, second_order, holding, impacts, .. } = &self.model.programs;
         let table = |prefix, doc, constants, paired| Table { prefix, doc, constants, paired };
         let of_rates = " What depends on parameters only.";
         let of_jacobian = " What depends on parameters only, of the Jacobian.";
@@ -54,6 +54,8 @@ impl Emission<'_> {
             table("constant", of_rates, &running.constants, running.paired_rate.as_ref()),
             table("slope_constant", of_jacobian, &jacobian.constants, None),
         ];
+        let of_damping = " What depends on parameters only, of damping.";
+        tables.extend(damping.as_ref().map(|program| table("damping_constant", of_damping, &program.constants, None)));
         tables.extend(holding.as_ref().map(|program| table("holding_constant", of_holding, &program.constants, None)));
         let of_impacts = " What depends on parameters only, of impacts.";
         tables.extend(impacts.as_ref().map(|program| table("impact_constant", of_impacts, &program.constants, None)));

@@ -226,7 +226,9 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
     }
 
     fn advance(&mut self) {
-        self.carry.advance();
+        if T::IS_COMPENSATED {
+            self.carry.advance();
+        }
     }
 
     fn restart(&mut self) {

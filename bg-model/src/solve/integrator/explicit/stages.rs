@@ -25,9 +25,8 @@ pub(crate) trait Complete<S, const N: usize> {
     /// Completes the state `x` of stage `stage`, at the part `c` of the step.
     fn complete(&mut self, stage: usize, c: f64, x: &mut SVector<S, N>);
 
-    /// Corrects the magnitudes of the errors in parts of what is allowed, `errors`. `error` gives the error of a state, `allowed`
-    /// what is allowed of it.
-    fn correct(&mut self, errors: &mut [S; N], error: impl Fn(usize) -> S, allowed: impl Fn(usize) -> S);
+    /// Corrects `errors`, the magnitudes of `differences` in parts of what is allowed.
+    fn correct(&mut self, errors: &mut [S; N], differences: &SVector<S, N>, allowed: &[S; N]);
 }
 
 /// Nothing.
@@ -36,7 +35,7 @@ impl<S, const N: usize> Complete<S, N> for () {
     fn complete(&mut self, _stage: usize, _c: f64, _x: &mut SVector<S, N>) {}
 
     #[inline(always)]
-    fn correct(&mut self, _errors: &mut [S; N], _error: impl Fn(usize) -> S, _allowed: impl Fn(usize) -> S) {}
+    fn correct(&mut self, _errors: &mut [S; N], _differences: &SVector<S, N>, _allowed: &[S; N]) {}
 }
 
 /// The rates of all stages of tableau `T`.
@@ -117,32 +116,34 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
         self.k[0] = *from.rate;
         self.evaluate::<true>(rates, from, 1..T::END, completed);
         let nothing = from.h.alike(0.0);
-        let (mut difference, mut first, mut second) = ([nothing; N], [nothing; N], [nothing; N]);
+        let (mut differences, mut allowed) = (SVector::from([nothing; N]), [nothing; N]);
+        let (mut first, mut second) = ([nothing; N], [nothing; N]);
         let start = &from.x.data.0[0];
         for i in 0..N {
             let slope = self.combine(T::B, i);
             let change = from.h * slope;
             let to = if T::IS_COMPENSATED { carry.add(i, start[i], change) } else { start[i] + change };
-            let allowed = scale.allowed(i, start[i], to);
+            let difference = self.combine(T::ERROR, i);
             end.data.0[0][i] = to;
-            difference[i] = self.combine(T::ERROR, i);
-            first[i] = (difference[i] / allowed).abs();
+            allowed[i] = scale.allowed(i, start[i], to);
+            differences.data.0[0][i] = difference;
+            first[i] = (difference / allowed[i]).abs();
             if !T::SECOND.is_empty() {
-                second[i] = ((slope - self.combine(T::SECOND, i)) / allowed).abs();
+                second[i] = ((slope - self.combine(T::SECOND, i)) / allowed[i]).abs();
             }
         }
-        let reached = &end.data.0[0];
-        completed.correct(&mut first, |i| difference[i], |i| scale.allowed(i, start[i], reached[i]));
+        completed.correct(&mut first, &differences, &allowed);
         let first = largest(&first);
         if T::START.is_empty() {
             return [first, if T::SECOND.is_empty() { nothing } else { largest(&second) }];
         }
         let mut at_start = [nothing; N];
         for i in 0..N {
-            difference[i] = self.combine(T::START, i);
-            at_start[i] = (difference[i] / scale.allowed(i, start[i], reached[i])).abs();
+            let difference = self.combine(T::START, i);
+            differences.data.0[0][i] = difference;
+            at_start[i] = (difference / allowed[i]).abs();
         }
-        completed.correct(&mut at_start, |i| difference[i], |i| scale.allowed(i, start[i], reached[i]));
+        completed.correct(&mut at_start, &differences, &allowed);
         [largest(&at_start).times(AT_START).larger(first), nothing]
     }
 }

@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 use nalgebra::SVector;
 
 use crate::model::linear::{Sparsity, differences};
-use crate::solve::integrator::{Flow, Point, Scale};
+use crate::solve::integrator::{Flow, Point, Scale, all_finite, is_finite};
 
 /// The derivatives of a rate at one point.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ impl<const N: usize> Jacobian<N> {
 
     /// Whether all derivatives are finite.
     pub fn is_finite(&self) -> bool {
-        self.entries.iter().chain(self.slope.iter()).fold(true, |finite, value| finite & value.is_finite())
+        all_finite(&self.entries) && is_finite(&self.slope)
     }
 
     /// Replaces each derivative that is not finite by a difference: of a state over as much as it changes in the step, and at

@@ -10,6 +10,7 @@
 mod block;
 mod inverse;
 mod pattern;
+mod stage;
 mod tableau;
 
 use crate::solve::integrator::Arch;

@@ -2,7 +2,6 @@
 //!
 //! In: a Jacobian and a step. Out: the states, and where their block of the Jacobian is.
 
-use alloc::borrow::Cow;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -21,28 +20,34 @@ const KEPT: f64 = 0.1;
 /// States that such weaker dampers connect to chosen ones are chosen with them.
 const WEAK: f64 = 0.025;
 
+/// A row and a column.
+type Place = (usize, usize);
+
 /// The places of a Jacobian.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pattern {
     /// Row and column of each entry.
-    places: Vec<(usize, usize)>,
-    /// The entries in places that mirror each other, those of displacements and orientations left out; one on the diagonal mirrors
-    /// itself.
-    mirrored: Vec<(usize, usize)>,
+    places: Vec<Place>,
+    /// The entries in places that mirror each other, with the place of the first one, those of displacements and orientations left out;
+    /// one on the diagonal mirrors itself.
+    mirrored: Vec<(usize, usize, Place)>,
+    /// The dampers that count in a step, as squares of 1/s.
+    dampers: Vec<(Place, f64)>,
     /// Of each state whether it is chosen; to be written by each choice.
     damped: Vec<bool>,
 }
 
 impl Pattern {
-    /// The entries of a Jacobian whose places are known from here on; with unknowns beside the states those of the states alone.
-    pub fn entries<'a, const N: usize>(&mut self, flow: &impl Flow<N>, jacobian: &'a Jacobian<N>) -> Cow<'a, [f64]> {
-        let sparsity = jacobian.sparsity(flow);
-        let (sparsity, entries) = match sparsity {
-            Sparsity::Bordered { .. } => {
-                (Sparsity::Full, Cow::Owned(sparsity.matrix(N, &jacobian.entries).as_slice().to_vec()))
-            }
-            _ => (sparsity, Cow::Borrowed(jacobian.entries.as_slice())),
-        };
+    /// Writes the entries of a Jacobian whose places are known from here on; with unknowns beside the states those of the states alone.
+    pub fn entries<const N: usize>(&mut self, flow: &impl Flow<N>, jacobian: &Jacobian<N>, entries: &mut Vec<f64>) {
+        let mut sparsity = jacobian.sparsity(flow);
+        entries.clear();
+        if let Sparsity::Bordered { .. } = sparsity {
+            entries.extend(sparsity.matrix(N, &jacobian.entries).as_slice());
+            sparsity = Sparsity::Full;
+        } else {
+            entries.extend(&jacobian.entries);
+        }
         if self.places.is_empty() {
             self.places = (0..entries.len()).map(|k| sparsity.place(k, N)).collect();
             let is_of_pose = |state: &usize| flow.second_order().is_some_and(|states| states.states().contains(state));
@@ -50,9 +55,9 @@ impl Pattern {
             self.places.iter().enumerate().for_each(|(k, (row, column))| numbers[row * N + column] = Some(k));
             let upper = self.places.iter().enumerate().filter(|(_, (row, column))| row <= column);
             let upper = upper.filter(|(_, (row, column))| !is_of_pose(row) && !is_of_pose(column));
-            self.mirrored = upper.filter_map(|(k, (row, column))| Some((k, numbers[column * N + row]?))).collect();
+            let mirrored = upper.filter_map(|(k, &(row, column))| Some((k, numbers[column * N + row]?, (row, column))));
+            self.mirrored = mirrored.collect();
         }
-        entries
     }
 
     /// Chooses among `n` states those that are damped stiffly in a step of size `h` (s). Gives whether they are others than before.
@@ -60,22 +65,22 @@ impl Pattern {
     /// A damper between two states changes the rate of each with the other in the same sense; a spring, a mass and what turns do
     /// so in opposite senses. The root of the product of both changes, 1/s, does not depend on the units of the states.
     pub fn choose(&mut self, entries: &[f64], h: f64, n: usize, states: &mut Vec<usize>) -> bool {
-        let Self { places, mirrored, damped } = self;
+        let Self { mirrored, dampers, damped, .. } = self;
         damped.clear();
         damped.resize(n, false);
         let before = |state: usize| states.binary_search(&state).is_ok();
         let (strong, weak) = (power(STIFF / h, 2), power(WEAK / h, 2));
-        let dampers = || mirrored.iter().map(|&(one, other)| (places[one], entries[one] * entries[other]));
-        for ((row, column), product) in dampers() {
+        let products = mirrored.iter().map(|&(one, other, place)| (place, entries[one] * entries[other]));
+        dampers.clear();
+        dampers.extend(products.filter(|(_, product)| *product > weak));
+        for &((row, column), product) in &*dampers {
             if product > strong || (product > KEPT * strong && before(row) && before(column)) {
                 (damped[row], damped[column]) = (true, true);
             }
         }
         // On along weaker dampers: a part of what one damper holds together would err more than all of it.
-        let is_at_edge = |damped: &[bool], (row, column): (usize, usize)| damped[row] != damped[column];
-        while let Some(((row, column), _)) =
-            dampers().find(|&(place, product)| product > weak && is_at_edge(damped, place))
-        {
+        let is_at_edge = |damped: &[bool], (row, column): Place| damped[row] != damped[column];
+        while let Some(&((row, column), _)) = dampers.iter().find(|(place, _)| is_at_edge(damped, *place)) {
             (damped[row], damped[column]) = (true, true);
         }
         let chosen = || (0..n).filter(|&state| damped[state]);

@@ -9,43 +9,11 @@ mod tests;
 
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
-#[cfg(all(feature = "std", target_arch = "x86_64"))]
-use pulp::x86::V3;
 
 use super::{Flow, Point, Scale};
 use crate::model::capability::Elimination;
 use crate::model::linear::Field;
-
-/// The vectors that steps are compiled for. Not [`pulp::Arch`], which has those of AVX-512 besides: one run gains nothing by them.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Arch {
-    /// Those of every machine of its kind.
-    Scalar,
-    /// Those of AVX2.
-    #[cfg(all(feature = "std", target_arch = "x86_64"))]
-    V3(V3),
-}
-
-impl Arch {
-    /// The largest of the machine at hand.
-    pub fn new() -> Self {
-        #[cfg(all(feature = "std", target_arch = "x86_64"))]
-        if let Some(machine) = V3::try_new() {
-            return Self::V3(machine);
-        }
-        Self::Scalar
-    }
-
-    /// Calls `of`, compiled for these vectors where it is inlined.
-    #[inline(always)]
-    pub fn dispatch<F: NullaryFnOnce>(self, of: F) -> F::Output {
-        match self {
-            Self::Scalar => of.call(),
-            #[cfg(all(feature = "std", target_arch = "x86_64"))]
-            Self::V3(machine) => machine.vectorize(of),
-        }
-    }
-}
+pub(crate) use crate::model::scalar::machine::Arch;
 
 /// A method whose attempts are all sums, rates and series.
 pub(super) trait Vectorised<const N: usize> {
