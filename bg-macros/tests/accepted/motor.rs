@@ -27,8 +27,8 @@ bond_graph! {
 
 #[test]
 fn a_motor_has_what_its_graph_promises() {
-    let mut parameters = MotorParameters::default();
-    parameters.winding = 2.0;
+    assert_eq!(MotorParameters::default().winding, 0.8);
+    let parameters = MotorParameters { winding: 2.0 };
     let motor = Motor::new(parameters, MotorInputs { voltage: Input::constant(12.0) }).expect("in range");
     let start = motor.start().expect("closed");
     let span = Span { t0: 0.0, t_end: 1e-3 };
@@ -36,13 +36,7 @@ fn a_motor_has_what_its_graph_promises() {
     let mut rate = finish.x;
     motor.rate(finish.t, &finish.x, &finish.negative, &mut rate);
     let power = motor.powers(finish.t, &finish.x, &finish.negative);
-    println!(
-        "{} {} {} {} {} {}",
-        motor.description().name,
-        motor.parameters().winding,
-        Motor::STATES,
-        Motor::OUTPUTS,
-        motor.stored_energy(finish.t, &finish.x, &finish.negative),
-        power.supplied - power.dissipated,
-    );
+    assert_eq!((motor.description().name, motor.parameters().winding), ("Motor", 2.0));
+    assert!(Motor::STATES == rate.len() && Motor::OUTPUTS == motor.description().outputs.len());
+    assert!(motor.stored_energy(finish.t, &finish.x, &finish.negative) > 0.0 && power.supplied > power.dissipated);
 }

@@ -65,7 +65,7 @@ fn parts_are_found_by_their_paths() {
             Sf push = 1; 1 frame: translation; push -> frame -> wheel.axle;
         }
     }
-    let parameters = CartParameters { left_strut_stiffness: 50.0, right_mass: 1.0, ..CartParameters::default() };
+    let parameters = CartParameters { left_strut_stiffness: 50.0, right_mass: 1.0 };
     let cart = Cart::new(parameters).expect("in range");
     let outputs: Vec<_> = cart.description().outputs.iter().map(|output| output.name).collect();
     assert_eq!(outputs, ["left.strut.length", "left.rim.speed", "right.strut.length"]);
