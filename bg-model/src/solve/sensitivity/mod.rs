@@ -47,6 +47,8 @@ use crate::model::scalar::Gradient;
 use crate::model::scalar::gradient::GradientIn;
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::lanes::{Avx2, Avx512};
+#[cfg(not(target_arch = "x86_64"))]
+use crate::model::scalar::slopes::Eight;
 use crate::model::scalar::slopes::{Slopes, WIDTH};
 use crate::model::system::Model;
 use crate::solve::integrator::{Integrator, Point, Scale};
@@ -55,7 +57,7 @@ use crate::solve::simulation::{Observer, Switching};
 pub use adjoint::{Gradients, Measured, Objective, gradient, gradient_within};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
-use step::{Stepper, Steps, front};
+use step::{Stepper, joined as joined_slopes};
 
 /// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
 /// the slopes would no longer be the derivatives of these.
@@ -197,7 +199,10 @@ pub fn sensitivities_of<Me: Mechanism>(
     } else if Avx2::is_at_hand() {
         return model.visit_lifted::<Gradient, GradientIn<Avx2>, _>(following);
     }
-    model.visit_lifted::<Gradient, Gradient, _>(following)
+    #[cfg(target_arch = "x86_64")]
+    return model.visit_lifted::<Gradient, Gradient, _>(following);
+    #[cfg(not(target_arch = "x86_64"))]
+    model.visit_lifted::<Gradient, GradientIn<Eight>, _>(following)
 }
 
 /// What is done with the model.
@@ -236,7 +241,7 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         model: &Mo,
         _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
-        in_numbers: impl Fn(&Li, fn(Gradient) -> GradientIn<V>) -> Fa,
+        joined: impl Fn(&[&Li], fn(&[Gradient]) -> GradientIn<V>) -> Fa,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
@@ -247,26 +252,23 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         let settings = self.request.settings(0.0);
         let scale = Scale::<N>::from(&settings.tolerances);
         let is_estimated = self.request.method != Integrator::Dop853;
-        let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
-            let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
-            let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
-            let steps = |(k, some): (usize, &[Direction])| -> Result<Box<dyn Steps<N, G>>, ParameterError> {
-                let system = Box::new(in_numbers(&*system(some)?, front));
-                Ok(Box::new(Stepper::new(system, k * V::LANES, is_estimated, (scale.clone(), sizes))))
-            };
-            let steps = chunk.chunks(V::LANES).enumerate().map(steps).collect::<Result<_, _>>()?;
-            let (system, plain) = (system(chunk)?, system(&[])?);
-            let x = system.start()?;
-            Ok(Follower::new([system, plain], steps, (chunk, self.outputs), 0.0, x))
+        let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
+        let follower = |directions: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
+            let systems = directions.chunks(WIDTH).map(system).collect::<Result<Vec<_>, _>>()?;
+            let sizes: Vec<f64> = directions.iter().map(|&of| self.size(of, start.as_slice())).collect();
+            let models: Vec<&Li> = systems.iter().map(|system| &**system).collect();
+            let model = Box::new(joined(&models, joined_slopes));
+            let steps = Box::new(Stepper::new(model, is_estimated, (scale.clone(), &sizes)));
+            Ok(Follower::new(systems, system(&[])?, steps, (directions, self.outputs), 0.0)?)
         };
-        let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
+        let followers = self.directions.chunks(V::LANES).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);
         let outcome = observed(model, self.request, &mut followers);
         let Followers(mut followers) = followers;
         followers.iter_mut().try_for_each(Follower::check)?;
         let trajectory = outcome?;
         let states = followers.iter().flat_map(Follower::states).collect();
-        let slopes = followers.into_iter().flat_map(|follower| follower.slopes).collect();
+        let slopes = followers.into_iter().flat_map(Follower::slopes).collect();
         Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
     }
 }
