@@ -10,6 +10,7 @@ use bg_model::simulation::Recording;
 use thiserror::Error;
 
 use super::reference::{self, ReferenceError};
+use crate::machine::{Machine, MachineError, Making};
 use crate::scenes::{Fixed, Scene, own_parameters};
 
 /// A case.
@@ -92,11 +93,27 @@ impl Case {
     /// # Errors
     /// Parameters that cannot be.
     pub fn model<Me: Mechanism, Sc: Mechanism>(&self, scenes: &[Scene]) -> Result<Sc, CaseError> {
+        Ok(Sc::make(own_parameters(self.scene(scenes), scenes, &self.values::<Me>()?)?, &[])?)
+    }
+
+    /// The same of the mechanism `Me`, whatever its type.
+    ///
+    /// # Errors
+    /// Parameters that cannot be.
+    pub(crate) fn machine<Me: Scenes>(&self, scenes: &[Scene]) -> Result<Box<dyn Machine>, CaseError> {
+        let values = self.values::<Me>()?;
+        let made = Making { scene: self.scene(scenes), scenes, values: &values, inputs: &[] }.made::<Me>();
+        made.map_err(|fault| match fault {
+            MachineError::Fixed(fault) => fault.into(),
+            MachineError::Parameter(fault) => fault.into(),
+        })
+    }
+
+    /// The values of all parameters.
+    fn values<Me: Mechanism>(&self) -> Result<Me::Parameters, ParameterError> {
         let mut values = Me::Parameters::default();
-        for (name, value) in &self.set {
-            values.set(name, *value)?;
-        }
-        Ok(Sc::make(own_parameters(self.scene(scenes), scenes, &values)?, &[])?)
+        self.set.iter().try_for_each(|(name, value)| values.set(name, *value))?;
+        Ok(values)
     }
 
     /// Its solution.
