@@ -68,7 +68,7 @@ pub trait Slopes: Copy + Debug + 'static {
 pub type Everywhere = [f64x2; WIDTH / 2];
 
 /// Eight in such vectors, for steps where there are no wider ones.
-#[cfg(any(test, not(target_arch = "x86_64")))]
+#[cfg(any(test, all(feature = "std", not(target_arch = "x86_64"))))]
 pub type Eight = [f64x2; 4];
 
 /// Derivatives in so many vectors of every machine, at these places.
@@ -135,5 +135,5 @@ macro_rules! in_vectors {
 }
 
 in_vectors!(1: 0);
-#[cfg(any(test, not(target_arch = "x86_64")))]
+#[cfg(any(test, all(feature = "std", not(target_arch = "x86_64"))))]
 in_vectors!(4: 0 1 2 3);
