@@ -57,7 +57,7 @@ use crate::solve::simulation::{Observer, Switching};
 pub use adjoint::{Gradients, Measured, Objective, gradient, gradient_within};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
-use step::{Stepper, joined as joined_slopes};
+use step::{Stepper, Steps, joined as joined_slopes};
 
 /// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
 /// the slopes would no longer be the derivatives of these.
@@ -248,20 +248,37 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         Li: Model<Gradient, N, G, M> + 'static,
         Fa: Model<GradientIn<V>, N, G, M> + 'static,
     {
+        self.followed(V::LANES, model, &lifted, &|models, scale, sizes| {
+            let is_estimated = self.request.method != Integrator::Dop853;
+            Box::new(Stepper::<V, Fa, N>::new(Box::new(joined(models, joined_slopes)), is_estimated, (scale, sizes)))
+        })
+    }
+}
+
+impl Following<'_> {
+    /// Makes the run, followed along `lanes` directions at a time by what `steps` makes. Compiled once for each model, whatever the vectors.
+    fn followed<Mo, Li, const N: usize, const G: usize, const M: usize>(
+        &self,
+        lanes: usize,
+        model: &Mo,
+        lifted: &dyn Fn(&[Gradient]) -> Result<Li, ParameterError>,
+        steps: &MakesSteps<'_, Li, N, G>,
+    ) -> Result<Sensitivities, SensitivityError>
+    where
+        Mo: Model<f64, N, G, M>,
+        Li: Model<Gradient, N, G, M>,
+    {
         let start = model.start()?;
-        let settings = self.request.settings(0.0);
-        let scale = Scale::<N>::from(&settings.tolerances);
-        let is_estimated = self.request.method != Integrator::Dop853;
+        let scale = Scale::<N>::from(&self.request.settings(0.0).tolerances);
         let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
         let follower = |directions: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
             let systems = directions.chunks(WIDTH).map(system).collect::<Result<Vec<_>, _>>()?;
             let sizes: Vec<f64> = directions.iter().map(|&of| self.size(of, start.as_slice())).collect();
             let models: Vec<&Li> = systems.iter().map(|system| &**system).collect();
-            let model = Box::new(joined(&models, joined_slopes));
-            let steps = Box::new(Stepper::new(model, is_estimated, (scale.clone(), &sizes)));
+            let steps = steps(&models, scale.clone(), &sizes);
             Ok(Follower::new(systems, system(&[])?, steps, (directions, self.outputs), 0.0)?)
         };
-        let followers = self.directions.chunks(V::LANES).map(follower).collect::<Result<Vec<_>, _>>()?;
+        let followers = self.directions.chunks(lanes).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);
         let outcome = observed(model, self.request, &mut followers);
         let Followers(mut followers) = followers;
@@ -272,6 +289,9 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
     }
 }
+
+/// Makes steps of the systems that have a few directions each, measured by the scale of the states and the size of each direction.
+type MakesSteps<'a, Li, const N: usize, const G: usize> = dyn Fn(&[&Li], Scale<N>, &[f64]) -> Box<dyn Steps<N, G>> + 'a;
 
 /// Several observers of one kind.
 struct Followers<O>(Vec<O>);
