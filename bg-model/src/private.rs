@@ -8,6 +8,7 @@ pub use alloc::vec;
 pub use bg_macros::picture;
 
 pub use crate::model::iteration::{Equations, newton};
+pub use crate::model::joined::joined;
 pub use crate::model::linear::pivot::Pivot;
 pub use crate::model::nearest::lifted;
 pub use crate::model::parameters::serialized::{deserialize, serialize};

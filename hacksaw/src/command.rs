@@ -22,15 +22,17 @@ use crate::{checks, sources, summary};
 /// The program.
 #[must_use]
 pub fn program() -> Program<Hacksaw> {
-    let program = Program::<Hacksaw>::new()
+    let program = cfg_select! {
+        target_arch = "wasm32" => Program::<Hacksaw>::new(),
+        _ => Program::<Hacksaw>::with_cases(case::cases(), &["paper", "full-offset", "rigid"]),
+    };
+    let program = program
         .version(env!("CARGO_PKG_VERSION"))
         .about(
             "Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says about them",
         )
         .scene("paper")
         .extras(Paper);
-    #[cfg(not(target_arch = "wasm32"))]
-    let program = program.cases(case::cases(), &["paper", "full-offset", "rigid"]);
     #[cfg(all(feature = "lanes", not(target_arch = "wasm32")))]
     let program = program.lanes();
     #[cfg(feature = "gradients")]

@@ -73,20 +73,20 @@ pub trait ModelVisitor<S: Scalar> {
         Mo: Model<S, N, G, M> + Clone + 'static;
 }
 
-/// Something to do with a model and with the same model of other numbers, such as dual ones, whose values may be carried over to a second
-/// kind. Of each kind only what the visitor calls is compiled.
+/// Something to do with a model and with the same model of other numbers, such as dual ones, of which several may be joined to one in
+/// numbers of a second kind. Of each kind only what the visitor calls is compiled.
 pub trait LiftedVisitor<S: Scalar, T: Scalar> {
     /// What results.
     type Output;
 
     /// Is handed the model, a function that makes it of other values of its parameters, one that makes it of a value in `S` for each, both
-    /// in the order of their table, and one that carries all numbers of such a model over to `T`.
+    /// in the order of their table, and one that makes each number of a model in `T` of those of several such models.
     fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
         other: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[S]) -> Result<Li, ParameterError>,
-        in_numbers: impl Fn(&Li, fn(S) -> T) -> Ot,
+        joined: impl Fn(&[&Li], fn(&[S]) -> T) -> Ot,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M> + Clone + 'static,
@@ -100,5 +100,5 @@ pub trait MechanismVisitor {
     type Output;
 
     /// Is handed the type.
-    fn visit<Me: Mechanism>(self) -> Self::Output;
+    fn visit<Me: Mechanism + 'static>(self) -> Self::Output;
 }

@@ -7,6 +7,7 @@ pub mod drawing;
 pub mod holding;
 pub mod input;
 pub(crate) mod iteration;
+pub(crate) mod joined;
 pub mod linear;
 pub mod mechanism;
 pub(crate) mod nearest;

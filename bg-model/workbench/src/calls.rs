@@ -6,19 +6,20 @@
 use std::collections::BTreeMap;
 
 use bg_model::description::ParameterInfo;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::mechanism::Scenes;
 use bg_model::parameters::Parameters;
-use bg_model::run::{Request, Trajectory};
+use bg_model::run::Trajectory;
 use thiserror::Error;
 
 use crate::Program;
 use crate::command::{derivatives, linearised};
 use crate::inputs;
 use crate::linear::StateSpace;
+use crate::machine::Making;
 use crate::parameters::{self, Chosen, number};
 use crate::request::Integration;
 use crate::running::{Begin, follow};
-use crate::scenes::{Scene, own_parameters};
+use crate::scenes::Scene;
 use crate::sensitivity::Course;
 
 /// What cannot be done, in a sentence.
@@ -102,7 +103,11 @@ pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<(Trajecto
         Started::Model => Begin::Model,
         Started::Equilibrium => Begin::Equilibrium,
     };
-    Me::model(scene.index, Running { scene, scenes: &program.scenes, chosen: &chosen, request, begin })
+    let making = Making { scene, scenes: &program.scenes, values: &chosen.values, inputs: &chosen.inputs };
+    let machine = making.made::<Me>().map_err(refused)?;
+    let from = begin.state(&*machine).map_err(refused)?;
+    let outcome = follow(&*machine, request, from.as_ref(), |_| ()).map_err(refused)?;
+    Ok((outcome.run, outcome.failure))
 }
 
 /// The linear model where the run is at `at`, s, or at the equilibrium near the start.
@@ -150,25 +155,4 @@ fn chosen<'a, Me: Scenes>(
     }
     chosen.inputs = inputs::chosen(&asked.inputs, Me::describe().inputs).map_err(refused)?;
     Ok((scene, chosen))
-}
-
-struct Running<'a, P> {
-    scene: &'a Scene,
-    scenes: &'a [Scene],
-    chosen: &'a Chosen<P>,
-    request: Request,
-    begin: Begin,
-}
-
-impl<P: Parameters> MechanismVisitor for Running<'_, P> {
-    type Output = Result<(Trajectory, Option<String>), Refused>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let Self { scene, scenes, chosen, request, begin } = self;
-        let own = own_parameters(scene, scenes, &chosen.values).map_err(refused)?;
-        let model = Sc::make(own, &chosen.inputs).map_err(refused)?;
-        let simulation = begin.simulation(&model, request).map_err(refused)?;
-        let outcome = follow(simulation, |_| ()).map_err(refused)?;
-        Ok((outcome.run, outcome.failure))
-    }
 }

@@ -114,6 +114,7 @@ pub mod extras;
 pub mod inputs;
 pub use bg_analysis::linear;
 pub mod live;
+mod machine;
 pub mod page;
 pub mod parameters;
 pub mod precision;

@@ -10,6 +10,8 @@ use crate::extras::{Extras, Plain};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gradient::Differentiate;
 use crate::precision::case::Case;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::precision::case::CaseSolution;
 use crate::scenes::{Scene, scenes};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::sweep::lanes::Many;
@@ -20,6 +22,7 @@ pub struct Program<Me> {
     pub(crate) scene: String,
     pub(crate) scenes: Vec<Scene>,
     pub(crate) cases: Vec<Case>,
+    /// The names of the cases that are measured unless others are asked for; of the scene that is run where there are none.
     pub(crate) measured: Vec<String>,
     pub(crate) extras: Box<dyn Extras>,
     /// What makes runs side by side, if the program has it.
@@ -49,9 +52,22 @@ impl<Me: Scenes> Default for Program<Me> {
 }
 
 impl<Me: Scenes> Program<Me> {
-    /// The program of any mechanism: it runs the graph as it stands, or where it has scenes only, the first one.
+    /// The program of any mechanism: it runs the graph as it stands, or where it has scenes only, the first one. Its command `precision`
+    /// has a case for each scene and measures the scene that is run, against solutions that it computes.
     #[must_use]
     pub fn new() -> Self {
+        // A page has no such command.
+        let cases = cfg_select! {
+            target_arch = "wasm32" => Vec::new(),
+            _ => Case::of_scenes(&scenes::<Me>(), 1.0, CaseSolution::computed::<Me>()),
+        };
+        Self::with_cases(cases, &[])
+    }
+
+    /// The same with these cases of `precision`, and the names of those that it measures unless others are asked for. With stored
+    /// solutions alone nothing is compiled for computing any.
+    #[must_use]
+    pub fn with_cases(cases: Vec<Case>, measured: &[&str]) -> Self {
         let scenes = scenes::<Me>();
         let own = scenes.iter().find(|scene| scene.index == 0).expect("the mechanism is one of its models");
         let texts = Texts {
@@ -59,14 +75,12 @@ impl<Me: Scenes> Program<Me> {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             about: own.description.doc.split_whitespace().collect::<Vec<_>>().join(" "),
         };
-        let (scene, cases) = (own.name.clone(), Case::of_scenes(&scenes, 1.0));
-        let measured = vec![scene.clone()];
         Self {
             texts,
-            scene,
+            scene: own.name.clone(),
             scenes,
             cases,
-            measured,
+            measured: measured.iter().map(|&name| name.to_owned()).collect(),
             extras: Box::new(Plain),
             #[cfg(not(target_arch = "wasm32"))]
             lanes: None,
@@ -98,15 +112,6 @@ impl<Me: Scenes> Program<Me> {
     pub fn scene(mut self, name: &str) -> Self {
         assert!(self.scenes.iter().any(|scene| scene.name == name), "there is no scene `{name}`");
         name.clone_into(&mut self.scene);
-        self.measured = vec![self.scene.clone()];
-        self
-    }
-
-    /// The cases that `precision` measures, and the names of those that it measures unless others are asked for.
-    #[must_use]
-    pub fn cases(mut self, cases: Vec<Case>, measured: &[&str]) -> Self {
-        self.cases = cases;
-        self.measured = measured.iter().map(|&name| name.to_owned()).collect();
         self
     }
 

@@ -2,14 +2,12 @@
 //!
 //! In: a model, what is asked of the run, where it begins. Out: what it reached. The command line and a page make their runs here.
 
-use std::ops::ControlFlow;
-
-use bg_model::mechanism::Mechanism;
-use bg_model::run::{Request, RunError, Simulation, State, Stopped, Trajectory};
+use bg_model::run::{Request, RunError, State, Stopped, Trajectory};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::linear::{LinearError, equilibrium};
+use crate::linear::LinearError;
+use crate::machine::Machine;
 
 /// A run, and why it stopped before its end, if it did.
 pub struct Outcome {
@@ -45,47 +43,44 @@ impl Begin {
         if let Self::At(state) = self { state.t } else { 0.0 }
     }
 
-    /// The run of `model` that begins here.
+    /// The state that a run of `machine` begins in, where that is not its own start.
     ///
     /// # Errors
     /// The mechanism cannot be assembled, has no equilibrium or no such state.
-    pub fn simulation<'a, Sc: Mechanism>(
-        &self,
-        model: &'a Sc,
-        request: Request,
-    ) -> Result<Simulation<'a, Sc>, BeginError> {
-        let simulation = Simulation::of(model, request);
-        let simulation = match self {
-            Self::Model => simulation,
-            Self::At(state) => simulation.from(state),
-            Self::Equilibrium => simulation.from(&at_rest(model)?),
+    pub fn state(&self, machine: &dyn Machine) -> Result<Option<State>, BeginError> {
+        let state = match self {
+            Self::Model => None,
+            Self::At(state) => Some(state.clone()),
+            Self::Equilibrium => Some(at_rest(machine)?),
         };
-        simulation.start()?;
-        Ok(simulation)
+        machine.start(state.as_ref())?;
+        Ok(state)
     }
 }
 
 /// The equilibrium near the start, with the inputs as at t = 0.
-fn at_rest<Sc: Mechanism>(model: &Sc) -> Result<State, BeginError> {
-    let mut state = Simulation::new(model).start()?;
+fn at_rest(machine: &dyn Machine) -> Result<State, BeginError> {
+    let mut state = machine.start(None)?;
     let guess: Vec<f64> = state.states.iter().map(|(_, value)| *value).collect();
-    let rest = equilibrium(model, 0.0, &guess)?;
+    let rest = machine.equilibrium(0.0, &guess)?;
     for ((_, value), at_rest) in state.states.iter_mut().zip(rest.x) {
         *value = at_rest;
     }
     Ok(state)
 }
 
-/// Makes the run and tells `told` the time reached, s, after each step. One that stops before its end is no error.
+/// Makes the run from the state `from`, or from the model's own start, and tells `told` the time reached, s, after each step. One that
+/// stops before its end is no error.
 ///
 /// # Errors
 /// The run cannot start.
-pub fn follow<Sc: Mechanism>(simulation: Simulation<'_, Sc>, mut told: impl FnMut(f64)) -> Result<Outcome, RunError> {
-    let each_step = |t| {
-        told(t);
-        ControlFlow::Continue(())
-    };
-    match simulation.each_step(each_step).run() {
+pub fn follow(
+    machine: &dyn Machine,
+    request: Request,
+    from: Option<&State>,
+    mut told: impl FnMut(f64),
+) -> Result<Outcome, RunError> {
+    match machine.run(request, from, &mut told) {
         Ok(run) => Ok(Outcome { run, failure: None }),
         Err(RunError::Stopped(stopped)) => {
             let Stopped { cause, trajectory } = *stopped;

@@ -1,7 +1,7 @@
 //! What is measured: the scenes, and the rod out of the plane, each with its stored solution.
 
 use bg_model::parameters::Parameters;
-use bg_workbench::precision::case::Case;
+use bg_workbench::precision::case::{Case, CaseSolution};
 use bg_workbench::scenes::scenes;
 
 use super::reference::Reference;
@@ -10,13 +10,14 @@ use crate::mechanism::Hacksaw;
 /// All cases.
 #[must_use]
 pub fn cases() -> Vec<Case> {
-    let mut cases = Case::of_scenes(&scenes::<Hacksaw>(), 5.0);
+    let paper = CaseSolution::Stored(|| Reference::Paper.load());
+    let mut cases = Case::of_scenes(&scenes::<Hacksaw>(), 5.0, paper);
     for case in &mut cases {
-        case.stored = Some(match case.name.as_str() {
-            "rigid" => || Reference::Rigid.load(),
-            "free-run" => || Reference::FreeRun.load(),
-            _ => || Reference::Paper.load(),
-        });
+        match case.name.as_str() {
+            "rigid" => case.solution = CaseSolution::Stored(|| Reference::Rigid.load()),
+            "free-run" => case.solution = CaseSolution::Stored(|| Reference::FreeRun.load()),
+            _ => {}
+        }
     }
     cases.push(Case {
         name: "full-offset".to_owned(),
@@ -24,7 +25,7 @@ pub fn cases() -> Vec<Case> {
         scene: "full".to_owned(),
         set: vec![("rod_offset", Reference::FullOffset.parameters().get("rod_offset").unwrap_or_default())],
         t_end: 5.0,
-        stored: Some(|| Reference::FullOffset.load()),
+        solution: CaseSolution::Stored(|| Reference::FullOffset.load()),
     });
     cases
 }

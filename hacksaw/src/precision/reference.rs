@@ -110,10 +110,12 @@ impl Reference {
         }
     }
 
-    /// The outputs at `instants` (s, ascending, from 0 on), integrated with `accuracy`.
+    /// The outputs at `instants` (s, ascending, from 0 on), integrated with `accuracy`. Compiled where it is called, since the program calls
+    /// it nowhere.
     ///
     /// # Errors
     /// Instants that cannot be, and a run that fails.
+    #[inline]
     pub fn compute(self, accuracy: Accuracy, instants: &[f64]) -> Result<Solution, Box<dyn Error>> {
         let mut solution = self.scene().visit(Compute { reference: self, accuracy, instants })?;
         if self == Self::Paper {
@@ -122,10 +124,11 @@ impl Reference {
         Ok(solution)
     }
 
-    /// Computes the reference and its check.
+    /// Computes the reference and its check. Compiled where it is called, as [`Reference::compute`] is.
     ///
     /// # Errors
     /// A run that fails.
+    #[inline]
     pub fn make(self) -> Result<(Recording, Certificate), Box<dyn Error>> {
         let [stored, check] = self.accuracies();
         let stored = self.compute(stored, &self.instants())?;

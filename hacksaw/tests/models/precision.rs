@@ -19,7 +19,7 @@ fn measure(name: &str, method: Integrator, setting: Setting, reference: &Recordi
 }
 
 fn stored(name: &str) -> Recording {
-    case(name).stored.expect("a stored solution")()
+    case(name).solve(&scenes::<Hacksaw>()).expect("a stored solution")
 }
 
 /// The largest pose error, m or rad, to two digits.

@@ -146,7 +146,7 @@ impl Emission<'_> {
         let (kept_argument, kept_value) = (shared.owned(), shared.value());
         let construction = self.construction(has_inputs);
         let (pose, reactions) = (self.pose(), self.reactions());
-        let (input_copied, kept_copied) = (has_inputs.then(|| quote!(inputs: self.inputs.clone(),)), shared.copied());
+        let (input_copied, kept_copied) = (has_inputs.then(|| quote!(inputs: first.inputs.clone(),)), shared.copied());
         let Tables { values, functions, lets, moved, .. } = tables;
         let Shape { n, g, m, p } = &self.shape;
         quote! {
@@ -205,10 +205,18 @@ impl Emission<'_> {
                     Self { parameters, values, #input_value #kept_value #values }
                 }
 
-                /// The same in numbers that `of` makes of these.
-                fn in_numbers<T: Scalar>(&self, of: fn(S) -> T) -> Model<T> {
+                /// The model each of whose numbers `of` makes of those of several.
+                fn joined<T: Scalar>(models: &[&Self], of: fn(&[S]) -> T) -> Model<T> {
+                    use ::bg_model::__private::joined;
+                    let first = models[0];
                     #moved
-                    Model { parameters: self.parameters.clone(), values: self.values.map(of), #input_copied #kept_copied #values }
+                    Model {
+                        parameters: first.parameters.clone(),
+                        values: joined(models, |model| &model.values, of),
+                        #input_copied
+                        #kept_copied
+                        #values
+                    }
                 }
 
                 /// The parameters.

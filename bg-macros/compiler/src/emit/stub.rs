@@ -91,7 +91,7 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
             {
                 ::core::unreachable!("{WHY}")
             }
-            fn in_numbers<T: Scalar>(&self, _: fn(S) -> T) -> Model<T> {
+            fn joined<T: Scalar>(_: &[&Self], _: fn(&[S]) -> T) -> Model<T> {
                 ::core::unreachable!("{WHY}")
             }
             pub fn parameters(&self) -> &Parameters {

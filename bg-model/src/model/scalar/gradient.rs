@@ -176,10 +176,11 @@ mod tests {
     use crate::model::scalar::Dual;
     #[cfg(target_arch = "x86_64")]
     use crate::model::scalar::lanes::{Avx2, Avx512};
+    use crate::model::scalar::slopes::{Eight, WIDTH};
     use crate::model::scalar::tests::everything;
 
-    /// The value and the slopes of a function of three pairs of numbers, which have four slopes.
-    fn agrees<V: Slopes>() -> Vec<[u64; 5]> {
+    /// The value and the slopes of a function of three pairs of numbers, which have up to four slopes.
+    fn agrees<V: Slopes>() -> Vec<Vec<u64>> {
         let mut bits = Vec::new();
         for (x, y) in [(0.3, 0.9), (1.1, 0.4), (0.7, 1.3)] {
             let along = [[1.0, 0.0], [0.0, 1.0], [0.6, -0.8], [0.0, 0.0]];
@@ -195,21 +196,22 @@ mod tests {
                 let dual = everything(Dual::new(x, by_x), Dual::new(y, by_y)).slope;
                 assert!((slope - dual).abs() < 1e-14 * (1.0 + dual.abs()), "{slope} {dual}");
             }
-            assert!(slopes.as_ref()[4..].iter().all(|&slope| slope == 0.0));
-            let slope = |l: usize| slopes.as_ref()[l];
-            bits.push([gradient.value, slope(0), slope(1), slope(2), slope(3)].map(f64::to_bits));
+            assert!(slopes.as_ref().iter().skip(4).all(|&slope| slope == 0.0));
+            let numbers = std::iter::once(&gradient.value).chain(slopes.as_ref().iter().take(4));
+            bits.push(numbers.map(|number| number.to_bits()).collect());
         }
         bits
     }
 
     #[test]
     fn each_slope_is_that_of_a_dual_number_along_its_direction_on_every_machine() {
-        let everywhere = agrees::<Everywhere>();
+        let eight = agrees::<Eight>();
         #[cfg(target_arch = "x86_64")]
         {
-            assert!(!Avx2::is_at_hand() || everywhere == agrees::<Avx2>());
-            assert!(!Avx512::is_at_hand() || everywhere == agrees::<Avx512>());
+            assert!(!Avx2::is_at_hand() || eight == agrees::<Avx2>());
+            assert!(!Avx512::is_at_hand() || eight == agrees::<Avx512>());
         }
-        assert_eq!(everywhere.len(), 3);
+        let front: Vec<Vec<u64>> = eight.iter().map(|bits| bits[..=WIDTH].to_vec()).collect();
+        assert_eq!((front.len(), front), (3, agrees::<Everywhere>()));
     }
 }

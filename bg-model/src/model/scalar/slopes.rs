@@ -9,8 +9,9 @@ use core::fmt::Debug;
 use pulp::NullaryFnOnce;
 use wide::f64x2;
 
-/// The number of derivatives in the vectors of every machine.
-pub const WIDTH: usize = 8;
+/// The number of derivatives of a [`Gradient`](super::Gradient): what one vector of every machine has. More would make every function
+/// of a model so many times as long, for what is calculated seldom: steps, where the time goes, have vectors of their own.
+pub const WIDTH: usize = 2;
 
 /// Derivatives side by side.
 pub trait Slopes: Copy + Debug + 'static {
@@ -63,67 +64,76 @@ pub trait Slopes: Copy + Debug + 'static {
     }
 }
 
-/// In the vectors that every machine of its kind has.
+/// In one vector that every machine of its kind has.
 pub type Everywhere = [f64x2; WIDTH / 2];
 
-/// An operation on each pair of two.
-#[inline(always)]
-fn each(a: Everywhere, b: Everywhere, of: impl Fn(f64x2, f64x2) -> f64x2) -> Everywhere {
-    [of(a[0], b[0]), of(a[1], b[1]), of(a[2], b[2]), of(a[3], b[3])]
+/// Eight in such vectors, for steps where there are no wider ones.
+#[cfg(any(test, all(feature = "std", not(target_arch = "x86_64"))))]
+pub type Eight = [f64x2; 4];
+
+/// Derivatives in so many vectors of every machine, at these places.
+macro_rules! in_vectors {
+    ($count:literal: $($place:literal)*) => {
+        impl Slopes for [f64x2; $count] {
+            type Numbers = [f64; 2 * $count];
+
+            const LANES: usize = 2 * $count;
+            const MUST_BE_INLINED: bool = false;
+
+            fn is_at_hand() -> bool {
+                true
+            }
+            /// A function, as it is for other vectors: compiled once.
+            #[inline(never)]
+            fn vectorized<F: NullaryFnOnce>(of: F) -> F::Output {
+                of.call()
+            }
+            #[inline(always)]
+            fn new(numbers: Self::Numbers) -> Self {
+                [$(f64x2::new([numbers[2 * $place], numbers[2 * $place + 1]])),*]
+            }
+            #[inline(always)]
+            fn numbers(self) -> Self::Numbers {
+                let mut numbers = [0.0; 2 * $count];
+                $([numbers[2 * $place], numbers[2 * $place + 1]] = self[$place].to_array();)*
+                numbers
+            }
+            #[inline(always)]
+            fn filled(value: f64) -> Self {
+                [f64x2::splat(value); $count]
+            }
+            #[inline(always)]
+            fn alike(self, value: f64) -> Self {
+                Self::filled(value)
+            }
+            #[inline(always)]
+            fn plus(self, other: Self) -> Self {
+                [$(self[$place] + other[$place]),*]
+            }
+            #[inline(always)]
+            fn minus(self, other: Self) -> Self {
+                [$(self[$place] - other[$place]),*]
+            }
+            #[inline(always)]
+            fn times(self, other: Self) -> Self {
+                [$(self[$place] * other[$place]),*]
+            }
+            #[inline(always)]
+            fn over(self, other: Self) -> Self {
+                [$(self[$place] / other[$place]),*]
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                [$(self[$place].abs()),*]
+            }
+            #[inline(always)]
+            fn larger(self, other: Self) -> Self {
+                [$(self[$place].fast_max(other[$place])),*]
+            }
+        }
+    };
 }
 
-impl Slopes for Everywhere {
-    type Numbers = [f64; WIDTH];
-
-    const LANES: usize = WIDTH;
-    const MUST_BE_INLINED: bool = false;
-
-    fn is_at_hand() -> bool {
-        true
-    }
-    #[inline(always)]
-    fn vectorized<F: NullaryFnOnce>(of: F) -> F::Output {
-        of.call()
-    }
-    #[inline(always)]
-    fn new([a, b, c, d, e, f, g, h]: [f64; WIDTH]) -> Self {
-        [f64x2::new([a, b]), f64x2::new([c, d]), f64x2::new([e, f]), f64x2::new([g, h])]
-    }
-    #[inline(always)]
-    fn numbers(self) -> [f64; WIDTH] {
-        let [[a, b], [c, d], [e, f], [g, h]] = self.map(f64x2::to_array);
-        [a, b, c, d, e, f, g, h]
-    }
-    #[inline(always)]
-    fn filled(value: f64) -> Self {
-        [f64x2::splat(value); WIDTH / 2]
-    }
-    #[inline(always)]
-    fn alike(self, value: f64) -> Self {
-        Self::filled(value)
-    }
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        each(self, other, |a, b| a + b)
-    }
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        each(self, other, |a, b| a - b)
-    }
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        each(self, other, |a, b| a * b)
-    }
-    #[inline(always)]
-    fn over(self, other: Self) -> Self {
-        each(self, other, |a, b| a / b)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.map(f64x2::abs)
-    }
-    #[inline(always)]
-    fn larger(self, other: Self) -> Self {
-        each(self, other, f64x2::fast_max)
-    }
-}
+in_vectors!(1: 0);
+#[cfg(any(test, all(feature = "std", not(target_arch = "x86_64"))))]
+in_vectors!(4: 0 1 2 3);

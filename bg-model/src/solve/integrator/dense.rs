@@ -4,6 +4,8 @@
 //! x + theta (p0 + (1 - theta) (p1 + theta (p2 + (1 - theta) (p3 + theta (p4 + ...))))).
 //! Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, section II.6, and the function
 //! CONTD8 of `dop853.f`.
+//!
+//! Numbers of states are slices in here: what calculates is compiled once, for all models and methods.
 
 use nalgebra::SVector;
 
@@ -15,12 +17,12 @@ pub(super) const FROM_ENDS: usize = 3;
 /// The polynomials of all states, with `C` coefficients each.
 #[derive(Clone, Debug)]
 pub(super) struct Polynomial<const N: usize, const C: usize> {
-    coefficients: [SVector<f64, N>; C],
+    coefficients: [[f64; N]; C],
 }
 
 impl<const N: usize, const C: usize> Polynomial<N, C> {
     pub fn zero() -> Self {
-        Self { coefficients: [SVector::zeros(); C] }
+        Self { coefficients: [[0.0; N]; C] }
     }
 
     /// Sets the coefficients that follow from the ends of the step, and those behind them to what `write` writes: it gets the
@@ -30,37 +32,47 @@ impl<const N: usize, const C: usize> Polynomial<N, C> {
         start: &Point<N>,
         h: f64,
         end: &Point<N>,
-        write: impl Fn(usize, &[SVector<f64, N>], &mut [f64; N]),
+        write: impl Fn(usize, &[[f64; N]; FROM_ENDS], &mut [f64; N]),
     ) {
-        let (ends, behind) = self.coefficients.split_at_mut(FROM_ENDS);
-        for i in 0..N {
-            let chord = end.x.data.0[0][i] - start.x.data.0[0][i];
-            let first = h * start.rate.data.0[0][i] - chord;
-            let of_ends = [chord, first, chord - h * end.rate.data.0[0][i] - first];
-            for (coefficient, value) in ends.iter_mut().zip(of_ends) {
-                coefficient.data.0[0][i] = value;
-            }
-        }
+        let (ends, behind) = self.coefficients.split_first_chunk_mut().expect("coefficients of the ends");
+        let [chord, at_start, at_end] = &mut *ends;
+        chord.copy_from_slice(start.x.as_slice());
+        at_start.copy_from_slice(start.rate.as_slice());
+        at_end.copy_from_slice(end.rate.as_slice());
+        follow_from_ends(h, end.x.as_slice(), chord, at_start, at_end);
         for (m, coefficient) in behind.iter_mut().enumerate() {
-            write(m, ends, &mut coefficient.data.0[0]);
+            write(m, ends, coefficient);
         }
     }
 
     /// Writes the state at the part `theta` of the step, of the first `count` coefficients, into `x`.
     pub fn evaluate(&self, count: usize, start: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        let factors = [theta, 1.0 - theta];
-        let last = count - 1;
-        let mut sum = self.coefficients[last].data.0[0];
-        for (m, coefficient) in self.coefficients[..last].iter().enumerate().rev() {
-            let factor = factors[(m + 1) % 2];
-            for (sum, at) in sum.iter_mut().zip(&coefficient.data.0[0]) {
-                *sum = at + factor * *sum;
-            }
-        }
-        for (i, sum) in sum.into_iter().enumerate() {
-            x.data.0[0][i] = start.x.data.0[0][i] + theta * sum;
-        }
+        evaluate(self.coefficients[..count].as_flattened(), start.x.as_slice(), theta, x.as_mut_slice());
     }
+}
+
+/// Replaces the state at the start, its rate and the rate at the end `end` of a step of size `h` (s) by the coefficients that follow.
+#[inline(never)]
+fn follow_from_ends(h: f64, end: &[f64], chord: &mut [f64], at_start: &mut [f64], at_end: &mut [f64]) {
+    for (((end, chord), at_start), at_end) in end.iter().zip(chord).zip(at_start).zip(at_end) {
+        let whole = end - *chord;
+        let first = h * *at_start - whole;
+        (*chord, *at_start, *at_end) = (whole, first, whole - h * *at_end - first);
+    }
+}
+
+/// Writes the polynomials with these coefficients, those of all states one after the other, into `x`.
+#[inline(never)]
+fn evaluate(coefficients: &[f64], start: &[f64], theta: f64, x: &mut [f64]) {
+    let factors = [theta, 1.0 - theta];
+    let mut lower = coefficients.chunks_exact(x.len().max(1)).enumerate();
+    let Some((_, last)) = lower.next_back() else { return };
+    x.copy_from_slice(last);
+    for (m, coefficient) in lower.rev() {
+        let factor = factors[(m + 1) % 2];
+        x.iter_mut().zip(coefficient).for_each(|(sum, at)| *sum = at + factor * *sum);
+    }
+    x.iter_mut().zip(start).for_each(|(sum, start)| *sum = start + theta * *sum);
 }
 
 /// Writes `h` times a sum of rates, each with its weight, in their order.
@@ -71,10 +83,17 @@ pub(super) fn write_sum<'a, const N: usize>(
 ) {
     // Adding to -0 changes nothing, not even the sign of a zero.
     out.fill(-0.0);
-    for (weight, rate) in terms {
-        for (out, rate) in out.iter_mut().zip(&rate.data.0[0]) {
-            *out += weight * rate;
-        }
-    }
+    terms.for_each(|(weight, rate)| add_times(weight, rate.as_slice(), out));
+    scale(h, out);
+}
+
+/// Adds `weight` times a rate.
+#[inline(never)]
+fn add_times(weight: f64, rate: &[f64], out: &mut [f64]) {
+    out.iter_mut().zip(rate).for_each(|(out, rate)| *out += weight * rate);
+}
+
+#[inline(never)]
+fn scale(h: f64, out: &mut [f64]) {
     out.iter_mut().for_each(|out| *out *= h);
 }

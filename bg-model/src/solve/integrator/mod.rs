@@ -240,7 +240,13 @@ pub trait Method<const N: usize> {
 
 /// The first entry that is not finite, and its value.
 pub(crate) fn first_not_finite<const N: usize>(x: &SVector<f64, N>) -> Option<(usize, f64)> {
-    x.iter().copied().enumerate().find(|(_, value)| !value.is_finite())
+    first_in(x.as_slice())
+}
+
+/// The same of any numbers.
+#[inline(never)]
+pub(crate) fn first_in(numbers: &[f64]) -> Option<(usize, f64)> {
+    numbers.iter().copied().enumerate().find(|(_, value)| !value.is_finite())
 }
 
 /// Whether all entries are finite.

@@ -260,6 +260,8 @@ impl<const N: usize> Method<N> for Taylor<N> {
         }
     }
 
+    /// Compiled once, not again for each choice of methods.
+    #[inline(never)]
     fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
         if self.is_by_other {
             return self.other.dense(start, h, end, theta, x);

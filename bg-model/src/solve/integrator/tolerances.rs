@@ -78,6 +78,7 @@ impl<const N: usize> Scale<N> {
 
     /// The largest `|v_i|` divided by the allowed error at state `x`.
     #[must_use]
+    #[inline(never)]
     pub fn norm(&self, v: &SVector<f64, N>, x: &SVector<f64, N>) -> f64 {
         largest::<f64, N>(&core::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i], 0.0)))
     }
@@ -104,6 +105,7 @@ pub(super) fn largest<S: Scalar, const N: usize>(of: &[S; N]) -> S {
 
 /// The largest change of each rate at `start` where every state is rounded up or down, in some patterns: what rounding may add to the
 /// rates. Not negative. Takes four rates.
+#[inline(never)]
 pub(crate) fn rounding<const N: usize>(flow: &impl Flow<N>, start: &Point<N>) -> SVector<f64, N> {
     const PATTERNS: usize = 4;
     // Up or down without a pattern that states of one kind might share: the multiples of the golden ratio lie evenly.

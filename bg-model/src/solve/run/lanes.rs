@@ -86,7 +86,7 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
         model: &Mo,
         other: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[Lanes<V>]) -> Result<Li, ParameterError>,
-        _: impl Fn(&Li, fn(Lanes<V>) -> Lanes<V>) -> Ot,
+        _: impl Fn(&[&Li], fn(&[Lanes<V>]) -> Lanes<V>) -> Ot,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,

@@ -61,7 +61,7 @@ impl LiftedVisitor<DoubleDouble, DoubleDouble> for Differences {
         _: &Mo,
         _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
-        _: impl Fn(&Li, fn(DoubleDouble) -> DoubleDouble) -> Ot,
+        _: impl Fn(&[&Li], fn(&[DoubleDouble]) -> DoubleDouble) -> Ot,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,

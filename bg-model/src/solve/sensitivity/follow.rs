@@ -7,93 +7,114 @@ use nalgebra::SVector;
 use super::jump::jumped;
 use super::step::{Sloped, Steps, set_values};
 use super::{Direction, SensitivityError};
+use crate::model::assembly::AssemblyError;
+use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;
 use crate::solve::integrator::Point;
 use crate::solve::simulation::{Observer, Switching};
 
-/// Some of the directions with the system in numbers that have slopes along them.
+/// As many directions as the steps have slopes.
 pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
-    system: Box<Li>,
-    /// The same with slopes of nothing.
+    parts: Vec<Part<Li, N>>,
+    /// The system with slopes of nothing.
     plain: Box<Li>,
-    directions: Vec<Direction>,
-    /// The slopes where the run has come to: some of the directions each.
-    steps: Vec<Box<dyn Steps<N, G>>>,
+    /// The slopes where the run has come to.
+    steps: Box<dyn Steps<N, G>>,
     /// The last step: its start, its branches.
     start: f64,
     negative: [bool; G],
     /// Where the run has come to.
     t: f64,
-    /// The state at the start, until the run has begun.
-    begin: Option<Sloped<N>>,
+    has_begun: bool,
     error: Option<SensitivityError>,
     /// The outputs that are asked for.
     outputs: Vec<usize>,
+}
+
+/// A few of the directions.
+struct Part<Li, const N: usize> {
+    /// The system in numbers that have slopes along them.
+    system: Box<Li>,
+    /// The state at the start.
+    begin: Sloped<N>,
     /// For each direction and output the derivatives at the samples.
-    pub slopes: Vec<Vec<Vec<f64>>>,
+    slopes: Vec<Vec<Vec<f64>>>,
 }
 
 impl<Li, const N: usize, const G: usize, const M: usize> Follower<Li, N, G, M>
 where
     Li: Model<Gradient, N, G, M>,
 {
-    /// From the start of a run at `t0` (s) and the state `x`; `steps` are those of the same system.
+    /// From the start of a run at `t0` (s) along `directions`; `systems` have the slopes along a few of them each, `plain` along nothing,
+    /// and `steps` are those of the same system along all of them.
+    ///
+    /// # Errors
+    /// The start cannot be assembled.
     pub fn new(
-        [system, plain]: [Box<Li>; 2],
-        steps: Vec<Box<dyn Steps<N, G>>>,
+        systems: Vec<Box<Li>>,
+        plain: Box<Li>,
+        steps: Box<dyn Steps<N, G>>,
         (directions, outputs): (&[Direction], &[usize]),
         t0: f64,
-        x: Sloped<N>,
-    ) -> Self {
-        let mut begin = x;
-        for (l, direction) in directions.iter().enumerate() {
-            if let Direction::Start(state) = direction {
-                let mut slopes = begin[*state].slopes();
-                slopes[l] += 1.0;
-                begin[*state] = Gradient::new(begin[*state].value, slopes);
+    ) -> Result<Self, AssemblyError> {
+        let part = |(system, directions): (Box<Li>, &[Direction])| -> Result<Part<Li, N>, AssemblyError> {
+            let mut begin = system.start()?;
+            for (l, direction) in directions.iter().enumerate() {
+                if let Direction::Start(state) = direction {
+                    let mut slopes = begin[*state].slopes();
+                    slopes[l] += 1.0;
+                    begin[*state] = Gradient::new(begin[*state].value, slopes);
+                }
             }
-        }
-        Self {
-            system,
+            Ok(Part { system, begin, slopes: vec![vec![Vec::new(); M]; directions.len()] })
+        };
+        let parts = systems.into_iter().zip(directions.chunks(WIDTH)).map(part).collect::<Result<_, _>>()?;
+        Ok(Self {
+            parts,
             plain,
-            directions: directions.to_vec(),
             steps,
             start: t0,
             negative: [false; G],
             t: t0,
-            begin: Some(begin),
+            has_begun: false,
             error: None,
             outputs: outputs.to_vec(),
-            slopes: vec![vec![Vec::new(); M]; directions.len()],
-        }
+        })
     }
 
     /// Begins at the first state of the run, which is to be that of the start. Gives whether it has begun.
     fn has_begun(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) -> bool {
-        let Some(mut start) = self.begin.take() else { return true };
-        if start.iter().zip(x).any(|(start, x)| start.value != *x) {
-            self.error = Some(SensitivityError::ImpactAtStart);
-            return false;
+        if self.has_begun {
+            return true;
         }
-        self.system.project(Gradient::from_f64(t), negative, &mut start);
-        set_values(&mut start, x);
-        self.steps.iter_mut().for_each(|steps| steps.set(&start));
+        for (place, Part { system, begin, .. }) in self.parts.iter().enumerate() {
+            if begin.iter().zip(x).any(|(begin, x)| begin.value != *x) {
+                self.error = Some(SensitivityError::ImpactAtStart);
+                return false;
+            }
+            let mut start = *begin;
+            system.project(Gradient::from_f64(t), negative, &mut start);
+            set_values(&mut start, x);
+            self.steps.set(place, &start);
+        }
+        self.has_begun = true;
         true
     }
 
     /// The derivatives of the states where the run has come to, for each direction.
     pub fn states(&self) -> Vec<Vec<f64>> {
-        let now = self.now(&SVector::zeros());
-        let of = |l: usize| now.iter().map(|state| state.slopes()[l]).collect();
-        (0..self.directions.len()).map(of).collect()
+        let of_part = |(place, part): (usize, &Part<Li, N>)| {
+            let now = self.steps.now(place, &SVector::zeros());
+            let of = |l: usize| now.iter().map(|state| state.slopes()[l]).collect();
+            (0..part.slopes.len()).map(of).collect::<Vec<_>>()
+        };
+        self.parts.iter().enumerate().flat_map(of_part).collect()
     }
 
-    /// The state where the run has come to, of these values.
-    fn now(&self, values: &SVector<f64, N>) -> Sloped<N> {
-        let mut now = values.map(Gradient::from_f64);
-        self.steps.iter().for_each(|steps| steps.write(&mut now));
-        now
+    /// For each direction and output the derivatives at the samples.
+    pub fn slopes(self) -> impl Iterator<Item = Vec<Vec<f64>>> {
+        self.parts.into_iter().flat_map(|part| part.slopes)
     }
 
     /// What the outputs at the samples and the states have come to.
@@ -116,19 +137,19 @@ where
         if !self.has_begun(t, x, negative) {
             return;
         }
-        let mut reached = self.now(x);
-        if t != self.t {
-            let (start, branches) = (self.start, &self.negative);
-            if !self.steps.iter_mut().all(|steps| steps.look(branches, start, t, &mut reached)) {
-                self.error = Some(SensitivityError::Inexact { t });
-                return;
-            }
+        let is_inside = t != self.t;
+        if is_inside && !self.steps.look(&self.negative, self.start, t) {
+            self.error = Some(SensitivityError::Inexact { t });
+            return;
         }
-        let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
-        self.system.outputs(Gradient::from_f64(t), &reached, negative, &mut outputs);
-        for &output in &self.outputs {
-            let slopes = outputs[output].slopes();
-            self.slopes.iter_mut().zip(slopes).for_each(|(columns, slope)| columns[output].push(slope));
+        for (place, Part { system, slopes, .. }) in self.parts.iter_mut().enumerate() {
+            let reached = if is_inside { self.steps.looked_at(place, x) } else { self.steps.now(place, x) };
+            let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
+            system.outputs(Gradient::from_f64(t), &reached, negative, &mut outputs);
+            for &output in &self.outputs {
+                let of_output = outputs[output].slopes();
+                slopes.iter_mut().zip(of_output).for_each(|(columns, slope)| columns[output].push(slope));
+            }
         }
     }
 
@@ -140,7 +161,7 @@ where
             return;
         }
         (self.start, self.negative, self.t) = (start.t, *negative, end.t);
-        if !self.steps.iter_mut().all(|steps| steps.pass(negative, start, end)) {
+        if !self.steps.pass(negative, start, end) {
             self.error = Some(SensitivityError::Inexact { t: start.t });
         }
     }
@@ -149,13 +170,15 @@ where
         if self.error.is_some() {
             return;
         }
-        match jumped(&*self.system, &*self.plain, &self.now(&switching.before.x), switching) {
-            Some(after) => self.steps.iter_mut().for_each(|steps| steps.set(&after)),
-            None => {
+        for (place, Part { system, .. }) in self.parts.iter().enumerate() {
+            let now = self.steps.now(place, &switching.before.x);
+            let Some(after) = jumped(&**system, &*self.plain, &now, switching) else {
                 let switch = switching.reached.iter().position(|&reached| reached).unwrap_or_default();
-                let name = self.system.switch_name(switch).unwrap_or("a switch");
+                let name = system.switch_name(switch).unwrap_or("a switch");
                 self.error = Some(SensitivityError::Grazes { switch: name, t: switching.before.t });
-            }
+                return;
+            };
+            self.steps.set(place, &after);
         }
     }
 

@@ -47,6 +47,8 @@ use crate::model::scalar::Gradient;
 use crate::model::scalar::gradient::GradientIn;
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::lanes::{Avx2, Avx512};
+#[cfg(not(target_arch = "x86_64"))]
+use crate::model::scalar::slopes::Eight;
 use crate::model::scalar::slopes::{Slopes, WIDTH};
 use crate::model::system::Model;
 use crate::solve::integrator::{Integrator, Point, Scale};
@@ -55,7 +57,7 @@ use crate::solve::simulation::{Observer, Switching};
 pub use adjoint::{Gradients, Measured, Objective, gradient, gradient_within};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
-use step::{Stepper, Steps, front};
+use step::{Stepper, Steps, joined as joined_slopes};
 
 /// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
 /// the slopes would no longer be the derivatives of these.
@@ -197,7 +199,10 @@ pub fn sensitivities_of<Me: Mechanism>(
     } else if Avx2::is_at_hand() {
         return model.visit_lifted::<Gradient, GradientIn<Avx2>, _>(following);
     }
-    model.visit_lifted::<Gradient, Gradient, _>(following)
+    #[cfg(target_arch = "x86_64")]
+    return model.visit_lifted::<Gradient, Gradient, _>(following);
+    #[cfg(not(target_arch = "x86_64"))]
+    model.visit_lifted::<Gradient, GradientIn<Eight>, _>(following)
 }
 
 /// What is done with the model.
@@ -236,40 +241,57 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         model: &Mo,
         _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
-        in_numbers: impl Fn(&Li, fn(Gradient) -> GradientIn<V>) -> Fa,
+        joined: impl Fn(&[&Li], fn(&[Gradient]) -> GradientIn<V>) -> Fa,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
         Li: Model<Gradient, N, G, M> + 'static,
         Fa: Model<GradientIn<V>, N, G, M> + 'static,
     {
+        self.followed(V::LANES, model, &lifted, &|models, scale, sizes| {
+            let is_estimated = self.request.method != Integrator::Dop853;
+            Box::new(Stepper::<V, Fa, N>::new(Box::new(joined(models, joined_slopes)), is_estimated, (scale, sizes)))
+        })
+    }
+}
+
+impl Following<'_> {
+    /// Makes the run, followed along `lanes` directions at a time by what `steps` makes. Compiled once for each model, whatever the vectors.
+    fn followed<Mo, Li, const N: usize, const G: usize, const M: usize>(
+        &self,
+        lanes: usize,
+        model: &Mo,
+        lifted: &dyn Fn(&[Gradient]) -> Result<Li, ParameterError>,
+        steps: &MakesSteps<'_, Li, N, G>,
+    ) -> Result<Sensitivities, SensitivityError>
+    where
+        Mo: Model<f64, N, G, M>,
+        Li: Model<Gradient, N, G, M>,
+    {
         let start = model.start()?;
-        let settings = self.request.settings(0.0);
-        let scale = Scale::<N>::from(&settings.tolerances);
-        let is_estimated = self.request.method != Integrator::Dop853;
-        let follower = |chunk: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
-            let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
-            let sizes = std::array::from_fn(|l| chunk.get(l).map_or(1.0, |&of| self.size(of, start.as_slice())));
-            let steps = |(k, some): (usize, &[Direction])| -> Result<Box<dyn Steps<N, G>>, ParameterError> {
-                let system = Box::new(in_numbers(&*system(some)?, front));
-                Ok(Box::new(Stepper::new(system, k * V::LANES, is_estimated, (scale.clone(), sizes))))
-            };
-            let steps = chunk.chunks(V::LANES).enumerate().map(steps).collect::<Result<_, _>>()?;
-            let (system, plain) = (system(chunk)?, system(&[])?);
-            let x = system.start()?;
-            Ok(Follower::new([system, plain], steps, (chunk, self.outputs), 0.0, x))
+        let scale = Scale::<N>::from(&self.request.settings(0.0).tolerances);
+        let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
+        let follower = |directions: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
+            let systems = directions.chunks(WIDTH).map(system).collect::<Result<Vec<_>, _>>()?;
+            let sizes: Vec<f64> = directions.iter().map(|&of| self.size(of, start.as_slice())).collect();
+            let models: Vec<&Li> = systems.iter().map(|system| &**system).collect();
+            let steps = steps(&models, scale.clone(), &sizes);
+            Ok(Follower::new(systems, system(&[])?, steps, (directions, self.outputs), 0.0)?)
         };
-        let followers = self.directions.chunks(WIDTH).map(follower).collect::<Result<Vec<_>, _>>()?;
+        let followers = self.directions.chunks(lanes).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);
         let outcome = observed(model, self.request, &mut followers);
         let Followers(mut followers) = followers;
         followers.iter_mut().try_for_each(Follower::check)?;
         let trajectory = outcome?;
         let states = followers.iter().flat_map(Follower::states).collect();
-        let slopes = followers.into_iter().flat_map(|follower| follower.slopes).collect();
+        let slopes = followers.into_iter().flat_map(Follower::slopes).collect();
         Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
     }
 }
+
+/// Makes steps of the systems that have a few directions each, measured by the scale of the states and the size of each direction.
+type MakesSteps<'a, Li, const N: usize, const G: usize> = dyn Fn(&[&Li], Scale<N>, &[f64]) -> Box<dyn Steps<N, G>> + 'a;
 
 /// Several observers of one kind.
 struct Followers<O>(Vec<O>);

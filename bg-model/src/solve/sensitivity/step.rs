@@ -23,17 +23,12 @@ pub(super) type Sloped<const N: usize> = SVector<Gradient, N>;
 /// The same in the vectors of a step.
 type SlopedIn<V, const N: usize> = SVector<GradientIn<V>, N>;
 
-/// The slopes from `first` on in other vectors.
-#[inline(always)]
-fn part<V: Slopes>(number: Gradient, first: usize) -> GradientIn<V> {
-    let mut numbers = V::filled(0.0).numbers();
-    numbers.as_mut().copy_from_slice(&number.slopes()[first..first + V::LANES]);
-    GradientIn::new(number.value, numbers)
-}
-
-/// The first slopes in other vectors.
-pub(super) fn front<V: Slopes>(number: Gradient) -> GradientIn<V> {
-    part(number, 0)
+/// The value of some numbers with the slopes of all of them side by side.
+pub(super) fn joined<V: Slopes>(numbers: &[Gradient]) -> GradientIn<V> {
+    let mut slopes = V::filled(0.0).numbers();
+    let places = slopes.as_mut().chunks_exact_mut(WIDTH);
+    places.zip(numbers).for_each(|(place, number)| place.copy_from_slice(&number.slopes()));
+    GradientIn::new(numbers[0].value, slopes)
 }
 
 /// The stages of a step.
@@ -43,28 +38,29 @@ const MOST_PARTS: u32 = 1 << 16;
 /// Errors below this let the next step have half as many parts: a twofold step errs 2^8 times as much.
 const SMALL: f64 = 1.0 / 512.0;
 
-/// A state that follows the steps of a run, whatever its vectors. It has some of the slopes of a [`Gradient`].
+/// A state that follows the steps of a run, whatever its vectors. Its slopes are seen in parts, each those of a [`Gradient`].
 pub(super) trait Steps<const N: usize, const G: usize> {
-    /// Has come to the state `x`.
-    fn set(&mut self, x: &Sloped<N>);
+    /// Has come to the state `x`, as far as the slopes of this part are concerned.
+    fn set(&mut self, part: usize, x: &Sloped<N>);
 
-    /// Writes the slopes of where it has come to into `x`.
-    fn write(&self, x: &mut Sloped<N>);
+    /// The state `x` with the slopes of this part where it has come to.
+    fn now(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N>;
 
     /// Goes on by a step of the run, from one state to the other, whose values it takes, in the branches `negative`. Gives whether it
     /// did: not where the slopes stay too inexact or are not finite.
     fn pass(&mut self, negative: &[bool; G], start: &Point<N>, end: &Point<N>) -> bool;
 
-    /// Writes the slopes at the time `to` (s) inside the last step, which started at `from`, into `x`. Gives whether it did.
-    fn look(&mut self, negative: &[bool; G], from: f64, to: f64, x: &mut Sloped<N>) -> bool;
+    /// Looks at the time `to` (s) inside the last step, which started at `from`. Gives whether it could.
+    fn look(&mut self, negative: &[bool; G], from: f64, to: f64) -> bool;
+
+    /// The state `x` with the slopes of this part where it has looked at last.
+    fn looked_at(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N>;
 }
 
 /// The method with its work space.
 #[derive(Debug)]
 pub(super) struct Stepper<V, Sys, const N: usize> {
     system: Box<Sys>,
-    /// The place of its first slope.
-    first: usize,
     /// The state at the start of the last step, at its end, and at a sample in it.
     from: Box<SlopedIn<V, N>>,
     now: Box<SlopedIn<V, N>>,
@@ -94,14 +90,14 @@ struct Stages<V, const N: usize> {
 }
 
 impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
-    /// Steps of this system, whose slopes are those from `first` on. Errors, where they are estimated, are measured with
-    /// the scale of the states and the sizes of all directions.
-    pub fn new(system: Box<Sys>, first: usize, is_estimated: bool, (scale, sizes): (Scale<N>, [f64; WIDTH])) -> Self {
+    /// Steps of this system. Errors, where they are estimated, are measured with the scale of the states and the size of each direction.
+    pub fn new(system: Box<Sys>, is_estimated: bool, (scale, of_each): (Scale<N>, &[f64])) -> Self {
         let nothing: Box<SlopedIn<V, N>> = Box::new(SVector::repeat(GradientIn::from_f64(0.0)));
         let k = Box::new(Stages { values: [[0.0; N]; STAGES], slopes: [[V::filled(0.0); N]; STAGES] });
-        let sizes = part(Gradient::new(0.0, sizes), first).slopes;
-        let work = Work { k, parts: 1, is_estimated, scale, sizes };
-        Self { system, first, from: nothing.clone(), now: nothing.clone(), between: nothing, work }
+        let mut sizes = V::filled(1.0).numbers();
+        sizes.as_mut()[..of_each.len()].copy_from_slice(of_each);
+        let work = Work { k, parts: 1, is_estimated, scale, sizes: V::new(sizes) };
+        Self { system, from: nothing.clone(), now: nothing.clone(), between: nothing, work }
     }
 }
 
@@ -110,13 +106,13 @@ pub(super) fn set_values<V, const N: usize>(x: &mut SlopedIn<V, N>, values: &SVe
     x.data.0[0].iter_mut().zip(&values.data.0[0]).for_each(|(x, &value)| x.value = value);
 }
 
-/// Writes slopes to their places in `x`.
-fn write<V: Slopes, const N: usize>(slopes: &SlopedIn<V, N>, first: usize, x: &mut Sloped<N>) {
-    for (x, state) in x.iter_mut().zip(slopes) {
-        let mut all = x.slopes();
-        all[first..first + V::LANES].copy_from_slice(state.slopes().as_ref());
-        *x = Gradient::new(x.value, all);
-    }
+/// The slopes of this part.
+fn of_part<V: Slopes, const N: usize>(slopes: &SlopedIn<V, N>, part: usize, x: &SVector<f64, N>) -> Sloped<N> {
+    SVector::from_fn(|i, _| {
+        let mut of_state = [0.0; WIDTH];
+        of_state.copy_from_slice(&slopes[i].slopes().as_ref()[part * WIDTH..][..WIDTH]);
+        Gradient::new(x[i], of_state)
+    })
 }
 
 impl<V, Sys, const N: usize, const G: usize> Steps<N, G> for Stepper<V, Sys, N>
@@ -124,12 +120,16 @@ where
     V: Slopes,
     Sys: System<GradientIn<V>, N, G>,
 {
-    fn set(&mut self, x: &Sloped<N>) {
-        *self.now = x.map(|number| part(number, self.first));
+    fn set(&mut self, part: usize, x: &Sloped<N>) {
+        for (now, x) in self.now.iter_mut().zip(x) {
+            let mut slopes = now.slopes();
+            slopes.as_mut()[part * WIDTH..][..WIDTH].copy_from_slice(&x.slopes());
+            *now = GradientIn::new(x.value, slopes);
+        }
     }
 
-    fn write(&self, x: &mut Sloped<N>) {
-        write(&self.now, self.first, x);
+    fn now(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N> {
+        of_part(&self.now, part, x)
     }
 
     fn pass(&mut self, negative: &[bool; G], start: &Point<N>, end: &Point<N>) -> bool {
@@ -142,13 +142,14 @@ where
         is_exact
     }
 
-    fn look(&mut self, negative: &[bool; G], from: f64, to: f64, x: &mut Sloped<N>) -> bool {
-        let Self { system, first, from: start, between, work, .. } = self;
+    fn look(&mut self, negative: &[bool; G], from: f64, to: f64) -> bool {
+        let Self { system, from: start, between, work, .. } = self;
         let system = &**system;
-        let crossing = Crossing { work, system, negative, span: [from, to], x: start, end: between };
-        let is_exact = V::vectorized(crossing);
-        write(between, *first, x);
-        is_exact
+        V::vectorized(Crossing { work, system, negative, span: [from, to], x: start, end: between })
+    }
+
+    fn looked_at(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N> {
+        of_part(&self.between, part, x)
     }
 }
 
@@ -236,15 +237,20 @@ impl<V: Slopes, const N: usize> Work<V, N> {
         let none = GradientIn { value: 0.0, slopes: self.sizes.alike(0.0) };
         let mut rate = SVector::repeat(none);
         for stage in 0..STAGES {
-            macro_rules! written_out {
-                ($($stage:literal)*) => {
-                    match stage {
-                        $( $stage => self.k.move_by(x, h, const { DormandPrince::A[$stage] }, end), )*
-                        _ => {}
-                    }
-                };
+            // In the machine's widest vectors the sums are written out, so that each finds its weights as constants.
+            if V::MUST_BE_INLINED {
+                macro_rules! written_out {
+                    ($($stage:literal)*) => {
+                        match stage {
+                            $( $stage => self.k.move_by(x, h, const { DormandPrince::A[$stage] }, end), )*
+                            _ => {}
+                        }
+                    };
+                }
+                written_out!(1 2 3 4 5 6 7 8 9 10 11);
+            } else if stage > 0 {
+                self.k.move_by(x, h, DormandPrince::A[stage], end);
             }
-            written_out!(1 2 3 4 5 6 7 8 9 10 11);
             let (t, state) =
                 (GradientIn::from_f64(t + DormandPrince::C[stage] * h), if stage == 0 { x } else { &*end });
             if V::MUST_BE_INLINED {

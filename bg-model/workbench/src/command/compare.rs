@@ -3,13 +3,12 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::parameters::Parameters;
+use bg_model::mechanism::Scenes;
 use bg_model::run::Request;
 use bg_model::simulation::Recording;
 
 use super::arguments::CompareArguments;
-use super::run::{integrate, model, request};
+use super::run::{follow, machine, request};
 use super::{InputError, ended, say};
 use crate::Program;
 use crate::compare::text;
@@ -17,7 +16,6 @@ use crate::inputs;
 use crate::parameters::{self, Chosen};
 use crate::running::Outcome;
 use crate::samples::read_file;
-use crate::scenes::Scene;
 
 pub fn compare<Me: Scenes>(program: &Program<Me>, arguments: &CompareArguments) -> Result<ExitCode, InputError> {
     let mut chosen = parameters::merge::<Me::Parameters>(arguments.params.as_deref(), &arguments.set)?;
@@ -38,8 +36,8 @@ fn side<Me: Scenes>(
     request: &Request,
 ) -> Result<(Recording, Option<String>), InputError> {
     if let Some(scene) = program.scenes.iter().find(|scene| scene.name == name) {
-        let run = Running { scene, scenes: &program.scenes, chosen, request: request.clone() };
-        let Outcome { run, failure } = Me::model(scene.index, run)?;
+        let machine = machine(program, scene, chosen)?;
+        let Outcome { run, failure } = follow(&*machine, request.clone(), None)?;
         let failure = failure.map(|failure| format!("the run of `{name}` failed: {failure}"));
         return Ok((run.recording, failure));
     }
@@ -57,20 +55,4 @@ fn side<Me: Scenes>(
         }
     }
     Ok((samples, None))
-}
-
-struct Running<'a, P> {
-    scene: &'a Scene,
-    scenes: &'a [Scene],
-    chosen: &'a Chosen<P>,
-    request: Request,
-}
-
-impl<P: Parameters> MechanismVisitor for Running<'_, P> {
-    type Output = Result<Outcome, InputError>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let model: Sc = model(self.scene, self.scenes, self.chosen)?;
-        Ok(integrate(&model, self.request)?)
-    }
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use bg_model::mechanism::Scenes;
 
 use super::arguments::{CheckArguments, RecordArguments};
-use super::run::Claiming;
+use super::run::{claimed_and_run, machine};
 use super::{InputError, ended};
 use crate::Program;
 use crate::files::console;
@@ -24,9 +24,8 @@ pub fn record<Me: Scenes>(program: &Program<Me>, arguments: &RecordArguments) ->
     let scene = program.scene_called(&model.scene);
     let name = name.as_deref().unwrap_or(&scene.name);
     let claim = || Ok(Place::claim(out, name, Me::describe().name)?);
-    let run =
-        Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin: Begin::Model, look: None, claim };
-    let (Outcome { run, failure }, _, place) = Me::model(scene.index, run)?;
+    let machine = machine(program, scene, &chosen)?;
+    let (Outcome { run, failure }, _, place) = claimed_and_run(&*machine, request, &Begin::Model, None, claim)?;
     if let Some(failure) = failure {
         return Ok(ended([format!("the run failed, nothing is recorded: {failure}")]));
     }

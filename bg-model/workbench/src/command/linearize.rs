@@ -2,19 +2,19 @@
 
 use std::process::ExitCode;
 
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::parameters::Parameters;
-use bg_model::run::{Request, Simulation};
+use bg_model::mechanism::Scenes;
+use bg_model::run::{Request, State};
 
 use super::arguments::{IntegrationArguments, LinearizeArguments};
-use super::run::{follow, model, request};
+use super::run::{follow, machine, request};
 use super::{InputError, ended};
 use crate::Program;
 use crate::figures::FigureError;
 use crate::figures::bode::bode;
 use crate::files::{FileError, RunFolder, console};
 use crate::inputs;
-use crate::linear::{Response, StateSpace, equilibrium, linearise, logarithmic, responses_csv};
+use crate::linear::{Response, StateSpace, logarithmic, responses_csv};
+use crate::machine::Machine;
 use crate::output::OutputError;
 use crate::parameters::{self, Chosen};
 use crate::scenes::Scene;
@@ -36,8 +36,7 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArgumen
     chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
     let scene = program.scene_called(&values.scene);
     let folder = RunFolder::claim(&arguments.out, &names(scene))?;
-    let here = Here { scene, scenes: &program.scenes, chosen: &chosen, arguments };
-    let (space, sentence) = Me::model(scene.index, here)?;
+    let (space, sentence) = here(program, scene, &chosen, arguments)?;
     let text = format!("{sentence}\n{}", space.table());
     let (written, faults) = write(folder, &space, &text);
     let written =
@@ -54,8 +53,7 @@ pub fn space<Me: Scenes>(
     at: Option<f64>,
 ) -> Result<StateSpace, String> {
     let arguments = LinearizeArguments { at, ..LinearizeArguments::of_scene(&scene.name) };
-    let here = Here { scene, scenes: &program.scenes, chosen, arguments: &arguments };
-    let space = check_time("at", at).and_then(|()| Me::model(scene.index, here));
+    let space = check_time("at", at).and_then(|()| here(program, scene, chosen, &arguments));
     space.map(|(space, _)| space).map_err(|fault| fault.to_string())
 }
 
@@ -83,56 +81,44 @@ fn diagram(input: &str, output: &str) -> String {
 }
 
 /// Linearises a scene where the arguments say.
-struct Here<'a, P> {
-    scene: &'a Scene,
-    scenes: &'a [Scene],
-    chosen: &'a Chosen<P>,
-    arguments: &'a LinearizeArguments,
-}
-
-impl<P: Parameters> MechanismVisitor for Here<'_, P> {
-    type Output = Result<(StateSpace, String), InputError>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let model: Sc = model(self.scene, self.scenes, self.chosen)?;
-        linearised(&model, self.arguments.at, |t| self.arguments.integration(t))
-    }
+fn here<Me: Scenes>(
+    program: &Program<Me>,
+    scene: &Scene,
+    chosen: &Chosen<Me::Parameters>,
+    arguments: &LinearizeArguments,
+) -> Result<(StateSpace, String), InputError> {
+    linearised(&*machine(program, scene, chosen)?, arguments.at, |t| arguments.integration(t))
 }
 
 /// The linear model at `at`, s, and a sentence on where that is; without `at` it is the equilibrium near the start. A run to
 /// `t` (s) is made as `integration` says.
-pub fn linearised<Sc: Mechanism>(
-    model: &Sc,
+pub fn linearised(
+    machine: &dyn Machine,
     at: Option<f64>,
     integration: impl Fn(f64) -> IntegrationArguments,
 ) -> Result<(StateSpace, String), InputError> {
     let Some(t) = at else {
-        let start = values(&Simulation::new(model).start()?);
-        let rest = equilibrium(model, 0.0, &start)?;
-        return Ok((linearise(model, 0.0, &rest.x)?, rest.sentence()));
+        let rest = machine.equilibrium(0.0, &values(&machine.start(None)?))?;
+        return Ok((machine.linearised(0.0, &rest.x)?, rest.sentence()));
     };
-    let x = values(&state_at(model, t, &integration(t))?);
-    Ok((linearise(model, t, &x)?, format!("where the run is at t = {t:?} s")))
+    let x = values(&state_at(machine, t, &integration(t))?);
+    Ok((machine.linearised(t, &x)?, format!("where the run is at t = {t:?} s")))
 }
 
 /// The state that a run reaches at `t` (s).
-fn state_at<Sc: Mechanism>(
-    model: &Sc,
-    t: f64,
-    integration: &IntegrationArguments,
-) -> Result<bg_model::run::State, InputError> {
+fn state_at(machine: &dyn Machine, t: f64, integration: &IntegrationArguments) -> Result<State, InputError> {
     if t == 0.0 {
-        return Ok(Simulation::new(model).start()?);
+        return Ok(machine.start(None)?);
     }
     let request = Request { t_end: t, ..request(integration, 0.0, None)? };
-    let outcome = follow(Simulation::of(model, request.clone()), &request)?;
+    let outcome = follow(machine, request, None)?;
     match outcome.failure {
         None => Ok(outcome.run.last),
         Some(failure) => Err(InputError::NotReached { t, failure }),
     }
 }
 
-fn values(state: &bg_model::run::State) -> Vec<f64> {
+fn values(state: &State) -> Vec<f64> {
     state.states.iter().map(|(_, value)| *value).collect()
 }
 

@@ -201,7 +201,8 @@ fn named<Me>(command: clap::Command, program: &Program<Me>) -> clap::Command {
     };
     let cases = |argument: Arg| {
         let names = program.cases.iter().map(|case| PossibleValue::new(case.name.clone()).help(case.about.clone()));
-        argument.value_parser(PossibleValuesParser::new(names)).default_values(program.measured.clone())
+        let measured = if program.measured.is_empty() { vec![program.scene.clone()] } else { program.measured.clone() };
+        argument.value_parser(PossibleValuesParser::new(names)).default_values(measured)
     };
     let takes = |command: &clap::Command, id: &str| command.get_arguments().any(|argument| argument.get_id() == id);
     let command = if takes(&command, "scene") { command.mut_arg("scene", scene) } else { command };

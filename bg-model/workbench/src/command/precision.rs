@@ -26,7 +26,7 @@ pub fn measure_all<Me: Scenes>(program: &Program<Me>, arguments: &PrecisionArgum
     let mut entries: Vec<Entry> = Vec::new();
     for case in cases {
         bar.set_message(format!("{}: reference", case.name));
-        let reference = case.solution::<Me>(&program.scenes)?;
+        let reference = case.solve(&program.scenes)?;
         for method in methods {
             bar.set_message(format!("{} by {}", case.name, method.name()));
             for setting in settings(arguments, *method) {

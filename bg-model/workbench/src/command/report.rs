@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use bg_model::mechanism::{Mechanism, Scenes};
+use bg_model::mechanism::Scenes;
 
 use super::InputError;
 use super::arguments::{IntegrationArguments, ReportArguments};
@@ -11,6 +11,7 @@ use super::linearize::{check_time, linearised};
 use super::run::simulate;
 use crate::Program;
 use crate::live::Module;
+use crate::machine::Machine;
 use crate::output::ReportFiles;
 use crate::page::Linearised;
 use crate::page::film::Film;
@@ -53,15 +54,15 @@ fn drawing(path: &Path) -> Result<(String, String), InputError> {
 
 impl Look {
     /// The modes, where they are wanted.
-    pub fn modes<Sc: Mechanism>(&self, model: &Sc) -> Result<Option<Linearised>, InputError> {
-        self.modes.map(|at| self.linearised(model, at)).transpose()
+    pub fn modes(&self, machine: &dyn Machine) -> Result<Option<Linearised>, InputError> {
+        self.modes.map(|at| self.linearised(machine, at)).transpose()
     }
 
-    fn linearised<Sc: Mechanism>(&self, model: &Sc, at: Option<f64>) -> Result<Linearised, InputError> {
+    fn linearised(&self, machine: &dyn Machine, at: Option<f64>) -> Result<Linearised, InputError> {
         let to = |t: f64| IntegrationArguments { t_end: t, step: t, ..self.integration.clone() };
-        let (space, place) = linearised(model, at, to)?;
+        let (space, place) = linearised(machine, at, to)?;
         let x: Vec<f64> = space.point.iter().map(|state| state.value).collect();
-        let rest = Film::still(model, space.t, &x).animation();
+        let rest = Film::still(machine, space.t, &x).animation();
         Ok(Linearised { modes: space.modes, place, rest })
     }
 }

@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use bg_model::description::ParameterInfo;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::mechanism::{Mechanism, Scenes};
 use bg_model::parameters::Parameters;
-use bg_model::run::{Request, RunError, Simulation, State, sample_times};
+use bg_model::run::{Request, RunError, State, sample_times};
 use bg_model::simulation::{MissingColumn, Part};
 
 use super::arguments::{IntegrationArguments, RunArguments, Start};
@@ -18,6 +18,7 @@ use crate::Program;
 use crate::files::{console, whole};
 use crate::inputs;
 use crate::live::{Live, Order, changed};
+use crate::machine::{Machine, MachineError, Making};
 use crate::output::{Claimed, OutputError, Places, Table};
 use crate::page::film::Film;
 use crate::page::{Parameter, Views};
@@ -67,8 +68,8 @@ pub fn simulate<Me: Scenes>(
         None => None,
     };
     let claim = || Ok(places.claim()?);
-    let run = Claiming { scene, scenes: &program.scenes, chosen: &chosen, request, begin, look, claim };
-    let (outcome, views, claimed) = Me::model(scene.index, run)?;
+    let machine = machine(program, scene, &chosen)?;
+    let (outcome, views, claimed) = claimed_and_run(&*machine, request, &begin, look, claim)?;
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
     let rows = sample_times(t0, integration.step, integration.t_end);
@@ -93,52 +94,51 @@ pub fn model<P: Parameters, Sc: Mechanism>(
     Ok(Sc::make(own, &chosen.inputs)?)
 }
 
-/// A run with its progress on the terminal. One that stops before its end is no error.
-pub fn integrate<Sc: Mechanism>(model: &Sc, request: Request) -> Result<Outcome, RunError> {
-    follow(Simulation::of(model, request.clone()), &request)
+/// The same, whatever its type.
+pub fn machine<Me: Scenes>(
+    program: &Program<Me>,
+    scene: &Scene,
+    chosen: &Chosen<Me::Parameters>,
+) -> Result<Box<dyn Machine>, InputError> {
+    let making = Making { scene, scenes: &program.scenes, values: &chosen.values, inputs: &chosen.inputs };
+    making.made::<Me>().map_err(|fault| match fault {
+        MachineError::Fixed(fault) => InputError::Fixed { place: chosen.places[fault.index].clone(), fault },
+        MachineError::Parameter(fault) => fault.into(),
+    })
 }
 
-/// The same of a simulation that may start elsewhere.
-pub fn follow<Sc: Mechanism>(simulation: Simulation<'_, Sc>, request: &Request) -> Result<Outcome, RunError> {
+/// A run from `from`, or from the model's own start, with its progress on the terminal. One that stops before its end is no error.
+pub fn follow(machine: &dyn Machine, request: Request, from: Option<&State>) -> Result<Outcome, RunError> {
     let bar = over_time(request.t_end);
-    let outcome = running::follow(simulation, |t| bar.set_position(ticks(t)));
+    let outcome = running::follow(machine, request, from, |t| bar.set_position(ticks(t)));
     bar.finish_and_clear();
     outcome
 }
 
-/// Makes a scene's model and runs it; before that `claim` claims the places that the results go to.
-pub(super) struct Claiming<'a, P, F> {
-    pub scene: &'a Scene,
-    pub scenes: &'a [Scene],
-    pub chosen: &'a Chosen<P>,
-    pub request: Request,
-    pub begin: Begin,
-    pub look: Option<&'a Look>,
-    pub claim: F,
-}
-
-impl<P: Parameters, C, F: FnOnce() -> Result<C, InputError>> MechanismVisitor for Claiming<'_, P, F> {
-    type Output = Result<(Outcome, Option<Views>, C), InputError>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let model: Sc = model(self.scene, self.scenes, self.chosen)?;
-        let mut request = self.request;
-        if self.look.is_some() {
-            request.parts.push(Part::Shown);
-        }
-        // What cannot be assembled is refused before anything is claimed.
-        let simulation = self.begin.simulation(&model, request.clone())?;
-        let modes = self.look.map(|look| look.modes(&model)).transpose()?.flatten();
-        let claimed = (self.claim)()?;
-        let mut outcome = follow(simulation, &request)?;
-        let film = self.look.map(|_| Film::taken(Sc::describe(), &mut outcome.run));
-        let views = film.map(|film| Views {
-            animation: film.animation(),
-            picture: Some(film.picture(picture::svg(Sc::describe()))),
-            modes,
-        });
-        Ok((outcome, views, claimed))
+/// Runs a model; before that `claim` claims the places that the results go to.
+pub(super) fn claimed_and_run<C>(
+    machine: &dyn Machine,
+    mut request: Request,
+    begin: &Begin,
+    look: Option<&Look>,
+    claim: impl FnOnce() -> Result<C, InputError>,
+) -> Result<(Outcome, Option<Views>, C), InputError> {
+    if look.is_some() {
+        request.parts.push(Part::Shown);
     }
+    // What cannot be assembled is refused before anything is claimed.
+    let from = begin.state(machine)?;
+    let modes = look.map(|look| look.modes(machine)).transpose()?.flatten();
+    let claimed = claim()?;
+    let mut outcome = follow(machine, request, from.as_ref())?;
+    let description = machine.description();
+    let film = look.map(|_| Film::taken(description, &mut outcome.run));
+    let views = film.map(|film| Views {
+        animation: film.animation(),
+        picture: Some(film.picture(picture::svg(description))),
+        modes,
+    });
+    Ok((outcome, views, claimed))
 }
 
 fn read_state(path: &Path) -> Result<State, InputError> {

@@ -3,26 +3,24 @@
 //! In: what was recorded, and the mechanism of now. Out: the run that the record asks for, or why there is none.
 
 use bg_model::input::Input;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::parameters::{ParameterError, Parameters};
-use bg_model::run::{Request, RunError, Simulation, Trajectory};
+use bg_model::mechanism::Scenes;
+use bg_model::parameters::Parameters;
+use bg_model::run::{Request, RunError, Trajectory};
 use thiserror::Error;
 
 use super::GoldenError;
 use super::file::Golden;
 use crate::inputs;
+use crate::machine::{MachineError, Making};
 use crate::parameters::{Chosen, set};
-use crate::scenes::{Fixed, Scene, own_parameters};
+use crate::scenes::Scene;
 
 /// A run that cannot be made any more.
 #[derive(Debug, Error)]
 pub enum RunFault {
-    /// The scene keeps a parameter that it left adjustable.
+    /// The scene keeps a parameter that it left adjustable, or the parameters cannot be.
     #[error(transparent)]
-    Fixed(#[from] Fixed),
-    /// The parameters cannot be.
-    #[error(transparent)]
-    Model(#[from] ParameterError),
+    Model(#[from] MachineError),
     /// It cannot be started, or stops before its end.
     #[error("the run failed: {0}")]
     Run(#[from] RunError),
@@ -59,18 +57,8 @@ impl<'a, P: Parameters> Prepared<'a, P> {
 
     /// Makes the run.
     pub fn run<Me: Scenes<Parameters = P>>(&self) -> Result<Trajectory, RunFault> {
-        Me::model(self.scene.index, Again(self))
-    }
-}
-
-struct Again<'a, 'b, P>(&'b Prepared<'a, P>);
-
-impl<P: Parameters> MechanismVisitor for Again<'_, '_, P> {
-    type Output = Result<Trajectory, RunFault>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let Self(Prepared { parameters, inputs, scene, scenes, request, .. }) = self;
-        let model = Sc::make(own_parameters(scene, scenes, parameters)?, inputs)?;
-        Ok(Simulation::of(&model, request.clone()).run()?)
+        let Self { parameters, inputs, scene, scenes, request, .. } = self;
+        let machine = Making { scene, scenes, values: parameters, inputs }.made::<Me>()?;
+        Ok(machine.run(request.clone(), None, &mut |_| ())?)
     }
 }

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use bg_model::description::{Description, ParameterInfo};
 use bg_model::input::{Input, TableError};
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::mechanism::Scenes;
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::run::{RunError, sample_times};
 use bg_model::simulation::{MissingColumn, Part};
@@ -24,12 +24,13 @@ use thiserror::Error;
 use crate::Program;
 use crate::extras::Extras;
 use crate::inputs::Setting;
+use crate::machine::{Machine, MachineError, Making};
 use crate::page::film::Film;
 use crate::page::{Balance, Bonds, Data};
 use crate::parameters::number;
 use crate::request::{Integration, RequestError};
 use crate::running::{Begin, BeginError, Outcome, follow};
-use crate::scenes::{Fixed, Scene, own_parameters};
+use crate::scenes::Scene;
 use crate::summary::{Check, Summary};
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -70,7 +71,7 @@ enum Refusal {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     #[error(transparent)]
-    Fixed(#[from] Fixed),
+    Model(#[from] MachineError),
     #[error(transparent)]
     Input(#[from] TableError),
     #[error("{} {}: {}", .0.field, number(.0.value), .0.fault)]
@@ -119,7 +120,7 @@ pub fn answer<Me: Scenes>(program: &Program<Me>, text: &str) -> String {
     told(serde_json::from_str(text).map_err(Refusal::from).and_then(|order: Order| {
         let scene = program.scenes.iter().find(|scene| scene.name == order.scene);
         let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
-        Me::model(scene.index, Running { program, scene, order: &order })
+        shown_of(program, scene, &order, |making| making.made::<Me>())
     }))
 }
 
@@ -137,7 +138,7 @@ pub(crate) fn register<Me: Scenes>(program: Program<Me>) {
         told(serde_json::from_str(text).map_err(Refusal::from).and_then(|order: Order| {
             let scene = program.scenes.iter().find(|scene| scene.index == MODEL && scene.name == order.scene);
             let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
-            Me::only::<MODEL, _>(Running { program: &program, scene, order: &order })
+            shown_of(&program, scene, &order, |making| Me::only::<MODEL, _>(making))
         }))
     });
 }
@@ -150,31 +151,26 @@ fn told(outcome: Result<Shown, Refusal>) -> String {
     serde_json::to_string(&answer).expect("an answer has text keys only")
 }
 
-/// Runs a scene as it is asked for.
-struct Running<'a, Me> {
-    program: &'a Program<Me>,
-    scene: &'a Scene,
-    order: &'a Order,
-}
-
-impl<Me: Mechanism> MechanismVisitor for Running<'_, Me> {
-    type Output = Result<Shown, Refusal>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let Self { program, scene, order } = self;
-        let mut values = Me::Parameters::default();
-        order.parameters.iter().try_for_each(|(name, value)| values.set(name, *value))?;
-        let inputs: Vec<Input> = order.inputs.iter().map(Setting::input).collect::<Result<_, _>>()?;
-        let model = Sc::make(own_parameters(scene, &program.scenes, &values)?, &inputs)?;
-        let Integration { t_end, step, .. } = order.integration;
-        let t0 = order.begin.time();
-        let mut request = order.integration.request(t0, Some(program.extras.finest(t_end)))?;
-        request.parts.push(Part::Shown);
-        let outcome = follow(order.begin.simulation(&model, request)?, |_| ())?;
-        let table = Me::Parameters::table().iter().enumerate();
-        let changed = changed(table.map(|(index, info)| (info, values.value(index))));
-        Ok(shown(&*program.extras, scene, outcome, &sample_times(t0, step, t_end), changed)?)
-    }
+/// Runs a scene as it is asked for, whose model `made` makes.
+fn shown_of<Me: Scenes>(
+    program: &Program<Me>,
+    scene: &Scene,
+    order: &Order,
+    made: impl FnOnce(Making<'_, Me::Parameters>) -> Result<Box<dyn Machine>, MachineError>,
+) -> Result<Shown, Refusal> {
+    let mut values = Me::Parameters::default();
+    order.parameters.iter().try_for_each(|(name, value)| values.set(name, *value))?;
+    let inputs: Vec<Input> = order.inputs.iter().map(Setting::input).collect::<Result<_, _>>()?;
+    let machine = made(Making { scene, scenes: &program.scenes, values: &values, inputs: &inputs })?;
+    let Integration { t_end, step, .. } = order.integration;
+    let t0 = order.begin.time();
+    let mut request = order.integration.request(t0, Some(program.extras.finest(t_end)))?;
+    request.parts.push(Part::Shown);
+    let from = order.begin.state(&*machine)?;
+    let outcome = follow(&*machine, request, from.as_ref(), |_| ())?;
+    let table = Me::Parameters::table().iter().enumerate();
+    let changed = changed(table.map(|(index, info)| (info, values.value(index))));
+    Ok(shown(&*program.extras, scene, outcome, &sample_times(t0, step, t_end), changed)?)
 }
 
 /// What a page shows of a run whose CSV file would have the rows `rows`, s.

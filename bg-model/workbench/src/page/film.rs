@@ -5,14 +5,13 @@
 
 use bg_model::description::Description;
 use bg_model::drawing::{self, Drawing, Place};
-use bg_model::mechanism::{Mechanism, ModelVisitor};
-use bg_model::nalgebra::{Matrix3, Rotation3, SVector, UnitQuaternion};
+use bg_model::nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use bg_model::run::Trajectory;
 use bg_model::simulation::{Column, Part};
-use bg_model::system::{Model, branches};
 
 use super::animation::{Animation, BodyTrack, JointTrack, NamedPoint, Shape, Solid};
 use super::picture::{BondSeries, Picture};
+use crate::machine::Machine;
 
 /// What is shown of a run, by its columns.
 pub struct Film {
@@ -31,10 +30,10 @@ impl Film {
     }
 
     /// The film of one sample: the machine at `t` (s) in the state `x`.
-    pub fn still<Me: Mechanism>(machine: &Me, t: f64, x: &[f64]) -> Self {
-        let values = machine.visit::<f64, _>(Still { t, x });
+    pub fn still(machine: &dyn Machine, t: f64, x: &[f64]) -> Self {
+        let values = machine.shown(t, x);
         let column = |value: f64| Column { values: vec![value], ..Column::default() };
-        Self { description: Me::describe(), times: vec![t], columns: values.into_iter().map(column).collect() }
+        Self { description: machine.description(), times: vec![t], columns: values.into_iter().map(column).collect() }
     }
 
     /// The machine in motion; none where no body is known.
@@ -118,26 +117,6 @@ impl Film {
     fn still_at<const C: usize>(&self, place: Place) -> Option<[f64; C]> {
         let first = place?;
         (!self.times.is_empty()).then(|| std::array::from_fn(|k| self.columns[first + k].values[0]))
-    }
-}
-
-/// What is shown of a model at one moment.
-struct Still<'a> {
-    t: f64,
-    x: &'a [f64],
-}
-
-impl ModelVisitor<f64> for Still<'_> {
-    type Output = Vec<f64>;
-
-    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Vec<f64>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        let x = SVector::from_column_slice(self.x);
-        let mut values = Vec::new();
-        model.shown(self.t, &x, &branches(model, self.t, &x), &mut values);
-        values
     }
 }
 

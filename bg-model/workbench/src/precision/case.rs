@@ -1,5 +1,7 @@
 //! What is measured: a scene with parameters and the solution that it is held against.
 
+use std::marker::PhantomData;
+
 use bg_model::extended::Accuracy;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::{ParameterError, Parameters};
@@ -8,6 +10,7 @@ use bg_model::simulation::Recording;
 use thiserror::Error;
 
 use super::reference::{self, ReferenceError};
+use crate::machine::{Machine, MachineError, Making};
 use crate::scenes::{Fixed, Scene, own_parameters};
 
 /// A case.
@@ -21,10 +24,29 @@ pub struct Case {
     pub scene: String,
     /// The parameters that are not at their defaults.
     pub set: Vec<(&'static str, f64)>,
-    /// The end of its runs, s, where it has no stored solution.
+    /// The end of its runs, s, where its solution is computed.
     pub t_end: f64,
-    /// The solution, where one is stored; else it is computed.
-    pub stored: Option<fn() -> Recording>,
+    /// Its solution.
+    pub solution: CaseSolution,
+}
+
+/// Where the solution of a case comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum CaseSolution {
+    /// It is stored.
+    Stored(fn() -> Recording),
+    /// It is computed, of the case with its scene among these.
+    Computed(fn(&Case, &[Scene]) -> Result<Recording, CaseError>),
+}
+
+impl CaseSolution {
+    /// It is computed in double-double arithmetic at a hundred instants, for which each model of `Me` is compiled once more.
+    #[must_use]
+    pub fn computed<Me: Scenes>() -> Self {
+        Self::Computed(|case, scenes| {
+            Me::model(case.scene(scenes).index, Solve::<Me> { case, scenes, of: PhantomData })
+        })
+    }
 }
 
 /// A case that cannot be built or solved.
@@ -42,16 +64,16 @@ pub enum CaseError {
 }
 
 impl Case {
-    /// A case for each scene: its defaults until `t_end` (s).
+    /// A case for each scene: its defaults until `t_end` (s), with this solution.
     #[must_use]
-    pub fn of_scenes(scenes: &[Scene], t_end: f64) -> Vec<Self> {
+    pub fn of_scenes(scenes: &[Scene], t_end: f64, solution: CaseSolution) -> Vec<Self> {
         let case = |scene: &Scene| Self {
             name: scene.name.clone(),
             about: scene.summary(),
             scene: scene.name.clone(),
             set: Vec::new(),
             t_end,
-            stored: None,
+            solution,
         };
         scenes.iter().map(case).collect()
     }
@@ -71,23 +93,37 @@ impl Case {
     /// # Errors
     /// Parameters that cannot be.
     pub fn model<Me: Mechanism, Sc: Mechanism>(&self, scenes: &[Scene]) -> Result<Sc, CaseError> {
-        let mut values = Me::Parameters::default();
-        for (name, value) in &self.set {
-            values.set(name, *value)?;
-        }
-        Ok(Sc::make(own_parameters(self.scene(scenes), scenes, &values)?, &[])?)
+        Ok(Sc::make(own_parameters(self.scene(scenes), scenes, &self.values::<Me>()?)?, &[])?)
     }
 
-    /// Its solution: the stored one, or one computed in double-double arithmetic at a hundred instants.
+    /// The same of the mechanism `Me`, whatever its type.
+    ///
+    /// # Errors
+    /// Parameters that cannot be.
+    pub(crate) fn machine<Me: Scenes>(&self, scenes: &[Scene]) -> Result<Box<dyn Machine>, CaseError> {
+        let values = self.values::<Me>()?;
+        let made = Making { scene: self.scene(scenes), scenes, values: &values, inputs: &[] }.made::<Me>();
+        made.map_err(|fault| match fault {
+            MachineError::Fixed(fault) => fault.into(),
+            MachineError::Parameter(fault) => fault.into(),
+        })
+    }
+
+    /// The values of all parameters.
+    fn values<Me: Mechanism>(&self) -> Result<Me::Parameters, ParameterError> {
+        let mut values = Me::Parameters::default();
+        self.set.iter().try_for_each(|(name, value)| values.set(name, *value))?;
+        Ok(values)
+    }
+
+    /// Its solution.
     ///
     /// # Errors
     /// A computation that fails.
-    pub fn solution<Me: Scenes>(&self, scenes: &[Scene]) -> Result<Recording, CaseError> {
-        match self.stored {
-            Some(stored) => Ok(stored()),
-            None => {
-                Me::model(self.scene(scenes).index, Solve::<Me> { case: self, scenes, of: std::marker::PhantomData })
-            }
+    pub fn solve(&self, scenes: &[Scene]) -> Result<Recording, CaseError> {
+        match self.solution {
+            CaseSolution::Stored(stored) => Ok(stored()),
+            CaseSolution::Computed(computed) => computed(self, scenes),
         }
     }
 }
@@ -95,7 +131,7 @@ impl Case {
 struct Solve<'a, Me> {
     case: &'a Case,
     scenes: &'a [Scene],
-    of: std::marker::PhantomData<Me>,
+    of: PhantomData<Me>,
 }
 
 impl<Me: Mechanism> MechanismVisitor for Solve<'_, Me> {

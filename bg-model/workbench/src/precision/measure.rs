@@ -3,11 +3,9 @@
 //! In: case, integrator, tolerance or step. Out: its true errors against the reference and what it cost. Times are of the
 //! run with the outputs at the reference's instants, without the building of the model.
 
-use std::marker::PhantomData;
-
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::run::{Request, RunError, Simulation, Trajectory};
+use bg_model::mechanism::Scenes;
+use bg_model::run::{Request, RunError, Trajectory};
 use bg_model::simulation::{Recording, Samples};
 use bg_model::statistics::Statistics;
 use serde::Serialize;
@@ -15,6 +13,8 @@ use thiserror::Error;
 
 use super::case::{Case, CaseError};
 use super::errors::{Errors, Incomparable};
+use crate::machine::Machine;
+use crate::running::{Outcome, follow};
 use crate::scenes::Scene;
 
 /// How exact a run is to be.
@@ -129,8 +129,7 @@ pub fn measure<Me: Scenes>(
     let mut runs = Vec::with_capacity(repeats);
     let mut first = None;
     for _ in 0..repeats {
-        let once = Once::<Me> { case, scenes, request: &request, of: PhantomData };
-        let (run, failure) = Me::model(scene.index, once)?;
+        let (run, failure) = once(&*case.machine::<Me>(scenes)?, &request)?;
         runs.push(run.wall.as_secs_f64());
         first.get_or_insert((run, failure));
         if runs.iter().sum::<f64>() > ENOUGH {
@@ -177,22 +176,7 @@ fn request(method: Integrator, setting: Setting, reference: &Recording) -> Reque
 }
 
 /// One run; where it fails what it reached, and why.
-struct Once<'a, Me> {
-    case: &'a Case,
-    scenes: &'a [Scene],
-    request: &'a Request,
-    of: PhantomData<Me>,
-}
-
-impl<Me: Mechanism> MechanismVisitor for Once<'_, Me> {
-    type Output = Result<(Trajectory, Option<String>), MeasureError>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let model = self.case.model::<Me, Sc>(self.scenes)?;
-        match Simulation::of(&model, self.request.clone()).run() {
-            Ok(run) => Ok((run, None)),
-            Err(RunError::Stopped(stopped)) => Ok((stopped.trajectory, Some(stopped.cause.to_string()))),
-            Err(fault) => Err(fault.into()),
-        }
-    }
+fn once(machine: &dyn Machine, request: &Request) -> Result<(Trajectory, Option<String>), RunError> {
+    let Outcome { run, failure } = follow(machine, request.clone(), None, |_| ())?;
+    Ok((run, failure))
 }

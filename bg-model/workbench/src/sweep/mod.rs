@@ -36,7 +36,7 @@ use crate::Program;
 use crate::files::FileError;
 use folder::{Folder, FolderError, Kind};
 use plan::{Plan, PlanError};
-use runs::{Done, Job, Making};
+use runs::{Done, Job};
 
 /// The columns that every sweep has.
 const OWN_COLUMNS: [&str; 5] = ["run", "failure", "reached", "steps", "events"];
@@ -132,23 +132,16 @@ pub fn sweep<Me: Scenes>(
     told: Told<'_>,
 ) -> Result<Outcome, SweepError> {
     let job = Job::new(program, plan, folder.recipe());
-    let scenes = &program.scenes;
+    let (scene, inputs, request) = (plan.scene, &plan.chosen.inputs[..], &plan.request);
+    let asked = lanes::Asked { scene, scenes: &program.scenes, inputs, request };
     if let Some(many) = program.lanes.filter(|_| lanes::may_gain(plan)) {
-        let (scene, inputs, request) = (plan.scene, &plan.chosen.inputs[..], &plan.request);
-        let asked = lanes::Asked { scene, scenes, inputs, request };
         let make = |numbers: &[usize]| job.runs_by(numbers, |values| many(asked, values));
         return all(&job, folder, share, threads, told, (lanes::TOGETHER, &make));
     }
-    let making = Making {
-        plan,
-        scenes,
-        then: |run: runs::Run<'_>| {
-            let make =
-                |numbers: &[usize]| job.runs_by(numbers, |values| values.iter().map(|values| run(values)).collect());
-            all(&job, folder, share, threads, told, (1, &make))
-        },
-    };
-    Me::model(plan.scene.index, making)
+    let begin = &plan.begin;
+    let run = |values: &Vec<f64>| runs::run::<Me>(asked, begin, values);
+    let make = |numbers: &[usize]| job.runs_by(numbers, |values| values.iter().map(run).collect());
+    all(&job, folder, share, threads, told, (1, &make))
 }
 
 /// Makes the runs of these numbers.

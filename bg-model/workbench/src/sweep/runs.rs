@@ -5,47 +5,29 @@
 use std::ops::Range;
 
 use bg_model::description::{Description, ParameterInfo};
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::mechanism::Scenes;
 use bg_model::parameters::Parameters;
 use bg_model::simulation::Recording;
 
 use super::OWN_COLUMNS;
 use super::design::Design;
+use super::lanes::Asked;
 use super::parquet::{Column, Table, Values};
 use super::plan::Plan;
 use super::wanted::Wanted;
 use crate::Program;
-use crate::running::{Outcome, follow};
-use crate::scenes::{Scene, own_parameters};
+use crate::machine::Making;
+use crate::running::{Begin, Outcome, follow};
 
-/// Makes the run with these values of all parameters, or says why there is none.
-pub type Run<'a> = &'a (dyn Fn(&[f64]) -> Result<Outcome, String> + Sync);
-
-/// Hands `then` what makes the runs of a plan: all that depends on the type of its model.
-pub struct Making<'a, P, F> {
-    /// The plan.
-    pub plan: &'a Plan<'a, P>,
-    /// The models of its mechanism.
-    pub scenes: &'a [Scene],
-    /// What is done with it.
-    pub then: F,
-}
-
-impl<P: Parameters, T, F: FnOnce(Run<'_>) -> T> MechanismVisitor for Making<'_, P, F> {
-    type Output = T;
-
-    fn visit<Sc: Mechanism>(self) -> T {
-        let Plan { scene, request, begin, chosen, .. } = self.plan;
-        let (scenes, inputs) = (self.scenes, &chosen.inputs[..]);
-        (self.then)(&|values| {
-            let mut all = P::default();
-            values.iter().enumerate().for_each(|(index, value)| all.set_value(index, *value));
-            let own = own_parameters(scene, scenes, &all).map_err(|fault| fault.to_string())?;
-            let model = Sc::make(own, inputs).map_err(|fault| fault.to_string())?;
-            let simulation = begin.simulation(&model, request.clone()).map_err(|fault| fault.to_string())?;
-            follow(simulation, |_| ()).map_err(|fault| fault.to_string())
-        })
-    }
+/// Makes a run that begins there with these values of all parameters, or says why there is none.
+pub fn run<Me: Scenes>(asked: Asked<'_>, begin: &Begin, values: &[f64]) -> Result<Outcome, String> {
+    let Asked { scene, scenes, inputs, request } = asked;
+    let mut all = Me::Parameters::default();
+    values.iter().enumerate().for_each(|(index, value)| all.set_value(index, *value));
+    let making = Making { scene, scenes, values: &all, inputs };
+    let machine = making.made::<Me>().map_err(|fault| fault.to_string())?;
+    let from = begin.state(&*machine).map_err(|fault| fault.to_string())?;
+    follow(&*machine, request.clone(), from.as_ref(), |_| ()).map_err(|fault| fault.to_string())
 }
 
 /// What is kept of a run.

@@ -52,7 +52,7 @@ pub(in super::super) fn of(inputs: &[Ident], description: &TokenStream) -> Token
                     self,
                     |values: &[f64]| Model::<f64>::lifted(values.try_into().expect("a value for each parameter") #own),
                     |values: &[S]| Model::<S>::lifted(values.try_into().expect("a value for each parameter") #own),
-                    Model::<S>::in_numbers,
+                    Model::<S>::joined,
                 )
             }
         }

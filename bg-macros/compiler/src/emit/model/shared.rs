@@ -32,7 +32,7 @@ impl Shared {
 
     /// Its value in another model of the same parameters.
     pub fn copied(&self) -> Option<TokenStream> {
-        self.where_any(|_| quote!(kept: self.kept,))
+        self.where_any(|_| quote!(kept: first.kept,))
     }
 
     /// The argument of a function that calculates constants.

@@ -28,7 +28,7 @@ pub(super) struct Tables {
     pub(super) values: TokenStream,
     pub(super) functions: TokenStream,
     pub(super) lets: TokenStream,
-    /// The `let`s for the same tables in other numbers.
+    /// The `let`s for the same tables of several models, joined.
     pub(super) moved: TokenStream,
     pub(super) has_pairs: bool,
 }
@@ -74,7 +74,7 @@ impl Emission<'_> {
         let shared = self.shared();
         let (pass, argument) = (shared.pass(), shared.argument());
         made.lets.extend(quote!(let #field = Self::#function(&values #pass);));
-        made.moved.extend(quote!(let #field = self.#field.map(of);));
+        made.moved.extend(quote!(let #field = joined(models, |model| &model.#field, of);));
         made.functions.extend(quote! {
             #[doc = #doc]
             fn #function(parameters: &[S; #parameters] #argument) -> [S; #count] {

@@ -24,7 +24,8 @@ impl<const S: usize, const P: usize> Tableau<S, P> {
 }
 
 impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
-    /// Writes the state at the part `theta` of the last attempt into `x`.
+    /// Writes the state at the part `theta` of the last attempt into `x`. Compiled once, not again for each choice of methods.
+    #[inline(never)]
     pub fn dense(&self, start: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
         let weights = self.tableau.weights(theta);
         for i in 0..N {

@@ -25,7 +25,7 @@ use super::dense::{FROM_ENDS, Polynomial, write_sum};
 use super::steps::{Begin, Forces, OfFlow};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
-use super::{Flow, Method, Point, Scale, StepControl};
+use super::{Flow, Method, Point, Scale, StepControl, first_in};
 #[cfg(test)]
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
@@ -134,10 +134,13 @@ impl<const N: usize> Method<N> for Nystrom<N> {
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
         // A force that is no number makes the second derivatives none that follow from it.
-        let forces_first = || (0..N).filter(|i| !self.second.contains(i)).chain(self.second.clone());
-        self.stages.k[..STAGES]
-            .iter()
-            .find_map(|k| forces_first().map(|i| (i, k.0[i])).find(|(_, rate)| !rate.is_finite()))
+        let Range { start, end } = self.second;
+        self.stages.k[..STAGES].iter().find_map(|k| {
+            let of = |first: usize, rates: &[f64]| first_in(rates).map(|(i, rate)| (first + i, rate));
+            let (before, second, behind) =
+                (&k.0.as_slice()[..start], &k.0.as_slice()[start..end], &k.0.as_slice()[end..]);
+            of(0, before).or_else(|| of(end, behind)).or_else(|| of(start, second))
+        })
     }
 
     fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
@@ -147,7 +150,7 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         polynomial.set(start, h, end, |m, ends, out| {
             write_sum(h, DENSE[m].iter().copied().zip(k.iter().map(|k| &k.0)), out);
             for i in second.clone() {
-                let [first, third] = [1, 2].map(|m| ends[m].data.0[0][i]);
+                let [first, third] = [1, 2].map(|m| ends[m][i]);
                 // The polynomial of degree 5 through the second derivatives at both ends, too.
                 let [before, behind] = [k[0].0[i], k[END].0[i]].map(|second| 0.5 * h * h * second);
                 let at_start = before + first - third;

@@ -135,7 +135,7 @@ impl LiftedVisitor<Gradient, Gradient> for Asked<'_> {
         model: &Mo,
         _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
         lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
-        _: impl Fn(&Li, fn(Gradient) -> Gradient) -> Ot,
+        _: impl Fn(&[&Li], fn(&[Gradient]) -> Gradient) -> Ot,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
