@@ -53,7 +53,7 @@ fn stages(codes: &BTreeSet<&str>) -> BTreeSet<String> {
 #[test]
 fn fresh_inputs_reach_every_stage_and_break_no_promise() {
     let mut tally = Tally::default();
-    for (kind, count) in KINDS.into_iter().zip([1500, 150, 200, 4, 1500]) {
+    for (kind, count) in KINDS.into_iter().zip([1500, 400, 200, 4, 1500]) {
         fresh(&mut tally, kind, count);
     }
     println!("{tally}");

@@ -171,10 +171,10 @@ fn an_input_that_changes_leaves_no_series() {
     assert!(!has_series(Input::with_rate(|t| t, |_| 1.0)));
 }
 
-/// Twice the products of two factors that change, and the places of quotients and functions.
+/// Twice the products of two factors that change, in fours, and the places of quotients and functions.
 #[test]
 fn widths_of_the_hacksaw() {
-    assert_eq!(Paper::new(PaperParameters::default()).unwrap().width(), 116);
-    assert_eq!(FreeRun::new(FreeRunParameters::default()).unwrap().width(), 64);
-    assert_eq!(Hacksaw::new(HacksawParameters::default()).unwrap().width(), 572);
+    assert_eq!(Paper::new(PaperParameters::default()).unwrap().width(), 120);
+    assert_eq!(FreeRun::new(FreeRunParameters::default()).unwrap().width(), 72);
+    assert_eq!(Hacksaw::new(HacksawParameters::default()).unwrap().width(), 576);
 }
