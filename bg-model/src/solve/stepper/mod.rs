@@ -121,6 +121,7 @@ where
     }
 
     /// The norm of what a projection has changed where joints may be rigid, else 0.
+    #[cfg(feature = "std")]
     pub fn moved(&self, before: &SVector<f64, N>, after: &SVector<f64, N>) -> f64 {
         moved(self.system, &self.scale, before, after)
     }
