@@ -4,7 +4,6 @@
 
 use super::pairs;
 use super::routine::{self, Names};
-
 use crate::expr::Function;
 use crate::program::pairs::{Half, Step, Value};
 use crate::program::{Changes, Operand, Operation};
@@ -19,9 +18,9 @@ pub(super) struct Writer<'w, 'n> {
     /// Whether the order is 0.
     is_start: bool,
     /// The places of products, one for each number: their sums are made in fours.
-    pub products: usize,
+    pub(super) products: usize,
     /// The products written so far.
-    pub product: usize,
+    pub(super) product: usize,
     /// The places behind those of the products.
     others: usize,
 }

@@ -3,6 +3,8 @@
 //! In: equations, the derivatives of the rates and the second derivatives. Out: what every generated function evaluates, in order,
 //! with its table of constants.
 
+use std::ops::Range;
+
 use super::pairs::{Paired, pair};
 use super::reversed::{Reversed, reversed};
 use super::tape::{Tape, tape};
@@ -98,13 +100,7 @@ pub struct Starting {
 pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_order: &mut SecondOrder) -> Programs {
     let running = running(equations);
     let reversed = reversed(&running, equations.states.len());
-    let derivatives = jacobian.roots();
-    let damping: Vec<Id> = jacobian.among_first_order(&second_order.states).map(|entry| entry.value).collect();
-    let mut pool = jacobian.pool.clone();
-    let is_bordered = !jacobian.unknowns.is_empty();
-    let jacobian = schedule(&mut jacobian.pool, [Request { name: "jacobian", roots: &derivatives }]);
-    let has_damping = jacobian.routines[0].is_long() && !is_bordered && damping.len() < derivatives.len();
-    let damping = has_damping.then(|| alone(&mut pool, "damping", &damping));
+    let (jacobian, damping) = derivatives(jacobian, &second_order.states);
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
     let (holding, impacts) = (holding(equations), impacts(equations));
     let starting = starting(equations);
@@ -126,6 +122,17 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
         not_finite,
         shown,
     }
+}
+
+/// The derivatives of the rates and, where these are many, those among states that are not of second order.
+fn derivatives(jacobian: &mut Jacobian, second_order: &Range<usize>) -> (Program<1>, Option<Program<1>>) {
+    let (all, is_bordered) = (jacobian.roots(), !jacobian.unknowns.is_empty());
+    let damping: Vec<Id> = jacobian.among_first_order(second_order).map(|entry| entry.value).collect();
+    let pool = &mut jacobian.pool;
+    let jacobian = alone(pool, "jacobian", &all);
+    let has_damping = jacobian.routines[0].is_long() && !is_bordered && damping.len() < all.len();
+    let damping = has_damping.then(|| alone(pool, "damping", &damping));
+    (jacobian, damping)
 }
 
 /// The operations of the rate function as it would be generated from the equations.

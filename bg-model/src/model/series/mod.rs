@@ -93,7 +93,7 @@ fn get<S: Scalar>(from: &[S], at: usize) -> S::Pair {
 /// Writes a pair to the places from `at` on.
 #[inline(always)]
 fn put<S: Scalar>(to: &mut [S], at: usize, pair: S::Pair) {
-    (to[at], to[at + 1]) = (pair.first(), pair.second());
+    store(to, at, [pair.first(), pair.second()]);
 }
 
 /// The parts of `P` products at an order `k` that only need the orders from 1 to `k` - 1 of their factors: what is added to them is

@@ -4,36 +4,19 @@
 //! Ordinary Differential Equations I, 2nd edition, section II.6, equation (6.7).
 
 use nalgebra::SVector;
-use pulp::NullaryFnOnce;
 
-use super::{Arch, Point};
+use super::Point;
 use crate::model::scalar::Scalar;
 
-/// Writes the state at `start` plus the part `theta` (0 to 1) of the step of size `h` (s) into `x`.
+/// Writes the state at `start` plus the part `theta` (0 to 1) of the step of size `h` (s) into `x`. Inlined, so that a part that is a
+/// constant, as the middle for the guards, is folded into its weights.
+#[inline(always)]
 pub(crate) fn hermite<const N: usize>(start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-    Arch::new().dispatch(Hermite { start, h, end, theta, x });
-}
-
-struct Hermite<'a, const N: usize> {
-    start: &'a Point<N>,
-    h: f64,
-    end: &'a Point<N>,
-    theta: f64,
-    x: &'a mut SVector<f64, N>,
-}
-
-impl<const N: usize> NullaryFnOnce for Hermite<'_, N> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { start, h, end, theta, x } = self;
-        let (from, to) = (&start.x.data.0[0], &end.x.data.0[0]);
-        let (from_rate, to_rate) = (&start.rate.data.0[0], &end.rate.data.0[0]);
-        let out = &mut x.data.0[0];
-        for i in 0..N {
-            out[i] = between(h, theta, [from[i], to[i]], [from_rate[i], to_rate[i]]);
-        }
+    let (from, to) = (&start.x.data.0[0], &end.x.data.0[0]);
+    let (from_rate, to_rate) = (&start.rate.data.0[0], &end.rate.data.0[0]);
+    let out = &mut x.data.0[0];
+    for i in 0..N {
+        out[i] = between(h, theta, [from[i], to[i]], [from_rate[i], to_rate[i]]);
     }
 }
 

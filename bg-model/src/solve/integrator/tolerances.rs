@@ -93,8 +93,14 @@ pub(super) fn largest<S: Scalar, const N: usize>(of: &[S; N]) -> S {
     const SIDE_BY_SIDE: usize = 8;
     let Some(nothing) = of.first().map(|first| first.alike(0.0)) else { return S::from_f64(0.0) };
     let mut maxima = [nothing; SIDE_BY_SIDE];
-    for (i, &value) in of.iter().enumerate() {
-        maxima[i % SIDE_BY_SIDE] = value.larger(maxima[i % SIDE_BY_SIDE]);
+    let (groups, rest) = of.as_chunks::<SIDE_BY_SIDE>();
+    for group in groups {
+        for (maximum, value) in maxima.iter_mut().zip(group) {
+            *maximum = value.larger(*maximum);
+        }
+    }
+    for (maximum, value) in maxima.iter_mut().zip(rest) {
+        *maximum = value.larger(*maximum);
     }
     let mut largest = nothing;
     for maximum in &maxima {
