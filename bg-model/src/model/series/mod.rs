@@ -80,7 +80,7 @@ pub fn next_products<S: Scalar, const P: usize, const W: usize>(
 ) -> S::Pair {
     put::<S>(&mut rows[k], at, a);
     put::<S>(&mut rows[k], P + at, b);
-    let [left, right] = [at, P + at].map(|at| get::<S>(&rows[0], at));
+    let (left, right) = (get::<S>(&rows[0], at), get::<S>(&rows[0], P + at));
     get::<S>(inner, at) + (a * right + left * b)
 }
 
