@@ -38,7 +38,7 @@ impl<F: Flow<N>, const N: usize> Flow<N> for Damping<'_, F> {
 
     fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
         self.0.damping(t, x, entries);
-        slope.fill(0.0);
+        *slope = SVector::zeros();
     }
 
     fn second_order(&self) -> Option<impl SecondOrder<f64, N, 0>> {
@@ -121,8 +121,7 @@ impl<const N: usize> Block<N> {
     pub fn prepare(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         (self.starts[self.present], self.h) = ((start.t, start.x), h);
         if self.age.is_none_or(|age| age >= RENEWAL) {
-            self.jacobian.evaluate(&Damping(flow), start, h, scale);
-            if !self.jacobian.is_finite() {
+            if !self.jacobian.evaluate(&Damping(flow), start, h, scale) {
                 return false;
             }
             core::mem::swap(&mut self.entries, &mut self.earlier);

@@ -20,6 +20,7 @@ use nalgebra::SVector;
 
 use self::block::Block;
 pub(super) use self::tableau::KennedyCarpenter;
+use self::tableau::STAGES;
 use super::explicit::{Explicit, Stages, Tableau};
 use super::hand_on::hand_on;
 use super::steps::{Begin, OfFlow};
@@ -76,6 +77,10 @@ impl<const N: usize> Vectorised<N> for Ark5<N> {
 /// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
 const AT_START: f64 = 0.02;
 
+/// Behind the stages there is room for both differences and for what is allowed.
+const DIFFERENCE: usize = STAGES + 1;
+const ALLOWED: usize = DIFFERENCE + 2;
+
 /// Writes the state at the end of a step of size `h` (s) whose stages `block` completes; gives its error norm.
 #[inline(always)]
 fn step<const N: usize>(
@@ -90,20 +95,22 @@ fn step<const N: usize>(
     let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
     stages.k[0] = start.rate;
     stages.evaluate::<true>(&OfFlow(flow), &from, 1..KennedyCarpenter::END, block);
-    let (mut difference, mut at_start, mut allowed) = (SVector::zeros(), SVector::zeros(), [0.0; N]);
     let (start, end) = (&start.x.data.0[0], &mut end.data.0[0]);
     for i in 0..N {
         end[i] = start[i] + h * stages.combine(KennedyCarpenter::B, i);
-        allowed[i] = scale.allowed(i, start[i], end[i]);
-        difference.data.0[0][i] = stages.combine(KennedyCarpenter::ERROR, i);
-        at_start.data.0[0][i] = AT_START * stages.combine(KennedyCarpenter::START, i);
+        stages.k[DIFFERENCE].data.0[0][i] = stages.combine(KennedyCarpenter::ERROR, i);
+        stages.k[DIFFERENCE + 1].data.0[0][i] = AT_START * stages.combine(KennedyCarpenter::START, i);
+        stages.k[ALLOWED].data.0[0][i] = scale.allowed(i, start[i], end[i]);
     }
-    block.reduce([&mut difference, &mut at_start]);
-    let mut errors = [0.0; N];
+    if let [difference, at_start] = &mut stages.k[DIFFERENCE..ALLOWED] {
+        block.reduce([difference, at_start]);
+    }
     for i in 0..N {
-        errors[i] = difference.data.0[0][i].abs().larger(at_start.data.0[0][i].abs()) / allowed[i];
+        let (difference, at_start) = (stages.k[DIFFERENCE].data.0[0][i], stages.k[DIFFERENCE + 1].data.0[0][i]);
+        let allowed = stages.k[ALLOWED].data.0[0][i];
+        stages.k[DIFFERENCE].data.0[0][i] = difference.abs().larger(at_start.abs()) / allowed;
     }
-    h.abs() * largest(&errors)
+    h.abs() * largest(&stages.k[DIFFERENCE].data.0[0])
 }
 
 /// Calls the explicit method.
