@@ -192,15 +192,12 @@ fn eliminate<const G: usize>(column: &mut [[Lanes; G]], pivot: &[[Lanes; G]], k:
 /// The largest magnitude in a column.
 #[inline(always)]
 fn largest<const G: usize>(column: &[[Lanes; G]]) -> f64 {
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
     let mut largest = Lanes::default();
     for group in column.as_flattened() {
-        largest =
-            core::array::from_fn(
-                |lane| if group[lane].abs() > largest[lane] { group[lane].abs() } else { largest[lane] },
-            );
+        largest = core::array::from_fn(|lane| larger(group[lane].abs(), largest[lane]));
     }
     let [a, b, c, d] = largest;
-    let larger = |a: f64, b: f64| if a > b { a } else { b };
     larger(larger(a, c), larger(b, d))
 }
 

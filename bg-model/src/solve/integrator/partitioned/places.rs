@@ -22,14 +22,15 @@ pub(super) enum Group {
 pub(super) struct Places {
     pub states: Vec<usize>,
     pub groups: Vec<Group>,
+    /// Those that stand apart; work space.
+    apart: Vec<usize>,
 }
 
 impl Places {
     /// Takes these states, ascending: first what stands side by side.
     pub fn take(&mut self, mut states: &[usize]) {
-        let Self { states: order, groups } = self;
-        (order.clear(), groups.clear());
-        let mut apart = Vec::new();
+        let Self { states: order, groups, apart } = self;
+        (order.clear(), groups.clear(), apart.clear());
         while let Some((&first, others)) = states.split_first() {
             if states.get(LANES - 1) == Some(&(first + LANES - 1)) {
                 groups.push(Group::Run(first));
@@ -40,7 +41,7 @@ impl Places {
                 states = others;
             }
         }
-        order.extend(&apart);
+        order.extend(&*apart);
         let group = |of: &[usize]| Group::Apart(core::array::from_fn(|lane| of[lane.min(of.len() - 1)]), of.len());
         groups.extend(apart.chunks(LANES).map(group));
         // Few of them, or blocks of four.

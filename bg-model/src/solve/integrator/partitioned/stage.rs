@@ -15,8 +15,9 @@ use crate::solve::integrator::explicit::Tableau;
 /// The damped states of a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stages {
-    /// The size of the step, s.
+    /// The size of the step, s, and the reciprocal of what its inverse has it times.
     h: f64,
+    reciprocal: f64,
     groups: Vec<Damped>,
     /// How far the values at a stage are off the line; errors.
     off: Vec<Lanes>,
@@ -46,7 +47,7 @@ impl Stages {
 
     /// A step of size `h` (s) begins at `x`. `before`: its size in parts of the step before, with the start of that one.
     pub fn begin(&mut self, h: f64, x: &[f64], before: Option<(f64, &[f64])>) {
-        self.h = h;
+        (self.h, self.reciprocal) = (h, 1.0 / (h * KennedyCarpenter::GAMMA));
         for Damped { states, from, change, .. } in &mut self.groups {
             *from = states.read(x);
             *change = before.map_or(Lanes::default(), |(ratio, before)| {
@@ -88,8 +89,7 @@ impl NullaryFnOnce for Complete<'_> {
 #[inline(always)]
 fn complete<const G: usize>(blocks: usize, Complete { stages, columns, stage, x }: Complete<'_>) {
     // Numbers handed over side by side would have to wait for their way through memory.
-    let (h, c) = (stages.h, KennedyCarpenter::C[stage]);
-    let reciprocal = 1.0 / (h * KennedyCarpenter::GAMMA);
+    let (h, reciprocal, c) = (stages.h, stages.reciprocal, KennedyCarpenter::C[stage]);
     let groups = &mut stages.groups.as_chunks_mut::<G>().0[..blocks];
     let off = &mut stages.off.as_chunks_mut::<G>().0[..blocks];
     let line = |group: &Damped| -> Lanes {
