@@ -30,7 +30,9 @@ impl Places {
     /// Takes these states, ascending: first what stands side by side.
     pub fn take(&mut self, mut states: &[usize]) {
         let Self { states: order, groups, apart } = self;
-        (order.clear(), groups.clear(), apart.clear());
+        order.clear();
+        groups.clear();
+        apart.clear();
         while let Some((&first, others)) = states.split_first() {
             if states.get(LANES - 1) == Some(&(first + LANES - 1)) {
                 groups.push(Group::Run(first));

@@ -111,7 +111,7 @@ impl<const N: usize> NullaryFnOnce for Middle<'_, N> {
     }
 }
 
-/// Writes the state of the cubic in the middle of a step in the vectors `arch`: see [`hermite`].
+/// Writes the state of the cubic in the middle of a step in the vectors `arch`.
 pub(crate) fn middle_in<const N: usize>(arch: Arch, start: &Point<N>, h: f64, end: &Point<N>, x: &mut SVector<f64, N>) {
     arch.dispatch(Middle { start, h, end, x });
 }
