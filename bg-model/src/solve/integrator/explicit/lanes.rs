@@ -50,7 +50,7 @@ impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
         scale: &Scale<N>,
         end: &mut SVector<Lanes<V>, N>,
     ) -> [Lanes<V>; 2] {
-        self.stages.step(rates, begin, scale, &mut self.carry, end, &mut ())
+        self.stages.step(rates, begin, scale, &mut self.carry, end)
     }
 
     /// The attempts at the places of `accepted` were.

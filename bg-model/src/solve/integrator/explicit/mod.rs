@@ -33,8 +33,7 @@ use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 use crate::model::scalar::double::root;
 #[cfg(feature = "std")]
 pub(super) use lanes::ExplicitInLanes;
-pub(super) use stages::Complete;
-use stages::Stages;
+pub(super) use stages::{Complete, Stages};
 
 /// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
 /// for.
@@ -72,9 +71,6 @@ pub trait Tableau {
     const ERROR: Row;
     /// A second embedded method of lower order; empty if there is none.
     const SECOND: Row = &[];
-    /// A difference to an embedded method of lower order with the rate at the start of the step, of which a part counts; empty if
-    /// there is none.
-    const START: Row = &[];
     /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one is
     /// small; empty if there is none.
     const LATE: Row = &[];
@@ -95,7 +91,7 @@ const COEFFICIENTS: usize = 7;
 /// The explicit method of tableau `T`.
 #[derive(Clone, Debug)]
 pub struct Explicit<T, const N: usize> {
-    stages: Stages<T, f64, N>,
+    pub(super) stages: Stages<T, f64, N>,
     /// The dense output's coefficients.
     polynomial: Polynomial<N, COEFFICIENTS>,
     /// What rounding has kept from the states.
@@ -119,21 +115,6 @@ impl<T: Tableau, const N: usize> Default for Explicit<T, N> {
 }
 
 impl<T: Tableau, const N: usize> Explicit<T, N> {
-    /// A step whose stages' states `completed` completes: see [`Method::attempt`].
-    #[inline(always)]
-    pub(super) fn step(
-        &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
-        h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
-        completed: &mut impl Complete<f64, N>,
-    ) -> f64 {
-        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
-        norm::<T>(h, self.stages.step(&OfFlow(flow), &from, scale, &mut self.carry, end, completed))
-    }
-
     /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
     fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
         core::array::from_fn(|i| (self.stages.combine(row, i) / scale.allowed(i, start.x[i], end[i])).abs())
@@ -165,7 +146,8 @@ impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        self.step(flow, start, h, scale, end, &mut ())
+        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
+        norm::<T>(h, self.stages.step(&OfFlow(flow), &from, scale, &mut self.carry, end))
     }
 }
 
