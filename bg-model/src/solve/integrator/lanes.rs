@@ -97,9 +97,6 @@ pub(crate) trait OfOne<const N: usize> {
     /// The rates of an attempt, without that at its start.
     fn rates(&self) -> u64;
 
-    /// The norm of the error of a step of size `h` (s), from the largest of the differences to two embedded methods.
-    fn norm(&self, h: f64, differences: [f64; 2]) -> f64;
-
     /// Whether the fastest oscillation of the states of second order is to be looked at before the next step.
     fn is_due(&self) -> bool {
         false
@@ -190,7 +187,7 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         }
     }
 
-    /// Tries a step at each place; gives the largest of the differences to two embedded methods, as [`OfOne::norm`] takes them.
+    /// Tries a step at each place; gives the norms of the error estimates.
     #[inline(always)]
     pub fn attempt<Sys, const G: usize>(
         &mut self,
@@ -198,14 +195,14 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         begin: &Begin<'_, Lanes<V>, N>,
         scale: &Scale<N>,
         end: &mut SVector<Lanes<V>, N>,
-    ) -> [Lanes<V>; 2]
+    ) -> Lanes<V>
     where
         Sys: System<Lanes<V>, N, G>,
     {
         match self {
             Self::Cfmr7(method) => method.attempt(side, begin, scale, end),
             Self::Dop853(method) => method.attempt(side, begin, scale, end),
-            Self::Nystrom(method) => [method.attempt(side, begin, scale, end), begin.h.alike(0.0)],
+            Self::Nystrom(method) => method.attempt(side, begin, scale, end),
         }
     }
 

@@ -107,10 +107,6 @@ impl<const N: usize> OfOne<N> for Nystrom<N> {
         (STAGES - 1) as u64
     }
 
-    fn norm(&self, _h: f64, [difference, _]: [f64; 2]) -> f64 {
-        difference
-    }
-
     fn is_due(&self) -> bool {
         self.ring.is_due()
     }

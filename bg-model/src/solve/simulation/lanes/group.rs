@@ -7,7 +7,7 @@ use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
 use crate::model::scalar::Scalar;
-use crate::model::scalar::lanes::{Lanes, Vector, at, replace};
+use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace};
 use crate::model::system::System;
 use crate::solve::event::{Readings, Steps};
 use crate::solve::integrator::{AnyInLanes, Begin, OfOne, Point, Rates, Scale, Side};
@@ -36,8 +36,8 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
 
 /// What has come of steps.
 pub(super) struct Tried<V: Vector> {
-    /// The largest of the differences to two embedded methods, of which each run's method makes the norm of its error.
-    pub differences: [V::Numbers; 2],
+    /// The norms of the error estimates.
+    pub errors: V::Numbers,
     /// A bit for each that leads to finite states and rates, and is moved by the projection by no more than `moved`.
     pub fine: u8,
     /// A bit for each in which all guards keep to their sides.
@@ -76,7 +76,14 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             let others = V::bits(*mask) & !bit;
             *mask = V::mask(others | if is_negative { bit } else { 0 });
         }
-        V::vectorized(Load { group: self, bit, point, guards: &guards, carried });
+        *self.t.0.at_mut(lane) = point.t;
+        let [x, rate] = &mut self.start;
+        put(lane, x, &point.x);
+        put(lane, rate, &point.rate);
+        for (to, from) in self.readings.start.iter_mut().zip(&guards) {
+            put(lane, to, from);
+        }
+        self.carry(lane, carried);
     }
 
     /// The start of a run's step at time `t` (s).
@@ -92,7 +99,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
 
     /// What a run's method carries over is this now.
     pub fn carry(&mut self, lane: usize, carried: &SVector<f64, N>) {
-        V::vectorized(Carry { group: self, bit: 1 << lane, carried });
+        put(lane, self.method.carried(), carried);
     }
 
     /// Hands the stages of a run's step over to its own method.
@@ -155,55 +162,6 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     }
 }
 
-struct Load<'a, V: Vector, const N: usize, const G: usize> {
-    group: &'a mut Group<V, N, G>,
-    bit: u8,
-    point: &'a Point<N>,
-    guards: &'a [SVector<f64, G>; 2],
-    carried: &'a SVector<f64, N>,
-}
-
-impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Load<'_, V, N, G> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { group: Group { t, start, readings, method, .. }, bit, point, guards, carried } = self;
-        let mask = V::mask(bit);
-        *t = Lanes::select(mask, t.alike(point.t), *t);
-        put(&mut start[0], &point.x, mask);
-        put(&mut start[1], &point.rate, mask);
-        for (to, from) in readings.start.iter_mut().zip(guards) {
-            put(to, from, mask);
-        }
-        put(method.carried(), carried, mask);
-    }
-}
-
-struct Carry<'a, V: Vector, const N: usize, const G: usize> {
-    group: &'a mut Group<V, N, G>,
-    bit: u8,
-    carried: &'a SVector<f64, N>,
-}
-
-impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Carry<'_, V, N, G> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        put(self.group.method.carried(), self.carried, V::mask(self.bit));
-    }
-}
-
-/// Puts numbers at the places of `mask`.
-#[inline(always)]
-fn put<V: Vector, const N: usize>(to: &mut States<V, N>, from: &SVector<f64, N>, mask: V::Mask) {
-    for i in 0..N {
-        let to = &mut to.data.0[0][i];
-        *to = Lanes::select(mask, to.alike(from.data.0[0][i]), *to);
-    }
-}
-
 struct Following<'a, V: Vector, Sys, const N: usize, const G: usize> {
     group: &'a mut Group<V, N, G>,
     system: &'a Sys,
@@ -242,7 +200,7 @@ where
         let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, method } = group;
         let (t, h, t_end) = (*t, *h, *t_end);
         let side = Side { system, negative };
-        let [first, second] = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
+        let errors = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
         let mut fine = finite(end);
         let has_joints = system.joints().is_some();
         if has_joints {
@@ -256,7 +214,7 @@ where
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
         let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
-        Tried { differences: [first.0.numbers(), second.0.numbers()], fine, clear }
+        Tried { errors: errors.0.numbers(), fine, clear }
     }
 }
 

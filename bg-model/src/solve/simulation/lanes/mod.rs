@@ -387,11 +387,11 @@ where
     if steps.iter().all(Option::is_none) {
         return failed;
     }
-    let Tried { differences, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
+    let Tried { errors: norms, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
     let mut errors = V::filled(1.5).numbers();
     for (place, lane) in occupied(lanes) {
-        let Some(Step { h, reach, .. }) = steps[place].filter(|_| lane.shortening.is_none()) else { continue };
-        let norm = lane.method().norm(h, differences.each_ref().map(|of| of.as_ref()[place]));
+        let Some(Step { reach, .. }) = steps[place].filter(|_| lane.shortening.is_none()) else { continue };
+        let norm = norms.as_ref()[place];
         errors.as_mut()[place] = if norm < reach { reach } else { norm };
     }
     let logarithms = logarithms::<V>(errors);
