@@ -8,8 +8,8 @@ use std::ops::Range;
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
-use super::explicit::{CalvoFrancoMontijanoRandez, DormandPrince, ExplicitInLanes};
-use super::nystrom::NystromInLanes;
+use super::explicit::{CalvoFrancoMontijanoRandez, DormandPrince, ExplicitInLanes, Tableau};
+use super::nystrom::{ERROR_ORDER as NYSTROM_ORDER, NystromInLanes};
 use super::steps::{Begin, Forces, Rates};
 use super::{AnyMethod, Scale};
 use crate::model::capability::SecondOrder;
@@ -110,6 +110,14 @@ pub(crate) trait OfOne<const N: usize> {
     /// Takes note of the stiffness of the fastest oscillation.
     fn stiffness(&mut self, _stiffness: f64) {}
 
+    /// The frequency of the fastest oscillation, rad/s.
+    fn frequency(&self) -> f64 {
+        0.0
+    }
+
+    /// A step was accepted.
+    fn advanced(&mut self) {}
+
     /// The error norm that keeps a step of size `h` (s) where the fastest oscillation is stable.
     fn reach(&self, _h: f64) -> f64 {
         0.0
@@ -132,6 +140,15 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
             AnyMethod::Dop853(_) => Some(Self::Dop853(Box::new(ExplicitInLanes::new()))),
             AnyMethod::Nystrom(_) => Some(Self::Nystrom(Box::new(NystromInLanes::new()))),
             _ => None,
+        }
+    }
+
+    /// The power of the step with which the norm of the error estimate falls.
+    pub fn order(&self) -> f64 {
+        match self {
+            Self::Cfmr7(_) => CalvoFrancoMontijanoRandez::ERROR_ORDER,
+            Self::Dop853(_) => DormandPrince::ERROR_ORDER,
+            Self::Nystrom(_) => NYSTROM_ORDER,
         }
     }
 
@@ -203,6 +220,27 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
             Self::Cfmr7(method) => method.attempt(side, begin, scale, end),
             Self::Dop853(method) => method.attempt(side, begin, scale, end),
             Self::Nystrom(method) => method.attempt(side, begin, scale, end),
+        }
+    }
+
+    /// Whether the fastest oscillation holds steps to where it is stable.
+    pub fn is_held(&self) -> bool {
+        matches!(self, Self::Nystrom(_))
+    }
+
+    /// The frequency of the fastest oscillation at a place is this, rad/s.
+    pub fn hold_to(&mut self, place: usize, frequency: f64) {
+        if let Self::Nystrom(method) = self {
+            method.hold_to(place, frequency);
+        }
+    }
+
+    /// The error norms that keep steps of size `h` (s) where the fastest oscillations are stable.
+    #[inline(always)]
+    pub fn reach(&self, h: Lanes<V>) -> Lanes<V> {
+        match self {
+            Self::Cfmr7(_) | Self::Dop853(_) => h.alike(0.0),
+            Self::Nystrom(method) => method.reach(h),
         }
     }
 

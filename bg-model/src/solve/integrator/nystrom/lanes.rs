@@ -7,7 +7,7 @@ use std::ops::Range;
 use nalgebra::SVector;
 
 use super::Nystrom;
-use super::ring::Pull;
+use super::ring::{Pull, reach};
 use super::stages::Stages;
 use super::tableau::STAGES;
 use crate::model::scalar::Scalar;
@@ -24,12 +24,26 @@ pub(crate) struct NystromInLanes<V, const N: usize> {
     stages: Stages<Lanes<V>, N>,
     /// The directions of the fastest oscillations.
     direction: SVector<Lanes<V>, N>,
+    /// Their frequencies, rad/s.
+    frequency: Lanes<V>,
 }
 
 impl<V: Vector, const N: usize> NystromInLanes<V, N> {
     /// Its work space empty.
     pub fn new() -> Self {
-        Self { stages: Stages::new(), direction: SVector::from([Lanes::from_f64(0.0); N]) }
+        let zero = Lanes::from_f64(0.0);
+        Self { stages: Stages::new(), direction: SVector::from([zero; N]), frequency: zero }
+    }
+
+    /// The frequency of the fastest oscillation at a place is this, rad/s.
+    pub fn hold_to(&mut self, place: usize, frequency: f64) {
+        *self.frequency.0.at_mut(place) = frequency;
+    }
+
+    /// The error norms that keep steps of size `h` (s) where the fastest oscillations are stable.
+    #[inline(always)]
+    pub fn reach(&self, h: Lanes<V>) -> Lanes<V> {
+        reach(h, self.frequency)
     }
 
     /// The directions of the fastest oscillations.
@@ -124,7 +138,15 @@ impl<const N: usize> OfOne<N> for Nystrom<N> {
         self.ring.found(stiffness);
     }
 
+    fn frequency(&self) -> f64 {
+        self.ring.frequency
+    }
+
     fn reach(&self, h: f64) -> f64 {
         self.ring.reach(h)
+    }
+
+    fn advanced(&mut self) {
+        self.ring.advance();
     }
 }

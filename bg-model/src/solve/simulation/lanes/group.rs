@@ -6,11 +6,14 @@
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
+use super::paces::{Control, Judged, Lead, Paces};
+use super::{Judgement, Kept, Step};
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace};
 use crate::model::system::System;
 use crate::solve::event::{Readings, Steps};
 use crate::solve::integrator::{AnyInLanes, Begin, OfOne, Point, Rates, Scale, Side};
+use crate::solve::statistics::Statistics;
 
 /// How much less than the projection that is looked at a projection may move a state.
 const CERTAIN: f64 = 0.99;
@@ -32,21 +35,32 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     negative: [V::Mask; G],
     readings: Readings<V, G>,
     method: AnyInLanes<V, N>,
+    paces: Paces<V>,
+    /// A bit for each run whose pace is among them.
+    led: u8,
+    /// A bit for each run of whose guards nothing is known but what they are at the start.
+    plain: u8,
+    /// The error norms by which the steps are stable, and those of the last attempts, with what follows from them.
+    reach: Lanes<V>,
+    errors: Lanes<V>,
+    judged: Judged<V>,
 }
 
-/// What has come of steps.
-pub(super) struct Tried<V: Vector> {
-    /// The norms of the error estimates.
-    pub errors: V::Numbers,
-    /// A bit for each that leads to finite states and rates, and is moved by the projection by no more than `moved`.
+/// What has come of steps: a bit for each run.
+pub(super) struct Tried {
+    /// It leads to finite states and rates, and is moved by the projection by no more than `moved`.
     pub fine: u8,
-    /// A bit for each in which all guards keep to their sides.
+    /// All guards keep to their sides.
     pub clear: u8,
+    /// It is accepted, and its run's pace goes on.
+    pub accepted: u8,
+    /// It is rejected, and its run's pace goes on.
+    pub refused: u8,
 }
 
 impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     /// Nobody yet; steps by `method`.
-    pub fn new(method: AnyInLanes<V, N>) -> Self {
+    pub fn new(method: AnyInLanes<V, N>, control: Control) -> Self {
         let zero = Lanes::from_f64(0.0);
         let none = [SVector::from([zero; N]); 2];
         Self {
@@ -59,7 +73,63 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             negative: [false.into(); G],
             readings: Readings::new(),
             method,
+            paces: Paces::new(control),
+            led: 0,
+            plain: 0,
+            reach: zero,
+            errors: zero,
+            judged: Judged { logarithm: zero, factor: zero },
         }
+    }
+
+    /// Takes over the pace of a run, which is `plain` where nothing is known of its guards but what they are at the start, with the frequency
+    /// (rad/s) that holds its steps.
+    pub fn lead(&mut self, place: usize, lead: Lead, is_plain: bool, frequency: f64) {
+        self.paces.take(place, lead);
+        self.method.hold_to(place, frequency);
+        self.led |= 1 << place;
+        self.plain = self.plain & !(1 << place) | u8::from(is_plain) << place;
+    }
+
+    /// Gives back the pace of a run, with its steps and rejected attempts since, and the time that it has come to, s; none where it
+    /// is not here.
+    pub fn leave(&mut self, place: usize) -> Option<(Kept, Statistics, f64)> {
+        let is_led = self.led & 1 << place != 0;
+        self.led &= !(1 << place);
+        is_led.then(|| {
+            let (pace, made) = self.paces.give(place);
+            (pace, made, *self.t.0.at(place))
+        })
+    }
+
+    /// Whether steps are held to where the fastest oscillation is stable.
+    pub fn is_held(&self) -> bool {
+        self.method.is_held()
+    }
+
+    /// The frequency of the fastest oscillation of a run is this, rad/s.
+    pub fn hold_to(&mut self, place: usize, frequency: f64) {
+        self.method.hold_to(place, frequency);
+    }
+
+    /// Plans the next steps; gives a bit for each run that may make its step.
+    pub fn plan(&mut self) -> u8 {
+        V::vectorized(Plan { group: self })
+    }
+
+    /// A run makes this step next.
+    pub fn step(&mut self, place: usize, Step { h, t, reach }: Step) {
+        *self.h.0.at_mut(place) = h;
+        *self.t_end.0.at_mut(place) = t;
+        *self.reach.0.at_mut(place) = reach;
+    }
+
+    /// The step that a run has tried, its error norm and what follows from that.
+    pub fn tried(&self, place: usize) -> (Step, f64, Judgement) {
+        let Judged { logarithm, factor } = &self.judged;
+        let at = |of: &Lanes<V>| *of.0.at(place);
+        let step = Step { h: at(&self.h), t: at(&self.t_end), reach: at(&self.reach) };
+        (step, at(&self.errors), Judgement { logarithm: at(logarithm), factor: at(factor) })
     }
 
     /// Takes over a run at a place: where it stands, its branches, the readings of its guards, what its method carries over.
@@ -140,20 +210,13 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         V::vectorized(Following { group: self, system, due })
     }
 
-    /// Tries steps of these sizes to these times (s).
-    pub fn attempt<Sys>(
-        &mut self,
-        system: &Sys,
-        scale: &Scale<N>,
-        moved: f64,
-        h: V::Numbers,
-        t_end: V::Numbers,
-    ) -> Tried<V>
+    /// Tries the steps. Plain ones are judged: accepted where nothing happens in them, rejected where they err too much and their runs
+    /// have no loops, of whose poses they know themselves.
+    pub fn attempt<Sys>(&mut self, system: &Sys, scale: &Scale<N>, moved: f64, has_loops: bool) -> Tried
     where
         Sys: System<Lanes<V>, N, G>,
     {
-        (self.h, self.t_end) = (Lanes(V::new(h)), Lanes(V::new(t_end)));
-        V::vectorized(Attempt { group: self, system, scale, moved })
+        V::vectorized(Attempt { group: self, system, scale, moved, has_loops })
     }
 
     /// The steps at the places of `accepted` are made.
@@ -181,26 +244,45 @@ where
     }
 }
 
+struct Plan<'a, V: Vector, const N: usize, const G: usize> {
+    group: &'a mut Group<V, N, G>,
+}
+
+impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Plan<'_, V, N, G> {
+    type Output = u8;
+
+    #[inline(always)]
+    fn call(self) -> u8 {
+        let Group { t, h, t_end, method, paces, led, reach, .. } = self.group;
+        let (size, end, is_possible) = paces.next(*t);
+        (*h, *t_end, *reach) = (size, end, method.reach(size));
+        let is_stable = !V::bits(V::below(size.alike(1.0).0, reach.0));
+        *led & is_possible & is_stable
+    }
+}
+
 struct Attempt<'a, V: Vector, Sys, const N: usize, const G: usize> {
     group: &'a mut Group<V, N, G>,
     system: &'a Sys,
     scale: &'a Scale<N>,
     moved: f64,
+    has_loops: bool,
 }
 
 impl<V: Vector, Sys, const N: usize, const G: usize> NullaryFnOnce for Attempt<'_, V, Sys, N, G>
 where
     Sys: System<Lanes<V>, N, G>,
 {
-    type Output = Tried<V>;
+    type Output = Tried;
 
     #[inline(always)]
-    fn call(self) -> Tried<V> {
-        let Self { group, system, scale, moved } = self;
-        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, method } = group;
+    fn call(self) -> Tried {
+        let Self { group, system, scale, moved, has_loops } = self;
+        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, method, .. } =
+            group;
         let (t, h, t_end) = (*t, *h, *t_end);
         let side = Side { system, negative };
-        let errors = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
+        let norm = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
         let mut fine = finite(end);
         let has_joints = system.joints().is_some();
         if has_joints {
@@ -214,7 +296,18 @@ where
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
         let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
-        Tried { errors: errors.0.numbers(), fine, clear }
+        let Group { paces, led, plain, reach, errors, judged, .. } = group;
+        let error = Lanes::select(V::below(norm.0, reach.0), *reach, norm);
+        // Of the others it is a number of an ordinary size.
+        *errors = Lanes::select(V::mask(*led), error, h.alike(1.5));
+        *judged = paces.judge(*errors);
+        let [one, infinity] = [1.0, f64::INFINITY].map(|number| h.alike(number));
+        let is_large = V::bits(V::below(one.0, errors.0));
+        let is_number = V::bits(V::below(errors.0, infinity.0));
+        let accepted = *led & *plain & is_number & !is_large & fine & clear & !paces.is_due(t_end);
+        let refused = if has_loops { 0 } else { *led & is_number & is_large };
+        paces.go_on([h, t_end], *judged, accepted, refused);
+        Tried { fine, clear, accepted, refused }
     }
 }
 
