@@ -25,10 +25,11 @@ impl<const G: usize> Watch<G> {
         value: &SVector<f64, G>,
     ) -> [f64; G] {
         let (start, h) = (step.start(), step.size());
-        let mut moves = [0.0; N];
-        for i in 0..N {
+        let mut moves = Irregular::<N>::FACTORS;
+        for (i, moves) in moves.iter_mut().enumerate() {
             let [x, before, rate] = [x, &start.x, &start.rate].map(|of| of.data.0[0][i]);
-            moves[i] = ROUNDING * Irregular::<N>::FACTORS[i] * (larger(before.abs(), x.abs()) + (h * rate).abs());
+            *moves *= ROUNDING;
+            *moves *= larger(before.abs(), x.abs()) + (h * rate).abs();
         }
         let wait = ROUNDING * larger(start.t.abs(), t.abs());
         let mut displaced = |by: f64| {

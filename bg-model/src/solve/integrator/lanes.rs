@@ -9,7 +9,7 @@ use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
 use super::explicit::{CalvoFrancoMontijanoRandez, DormandPrince, ExplicitInLanes, Tableau};
-use super::nystrom::{ERROR_ORDER as NYSTROM_ORDER, NystromInLanes};
+use super::nystrom::NystromInLanes;
 use super::steps::{Begin, Forces, Rates};
 use super::{AnyMethod, Scale};
 use crate::model::capability::SecondOrder;
@@ -148,7 +148,7 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         match self {
             Self::Cfmr7(_) => CalvoFrancoMontijanoRandez::ERROR_ORDER,
             Self::Dop853(_) => DormandPrince::ERROR_ORDER,
-            Self::Nystrom(_) => NYSTROM_ORDER,
+            Self::Nystrom(_) => NystromInLanes::<V, N>::ORDER,
         }
     }
 

@@ -9,7 +9,7 @@ use nalgebra::SVector;
 use super::Nystrom;
 use super::ring::{Pull, reach};
 use super::stages::Stages;
-use super::tableau::STAGES;
+use super::tableau::{ERROR_ORDER, STAGES};
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
@@ -29,6 +29,9 @@ pub(crate) struct NystromInLanes<V, const N: usize> {
 }
 
 impl<V: Vector, const N: usize> NystromInLanes<V, N> {
+    /// The power of the step with which the norm of the error estimate falls.
+    pub const ORDER: f64 = ERROR_ORDER;
+
     /// Its work space empty.
     pub fn new() -> Self {
         let zero = Lanes::from_f64(0.0);

@@ -32,8 +32,6 @@ use crate::model::scalar::Scalar;
 pub(super) use lanes::NystromInLanes;
 use ring::Ring;
 use stages::{END, Stages};
-#[cfg(feature = "std")]
-pub(super) use tableau::ERROR_ORDER;
 use tableau::{DENSE, STAGES};
 
 /// The coefficients of the dense output: it has degree 5 in the part of the step.

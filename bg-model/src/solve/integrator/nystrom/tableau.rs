@@ -27,7 +27,7 @@
 /// The method's name.
 pub(super) const NAME: &str = "Nystrom";
 /// The power of the step with which the norm of the error estimate falls.
-pub(in crate::solve::integrator) const ERROR_ORDER: f64 = 5.0;
+pub(super) const ERROR_ORDER: f64 = 5.0;
 /// The largest product of the fastest frequency and the step; the control lets steps settle at seven tenths of it.
 pub(super) const REACH: f64 = 8.4;
 /// The rates of a step, the one at its start included.

@@ -8,6 +8,7 @@ use pulp::NullaryFnOnce;
 
 use super::paces::{Control, Judged, Lead, Paces};
 use super::{Judgement, Kept, Step};
+use crate::model::reactions::LoopsInLanes;
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace};
 use crate::model::system::System;
@@ -38,8 +39,12 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     paces: Paces<V>,
     /// A bit for each run whose pace is among them.
     led: u8,
-    /// A bit for each run of whose guards nothing is known but what they are at the start.
+    /// A bit for each run whose plain steps are judged here: of its guards nothing is known but what they are at the start.
     plain: u8,
+    /// Joints that close loops, if they are looked at here.
+    loops: Option<LoopsInLanes<V>>,
+    /// A bit for each run that is known not to start in the neighbourhood of a singular pose, and for the ends of the last attempts.
+    whole: [u8; 2],
     /// The error norms by which the steps are stable, and those of the last attempts, with what follows from them.
     reach: Lanes<V>,
     errors: Lanes<V>,
@@ -76,10 +81,26 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             paces: Paces::new(control),
             led: 0,
             plain: 0,
+            loops: None,
+            whole: [0; 2],
             reach: zero,
             errors: zero,
             judged: Judged { logarithm: zero, factor: zero },
         }
+    }
+
+    /// The joints of the runs that are side by side now.
+    pub fn join<Sys>(&mut self, system: &Sys)
+    where
+        Sys: System<Lanes<V>, N, G>,
+    {
+        self.loops = system.joints().and_then(LoopsInLanes::new);
+        self.whole = [0; 2];
+    }
+
+    /// The joints that close loops, if they are looked at here.
+    pub fn loops(&self) -> Option<&LoopsInLanes<V>> {
+        self.loops.as_ref()
     }
 
     /// Takes over the pace of a run, which is `plain` where nothing is known of its guards but what they are at the start, with the frequency
@@ -146,6 +167,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             let others = V::bits(*mask) & !bit;
             *mask = V::mask(others | if is_negative { bit } else { 0 });
         }
+        self.whole[0] &= !bit;
         *self.t.0.at_mut(lane) = point.t;
         let [x, rate] = &mut self.start;
         put(lane, x, &point.x);
@@ -210,13 +232,13 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         V::vectorized(Following { group: self, system, due })
     }
 
-    /// Tries the steps. Plain ones are judged: accepted where nothing happens in them, rejected where they err too much and their runs
-    /// have no loops, of whose poses they know themselves.
-    pub fn attempt<Sys>(&mut self, system: &Sys, scale: &Scale<N>, moved: f64, has_loops: bool) -> Tried
+    /// Tries the steps. Those of plain runs are judged: accepted where nothing happens in them, rejected where they err too much, both far from
+    /// singular poses.
+    pub fn attempt<Sys>(&mut self, system: &Sys, scale: &Scale<N>, moved: f64) -> Tried
     where
         Sys: System<Lanes<V>, N, G>,
     {
-        V::vectorized(Attempt { group: self, system, scale, moved, has_loops })
+        V::vectorized(Attempt { group: self, system, scale, moved })
     }
 
     /// The steps at the places of `accepted` are made.
@@ -266,7 +288,6 @@ struct Attempt<'a, V: Vector, Sys, const N: usize, const G: usize> {
     system: &'a Sys,
     scale: &'a Scale<N>,
     moved: f64,
-    has_loops: bool,
 }
 
 impl<V: Vector, Sys, const N: usize, const G: usize> NullaryFnOnce for Attempt<'_, V, Sys, N, G>
@@ -277,7 +298,7 @@ where
 
     #[inline(always)]
     fn call(self) -> Tried {
-        let Self { group, system, scale, moved, has_loops } = self;
+        let Self { group, system, scale, moved } = self;
         let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, method, .. } =
             group;
         let (t, h, t_end) = (*t, *h, *t_end);
@@ -296,7 +317,7 @@ where
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
         let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
-        let Group { paces, led, plain, reach, errors, judged, .. } = group;
+        let Group { paces, led, plain, reach, errors, judged, loops, whole, .. } = group;
         let error = Lanes::select(V::below(norm.0, reach.0), *reach, norm);
         // Of the others it is a number of an ordinary size.
         *errors = Lanes::select(V::mask(*led), error, h.alike(1.5));
@@ -304,8 +325,21 @@ where
         let [one, infinity] = [1.0, f64::INFINITY].map(|number| h.alike(number));
         let is_large = V::bits(V::below(one.0, errors.0));
         let is_number = V::bits(V::below(errors.0, infinity.0));
-        let accepted = *led & *plain & is_number & !is_large & fine & clear & !paces.is_due(t_end);
-        let refused = if has_loops { 0 } else { *led & is_number & is_large };
+        let mut accepted = *led & *plain & is_number & !is_large & fine & clear & !paces.is_due(t_end);
+        let mut refused = *led & *plain & is_number & is_large;
+        if let (Some(loops), Some(joints)) = (loops, system.joints()) {
+            // The ends of steps that may be accepted, then those of steps that err too much before they were projected.
+            let mut ends = [0; 2];
+            for (whole, x) in ends.iter_mut().zip([&*end, &*reached]) {
+                *whole = loops.whole(joints, (t_end, x), negative);
+                if refused == 0 {
+                    break;
+                }
+            }
+            accepted &= ends[0];
+            refused &= whole[0] & ends[1];
+            whole[1] = ends[0];
+        }
         paces.go_on([h, t_end], *judged, accepted, refused);
         Tried { fine, clear, accepted, refused }
     }
@@ -344,7 +378,8 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Advance<'_, V,
 
     #[inline(always)]
     fn call(self) {
-        let Group { t, t_end, start, end, readings, method, .. } = self.group;
+        let Group { t, t_end, start, end, readings, method, whole, .. } = self.group;
+        whole[0] = whole[0] & !self.accepted | whole[1] & self.accepted;
         let accepted = V::mask(self.accepted);
         *t = Lanes::select(accepted, *t_end, *t);
         for part in 0..2 {

@@ -166,7 +166,7 @@ where
             until: run.sampling.next().min(run.span.t_end),
             left: run.limit.saturating_sub(run.attempts),
         };
-        let is_plain = run.watch.is_plain();
+        let is_plain = run.watch.is_plain() && run.has_loops_of(group.loops());
         group.lead(place, lead, is_plain, self.method().frequency());
     }
 
@@ -352,7 +352,6 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
                 is_new |= slot.is_some();
                 if let Some(lane) = slot {
                     load(&mut group, place, lane);
-                    lane.lead(&mut group, place);
                 }
             }
         }
@@ -361,7 +360,13 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             // A free place calculates with what another has.
             let values = |lane: usize, k: usize| lanes[lane].as_ref().unwrap_or(any).values[k];
             let packed: Vec<Lanes<V>> = (0..any.values.len()).map(|k| Lanes::each(|lane| values(lane, k))).collect();
-            system = Some(lifted(&packed));
+            let model = lifted(&packed);
+            group.join(&model);
+            for (place, lane) in occupied(&mut lanes).filter(|(_, lane)| lane.shortening.is_none()) {
+                lane.follow(&mut group, place);
+                lane.lead(&mut group, place);
+            }
+            system = Some(model);
         }
         let Some(model) = &system else { return };
         let finished = round(&mut group, &mut lanes, model, &scale);
@@ -432,15 +437,10 @@ where
     if trying == 0 {
         return failed;
     }
-    let has_loops = lanes.iter().flatten().any(|lane| lane.run.has_loops());
-    let Tried { fine, clear, accepted, refused } = group.attempt(model, scale, MOVED, has_loops);
-    if has_loops || group.is_held() {
-        for (place, lane) in occupied(lanes).filter(|(place, _)| accepted & 1 << place != 0) {
+    let Tried { fine, clear, accepted, refused } = group.attempt(model, scale, MOVED);
+    if group.is_held() {
+        for (_, lane) in occupied(lanes).filter(|(place, _)| accepted & 1 << place != 0) {
             lane.method().advanced();
-            let t = group.tried(place).0.t;
-            if !lane.holds_together(group, place, t) {
-                failed |= 1 << place;
-            }
         }
     }
     let (others, mut accepted) = (trying & !(accepted | refused), accepted);
