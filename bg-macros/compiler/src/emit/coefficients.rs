@@ -2,11 +2,12 @@
 //!
 //! In: steps that change. Out: their definitions.
 
+use super::blocks::{Part, store, window};
 use super::pairs;
 use super::routine::{self, Names};
 use crate::expr::Function;
 use crate::program::pairs::{Half, Step, Value};
-use crate::program::{Changes, Operand, Operation};
+use crate::program::{Assignment, Changes, Operand, Operation};
 
 /// The coefficient at an order of what does not change.
 const ZERO: &str = "S::from_f64(0.0)";
@@ -23,6 +24,16 @@ pub(super) struct Writer<'w, 'n> {
     pub(super) product: usize,
     /// The places behind those of the products.
     others: usize,
+    /// In a loop: the columns of where the places of an iteration begin, and the factors of the products.
+    looped: Option<Looped>,
+}
+
+/// The places of a loop's iterations.
+struct Looped {
+    /// The first of the products' places, and the first behind those of all products.
+    columns: [String; 2],
+    left: Vec<String>,
+    right: Vec<String>,
 }
 
 impl<'w, 'n> Writer<'w, 'n> {
@@ -38,7 +49,7 @@ impl<'w, 'n> Writer<'w, 'n> {
             Step::Pair(_, value) => 2 * usize::from(changes.is_product_of_pairs(value)),
         };
         let products = steps.map(products).sum::<usize>().next_multiple_of(4);
-        Self { names, changes, is_start, products, product: 0, others: 0 }
+        Self { names, changes, is_start, products, product: 0, others: 0, looped: None }
     }
 
     /// How many numbers each order takes, behind all steps.
@@ -65,9 +76,44 @@ impl<'w, 'n> Writer<'w, 'n> {
         group.iter().map(|step| self.step(step)).collect()
     }
 
+    /// The definitions of a long routine's part.
+    pub(super) fn part(&mut self, part: &mut Part) -> String {
+        let Some(iterations) = part.iterations() else { return self.singles(&part.assignments) };
+        let changes = self.changes.of_loop(&part.first);
+        let mut counted = Writer { changes: &changes, product: 0, others: 0, looped: None, ..*self };
+        counted.singles(&part.assignments);
+        let (product, others) = (counted.product, counted.others);
+        let places = |from: usize, each: usize| (0..iterations).map(|iteration| from + iteration * each).collect();
+        let columns = [
+            part.column(places(self.product, product)),
+            part.column(places(2 * self.products + self.others, others)),
+        ];
+        self.product += iterations * product;
+        self.others += iterations * others;
+        let looped = Looped { columns: columns.clone(), left: Vec::new(), right: Vec::new() };
+        let mut writer = Writer { changes: &changes, product: 0, others: 0, looped: Some(looped), ..*self };
+        let definitions = writer.singles(&part.assignments);
+        let Some(Looped { left, right, .. }) = writer.looped.filter(|_| product > 0) else { return definitions };
+        let ([at, _], products) = (columns, self.products);
+        let known = [("i", "inner", at.clone()), ("l", "&rows[0]", at.clone()), ("r", "&rows[0]", format!("{products} + {at}"))];
+        let known = known.map(|(name, array, at)| window((0..product).map(|index| format!("{name}{index}")), array, &at));
+        let known = if self.is_start { String::new() } else { known.concat() };
+        let left = store("&mut rows[k]", &at, left);
+        let right = store("&mut rows[k]", &format!("{products} + {at}"), right);
+        known + &definitions + &left + &right
+    }
+
+    fn singles(&mut self, assignments: &[Assignment]) -> String {
+        assignments.iter().map(|assignment| self.single(assignment)).collect()
+    }
+
+    fn single(&mut self, of: &Assignment) -> String {
+        routine::definition(of.target, &self.operation(&of.operation))
+    }
+
     fn step(&mut self, step: &Step) -> String {
         match step {
-            Step::Single(of) => routine::definition(of.target, &self.operation(&of.operation)),
+            Step::Single(of) => self.single(of),
             Step::Half { .. } => pairs::step(step, self.names),
             Step::Pair(index, value) => pairs::definition(*index, &self.pair_value(value)),
         }
@@ -105,6 +151,11 @@ impl<'w, 'n> Writer<'w, 'n> {
     fn product_of(&mut self, name: &str, numbers: usize, a: &str, b: &str) -> String {
         let (left, right) = (self.product, self.products + self.product);
         self.product += numbers;
+        if let Some(looped) = &mut self.looped {
+            looped.left.push(a.to_owned());
+            looped.right.push(b.to_owned());
+            return if self.is_start { format!("{a} * {b}") } else { format!("i{left} + ({a} * r{left} + l{left} * {b})") };
+        }
         if self.is_start {
             format!("first_{name}(rows, {left}, {right}, {a}, {b})")
         } else {
@@ -113,10 +164,13 @@ impl<'w, 'n> Writer<'w, 'n> {
     }
 
     /// The first of `count` places.
-    fn reserve(&mut self, count: usize) -> usize {
-        let at = 2 * self.products + self.others;
+    fn reserve(&mut self, count: usize) -> String {
+        let at = self.others;
         self.others += count;
-        at
+        match &self.looped {
+            Some(Looped { columns: [_, others], .. }) => format!("{others} + {at}"),
+            None => (2 * self.products + at).to_string(),
+        }
     }
 
     fn call(&mut self, function: Function, arguments: &[Operand]) -> String {
