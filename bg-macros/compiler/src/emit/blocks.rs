@@ -4,8 +4,8 @@
 //! What a group hands to others, or as a result, is in the array `v`; all else are its own `let`s. Each `let` is a scope inside the one
 //! before, and LLVM's stack overflows over some thousands of them; places of an array take rustc's check ten times as long as `let`s.
 //!
-//! An iteration reads windows: places of an array side by side, of which a table has the first one. So bounds are checked once for a
-//! window, and what stands in it has no place to calculate.
+//! An iteration reads windows: places of an array side by side, whose first one goes on in even steps or stands in a table. So bounds are checked
+//! once for a window, if at all, and what stands in it has no place to calculate.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -66,7 +66,7 @@ pub(super) struct Part<'a> {
     pub(super) assignments: Cow<'a, [Assignment]>,
     /// What the temporaries of a loop are in its first iteration: the targets, then what it reads. Of no loop: nothing.
     pub(super) first: Vec<Operand>,
-    /// What the iterations of a loop read from its table.
+    /// The places that the iterations of a loop have elsewhere.
     columns: Vec<Vec<usize>>,
     /// The code that reads what others hand on.
     reads: String,
@@ -116,7 +116,8 @@ impl Blocks {
             .map(|temporary| routine::definition(temporary, &self.place(temporary)))
             .collect();
         let first = self.handed(assignments).next();
-        let writes = first.map(|first| store("v", &self.places[&first].to_string(), self.handed(assignments).map(temporary)));
+        let writes =
+            first.map(|first| store("v", &self.places[&first].to_string(), self.handed(assignments).map(temporary)));
         Part { assignments: assignments.into(), reads, writes: writes.unwrap_or_default(), ..Part::default() }
     }
 
@@ -155,7 +156,7 @@ impl Blocks {
 }
 
 impl Part<'_> {
-    /// The column of the table with what each iteration reads.
+    /// The name of a place that each iteration has elsewhere.
     pub(super) fn column(&mut self, of_iterations: Vec<usize>) -> String {
         self.columns.push(of_iterations);
         column(self.columns.len() - 1)
@@ -171,10 +172,23 @@ impl Part<'_> {
         let Self { reads, writes, columns, .. } = self;
         let body = format!("{reads}{definitions}{writes}");
         let Some(iterations) = self.iterations() else { return body };
-        let rows = (0..iterations).map(|iteration| format!("{:?}", columns.iter().map(|column| column[iteration]).collect::<Vec<_>>()));
-        let (rows, names) = (rows.collect::<Vec<_>>().join(", "), (0..columns.len()).map(column).collect::<Vec<_>>().join(", "));
-        let width = columns.len();
-        format!("static TABLE: [[usize; {width}]; {iterations}] = [{rows}];\nfor &[{names}] in &TABLE {{ {body} }}")
+        let places: String =
+            columns.iter().enumerate().map(|(index, places)| places_of(&column(index), places)).collect();
+        format!("for i in 0..{iterations} {{ {places}{body} }}")
+    }
+}
+
+/// The definition of a place in iteration `i`: in even steps, from which LLVM knows that it is in bounds, or from a table.
+fn places_of(name: &str, places: &[usize]) -> String {
+    let first = places[0];
+    let step = places[1].checked_sub(first);
+    let is_even = |step: &usize| places.iter().enumerate().all(|(index, place)| *place == first + index * step);
+    match step.filter(is_even) {
+        Some(0) => format!("let {name} = {first};\n"),
+        Some(step) => format!("let {name} = {first} + {step} * i;\n"),
+        None => {
+            format!("let {name} = {{ static PLACES: [usize; {}] = {places:?}; PLACES[i] }};\n", places.len())
+        }
     }
 }
 
@@ -260,4 +274,50 @@ fn read_from_others(group: &[Assignment]) -> BTreeSet<u32> {
     let own: BTreeSet<u32> = group.iter().map(|assignment| assignment.target).collect();
     let read = group.iter().flat_map(|assignment| assignment.operation.operands());
     read.filter_map(|operand| as_temporary(&operand)).filter(|read| !own.contains(read)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::Symbol;
+    use crate::program::Operation;
+
+    /// Iterations of 150 assignments, each of which reads two states and what the one before gives.
+    fn chain(count: u32) -> Vec<Assignment> {
+        let state = |index| Operand::Symbol(Symbol::State(index));
+        let operation = |index: u32| match (index / 150, index % 150) {
+            (iteration, 0) => Operation::Multiply(state(2 * iteration + 1), state(2 * iteration + 3)),
+            (0, 1) => Operation::Add(Operand::Temporary(0), Operand::Temporary(0)),
+            (iteration, 1) => Operation::Add(Operand::Temporary(index - 1), Operand::Temporary(150 * iteration - 1)),
+            _ => Operation::Multiply(Operand::Temporary(index - 1), Operand::Temporary(index - 2)),
+        };
+        (0..150 * count).map(|target| Assignment { target, operation: operation(target) }).collect()
+    }
+
+    #[test]
+    fn a_loop_reads_windows_and_hands_on_side_by_side() {
+        let assignments = chain(5);
+        let groups = Group::of(&assignments, &|_| false);
+        let lengths: Vec<_> = groups.iter().map(|group| (group.assignments.len(), group.period)).collect();
+        assert_eq!(lengths, [(1, 1), (600, 150), (149, 149)]);
+        let blocks = Blocks::of(&groups, &[Operand::Temporary(749)]);
+        let [first, part, last] = [0, 1, 2].map(|index| blocks.part(&groups[index]).code(""));
+        assert_eq!(first, "::bg_model::__private::store(v, 0, [v0]);");
+        let expected = "for i in 0..4 { let a0 = 0 + 2 * i;\n\
+                        let a1 = { static PLACES: [usize; 4] = [0, 1, 3, 5]; PLACES[i] };\nlet a2 = 3 + 2 * i;\nlet a3 = 1 + 2 * i;\n\
+                        let [v150] = *::bg_model::__private::window(v, a0);\nlet [v151] = *::bg_model::__private::window(v, a1);\n\
+                        let [v152, _, v153] = *::bg_model::__private::window(x, a2);\n\
+                        ::bg_model::__private::store(v, a3, [v148, v149]); }";
+        assert_eq!(part, expected);
+        assert_eq!(last, "let v599 = v[7];\nlet v600 = v[8];\n::bg_model::__private::store(v, 9, [v749]);");
+    }
+
+    #[test]
+    fn places_go_on_in_steps_or_stand_in_a_table() {
+        assert_eq!(places_of("a3", &[5, 5, 5]), "let a3 = 5;\n");
+        assert_eq!(places_of("a3", &[5, 8, 11]), "let a3 = 5 + 3 * i;\n");
+        let table = "let a3 = { static PLACES: [usize; 3] = [5, 8, 12]; PLACES[i] };\n";
+        assert_eq!(places_of("a3", &[5, 8, 12]), table);
+        assert_eq!(places_of("a3", &[5, 4, 3]), table.replace("[5, 8, 12]", "[5, 4, 3]"));
+    }
 }

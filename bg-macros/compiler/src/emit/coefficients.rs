@@ -84,10 +84,8 @@ impl<'w, 'n> Writer<'w, 'n> {
         counted.singles(&part.assignments);
         let (product, others) = (counted.product, counted.others);
         let places = |from: usize, each: usize| (0..iterations).map(|iteration| from + iteration * each).collect();
-        let columns = [
-            part.column(places(self.product, product)),
-            part.column(places(2 * self.products + self.others, others)),
-        ];
+        let columns =
+            [part.column(places(self.product, product)), part.column(places(2 * self.products + self.others, others))];
         self.product += iterations * product;
         self.others += iterations * others;
         let looped = Looped { columns: columns.clone(), left: Vec::new(), right: Vec::new() };
@@ -95,8 +93,13 @@ impl<'w, 'n> Writer<'w, 'n> {
         let definitions = writer.singles(&part.assignments);
         let Some(Looped { left, right, .. }) = writer.looped.filter(|_| product > 0) else { return definitions };
         let ([at, _], products) = (columns, self.products);
-        let known = [("i", "inner", at.clone()), ("l", "&rows[0]", at.clone()), ("r", "&rows[0]", format!("{products} + {at}"))];
-        let known = known.map(|(name, array, at)| window((0..product).map(|index| format!("{name}{index}")), array, &at));
+        let known = [
+            ("i", "inner", at.clone()),
+            ("l", "&rows[0]", at.clone()),
+            ("r", "&rows[0]", format!("{products} + {at}")),
+        ];
+        let known =
+            known.map(|(name, array, at)| window((0..product).map(|index| format!("{name}{index}")), array, &at));
         let known = if self.is_start { String::new() } else { known.concat() };
         let left = store("&mut rows[k]", &at, left);
         let right = store("&mut rows[k]", &format!("{products} + {at}"), right);
@@ -154,7 +157,11 @@ impl<'w, 'n> Writer<'w, 'n> {
         if let Some(looped) = &mut self.looped {
             looped.left.push(a.to_owned());
             looped.right.push(b.to_owned());
-            return if self.is_start { format!("{a} * {b}") } else { format!("i{left} + ({a} * r{left} + l{left} * {b})") };
+            return if self.is_start {
+                format!("{a} * {b}")
+            } else {
+                format!("i{left} + ({a} * r{left} + l{left} * {b})")
+            };
         }
         if self.is_start {
             format!("first_{name}(rows, {left}, {right}, {a}, {b})")

@@ -76,7 +76,8 @@ pub(super) fn expansion(routine: &Routine, paired: Option<&Paired>, names: &Name
     };
     let ((start, start_rates, counted), (order, order_rates, _)) = (written(true), written(false));
     let (products, places) = (counted.products, counted.places().max(1));
-    let (array, array_type) = (long.as_ref().map(|long| long.blocks.array()), long.as_ref().map(|long| long.blocks.array_type()));
+    let (array, array_type) =
+        (long.as_ref().map(|long| long.blocks.array()), long.as_ref().map(|long| long.blocks.array_type()));
     let mut parts = TokenStream::new();
     let mut statements = |pass: Pass, code: Code| match code {
         Code::Parts(written) => {
@@ -201,7 +202,12 @@ enum Pass {
 
 impl Pass {
     /// The functions of these parts, each with its definitions, and their calls in the body of `expand`.
-    fn parts(self, parts: Vec<(Part, String)>, array: &Option<TokenStream>, reads: &Reads) -> (TokenStream, TokenStream) {
+    fn parts(
+        self,
+        parts: Vec<(Part, String)>,
+        array: &Option<TokenStream>,
+        reads: &Reads,
+    ) -> (TokenStream, TokenStream) {
         let (pass, arguments) = self.arguments(reads);
         let (declared, handed): (Vec<_>, Vec<_>) =
             arguments.into_iter().map(|[declared, handed]| (declared, handed)).unzip();

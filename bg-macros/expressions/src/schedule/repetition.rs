@@ -101,12 +101,10 @@ struct Shape {
 const ALIKE: usize = 12;
 /// Periods that are tried at each place.
 const PERIODS: usize = 8;
-/// Shorter iterations are joined: what each of them costs beside its operations are some instructions.
-const SHORTEST: usize = 32;
+/// Shorter iterations are joined: each of them costs some instructions beside its operations.
+const SHORTEST: usize = 128;
 /// Longer ones are no piece: it is one scope inside of the other for each of them.
 const LONGEST: usize = 2000;
-/// A run saves at least so many assignments.
-const SAVED: usize = 100;
 
 /// The runs in assignments, in their order. Operands of which one is of a kind and the other is not do not stand at the same place
 /// of a piece.
@@ -127,8 +125,9 @@ fn shapes(assignments: &[Assignment], kind: &dyn Fn(&Operand) -> bool) -> Vec<Sh
     let places: FxHashMap<u32, usize> = assignments.iter().map(|assignment| assignment.target).zip(0..).collect();
     let leaf = |operand: Operand| match operand {
         Operand::Number(value) => Leaf::Number(value.to_bits()),
-        Operand::Symbol(symbol) => Array::entry(&operand)
-            .map_or(Leaf::Symbol(symbol), |(array, _)| Leaf::Entry(array, kind(&operand))),
+        Operand::Symbol(symbol) => {
+            Array::entry(&operand).map_or(Leaf::Symbol(symbol), |(array, _)| Leaf::Entry(array, kind(&operand)))
+        }
         Operand::Constant(_) => Leaf::Entry(Array::Constants, kind(&operand)),
         Operand::Temporary(_) => Leaf::Entry(Array::Temporaries, kind(&operand)),
     };
@@ -172,9 +171,8 @@ fn run_at(shapes: &[Shape], next: &[Option<usize>], start: usize) -> Option<Run>
         let others = (1..).take_while(|count| is_same(shapes, start, start + count * period, period));
         Run { start, period, count: 1 + others.count() }
     };
-    let saved = |run: &Run| run.period * (run.count - 1);
-    let worth = joined.map(run).filter(|run| saved(run) >= SAVED);
-    worth.max_by_key(|run| (saved(run), std::cmp::Reverse(run.period)))
+    let runs = joined.map(run).filter(|run| run.count > 1);
+    runs.max_by_key(|run| (run.period * (run.count - 1), std::cmp::Reverse(run.period)))
 }
 
 /// Whether the stretches of this length from two places on are the same piece.
@@ -223,14 +221,17 @@ mod tests {
 
     const STATE: fn(u32) -> Operand = |index| Operand::Symbol(Symbol::State(index));
 
-    /// `count` iterations of 40 assignments, each of which reads a state, a constant and what the iteration before gives.
+    /// The assignments of an iteration.
+    const PERIOD: u32 = 130;
+
+    /// `count` iterations, each of which reads a state, a constant and what the iteration before gives.
     fn chain(count: u32) -> Vec<Assignment> {
         let mut assignments = vec![Operation::Negate(STATE(0))];
         for iteration in 0..count {
             let before = number(assignments.len() - 1);
             assignments.push(Operation::Multiply(STATE(3 * iteration), Constant(iteration)));
             assignments.push(Operation::Add(Temporary(before), Temporary(before + 1)));
-            for _ in 2..40 {
+            for _ in 2..PERIOD {
                 assignments.push(Operation::Multiply(Temporary(number(assignments.len() - 1)), Number(0.5)));
             }
         }
@@ -247,46 +248,49 @@ mod tests {
 
     #[test]
     fn a_chain_is_a_run() {
-        assert_eq!(all_alike(&chain(9)), [Run { start: 1, period: 40, count: 9 }]);
-        assert_eq!(all_alike(&chain(3)), [], "it saves too little");
+        assert_eq!(all_alike(&chain(9)), [Run { start: 1, period: 130, count: 9 }]);
+        assert_eq!(all_alike(&chain(1)), []);
     }
 
     #[test]
     fn the_piece_reads_what_each_iteration_reads() {
         let assignments = chain(9);
-        let Piece { assignments, inputs } = piece(&assignments[1..], 40);
+        let Piece { assignments, inputs } = piece(&assignments[1..], 130);
         let input = |array, entries: &dyn Fn(u32) -> u32| Input { array, entries: (0..9).map(entries).collect() };
         assert_eq!(
             inputs,
             [
                 input(Array::States, &|iteration| 3 * iteration),
                 input(Array::Constants, &|iteration| iteration),
-                input(Array::Temporaries, &|iteration| 40 * iteration),
+                input(Array::Temporaries, &|iteration| PERIOD * iteration),
             ]
         );
-        assert_eq!(assignments[0].operation, Operation::Multiply(Temporary(40), Temporary(41)));
-        assert_eq!(assignments[1].operation, Operation::Add(Temporary(42), Temporary(0)));
-        assert_eq!(assignments[39], Assignment { target: 39, operation: Operation::Multiply(Temporary(38), Number(0.5)) });
+        assert_eq!(assignments[0].operation, Operation::Multiply(Temporary(130), Temporary(131)));
+        assert_eq!(assignments[1].operation, Operation::Add(Temporary(132), Temporary(0)));
+        assert_eq!(
+            assignments[129],
+            Assignment { target: 129, operation: Operation::Multiply(Temporary(128), Number(0.5)) }
+        );
     }
 
     #[test]
     fn another_number_operation_or_place_ends_a_run() {
-        let run = |count| [Run { start: 1, period: 40, count }];
+        let run = |count| [Run { start: 1, period: 130, count }];
         let changed = |operation: Operation| {
             let mut assignments = chain(9);
             // The twentieth assignment of the sixth iteration.
-            assignments[1 + 5 * 40 + 19].operation = operation;
+            assignments[1 + 5 * 130 + 19].operation = operation;
             all_alike(&assignments)
         };
-        let before = Temporary(5 * 40 + 19);
+        let before = Temporary(5 * 130 + 19);
         assert_eq!(changed(Operation::Multiply(before, Number(0.5)))[..], run(9));
         let others = [
             Operation::Multiply(before, Number(0.25)),
             Operation::Add(before, Number(0.5)),
-            Operation::Multiply(Temporary(5 * 40 + 18), Number(0.5)),
+            Operation::Multiply(Temporary(5 * 130 + 18), Number(0.5)),
             Operation::Multiply(STATE(1), Number(0.5)),
             // Made by the iteration before.
-            Operation::Multiply(Temporary(5 * 40), Number(0.5)),
+            Operation::Multiply(Temporary(5 * 130), Number(0.5)),
         ];
         for operation in others {
             assert_eq!(changed(operation.clone())[0], run(5)[0], "{operation:?}");
@@ -296,13 +300,14 @@ mod tests {
     #[test]
     fn kinds_end_a_run() {
         let is_late = |operand: &Operand| matches!(operand, Constant(6..));
-        assert_eq!(runs(&chain(9), &is_late), [Run { start: 1, period: 40, count: 6 }]);
+        let run = |start, count| Run { start, period: 130, count };
+        assert_eq!(runs(&chain(9), &is_late), [run(1, 6), run(781, 3)]);
     }
 
     #[test]
     fn short_iterations_are_joined() {
-        let operations = (0..192).map(|index| Operation::Multiply(STATE(index), STATE(index))).collect();
-        assert_eq!(all_alike(&numbered(operations)), [Run { start: 0, period: 32, count: 6 }]);
+        let operations = (0..256).map(|index| Operation::Multiply(STATE(index), STATE(index))).collect();
+        assert_eq!(all_alike(&numbered(operations)), [Run { start: 0, period: 128, count: 2 }]);
     }
 
     #[test]
