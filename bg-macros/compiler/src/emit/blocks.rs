@@ -117,7 +117,7 @@ impl Blocks {
             .collect();
         let first = self.handed(assignments).next();
         let writes =
-            first.map(|first| store("v", &self.places[&first].to_string(), self.handed(assignments).map(temporary)));
+            first.map(|first| store(&self.places[&first].to_string(), self.handed(assignments).map(temporary)));
         Part { assignments: assignments.into(), reads, writes: writes.unwrap_or_default(), ..Part::default() }
     }
 
@@ -135,7 +135,7 @@ impl Blocks {
         let handed: Vec<u32> = handed.map(|(index, _)| index).collect();
         let begins = group.iterations().filter_map(|iteration| self.handed(iteration).next());
         let at = part.column(begins.map(|temporary| self.places[&temporary]).collect());
-        part.writes = store("v", &at, handed.into_iter().map(temporary));
+        part.writes = store(&at, handed.into_iter().map(temporary));
         part
     }
 
@@ -160,6 +160,11 @@ impl Part<'_> {
     pub(super) fn column(&mut self, of_iterations: Vec<usize>) -> String {
         self.columns.push(of_iterations);
         column(self.columns.len() - 1)
+    }
+
+    /// The names of the next columns.
+    pub(super) fn next_columns<const K: usize>(&self) -> [String; K] {
+        std::array::from_fn(|index| column(self.columns.len() + index))
     }
 
     /// How many iterations it has, if it is a loop.
@@ -240,14 +245,8 @@ impl Window {
             pattern.resize(places[0] - begin, "_".to_owned());
             pattern.push(temporary(*input));
         }
-        window(pattern, self.array, at)
+        format!("let [{}] = *::bg_model::__private::window({}, {at});\n", pattern.join(", "), self.array)
     }
-}
-
-/// The definitions of values that stand side by side in an array.
-pub(super) fn window(names: impl IntoIterator<Item = String>, array: &str, at: &str) -> String {
-    let names = names.into_iter().collect::<Vec<_>>().join(", ");
-    format!("let [{names}] = *::bg_model::__private::window({array}, {at});\n")
 }
 
 /// The name of a column of a loop's table.
@@ -255,10 +254,9 @@ fn column(index: usize) -> String {
     format!("a{index}")
 }
 
-/// The code that writes values side by side into an array.
-pub(super) fn store(array: &str, at: &str, values: impl IntoIterator<Item = String>) -> String {
-    let values = values.into_iter().collect::<Vec<_>>().join(", ");
-    format!("::bg_model::__private::store({array}, {at}, [{values}]);")
+/// The code that hands on values side by side.
+fn store(at: &str, values: impl Iterator<Item = String>) -> String {
+    format!("::bg_model::__private::store(v, {at}, [{}]);", values.collect::<Vec<_>>().join(", "))
 }
 
 fn number(index: usize) -> u32 {

@@ -2,7 +2,7 @@
 //!
 //! In: steps that change. Out: their definitions.
 
-use super::blocks::{Part, store, window};
+use super::blocks::Part;
 use super::pairs;
 use super::routine::{self, Names};
 use crate::expr::Function;
@@ -24,16 +24,8 @@ pub(super) struct Writer<'w, 'n> {
     pub(super) product: usize,
     /// The places behind those of the products.
     others: usize,
-    /// In a loop: the columns of where the places of an iteration begin, and the factors of the products.
-    looped: Option<Looped>,
-}
-
-/// The places of a loop's iterations.
-struct Looped {
-    /// The first of the products' places, and the first behind those of all products.
-    columns: [String; 2],
-    left: Vec<String>,
-    right: Vec<String>,
+    /// In a loop: where an iteration's places of products begin, and those behind the places of all products.
+    begins: Option<[String; 2]>,
 }
 
 impl<'w, 'n> Writer<'w, 'n> {
@@ -49,7 +41,7 @@ impl<'w, 'n> Writer<'w, 'n> {
             Step::Pair(_, value) => 2 * usize::from(changes.is_product_of_pairs(value)),
         };
         let products = steps.map(products).sum::<usize>().next_multiple_of(4);
-        Self { names, changes, is_start, products, product: 0, others: 0, looped: None }
+        Self { names, changes, is_start, products, product: 0, others: 0, begins: None }
     }
 
     /// How many numbers each order takes, behind all steps.
@@ -80,30 +72,16 @@ impl<'w, 'n> Writer<'w, 'n> {
     pub(super) fn part(&mut self, part: &mut Part) -> String {
         let Some(iterations) = part.iterations() else { return self.singles(&part.assignments) };
         let changes = self.changes.of_loop(&part.first);
-        let mut counted = Writer { changes: &changes, product: 0, others: 0, looped: None, ..*self };
-        counted.singles(&part.assignments);
-        let (product, others) = (counted.product, counted.others);
+        let begins = Some(part.next_columns());
+        let mut iteration = Writer { changes: &changes, product: 0, others: 0, begins, ..*self };
+        let definitions = iteration.singles(&part.assignments);
+        let (product, others) = (iteration.product, iteration.others);
         let places = |from: usize, each: usize| (0..iterations).map(|iteration| from + iteration * each).collect();
-        let columns =
-            [part.column(places(self.product, product)), part.column(places(2 * self.products + self.others, others))];
+        part.column(places(self.product, product));
+        part.column(places(2 * self.products + self.others, others));
         self.product += iterations * product;
         self.others += iterations * others;
-        let looped = Looped { columns: columns.clone(), left: Vec::new(), right: Vec::new() };
-        let mut writer = Writer { changes: &changes, product: 0, others: 0, looped: Some(looped), ..*self };
-        let definitions = writer.singles(&part.assignments);
-        let Some(Looped { left, right, .. }) = writer.looped.filter(|_| product > 0) else { return definitions };
-        let ([at, _], products) = (columns, self.products);
-        let known = [
-            ("i", "inner", at.clone()),
-            ("l", "&rows[0]", at.clone()),
-            ("r", "&rows[0]", format!("{products} + {at}")),
-        ];
-        let known =
-            known.map(|(name, array, at)| window((0..product).map(|index| format!("{name}{index}")), array, &at));
-        let known = if self.is_start { String::new() } else { known.concat() };
-        let left = store("&mut rows[k]", &at, left);
-        let right = store("&mut rows[k]", &format!("{products} + {at}"), right);
-        known + &definitions + &left + &right
+        definitions
     }
 
     fn singles(&mut self, assignments: &[Assignment]) -> String {
@@ -152,17 +130,12 @@ impl<'w, 'n> Writer<'w, 'n> {
 
     /// A product of so many numbers, by the functions of this name.
     fn product_of(&mut self, name: &str, numbers: usize, a: &str, b: &str) -> String {
-        let (left, right) = (self.product, self.products + self.product);
+        let at = self.product;
         self.product += numbers;
-        if let Some(looped) = &mut self.looped {
-            looped.left.push(a.to_owned());
-            looped.right.push(b.to_owned());
-            return if self.is_start {
-                format!("{a} * {b}")
-            } else {
-                format!("i{left} + ({a} * r{left} + l{left} * {b})")
-            };
-        }
+        let [left, right] = [at, self.products + at].map(|at| match &self.begins {
+            Some([products, _]) => format!("{products} + {at}"),
+            None => at.to_string(),
+        });
         if self.is_start {
             format!("first_{name}(rows, {left}, {right}, {a}, {b})")
         } else {
@@ -174,8 +147,8 @@ impl<'w, 'n> Writer<'w, 'n> {
     fn reserve(&mut self, count: usize) -> String {
         let at = self.others;
         self.others += count;
-        match &self.looped {
-            Some(Looped { columns: [_, others], .. }) => format!("{others} + {at}"),
+        match &self.begins {
+            Some([_, others]) => format!("{others} + {at}"),
             None => (2 * self.products + at).to_string(),
         }
     }
