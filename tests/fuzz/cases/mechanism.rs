@@ -19,6 +19,10 @@ pub(super) fn mechanism(rng: &mut Rng) -> String {
         let gravity = one(rng, &["[0, -9.81, 0]", "[0, 0, -9.81]", "[0, 0, 0]", "[1, 2, 3]", "[0, -push / 2, 0]"]);
         statements.push(format!("gravity {gravity};"));
     }
+    // Every parameter has to be used by something.
+    if !rarely(rng, 20) {
+        statements.push("let all = [size / 1, k / 1, push / 1]; let turned = angle;".to_owned());
+    }
     for index in 0..bodies {
         statements.push(body(rng, index));
         if !rarely(rng, 8) {

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 
 use crate::model::capability::SecondOrder;
 use crate::model::linear::Sparsity;
+use crate::model::scalar::Scalar;
 use crate::solve::integrator::Arch;
 use nalgebra::SVector;
 
@@ -69,6 +70,8 @@ pub(super) struct Block<const N: usize> {
     matrix: Vec<Lanes>,
     /// How it changes, per s.
     slope: Vec<Lanes>,
+    /// The largest magnitude in B, 1/s.
+    largest: f64,
     /// Of I - h gamma B.
     inverse: Inverse,
     /// The start of the step and of the one before, in turn, and which of them is that of the step.
@@ -97,6 +100,7 @@ impl<const N: usize> Block<N> {
             sources: Vec::new(),
             matrix: Vec::new(),
             slope: Vec::new(),
+            largest: 0.0,
             inverse: Inverse::new(arch),
             starts: [(0.0, SVector::zeros()); 2],
             present: 0,
@@ -162,10 +166,18 @@ impl<const N: usize> Block<N> {
     fn take(&mut self) {
         let Self { entries, earlier, sources, .. } = self;
         let (matrix, slope) = (self.matrix.as_flattened_mut(), self.slope.as_flattened_mut());
+        self.largest = 0.0;
         for &(entry, place) in &*sources {
             matrix[place] = entries[entry];
+            self.largest = self.largest.larger(entries[entry].abs());
             slope[place] = self.interval.map_or(0.0, |interval| (entries[entry] - earlier[entry]) / interval);
         }
+    }
+
+    /// What a step of size `h` (s) makes of the rounding of the damped states, in parts of them: its rates are not those of the implicit
+    /// part alone, so nothing damps this, and the error estimate does not know it.
+    pub fn noise(&self, h: f64) -> f64 {
+        f64::EPSILON * h.abs() * self.largest
     }
 
     /// Makes the inverse for the step. Gives whether there is one.

@@ -135,6 +135,10 @@ impl<const N: usize> Method<N> for Ark5<N> {
         if !self.block.prepare(flow, start, h, scale) {
             return f64::INFINITY;
         }
+        let noise = self.block.noise(h) / scale.relative;
+        if noise > 1.0 {
+            return noise;
+        }
         let tight;
         let scale = if scale.relative > Self::LOOSEST {
             tight = Scale { relative: Self::LOOSEST, ..scale.clone() };
