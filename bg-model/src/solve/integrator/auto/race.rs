@@ -4,7 +4,7 @@
 //! the run; none of these is lost. Races come more seldom the longer the run is. What limits a step, stability or accuracy, does not
 //! matter, and nothing is estimated: how far a method gets with its rates is what counts. Steps may become longer or shorter while others
 //! run, so there are several rounds, and who takes over has to be ahead in each: who is behind once is out. Only who has promised to be
-//! ahead each time that a step of it was tried since the last race takes part, so most rests end without a race.
+//! ahead where a step of it was tried since the last race takes part, so many rests end without a race.
 
 use nalgebra::SVector;
 
@@ -27,7 +27,7 @@ const FADING: f64 = 0.75;
 const RESTARTS: u32 = 32;
 /// Another method has to be ahead by this factor, so that the choice does not swing.
 const AHEAD: f64 = 1.05;
-/// How often in a rest one looks at the other methods, and by which factor one has to promise to be ahead each time: a step at the limit
+/// How often in a rest one looks at the other methods, and by which factor one has to promise to be ahead: a step at the limit
 /// of the tolerances is a quarter longer than those that a run makes. The series, whose price is estimated, has to promise more.
 const LOOKS: u32 = 2;
 const PROMISE: f64 = 1.1;
@@ -124,7 +124,7 @@ pub(super) struct Race<const N: usize> {
     series: Option<f64>,
     /// Whether the first method has been chosen.
     has_begun: bool,
-    /// The looks in this rest, and who has promised to be ahead in each of them.
+    /// The looks in this rest, and who has promised to be ahead in one of them.
     looks: u32,
     promises: [bool; RUNNERS],
     /// The method that makes the steps, and the one that was ahead.
@@ -167,7 +167,7 @@ impl<const N: usize> Race<N> {
             series: None,
             has_begun: false,
             looks: 0,
-            promises: [true; RUNNERS],
+            promises: [false; RUNNERS],
             runner: Runner::Dop853,
             ahead: Runner::Dop853,
             lead: 1.0,
@@ -259,7 +259,7 @@ impl<const N: usize> Race<N> {
     }
 
     /// Looks several times in a rest whether a step of another method from `start` would get further with its price than the last steps
-    /// did with their rates. Who breaks its promise once is not looked at again in this rest.
+    /// did with their rates. Who does so once takes part in the race.
     fn look(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
         let next = BEGINNING + (self.looks + 1) * (self.rest - BEGINNING) / LOOKS;
         if self.looks == LOOKS || self.steps < next || self.counted.steps == 0 {
@@ -267,7 +267,7 @@ impl<const N: usize> Race<N> {
         }
         self.looks += 1;
         for runner in Runner::ALL {
-            if runner != self.ahead && self.promises[runner as usize] {
+            if runner != self.ahead && !self.promises[runner as usize] {
                 let price = self.price(runner, flow, scale);
                 self.promises[runner as usize] =
                     price.is_some_and(|price| self.reaches(runner, flow, start, price * self.recent.speed(), scale));
@@ -316,7 +316,7 @@ impl<const N: usize> Race<N> {
         }
         self.round = None;
         self.rest = (2 * self.rest).min(REST[1]);
-        (self.looks, self.promises) = (0, [true; RUNNERS]);
+        (self.looks, self.promises) = (0, [false; RUNNERS]);
         self.begin(self.ahead);
     }
 }
