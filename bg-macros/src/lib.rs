@@ -70,7 +70,7 @@ use proc_macro::TokenStream;
 /// ```
 ///
 /// - A **parameter** stays the same during a run. Its default and the ends of its range are made of numbers and `+ - *
-///   /`. The range is checked by the generated `new`.
+///   /`. The range is checked by the generated `new`. One that nothing in its graph uses is a fault, and so is such an input (BG0811).
 /// - An **input** is a function of time, given at run time as a `bg_model::input::Input`: a constant, a closure, or a table
 ///   with straight lines or a cubic spline between its rows. Steps end at the rows of a table.
 /// - A **let** names an expression. A unit, where given, is checked.
@@ -1207,7 +1207,7 @@ use proc_macro::TokenStream;
 /// | BG0808 | a range without a number, or with too many |
 /// | BG0809 | two parameters or inputs that would be one field |
 /// | BG0810 | a value outside of the parameter's range |
-/// | BG0811 | a parameter or input of a part that nothing in it uses |
+/// | BG0811 | a parameter or input that nothing in its graph or part uses |
 /// | BG0812 | a start of something that is no body |
 /// | BG0813 | a start given twice |
 /// | BG0814 | nothing to watch |

@@ -14,7 +14,7 @@ pub use crate::model::nearest::lifted;
 pub use crate::model::parameters::serialized::{deserialize, serialize};
 pub use crate::model::reactions::{Started, fit, kept, redundant, share};
 pub use crate::model::requirement::{Requirement, require};
-pub use crate::model::series::store;
+pub use crate::model::series::{store, window};
 pub use crate::model::vectorised::vectorised_rate;
 
 /// Eliminations as tables, where they are too long to be unrolled.

@@ -288,13 +288,18 @@ const PARTS: [(&str, &str); 14] = [
 ];
 
 /// More of parts.
-const MORE_OF_PARTS: [(&str, &str); 9] = [
+const MORE_OF_PARTS: [(&str, &str); 10] = [
     (
         "BG0802",
         "graph G { part a: Leg { ▸foot.j = 1; } }\npart Leg { part foot: Foot { j = 1; } }\n\
          part Foot { param j: 1 = 2; let a = j; }",
     ),
     ("BG0804", "graph G { part ▸a: Leg; }\npart Leg { port hub: translation; port foot: translation; hub -> foot; }"),
+    (
+        "BG0811",
+        "graph G { param ▸k: N = 1; Se f = 2; 1 j: translation; I m = 2; f -> j -> m; observe { j.flow }\n\
+         scene S { tune { k } } }",
+    ),
     ("BG0806", "graph G { part a[2]: Leg; let b = ▸a.a; }\npart Leg { let a = 1; }"),
     ("BG0807", "graph G { for i in 0..2 { for ▸i in 0..2 { let b[i] = 1; } } }"),
     ("BG0808", "graph G { part a[▸100000]: Leg; }\npart Leg { let a = 1; }"),

@@ -325,6 +325,19 @@ where
     assert_eq!(solved.refused, 0);
 }
 
+/// Its functions have loops.
+#[test]
+fn a_model_that_repeats_itself_along_its_motion() {
+    use models::long::{Rope, RopeParameters};
+    let model = Rope::new(RopeParameters::default()).unwrap();
+    let twin = Rope::<Dual>::in_scalar(RopeParameters::default()).unwrap();
+    for (t, x, negative) in along(&model, 0.05) {
+        is_the_derivative((&model, &twin), t, &x, &negative);
+        second_derivatives_agree((&model, &twin), t, &x, &negative);
+    }
+    along_the_trajectory(&model);
+}
+
 /// Its functions are in parts, and depend on switches.
 #[test]
 fn a_long_model_along_its_motion() {

@@ -18,6 +18,7 @@ use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
 use bg_model::system::Model;
 use bond_graph_tests::fuzz;
+use bond_graph_tests::models::long::{Rope, RopeParameters};
 use hacksaw::mechanism::{Hacksaw, HacksawParameters};
 use proc_macro2::TokenStream;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -260,6 +261,14 @@ fn the_pendulum_equals_its_interpretation() {
 fn the_hacksaw_equals_its_interpretation() {
     let text = Hacksaw::new(HacksawParameters::default()).expect("in range").description().graph;
     let error = compare(text, |sample| Hacksaw::new(set(&sample.parameters)).expect("in range"), 3);
+    println!("hacksaw {error:e}");
+}
+
+/// Its functions have loops.
+#[test]
+fn a_rope_in_loops_equals_its_interpretation() {
+    let text = Rope::new(RopeParameters::default()).expect("in range").description().graph;
+    let error = compare(text, |sample| Rope::new(set(&sample.parameters)).expect("in range"), 3);
     println!("hacksaw {error:e}");
 }
 

@@ -161,6 +161,12 @@ fn a_long_model_along_its_motion() {
     agrees_at(&model, &along(&model, 0.5), 1e-3);
 }
 
+/// Its series has loops.
+#[test]
+fn a_model_that_repeats_itself() {
+    agrees(&models::long::Rope::new(models::long::RopeParameters::default()).unwrap());
+}
+
 #[test]
 fn an_input_that_changes_leaves_no_series() {
     use models::dc_motor::{DcMotor, DcMotorInputs, DcMotorParameters};

@@ -118,6 +118,18 @@ pub trait Joints<S: Scalar, const N: usize, const G: usize> {
     /// Writes the relative flows of these motions, and what the reactions of rigid joints change, into `entries`: in the order
     /// and of the length of [`Held`].
     fn hold(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]);
+
+    /// Whether [`Joints::inlined_hold`] is inlined: not where it is too long.
+    fn is_hold_inlined(&self) -> bool {
+        false
+    }
+
+    /// As [`Joints::hold`], inlined where that is short enough: where numbers are vectors of a machine that not every build is for, its operations
+    /// are calls elsewhere.
+    #[inline(always)]
+    fn inlined_hold(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]) {
+        self.hold(t, x, negative, entries);
+    }
 }
 
 /// A system with stops that give back a part of the speed with which something hits them.

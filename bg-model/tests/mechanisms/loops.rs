@@ -32,7 +32,7 @@ bond_graph! {
     }
     /// A mass that is pushed harder once the unknown is above a threshold.
     graph Threshold {
-        param unit: N = 1; param rise: N/s = 1; param g: m/N^2/s = 1;
+        param rise: N/s = 1; param g: m/N^2/s = 1;
         MSe source = rise * t; 1 line: translation; R damper = 2; R square(effort e) = g * e * abs(e);
         source -> line -> damper; line -> square;
         MSe push = if square.effort < 0.5 { 1 } else { 5 }; 1 slide: translation; I mass = 2; push -> slide -> mass;

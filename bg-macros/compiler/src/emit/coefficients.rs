@@ -2,11 +2,12 @@
 //!
 //! In: steps that change. Out: their definitions.
 
+use super::blocks::Part;
 use super::pairs;
 use super::routine::{self, Names};
 use crate::expr::Function;
 use crate::program::pairs::{Half, Step, Value};
-use crate::program::{Changes, Operand, Operation};
+use crate::program::{Assignment, Changes, Operand, Operation};
 
 /// The coefficient at an order of what does not change.
 const ZERO: &str = "S::from_f64(0.0)";
@@ -23,6 +24,8 @@ pub(super) struct Writer<'w, 'n> {
     pub(super) product: usize,
     /// The places behind those of the products.
     others: usize,
+    /// In a loop: where an iteration's places of products begin, and those behind the places of all products.
+    begins: Option<[String; 2]>,
 }
 
 impl<'w, 'n> Writer<'w, 'n> {
@@ -38,7 +41,7 @@ impl<'w, 'n> Writer<'w, 'n> {
             Step::Pair(_, value) => 2 * usize::from(changes.is_product_of_pairs(value)),
         };
         let products = steps.map(products).sum::<usize>().next_multiple_of(4);
-        Self { names, changes, is_start, products, product: 0, others: 0 }
+        Self { names, changes, is_start, products, product: 0, others: 0, begins: None }
     }
 
     /// How many numbers each order takes, behind all steps.
@@ -65,9 +68,33 @@ impl<'w, 'n> Writer<'w, 'n> {
         group.iter().map(|step| self.step(step)).collect()
     }
 
+    /// The definitions of a long routine's part.
+    pub(super) fn part(&mut self, part: &mut Part) -> String {
+        let Some(iterations) = part.iterations() else { return self.singles(&part.assignments) };
+        let changes = self.changes.of_loop(&part.first);
+        let begins = Some(part.next_columns());
+        let mut iteration = Writer { changes: &changes, product: 0, others: 0, begins, ..*self };
+        let definitions = iteration.singles(&part.assignments);
+        let (product, others) = (iteration.product, iteration.others);
+        let places = |from: usize, each: usize| (0..iterations).map(|iteration| from + iteration * each).collect();
+        part.column(places(self.product, product));
+        part.column(places(2 * self.products + self.others, others));
+        self.product += iterations * product;
+        self.others += iterations * others;
+        definitions
+    }
+
+    fn singles(&mut self, assignments: &[Assignment]) -> String {
+        assignments.iter().map(|assignment| self.single(assignment)).collect()
+    }
+
+    fn single(&mut self, of: &Assignment) -> String {
+        routine::definition(of.target, &self.operation(&of.operation))
+    }
+
     fn step(&mut self, step: &Step) -> String {
         match step {
-            Step::Single(of) => routine::definition(of.target, &self.operation(&of.operation)),
+            Step::Single(of) => self.single(of),
             Step::Half { .. } => pairs::step(step, self.names),
             Step::Pair(index, value) => pairs::definition(*index, &self.pair_value(value)),
         }
@@ -103,8 +130,12 @@ impl<'w, 'n> Writer<'w, 'n> {
 
     /// A product of so many numbers, by the functions of this name.
     fn product_of(&mut self, name: &str, numbers: usize, a: &str, b: &str) -> String {
-        let (left, right) = (self.product, self.products + self.product);
+        let at = self.product;
         self.product += numbers;
+        let [left, right] = [at, self.products + at].map(|at| match &self.begins {
+            Some([products, _]) => format!("{products} + {at}"),
+            None => at.to_string(),
+        });
         if self.is_start {
             format!("first_{name}(rows, {left}, {right}, {a}, {b})")
         } else {
@@ -113,10 +144,13 @@ impl<'w, 'n> Writer<'w, 'n> {
     }
 
     /// The first of `count` places.
-    fn reserve(&mut self, count: usize) -> usize {
-        let at = 2 * self.products + self.others;
+    fn reserve(&mut self, count: usize) -> String {
+        let at = self.others;
         self.others += count;
-        at
+        match &self.begins {
+            Some([_, others]) => format!("{others} + {at}"),
+            None => (2 * self.products + at).to_string(),
+        }
     }
 
     fn call(&mut self, function: Function, arguments: &[Operand]) -> String {

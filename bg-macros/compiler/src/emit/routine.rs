@@ -9,7 +9,7 @@ extern crate proc_macro;
 use proc_macro2::{TokenStream, TokenTree};
 use quote::quote;
 
-use super::blocks::{BLOCK, Blocks};
+use super::blocks::{Blocks, Group};
 use super::items::number_text;
 use crate::expr::{Function, Symbol};
 use crate::program::{Assignment, Operand, Operation, Routine};
@@ -49,10 +49,13 @@ pub fn statements(routine: &Routine, names: &Names) -> (TokenStream, Vec<TokenSt
         let results = routine.results.iter().map(|result| operand(result, names));
         return (parsed(&assignments(&routine.assignments, names)), parsed_each(results));
     }
-    let groups = routine.assignments.chunks(BLOCK);
-    let blocks = Blocks::of(groups.clone(), &routine.results);
+    let groups: Vec<_> = Group::straight(&routine.assignments).collect();
+    let blocks = Blocks::of(&groups, &routine.results);
     let array = blocks.array();
-    let statements = groups.map(|group| parsed(&blocks.block(group, &assignments(group, names), names)));
+    let statements = groups.iter().map(|group| {
+        let part = blocks.part(group);
+        parsed(&part.code(&assignments(&part.assignments, names)))
+    });
     let results = routine.results.iter().map(|result| blocks.result(result, names));
     (quote! { #array #({ #statements })* }, parsed_each(results))
 }

@@ -12,10 +12,10 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::blocks::{BLOCK, Blocks};
+use super::blocks::{Blocks, Group, Part};
 use super::coefficients::Writer;
 use super::pairs;
-use super::routine::{Names, parsed, parsed_each};
+use super::routine::{Names, assignments, parsed, parsed_each};
 use crate::expr::Function;
 use crate::program::pairs::{Half, Paired, Step};
 use crate::program::{Assignment, Changes, Operation, Routine};
@@ -52,40 +52,49 @@ pub(super) fn expansion(routine: &Routine, paired: Option<&Paired>, names: &Name
     let results = paired.map_or_else(|| halves(routine), |paired| paired.results.clone());
     let changes = Changes::of(&steps);
     let (moving, fixed): (Vec<_>, Vec<_>) = steps.into_iter().partition(|step| changes.includes(step));
-    let length = if routine.is_long() { BLOCK } else { usize::MAX };
-    let (fixed, moving) = (fixed.chunks(length), moving.chunks(length));
-    let [fixed_singles, moving_singles] =
-        [fixed.clone(), moving.clone()].map(|groups| groups.map(singles).collect::<Vec<_>>());
-    let blocks = routine.is_long().then(|| {
-        let groups = fixed_singles.iter().chain(&moving_singles).map(Vec::as_slice);
-        Blocks::of(groups, &routine.results)
+    let [moving_singles, fixed_singles] = [&moving, &fixed].map(|steps| singles(steps));
+    let long = routine.is_long().then(|| {
+        let [fixed, moving] =
+            [&fixed_singles, &moving_singles].map(|of| Group::of(of, &|operand| changes.operand(operand)));
+        let blocks = Blocks::of(&[&fixed[..], &moving[..]].concat(), &routine.results);
+        Long { fixed, moving, blocks }
     });
     let written = |is_start| {
-        let mut writer = Writer::new(names, &changes, is_start, moving.clone().flatten());
-        let groups: Vec<_> = moving.clone().map(|group| writer.group(group)).collect();
-        let rates = results.iter().map(|result| match (&blocks, result) {
-            (Some(blocks), Half::Of(result)) if is_start || changes.operand(result) => blocks.result(result, names),
+        let mut writer = Writer::new(names, &changes, is_start, moving.iter());
+        let code = match &long {
+            Some(long) => long.parts(&long.moving, |part| writer.part(part)),
+            None => Code::Whole(writer.group(&moving)),
+        };
+        let rates = results.iter().map(|result| match (&long, result) {
+            (Some(Long { blocks, .. }), Half::Of(result)) if is_start || changes.operand(result) => {
+                blocks.result(result, names)
+            }
             _ => writer.half(result),
         });
         let rates = parsed_each(rates);
-        (groups, rates, writer)
+        (code, rates, writer)
     };
     let ((start, start_rates, counted), (order, order_rates, _)) = (written(true), written(false));
     let (products, places) = (counted.products, counted.places().max(1));
+    let (array, array_type) =
+        (long.as_ref().map(|long| long.blocks.array()), long.as_ref().map(|long| long.blocks.array_type()));
     let mut parts = TokenStream::new();
-    let mut statements = |pass: Pass, groups: &[Vec<Assignment>], definitions: Vec<String>| match &blocks {
-        Some(blocks) => {
-            let (functions, calls) = pass.parts(groups, &definitions, blocks, names, reads);
+    let mut statements = |pass: Pass, code: Code| match code {
+        Code::Parts(written) => {
+            let (functions, calls) = pass.parts(written, &array_type, reads);
             parts.extend(functions);
             calls
         }
-        None => parsed(&definitions.concat()),
+        Code::Whole(definitions) => parsed(&definitions),
     };
     // What does not change with time, and yet is no constant of the model: it depends on inputs.
-    let definitions = fixed.map(|group| pairs::text(group, names)).collect();
-    let fixed = statements(Pass::Fixed, &fixed_singles, definitions);
-    let start = statements(Pass::Start { places }, &moving_singles, start);
-    let order = statements(Pass::Order { places, products }, &moving_singles, order);
+    let fixed = match &long {
+        Some(long) => long.parts(&long.fixed, |part| assignments(&part.assignments, names)),
+        None => Code::Whole(pairs::text(&fixed, names)),
+    };
+    let fixed = statements(Pass::Fixed, fixed);
+    let start = statements(Pass::Start { places }, start);
+    let order = statements(Pass::Order { places, products }, order);
     let Reads { values, states, found, .. } = reads;
     let (start_rates, _) = start_rates.split_at(start_rates.len() - found);
     let (order_rates, coefficients) = order_rates.split_at(order_rates.len() - found);
@@ -104,7 +113,7 @@ pub(super) fn expansion(routine: &Routine, paired: Option<&Paired>, names: &Name
         Some(_) => quote!(let (c, q) = (&self.constants, &self.constant_pairs);),
         None => quote!(let c = &self.constants;),
     };
-    let (array, at) = (blocks.as_ref().map(Blocks::array), blocks.as_ref().map(|_| quote!(let at = t;)));
+    let at = long.as_ref().map(|_| quote!(let at = t;));
     let body = quote! {
         use ::bg_model::series::{first_product, next_product #pair_products};
         #tables
@@ -137,6 +146,33 @@ pub(super) fn expansion(routine: &Routine, paired: Option<&Paired>, names: &Name
     Expansion { width: places, operations, body, parts }
 }
 
+/// A long routine in groups.
+struct Long<'a> {
+    /// Of what does not change.
+    fixed: Vec<Group<'a>>,
+    /// Of what does.
+    moving: Vec<Group<'a>>,
+    blocks: Blocks,
+}
+
+impl<'a> Long<'a> {
+    /// Groups as they are written, each with its definitions.
+    fn parts(&self, groups: &[Group<'a>], mut definitions: impl FnMut(&mut Part) -> String) -> Code<'a> {
+        let written = groups.iter().map(|group| {
+            let mut part = self.blocks.part(group);
+            let definitions = definitions(&mut part);
+            (part, definitions)
+        });
+        Code::Parts(written.collect())
+    }
+}
+
+/// What is gone through once or for each order, as text.
+enum Code<'a> {
+    Whole(String),
+    Parts(Vec<(Part<'a>, String)>),
+}
+
 /// The assignments of a routine as steps.
 fn alone(routine: &Routine) -> Vec<Step> {
     routine.assignments.iter().cloned().map(Step::Single).collect()
@@ -165,25 +201,19 @@ enum Pass {
 }
 
 impl Pass {
-    /// The functions of these groups, and their calls in the body of `expand`.
+    /// The functions of these parts, each with its definitions, and their calls in the body of `expand`.
     fn parts(
         self,
-        groups: &[Vec<Assignment>],
-        definitions: &[String],
-        blocks: &Blocks,
-        names: &Names,
+        parts: Vec<(Part, String)>,
+        array: &Option<TokenStream>,
         reads: &Reads,
     ) -> (TokenStream, TokenStream) {
         let (pass, arguments) = self.arguments(reads);
         let (declared, handed): (Vec<_>, Vec<_>) =
             arguments.into_iter().map(|[declared, handed]| (declared, handed)).unzip();
-        let array = blocks.array_type();
-        let part = |(index, (group, definitions)): (usize, (&Vec<Assignment>, &String))| {
-            let (name, read, block) = (
-                format_ident!("series_{pass}_part_{index}"),
-                (reads.by)(group),
-                parsed(&blocks.block(group, definitions, names)),
-            );
+        let function = |(index, (part, definitions)): (usize, (Part, String))| {
+            let name = format_ident!("series_{pass}_part_{index}");
+            let (read, block) = ((reads.by)(&part.assignments), parsed(&part.code(&definitions)));
             let function = quote! {
                 #[cfg_attr(not(debug_assertions), inline(always))]
                 fn #name(&self, #(#declared,)* v: &mut #array) {
@@ -195,7 +225,7 @@ impl Pass {
             };
             (function, quote!(self.#name(#(#handed,)* v);))
         };
-        groups.iter().zip(definitions).enumerate().map(part).unzip()
+        parts.into_iter().enumerate().map(function).unzip()
     }
 
     /// The name in those of its parts, and what these are handed: declared, and in the body of `expand`.

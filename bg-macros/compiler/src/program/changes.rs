@@ -41,6 +41,12 @@ impl Changes {
         changes
     }
 
+    /// What changes of a loop, whose temporaries are in its first iteration these.
+    pub fn of_loop(&self, first: &[Operand]) -> Self {
+        let temporaries = (0..).zip(first).filter(|(_, operand)| self.operand(operand)).map(|(index, _)| index);
+        Self { temporaries: temporaries.collect(), pairs: BTreeSet::new() }
+    }
+
     /// Whether what a step gives changes.
     pub fn includes(&self, step: &Step) -> bool {
         match step {

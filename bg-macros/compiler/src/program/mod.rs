@@ -10,7 +10,7 @@ mod tape;
 
 pub use bg_expressions::elimination;
 pub use bg_expressions::schedule::{
-    Assignment, Counts, Operand, Operation, Program, Request, Reverse, Routine, pairs, reverse, schedule,
+    Assignment, Counts, Operand, Operation, Program, Request, Reverse, Routine, pairs, repetition, reverse, schedule,
 };
 pub use changes::Changes;
 pub use programs::{Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};

@@ -17,6 +17,7 @@ mod greedy;
 pub mod pairs;
 mod plan;
 mod rebuild;
+pub mod repetition;
 mod reverse;
 mod signs;
 mod statics;

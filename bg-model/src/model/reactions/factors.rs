@@ -82,27 +82,48 @@ impl<S: Scalar> Factors<S> {
     pub fn factor_where(&mut self, matrix: Matrix<'_, S>, follows: impl Fn(usize, f64, f64) -> bool) {
         self.rows.copy_from_slice(matrix.lower);
         for i in 0..self.follows.len() {
-            let (above, rest) = self.rows.split_at_mut(row(i));
-            let own = &mut rest[..=i];
-            self.mobilities[i] = matrix.mobilities.get(i).copied().unwrap_or(own[i]);
-            // The entries are L_ij D_j until all of them are known.
-            for j in 0..i {
-                for k in 0..j {
-                    own[j] = own[j] - own[k] * above[row(j) + k];
-                }
-                if self.follows[j] {
-                    own[j] = S::from_f64(0.0);
-                }
+            let [pivot, mobility] = self.factor_row(matrix, i).map(|number| number.to_f64().abs());
+            // What is not a number is for the rate to find.
+            self.follows[i] = follows(i, pivot, mobility);
+        }
+    }
+
+    /// The factors of a matrix without the rows that are `dropped`, inlined; writes the pivot and the mobility of each row.
+    #[cfg(feature = "std")]
+    #[inline(always)]
+    pub fn factor_without(&mut self, matrix: Matrix<'_, S>, dropped: &[bool], pivots: &mut [[S; 2]]) {
+        for i in 0..matrix.lower.len() {
+            self.rows[i] = matrix.lower[i];
+        }
+        for i in 0..dropped.len() {
+            pivots[i] = self.factor_row(matrix, i);
+            self.follows[i] = dropped[i];
+        }
+    }
+
+    /// Factors row `i`, of a matrix that stands in the rows; gives its pivot and its mobility.
+    #[inline(always)]
+    fn factor_row(&mut self, matrix: Matrix<'_, S>, i: usize) -> [S; 2] {
+        let (above, rest) = self.rows.split_at_mut(row(i));
+        let own = &mut rest[..=i];
+        self.mobilities[i] = matrix.mobilities.get(i).copied().unwrap_or(own[i]);
+        // The entries are L_ij D_j until all of them are known.
+        for j in 0..i {
+            for k in 0..j {
+                own[j] = own[j] - own[k] * above[row(j) + k];
             }
-            for j in (0..i).filter(|&j| !self.follows[j]) {
+            if self.follows[j] {
+                own[j] = own[j].alike(0.0);
+            }
+        }
+        for j in 0..i {
+            if !self.follows[j] {
                 let scaled = own[j];
                 own[j] = scaled / above[row(j) + j];
                 own[i] = own[i] - scaled * own[j];
             }
-            let (pivot, mobility) = (own[i].to_f64().abs(), self.mobilities[i].to_f64().abs());
-            // What is not a number is for the rate to find.
-            self.follows[i] = follows(i, pivot, mobility);
         }
+        [own[i], self.mobilities[i]]
     }
 
     /// L_ij, below the diagonal.

@@ -28,6 +28,8 @@ use crate::model::system::{System, branches_by_sign};
 use factors::{Factors, Matrix};
 pub(crate) use impact::{After, Collision};
 pub use shared::{kept, redundant, share};
+#[cfg(feature = "std")]
+pub(crate) use watch::LoopsInLanes;
 pub(crate) use watch::{Broken, LoopWatch};
 
 /// A start state whose joints fit.
@@ -40,6 +42,7 @@ pub struct Started<S, const N: usize> {
 }
 
 /// The numbers of [`Joints::hold`].
+#[derive(Debug)]
 struct Hold<S> {
     held: Held,
     entries: Vec<S>,

@@ -5,6 +5,8 @@
 //! that is made from rates alone goes over it. One whose equations need the rates' derivatives, which grow without bound
 //! there, may come so near that the joints no longer say which way the mechanism goes on.
 
+#[cfg(feature = "std")]
+use alloc::vec;
 use alloc::vec::Vec;
 
 use nalgebra::SVector;
@@ -13,6 +15,10 @@ use super::factors::Factors;
 use super::{Hold, dropped, slipping};
 use crate::model::capability::Joints;
 use crate::model::holding::{Redundancy, Slipping};
+#[cfg(feature = "std")]
+use crate::model::scalar::Scalar;
+#[cfg(feature = "std")]
+use crate::model::scalar::lanes::{Lanes, Vector};
 
 /// The fastest flow that follows from flows which are zero to rounding, in its unit.
 const FOLLOWING: f64 = 1e-6;
@@ -67,6 +73,12 @@ impl LoopWatch {
         self.torn().map(Broken::Torn).or_else(|| self.singular().map(Broken::Singular))
     }
 
+    /// Whether `other` leaves the same motions out, and the last pose that was looked at was not near a singular one.
+    #[cfg(feature = "std")]
+    pub fn is_that_of<V: Vector>(&self, other: &LoopsInLanes<V>) -> bool {
+        !self.was_near && self.dropped == other.dropped
+    }
+
     /// Whether the pose at time `t` (s) and state `x` is in the neighbourhood of a singular one.
     pub fn is_around<J, const N: usize, const G: usize>(
         &mut self,
@@ -103,5 +115,63 @@ impl LoopWatch {
         let found = (0..dropped.len()).find(|&row| factors.follows(row) && !dropped[row]);
         let is_creeping = core::mem::replace(was_near, found.is_some());
         found.filter(|_| is_creeping).map(|row| factors.shared(hold.held.rigid, &[row]))
+    }
+}
+
+/// Joints that close loops, of runs side by side: where nothing is wrong with them, beyond doubt.
+#[cfg(feature = "std")]
+#[derive(Debug)]
+pub(crate) struct LoopsInLanes<V> {
+    hold: Hold<Lanes<V>>,
+    factors: Factors<Lanes<V>>,
+    pivots: Vec<[Lanes<V>; 2]>,
+    dropped: Vec<bool>,
+}
+
+#[cfg(feature = "std")]
+impl<V: Vector> LoopsInLanes<V> {
+    /// Room for what is held; none where no joint closes a loop, or what they hold is not inlined.
+    pub fn new<J, const N: usize, const G: usize>(joints: &J) -> Option<Self>
+    where
+        J: Joints<Lanes<V>, N, G>,
+    {
+        let (held, dropped) = (joints.held(), dropped(joints));
+        let (factors, pivots) = (Factors::new(dropped.len()), vec![[Lanes::from_f64(0.0); 2]; dropped.len()]);
+        let is_fit = joints.is_hold_inlined() && !held.closing.is_empty();
+        is_fit.then(|| Self { hold: Hold::new(held), factors, pivots, dropped })
+    }
+
+    /// A bit for each run whose pose at time `t` (s) and state `x` is not in the neighbourhood of a singular one, and none of whose motions
+    /// has come apart.
+    #[inline(always)]
+    pub fn whole<J, const N: usize, const G: usize>(
+        &mut self,
+        joints: &J,
+        (t, x): (Lanes<V>, &SVector<Lanes<V>, N>),
+        negative: &[V::Mask; G],
+    ) -> u8
+    where
+        J: Joints<Lanes<V>, N, G>,
+    {
+        let Self { hold, factors, pivots, dropped } = self;
+        joints.inlined_hold(t, x, negative, &mut hold.entries);
+        let (mut fastest, mut others) = (t.alike(0.0), t.alike(0.0));
+        for (row, is_dropped) in dropped.iter().enumerate() {
+            let flow = hold.flows()[row].abs();
+            if *is_dropped {
+                fastest = flow.larger(fastest);
+            } else {
+                others = flow.larger(others);
+            }
+        }
+        let allowed = others.times(FASTER) + t.alike(FOLLOWING);
+        let mut whole = !V::bits(V::below(allowed.0, fastest.0));
+        factors.factor_without(hold.matrix(), dropped, pivots);
+        for (row, [pivot, mobility]) in pivots.iter().enumerate() {
+            if !dropped[row] {
+                whole &= V::bits(V::below(mobility.abs().times(AROUND).0, pivot.abs().0));
+            }
+        }
+        whole
     }
 }

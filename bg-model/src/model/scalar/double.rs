@@ -2,6 +2,8 @@
 //!
 //! Each is exact or correctly rounded, or products in a fixed order: the bits are those of `std` on any machine.
 
+use super::Scalar;
+
 /// Square root.
 #[cfg(feature = "std")]
 #[inline(always)]
@@ -28,13 +30,14 @@ pub fn modulo(of: f64, modulus: f64) -> f64 {
 }
 
 /// The number to a whole `exponent`, by squares.
-pub fn power(of: f64, exponent: u32) -> f64 {
-    let (mut result, mut square, mut rest) = (1.0, of, exponent);
+#[inline(always)]
+pub fn power<S: Scalar>(of: S, exponent: u32) -> S {
+    let (mut result, mut square, mut rest) = (of.alike(1.0), of, exponent);
     while rest > 0 {
         if rest % 2 == 1 {
-            result *= square;
+            result = result * square;
         }
-        square *= square;
+        square = square * square;
         rest /= 2;
     }
     result

@@ -26,6 +26,12 @@ pub fn store<S: Scalar, const K: usize>(to: &mut [S], at: usize, values: [S; K])
     *to[at..].first_chunk_mut().expect("generated code has the places that it writes") = values;
 }
 
+/// Numbers side by side, from `at` on.
+#[inline(always)]
+pub fn window<S, const K: usize>(from: &[S], at: usize) -> &[S; K] {
+    from[at..].first_chunk().expect("generated code has the places that it reads")
+}
+
 /// The product of `left` and `right`. Places: 2.
 #[inline(always)]
 pub fn product<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, left: S, right: S) -> S {

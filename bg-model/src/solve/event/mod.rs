@@ -130,7 +130,10 @@ fn read<const N: usize, const G: usize>(
 ) -> Reading<G> {
     let ahead = AHEAD * h;
     let value = step.guards(t, x);
-    let x_ahead = SVector::from(core::array::from_fn(|i| x.data.0[0][i] + rate.data.0[0][i] * ahead));
+    let mut x_ahead = *x;
+    for (x, rate) in x_ahead.data.0[0].iter_mut().zip(&rate.data.0[0]) {
+        *x += rate * ahead;
+    }
     let slope = (step.guards(t + ahead, &x_ahead) - value) / ahead;
     Reading { value, slope, noise: [0.0; G] }
 }

@@ -25,11 +25,20 @@ impl<const G: usize> Watch<G> {
         value: &SVector<f64, G>,
     ) -> [f64; G] {
         let (start, h) = (step.start(), step.size());
-        let moves: [f64; N] = core::array::from_fn(|i| {
-            ROUNDING * Irregular::<N>::FACTORS[i] * (larger(start.x[i].abs(), x[i].abs()) + (h * start.rate[i]).abs())
-        });
+        let mut moves = Irregular::<N>::FACTORS;
+        for (i, moves) in moves.iter_mut().enumerate() {
+            let [x, before, rate] = [x, &start.x, &start.rate].map(|of| of.data.0[0][i]);
+            *moves *= ROUNDING;
+            *moves *= larger(before.abs(), x.abs()) + (h * rate).abs();
+        }
         let wait = ROUNDING * larger(start.t.abs(), t.abs());
-        let mut displaced = |by: f64| step.guards(t + by * wait, &SVector::from_fn(|i, _| x[i] + by * moves[i]));
+        let mut displaced = |by: f64| {
+            let mut displaced = *x;
+            for (x, moves) in displaced.data.0[0].iter_mut().zip(&moves) {
+                *x += by * moves;
+            }
+            step.guards(t + by * wait, &displaced)
+        };
         let (ahead, back) = (displaced(1.0), displaced(-1.0));
         core::array::from_fn(|k| {
             let (ahead, back) = ((ahead[k] - value[k]).abs(), (back[k] - value[k]).abs());

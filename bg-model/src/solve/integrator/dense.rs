@@ -5,11 +5,13 @@
 //! Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, section II.6, and the function
 //! CONTD8 of `dop853.f`.
 //!
-//! Numbers of states are slices in here: what calculates is compiled once, for all models and methods.
+//! Numbers of states are slices in here: what calculates is compiled once, for all models and methods, in the machine's vectors.
 
 use nalgebra::SVector;
+use pulp::NullaryFnOnce;
 
 use super::Point;
+use crate::model::scalar::machine::Arch;
 
 /// The coefficients that follow from the states and rates at both ends.
 pub(super) const FROM_ENDS: usize = 3;
@@ -45,9 +47,11 @@ impl<const N: usize, const C: usize> Polynomial<N, C> {
         }
     }
 
-    /// Writes the state at the part `theta` of the step, of the first `count` coefficients, into `x`.
-    pub fn evaluate(&self, count: usize, start: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        evaluate(self.coefficients[..count].as_flattened(), start.x.as_slice(), theta, x.as_mut_slice());
+    /// Writes the state at the part `theta` of the step, of the first `count` coefficients, into `x`: in the vectors `arch`.
+    pub fn evaluate(&self, arch: Arch, count: usize, start: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        let coefficients = self.coefficients.each_ref().map(|coefficient| &coefficient[..]);
+        let polynomials = Polynomials { coefficients: &coefficients[..count], start: start.x.as_slice(), theta };
+        polynomials.write(arch, x.as_mut_slice());
     }
 }
 
@@ -61,39 +65,123 @@ fn follow_from_ends(h: f64, end: &[f64], chord: &mut [f64], at_start: &mut [f64]
     }
 }
 
-/// Writes the polynomials with these coefficients, those of all states one after the other, into `x`.
-#[inline(never)]
-fn evaluate(coefficients: &[f64], start: &[f64], theta: f64, x: &mut [f64]) {
-    let factors = [theta, 1.0 - theta];
-    let mut lower = coefficients.chunks_exact(x.len().max(1)).enumerate();
-    let Some((_, last)) = lower.next_back() else { return };
-    x.copy_from_slice(last);
-    for (m, coefficient) in lower.rev() {
-        let factor = factors[(m + 1) % 2];
-        x.iter_mut().zip(coefficient).for_each(|(sum, at)| *sum = at + factor * *sum);
-    }
-    x.iter_mut().zip(start).for_each(|(sum, start)| *sum = start + theta * *sum);
+/// States whose numbers are calculated side by side.
+const SIDE_BY_SIDE: usize = 8;
+
+/// A calculation for each state.
+trait OfEach {
+    /// Its results for `W` states from `first` on.
+    fn of<const W: usize>(&self, first: usize) -> [f64; W];
 }
 
-/// Writes `h` times a sum of rates, each with its weight, in their order.
+/// A calculation for all states, with its results.
+struct Each<'a, F>(&'a F, &'a mut [f64]);
+
+impl<F: OfEach> NullaryFnOnce for Each<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self(calculation, results) = self;
+        let (groups, rest) = results.as_chunks_mut::<SIDE_BY_SIDE>();
+        let mut first = 0;
+        for group in groups {
+            *group = calculation.of(first);
+            first += SIDE_BY_SIDE;
+        }
+        for one in rest {
+            [*one] = calculation.of(first);
+            first += 1;
+        }
+    }
+}
+
+/// The polynomials of all states at the part `theta` of the step.
+struct Polynomials<'a> {
+    coefficients: &'a [&'a [f64]],
+    start: &'a [f64],
+    theta: f64,
+}
+
+impl Polynomials<'_> {
+    #[inline(never)]
+    fn write(&self, arch: Arch, x: &mut [f64]) {
+        arch.dispatch(Each(self, x));
+    }
+}
+
+impl OfEach for Polynomials<'_> {
+    #[inline(always)]
+    fn of<const W: usize>(&self, first: usize) -> [f64; W] {
+        let Self { coefficients, start, theta } = *self;
+        let factors = [theta, 1.0 - theta];
+        let Some((last, lower)) = coefficients.split_last() else { return some(start, first) };
+        let mut sums: [f64; W] = some(last, first);
+        for (m, coefficient) in lower.iter().enumerate().rev() {
+            let (at, factor): ([f64; W], f64) = (some(coefficient, first), factors[(m + 1) % 2]);
+            for k in 0..W {
+                sums[k] = at[k] + factor * sums[k];
+            }
+        }
+        let start: [f64; W] = some(start, first);
+        for k in 0..W {
+            sums[k] = start[k] + theta * sums[k];
+        }
+        sums
+    }
+}
+
+/// The most terms of a sum of rates.
+const TERMS: usize = 16;
+
+/// Writes `h` times a sum of rates, each with its weight, in their order: in the vectors `arch`.
 pub(super) fn write_sum<'a, const N: usize>(
+    arch: Arch,
     h: f64,
     terms: impl Iterator<Item = (f64, &'a SVector<f64, N>)>,
     out: &mut [f64; N],
 ) {
-    // Adding to -0 changes nothing, not even the sign of a zero.
-    out.fill(-0.0);
-    terms.for_each(|(weight, rate)| add_times(weight, rate.as_slice(), out));
-    scale(h, out);
+    let (mut all, mut count) = ([(0.0, &[][..]); TERMS], 0);
+    for (weight, rate) in terms {
+        all[count] = (weight, rate.as_slice());
+        count += 1;
+    }
+    Sums { h, terms: &all[..count] }.write(arch, out);
 }
 
-/// Adds `weight` times a rate.
-#[inline(never)]
-fn add_times(weight: f64, rate: &[f64], out: &mut [f64]) {
-    out.iter_mut().zip(rate).for_each(|(out, rate)| *out += weight * rate);
+/// `h` times the sums of weighted rates.
+struct Sums<'a> {
+    h: f64,
+    terms: &'a [(f64, &'a [f64])],
 }
 
-#[inline(never)]
-fn scale(h: f64, out: &mut [f64]) {
-    out.iter_mut().for_each(|out| *out *= h);
+impl Sums<'_> {
+    #[inline(never)]
+    fn write(&self, arch: Arch, out: &mut [f64]) {
+        arch.dispatch(Each(self, out));
+    }
+}
+
+impl OfEach for Sums<'_> {
+    #[inline(always)]
+    fn of<const W: usize>(&self, first: usize) -> [f64; W] {
+        // Adding to -0 changes nothing, not even the sign of a zero.
+        let mut sums = [-0.0; W];
+        for (weight, rate) in self.terms {
+            let rate: [f64; W] = some(rate, first);
+            for k in 0..W {
+                sums[k] += weight * rate[k];
+            }
+        }
+        for sum in &mut sums {
+            *sum *= self.h;
+        }
+        sums
+    }
+}
+
+/// The numbers from `first` on.
+#[inline(always)]
+fn some<const W: usize>(of: &[f64], first: usize) -> [f64; W] {
+    *of[first..].first_chunk().expect("there is a number for each state")
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
-use super::explicit::{CalvoFrancoMontijanoRandez, DormandPrince, ExplicitInLanes};
+use super::explicit::{CalvoFrancoMontijanoRandez, DormandPrince, ExplicitInLanes, Tableau};
 use super::nystrom::NystromInLanes;
 use super::steps::{Begin, Forces, Rates};
 use super::{AnyMethod, Scale};
@@ -97,9 +97,6 @@ pub(crate) trait OfOne<const N: usize> {
     /// The rates of an attempt, without that at its start.
     fn rates(&self) -> u64;
 
-    /// The norm of the error of a step of size `h` (s), from the largest of the differences to two embedded methods.
-    fn norm(&self, h: f64, differences: [f64; 2]) -> f64;
-
     /// Whether the fastest oscillation of the states of second order is to be looked at before the next step.
     fn is_due(&self) -> bool {
         false
@@ -112,6 +109,14 @@ pub(crate) trait OfOne<const N: usize> {
 
     /// Takes note of the stiffness of the fastest oscillation.
     fn stiffness(&mut self, _stiffness: f64) {}
+
+    /// The frequency of the fastest oscillation, rad/s.
+    fn frequency(&self) -> f64 {
+        0.0
+    }
+
+    /// A step was accepted.
+    fn advanced(&mut self) {}
 
     /// The error norm that keeps a step of size `h` (s) where the fastest oscillation is stable.
     fn reach(&self, _h: f64) -> f64 {
@@ -135,6 +140,15 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
             AnyMethod::Dop853(_) => Some(Self::Dop853(Box::new(ExplicitInLanes::new()))),
             AnyMethod::Nystrom(_) => Some(Self::Nystrom(Box::new(NystromInLanes::new()))),
             _ => None,
+        }
+    }
+
+    /// The power of the step with which the norm of the error estimate falls.
+    pub fn order(&self) -> f64 {
+        match self {
+            Self::Cfmr7(_) => CalvoFrancoMontijanoRandez::ERROR_ORDER,
+            Self::Dop853(_) => DormandPrince::ERROR_ORDER,
+            Self::Nystrom(_) => NystromInLanes::<V, N>::ORDER,
         }
     }
 
@@ -190,7 +204,7 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         }
     }
 
-    /// Tries a step at each place; gives the largest of the differences to two embedded methods, as [`OfOne::norm`] takes them.
+    /// Tries a step at each place; gives the norms of the error estimates.
     #[inline(always)]
     pub fn attempt<Sys, const G: usize>(
         &mut self,
@@ -198,14 +212,35 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         begin: &Begin<'_, Lanes<V>, N>,
         scale: &Scale<N>,
         end: &mut SVector<Lanes<V>, N>,
-    ) -> [Lanes<V>; 2]
+    ) -> Lanes<V>
     where
         Sys: System<Lanes<V>, N, G>,
     {
         match self {
             Self::Cfmr7(method) => method.attempt(side, begin, scale, end),
             Self::Dop853(method) => method.attempt(side, begin, scale, end),
-            Self::Nystrom(method) => [method.attempt(side, begin, scale, end), begin.h.alike(0.0)],
+            Self::Nystrom(method) => method.attempt(side, begin, scale, end),
+        }
+    }
+
+    /// Whether the fastest oscillation holds steps to where it is stable.
+    pub fn is_held(&self) -> bool {
+        matches!(self, Self::Nystrom(_))
+    }
+
+    /// The frequency of the fastest oscillation at a place is this, rad/s.
+    pub fn hold_to(&mut self, place: usize, frequency: f64) {
+        if let Self::Nystrom(method) = self {
+            method.hold_to(place, frequency);
+        }
+    }
+
+    /// The error norms that keep steps of size `h` (s) where the fastest oscillations are stable.
+    #[inline(always)]
+    pub fn reach(&self, h: Lanes<V>) -> Lanes<V> {
+        match self {
+            Self::Cfmr7(_) | Self::Dop853(_) => h.alike(0.0),
+            Self::Nystrom(method) => method.reach(h),
         }
     }
 

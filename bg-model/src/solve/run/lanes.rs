@@ -95,7 +95,8 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
     {
         let settings = self.request.settings(0.0);
         let method: AnyMethod<N> = self.request.method.method(self.request.fixed_step);
-        let Some(together) = AnyInLanes::of(&method).filter(|_| lanes::fits(model, &settings)) else {
+        let span = Span { t0: 0.0, t_end: self.request.t_end };
+        let Some(together) = AnyInLanes::of(&method).filter(|_| lanes::fits(model, span, &settings)) else {
             return self.all_alone();
         };
         let clock = Clock::started();
@@ -112,7 +113,6 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
             let observer = observer(model, &self.request.parts, Box::new(|_| ControlFlow::Continue(())), None);
             Some(lanes::Job { number, model, values, method, start: *start, observer })
         });
-        let span = Span { t0: 0.0, t_end: self.request.t_end };
         let mut finished: Vec<_> = self.values.iter().map(|_| None).collect();
         let pack = |values: &[Lanes<V>]| lifted(values).expect("models were made of these parameters");
         lanes::integrate(jobs, together, pack, span, &settings, |number, (recorder, _), finish| {

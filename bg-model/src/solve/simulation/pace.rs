@@ -11,6 +11,7 @@
 use nalgebra::SVector;
 
 use super::settings::{Settings, Span};
+use crate::model::scalar::Scalar;
 use crate::solve::integrator::{Flow, Point, Scale, StepControl};
 
 /// The part of the step that would just satisfy the tolerances.
@@ -28,7 +29,7 @@ const DAMPING: f64 = 0.4;
 /// The least logarithm of an error norm that is taken for that of the step before, which is that of 0.01.
 const LEAST: f64 = -2.0 * core::f64::consts::LN_10;
 /// A step that would leave less than this part of itself to the end, or to a break, is stretched to it.
-const STRETCH: f64 = 0.01;
+pub(super) const STRETCH: f64 = 0.01;
 /// A part of a fixed step that rounding may make: such a sliver is no step.
 const SLIVER: f64 = 1e-9;
 
@@ -42,6 +43,18 @@ pub(super) struct Judgement {
 impl Judgement {
     /// That the next step is as long.
     pub const NONE: Self = Self { logarithm: 0.0, factor: 1.0 };
+}
+
+/// What a stabilised control goes on from.
+#[cfg(feature = "std")]
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept {
+    /// The step to try, s.
+    pub step: f64,
+    /// The last accepted step, s, and the logarithm of its error norm, where there is one.
+    pub accepted: Option<(f64, f64)>,
+    /// Whether the last attempt was rejected.
+    pub is_rejected: bool,
 }
 
 /// Chooses steps.
@@ -105,6 +118,19 @@ impl Pace {
         self.step.min(self.span.length())
     }
 
+    /// What the next steps follow from, of a stabilised control without breaks ahead.
+    #[cfg(feature = "std")]
+    pub fn kept(&self) -> Kept {
+        Kept { step: self.step, accepted: self.accepted, is_rejected: self.rejected }
+    }
+
+    /// Goes on from there: what is accepted stays where nothing else was.
+    #[cfg(feature = "std")]
+    pub fn keep(&mut self, Kept { step, accepted, is_rejected }: Kept) {
+        (self.step, self.rejected) = (step, is_rejected);
+        self.accepted = accepted.or(self.accepted);
+    }
+
     /// Whether steps are chosen by the error.
     pub fn is_adaptive(&self) -> bool {
         self.control.order().is_some()
@@ -155,7 +181,7 @@ impl Pace {
             let next = if self.is_cut { self.after_cut(h, judgement) } else { h * self.ratio_after(h, judgement) };
             let longest = if self.is_cut { self.step } else { h };
             let next = if self.rejected { next.min(longest) } else { next };
-            self.step = next.max(2.0 * self.least(t)).min(self.largest);
+            self.step = within(next, t, self.length(), self.largest);
         }
         self.short = f64::INFINITY;
         self.rejected = false;
@@ -201,8 +227,11 @@ impl Pace {
 
     /// The largest step from `t` (s) that is lost in rounding, s.
     pub fn least(&self, t: f64) -> f64 {
-        let span = self.span.t_end - self.span.t0;
-        16.0 * f64::EPSILON * t.abs().max(f64::EPSILON * span)
+        least(t, self.length())
+    }
+
+    fn length(&self) -> f64 {
+        self.span.t_end - self.span.t0
     }
 
     fn judge(&self, error: f64, is_accepted: bool) -> Judgement {
@@ -215,9 +244,7 @@ impl Pace {
     pub fn exponent(&self, logarithm: f64, is_accepted: bool) -> f64 {
         let before = self.accepted.map_or(0.0, |(_, before)| before);
         let combined = match self.control {
-            StepControl::Stabilised { .. } if is_accepted && !self.is_cut => {
-                (1.0 - 0.75 * DAMPING) * logarithm - DAMPING * before
-            }
+            StepControl::Stabilised { .. } if is_accepted && !self.is_cut => stabilised(logarithm, before),
             _ => logarithm,
         };
         -combined / self.control.order().unwrap_or(1.0)
@@ -247,18 +274,50 @@ impl Pace {
 
     /// Notes the step `h` (s) and the logarithm of its error norm; gives those of the step before.
     fn accept_norm(&mut self, h: f64, logarithm: f64) -> Option<(f64, f64)> {
-        self.accepted.replace((h, if logarithm > LEAST { logarithm } else { LEAST }))
+        self.accepted.replace((h, noted(logarithm)))
     }
 }
 
 /// The ratio of the next step to this one by this factor.
-fn bounded(factor: f64) -> f64 {
-    (SAFETY * factor).clamp(RATIO[0], RATIO[1])
+#[inline(always)]
+pub(super) fn bounded<S: Scalar>(factor: S) -> S {
+    smaller(factor.alike(RATIO[1]), factor.alike(RATIO[0]).larger(factor.times(SAFETY)))
 }
 
 /// The same after a rejected one.
-fn shortening(factor: f64) -> f64 {
-    bounded(factor).min(SAFETY)
+#[inline(always)]
+pub(super) fn shortening<S: Scalar>(factor: S) -> S {
+    smaller(factor.alike(SAFETY), bounded(factor))
+}
+
+/// The combination of the logarithms of the error norms of an accepted step and of the one before, from which a stabilised control judges.
+#[inline(always)]
+pub(super) fn stabilised<S: Scalar>(logarithm: S, before: S) -> S {
+    logarithm.times(1.0 - 0.75 * DAMPING) - before.times(DAMPING)
+}
+
+/// The largest step from `t` (s) that is lost in rounding in a run of this length (s), s.
+#[inline(always)]
+pub(super) fn least<S: Scalar>(t: S, length: f64) -> S {
+    t.alike(f64::EPSILON * length).larger(t.abs()).times(16.0 * f64::EPSILON)
+}
+
+/// The next step (s) from `t` (s), one that rounding allows and not longer than `largest` (s).
+#[inline(always)]
+pub(super) fn within<S: Scalar>(next: S, t: S, length: f64, largest: f64) -> S {
+    smaller(t.alike(largest), least(t, length).times(2.0).larger(next))
+}
+
+/// The logarithm of an error norm that is taken for that of the step before.
+#[inline(always)]
+pub(super) fn noted<S: Scalar>(logarithm: S) -> S {
+    logarithm.larger(logarithm.alike(LEAST))
+}
+
+/// The smaller number; `b` where it is none.
+#[inline(always)]
+pub(super) fn smaller<S: Scalar>(a: S, b: S) -> S {
+    -((-a).larger(-b))
 }
 
 /// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.

@@ -8,7 +8,11 @@ use super::pace::{self, Pace};
 use super::rounding::RoundingWatch;
 use super::sampling::Sampling;
 use super::settings::{Settings, Span};
+#[cfg(feature = "std")]
+use crate::model::reactions::LoopsInLanes;
 use crate::model::reactions::{After, Broken, Collision, LoopWatch};
+#[cfg(feature = "std")]
+use crate::model::scalar::lanes::Vector;
 use crate::model::system::System;
 use crate::solve::event::{Condition, Crossing, Stop, Struck, Watch};
 use crate::solve::failure::Cause;
@@ -108,6 +112,12 @@ where
     #[cfg(feature = "std")]
     pub fn has_loops(&self) -> bool {
         self.loops.is_some()
+    }
+
+    /// Whether joints close no loops, or ones that are looked at as `lanes` does, the last pose not near a singular one.
+    #[cfg(feature = "std")]
+    pub fn has_loops_of<V: Vector>(&self, lanes: Option<&LoopsInLanes<V>>) -> bool {
+        self.loops.as_ref().is_none_or(|loops| lanes.is_some_and(|lanes| loops.is_that_of(lanes)))
     }
 
     /// Sees to it that the joints which close loops say where the mechanism goes at the end of the step.

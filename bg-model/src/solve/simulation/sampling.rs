@@ -39,6 +39,12 @@ impl<'a> Sampling<'a> {
         self.instant(t).is_some_and(|instant| instant <= t)
     }
 
+    /// The next instant, s; infinity where there is none. Not where steps end.
+    #[cfg(feature = "std")]
+    pub fn next(&self) -> f64 {
+        self.instant(f64::INFINITY).unwrap_or(f64::INFINITY)
+    }
+
     fn instant(&self, t: f64) -> Option<f64> {
         match self.samples {
             _ if self.ended => None,

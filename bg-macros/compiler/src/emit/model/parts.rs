@@ -1,14 +1,12 @@
 //! Long routines in parts: their blocks, each a function of its own.
 //!
-//! In: the routines of the running model that are long. Out: the functions of their blocks, and the calls that stand in the routine's
-//! place. rustc checks a function of fifty thousand assignments five times as long as fifty of a thousand.
-
-use std::slice::Chunks;
+//! In: the routines of the running model that are long. Out: the functions of their blocks and loops, and the calls that stand in the
+//! routine's place. rustc checks a function of fifty thousand assignments five times as long as fifty of a thousand.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::super::blocks::{BLOCK, Blocks};
+use super::super::blocks::{Blocks, Group};
 use super::super::routine::{assignments, parsed, parsed_each};
 use super::{Emission, names};
 use crate::program::{Assignment, Operand, Reversed, Routine, SecondOrderPrograms};
@@ -44,11 +42,11 @@ impl Emission<'_> {
         let (groups, blocks) = blocks(routine);
         let array_type = blocks.array_type();
         let declared: Vec<_> = self.arguments(routine).into_values().map(|[declared, _]| declared).collect();
-        let functions = groups.enumerate().map(|(index, group)| {
-            let name = name(routine, index);
-            let part = alone(routine, group, &[]);
-            let (inputs, states) = (self.input_bindings(&part, "t"), self.state_bindings(&part));
-            let block = self.with_names(|names| parsed(&blocks.block(group, &assignments(group, names), names)));
+        let functions = groups.iter().enumerate().map(|(index, group)| {
+            let (name, part) = (name(routine, index), blocks.part(group));
+            let read = alone(routine, &part.assignments, &[]);
+            let (inputs, states) = (self.input_bindings(&read, "t"), self.state_bindings(&read));
+            let block = self.with_names(|names| parsed(&part.code(&assignments(&part.assignments, names))));
             quote! {
                 #[inline(never)]
                 fn #name(&self, x: &[S; #n], #(#declared,)* v: &mut #array_type) {
@@ -86,9 +84,10 @@ fn name(routine: &Routine, index: usize) -> Ident {
 }
 
 /// The assignments of the parts, and what these hand on.
-fn blocks(routine: &Routine) -> (Chunks<'_, Assignment>, Blocks) {
-    let groups = routine.assignments.chunks(BLOCK);
-    (groups.clone(), Blocks::of(groups, &routine.results))
+fn blocks(routine: &Routine) -> (Vec<Group<'_>>, Blocks) {
+    let groups = Group::of(&routine.assignments, &|_| false);
+    let blocks = Blocks::of(&groups, &routine.results);
+    (groups, blocks)
 }
 
 /// The routine with these assignments and results only.

@@ -8,6 +8,7 @@ use quote::{format_ident, quote};
 
 use super::super::items::identifier;
 use super::shared::closing;
+use super::system::Inlined;
 use super::{Emission, Shape};
 use crate::expr::{Symbol, substitute};
 use crate::program::{Program, Programs};
@@ -148,17 +149,37 @@ impl Emission<'_> {
         let turning = self.states_of(&[Kind::Orientation, Kind::Angle]);
         let (kept, is_driven) = (self.shared().kept(), self.is_driven());
         let (body, entries) = self.running(routine, &format_ident!("holding_constants"));
+        let arguments = quote!(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]);
+        let written = quote! {
+            #body
+            entries.copy_from_slice(&[#(#entries),*]);
+        };
+        let hold = if routine.is_long() {
+            quote! {
+                #[inline(never)]
+                fn hold(#arguments) { #written }
+            }
+        } else {
+            let inline = Inlined;
+            quote! {
+                #[inline(never)]
+                fn hold(#arguments) {
+                    ::bg_model::capability::Joints::inlined_hold(self, t, x, negative, entries);
+                }
+                fn is_hold_inlined(&self) -> bool {
+                    true
+                }
+                #inline
+                fn inlined_hold(#arguments) { #written }
+            }
+        };
         quote! {
             impl<S: Scalar> ::bg_model::capability::Joints<S, #n, #g> for Model<S> {
                 fn held(&self) -> ::bg_model::holding::Held {
                     ::bg_model::holding::Held { rigid: &[#rigid], compliant: &[#compliant], moved: &[#(#moved),*], pose: #pose, turning: #turning, closing: #closing, is_driven: #is_driven }
                 }
                 #kept
-                #[inline(never)]
-                fn hold(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]) {
-                    #body
-                    entries.copy_from_slice(&[#(#entries),*]);
-                }
+                #hold
             }
         }
     }

@@ -10,6 +10,7 @@ use super::level::Level;
 use crate::fault::{DeclaredTwice, Fault};
 use crate::source::ast::{Element, ElementKind, Expression, ExpressionKind, Graph, Item, Name, Part};
 use crate::source::drawing::Drawing;
+use crate::source::unused::Unused;
 
 /// Every port of a part inside has a bond on this level, or is a port of this level.
 pub(super) fn ports(level: &mut Level) {
@@ -34,8 +35,8 @@ fn last(path: &str) -> &str {
 pub(super) fn open(level: &mut Level, part: &Part) {
     for (word, name) in std::mem::take(&mut level.open) {
         if !level.names.mentions(&name.text) {
-            let (part, name, span) = (part.name.text.clone(), name.text, name.span);
-            level.faults.push(Fault::new(span, &PartFault::Unused { part, word, name }));
+            let of = format!("part `{}`", part.name.text);
+            level.faults.push(Fault::new(name.span, &Unused { of, word, name: name.text }));
         }
     }
 }

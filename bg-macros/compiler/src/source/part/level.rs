@@ -11,6 +11,7 @@ use super::watch::Seen;
 use super::{check, place};
 use crate::fault::Faults;
 use crate::source::ast::{Item, Name, Part, Point, Port, Scene, Start, Use, Watch};
+use crate::source::unused::adjustable;
 
 /// A level while it is written out.
 pub(super) struct Level<'f> {
@@ -84,9 +85,8 @@ impl<'f> Level<'f> {
 
     /// A statement of this level itself.
     fn item(&mut self, mut item: Item) {
+        self.open.extend(adjustable(&item).map(|(word, name)| (word, name.clone())));
         match &mut item {
-            Item::Parameter(parameter) => self.open.push(("parameter", parameter.name.clone())),
-            Item::Input(input) => self.open.push(("input", input.name.clone())),
             // What is watched is looked at when everything is there.
             Item::Observe(_) => return self.flat.items.push(item),
             Item::Scene(scene) => {

@@ -36,8 +36,10 @@ pub trait Vector: Slopes {
     /// The square roots.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// The number at the only place of `mask`.
-    fn only(self, mask: Self::Mask) -> f64;
+    /// The number at a place, read where the vector lies in memory.
+    fn at(&self, place: usize) -> &f64;
+    /// The same, to be written.
+    fn at_mut(&mut self, place: usize) -> &mut f64;
 }
 
 /// Numbers side by side.
@@ -81,25 +83,20 @@ pub fn replace<V: Vector, const N: usize>(to: &mut SVector<Lanes<V>, N>, mask: V
 }
 
 /// The numbers of all states at a place.
-pub fn at<V: Vector, const N: usize>(lane: usize, of: &SVector<Lanes<V>, N>) -> SVector<f64, N> {
-    V::vectorized(At { mask: V::mask(1 << lane), of })
+#[inline]
+pub fn at<V: Vector, const N: usize>(place: usize, of: &SVector<Lanes<V>, N>) -> SVector<f64, N> {
+    let mut numbers = [0.0; N];
+    for (number, of) in numbers.iter_mut().zip(&of.data.0[0]) {
+        *number = *of.0.at(place);
+    }
+    SVector::from(numbers)
 }
 
-struct At<'a, V: Vector, const N: usize> {
-    mask: V::Mask,
-    of: &'a SVector<Lanes<V>, N>,
-}
-
-impl<V: Vector, const N: usize> NullaryFnOnce for At<'_, V, N> {
-    type Output = SVector<f64, N>;
-
-    #[inline(always)]
-    fn call(self) -> SVector<f64, N> {
-        let mut numbers = [0.0; N];
-        for (number, of) in numbers.iter_mut().zip(&self.of.data.0[0]) {
-            *number = of.0.only(self.mask);
-        }
-        SVector::from(numbers)
+/// Puts numbers of all states at a place.
+#[inline]
+pub fn put<V: Vector, const N: usize>(place: usize, to: &mut SVector<Lanes<V>, N>, numbers: &SVector<f64, N>) {
+    for (to, number) in to.data.0[0].iter_mut().zip(&numbers.data.0[0]) {
+        *to.0.at_mut(place) = *number;
     }
 }
 
@@ -272,8 +269,8 @@ mod machines {
     use std::fmt;
     use std::sync::OnceLock;
 
-    use pulp::NullaryFnOnce;
     use pulp::x86::{V3, V4};
+    use pulp::{NullaryFnOnce, bytemuck};
 
     use super::{Slopes, Vector};
 
@@ -371,6 +368,15 @@ mod machines {
             impl Vector for $vector {
                 type Mask = $mask;
 
+                #[inline(always)]
+                fn at(&self, place: usize) -> &f64 {
+                    &bytemuck::cast_ref::<_, [f64; $lanes]>(&self.all)[place]
+                }
+                #[inline(always)]
+                fn at_mut(&mut self, place: usize) -> &mut f64 {
+                    &mut bytemuck::cast_mut::<_, [f64; $lanes]>(&mut self.all)[place]
+                }
+
                 $(
                     #[inline(always)]
                     $own
@@ -413,10 +419,6 @@ mod machines {
         fn sqrt(self) -> Self {
             Self { all: self.machine.avx._mm256_sqrt_pd(self.all), ..self }
         }
-        fn only(self, mask: Mask4) -> f64 {
-            let numbers = self.numbers();
-            numbers[(Self::bits(mask).trailing_zeros() % 4) as usize]
-        }
     }
 
     vector! {
@@ -451,10 +453,6 @@ mod machines {
         }
         fn sqrt(self) -> Self {
             Self { all: self.machine.avx512f._mm512_sqrt_pd(self.all), ..self }
-        }
-        fn only(self, mask: Mask8) -> f64 {
-            let [first, ..]: [f64; 8] = pulp::cast(self.machine.avx512f._mm512_maskz_compress_pd(mask.0, self.all));
-            first
         }
     }
 }

@@ -41,7 +41,7 @@ impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
         &self.stages.k[stage]
     }
 
-    /// Tries a step at each place; gives the largest of the differences to the embedded methods.
+    /// Tries a step at each place; gives the norms of the error estimates.
     #[inline(always)]
     pub fn attempt(
         &mut self,
@@ -49,8 +49,8 @@ impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
         begin: &Begin<'_, Lanes<V>, N>,
         scale: &Scale<N>,
         end: &mut SVector<Lanes<V>, N>,
-    ) -> [Lanes<V>; 2] {
-        self.stages.step(rates, begin, scale, &mut self.carry, end, &mut ())
+    ) -> Lanes<V> {
+        norm::<T, _>(begin.h, self.stages.step(rates, begin, scale, &mut self.carry, end))
     }
 
     /// The attempts at the places of `accepted` were.
@@ -74,9 +74,5 @@ impl<T: Tableau, const N: usize> OfOne<N> for Explicit<T, N> {
 
     fn rates(&self) -> u64 {
         (T::END - 1) as u64
-    }
-
-    fn norm(&self, h: f64, differences: [f64; 2]) -> f64 {
-        norm::<T>(h, differences)
     }
 }

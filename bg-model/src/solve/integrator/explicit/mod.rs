@@ -30,11 +30,10 @@ use super::steps::{Begin, OfFlow};
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
-use crate::model::scalar::double::root;
+use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
 pub(super) use lanes::ExplicitInLanes;
-pub(super) use stages::Complete;
-use stages::Stages;
+pub(super) use stages::{Complete, Stages};
 
 /// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
 /// for.
@@ -72,9 +71,6 @@ pub trait Tableau {
     const ERROR: Row;
     /// A second embedded method of lower order; empty if there is none.
     const SECOND: Row = &[];
-    /// A difference to an embedded method of lower order with the rate at the start of the step, of which a part counts; empty if
-    /// there is none.
-    const START: Row = &[];
     /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one is
     /// small; empty if there is none.
     const LATE: Row = &[];
@@ -95,7 +91,7 @@ const COEFFICIENTS: usize = 7;
 /// The explicit method of tableau `T`.
 #[derive(Clone, Debug)]
 pub struct Explicit<T, const N: usize> {
-    stages: Stages<T, f64, N>,
+    pub(super) stages: Stages<T, f64, N>,
     /// The dense output's coefficients.
     polynomial: Polynomial<N, COEFFICIENTS>,
     /// What rounding has kept from the states.
@@ -119,21 +115,6 @@ impl<T: Tableau, const N: usize> Default for Explicit<T, N> {
 }
 
 impl<T: Tableau, const N: usize> Explicit<T, N> {
-    /// A step whose stages' states `completed` completes: see [`Method::attempt`].
-    #[inline(always)]
-    pub(super) fn step(
-        &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
-        h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
-        completed: &mut impl Complete<f64, N>,
-    ) -> f64 {
-        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
-        norm::<T>(h, self.stages.step(&OfFlow(flow), &from, scale, &mut self.carry, end, completed))
-    }
-
     /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
     fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
         core::array::from_fn(|i| (self.stages.combine(row, i) / scale.allowed(i, start.x[i], end[i])).abs())
@@ -143,16 +124,17 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
 /// The norm of a step's error, of size `h` (s): h e1, with the largest e1 of the scaled differences to the embedded method. With a second one,
 /// whose largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer, Norsett, Wanner, section II.10).
 #[inline(always)]
-fn norm<T: Tableau>(h: f64, [first, second]: [f64; 2]) -> f64 {
+fn norm<T: Tableau, S: Scalar>(h: S, [first, second]: [S; 2]) -> S {
     if T::SECOND.is_empty() { h.abs() * first } else { both(h.abs(), first, second) }
 }
 
 /// The error of a method with two estimates, that of the higher order first, `scale` times theirs: the first one, the smaller the larger the second is
 /// beside it (`dop853.f`). Both vanish exactly at a state of rest.
 #[inline(always)]
-pub(crate) fn both(scale: f64, first: f64, second: f64) -> f64 {
-    let both = first * first + 0.01 * second * second;
-    if both == 0.0 { 0.0 } else { scale * first * first / root(both) }
+pub(crate) fn both<S: Scalar>(scale: S, first: S, second: S) -> S {
+    let both = first * first + second.times(0.01) * second;
+    // The quotient is zero where both are; no root of another number is as small.
+    scale * first * first / both.alike(f64::MIN_POSITIVE).larger(both.sqrt())
 }
 
 impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
@@ -165,7 +147,8 @@ impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        self.step(flow, start, h, scale, end, &mut ())
+        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
+        norm::<T, _>(h, self.stages.step(&OfFlow(flow), &from, scale, &mut self.carry, end))
     }
 }
 
@@ -248,14 +231,15 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         self.stages.k[T::END] = end.rate;
         let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
         self.stages.evaluate::<false>(&OfFlow(flow), &from, T::END + 1..T::A.len(), &mut ());
+        let arch = self.arch;
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
         self.polynomial.set(start, h, end, |m, _, out| {
-            write_sum(h, row(m).iter().map(|&(stage, weight)| (weight, &self.stages.k[stage])), out);
+            write_sum(arch, h, row(m).iter().map(|&(stage, weight)| (weight, &self.stages.k[stage])), out);
         });
     }
 
     fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
         const { assert!(FROM_ENDS + T::DENSE.len() <= COEFFICIENTS) };
-        self.polynomial.evaluate(FROM_ENDS + T::DENSE.len(), start, theta, x);
+        self.polynomial.evaluate(self.arch, FROM_ENDS + T::DENSE.len(), start, theta, x);
     }
 }

@@ -17,30 +17,22 @@ use crate::solve::integrator::tolerances::largest;
 
 /// The most stages of a method.
 pub(super) const STAGES: usize = 16;
-/// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
-const AT_START: f64 = 0.02;
 
 /// What a method adds to the states of an explicit one.
 pub(crate) trait Complete<S, const N: usize> {
-    /// Completes the state `x` of stage `stage`, at the part `c` of the step.
-    fn complete(&mut self, stage: usize, c: f64, x: &mut SVector<S, N>);
-
-    /// Corrects `errors`, the magnitudes of `differences` in parts of what is allowed.
-    fn correct(&mut self, errors: &mut [S; N], differences: &SVector<S, N>, allowed: &[S; N]);
+    /// Completes the state `x` of stage `stage`.
+    fn complete(&mut self, stage: usize, x: &mut SVector<S, N>);
 }
 
 /// Nothing.
 impl<S, const N: usize> Complete<S, N> for () {
     #[inline(always)]
-    fn complete(&mut self, _stage: usize, _c: f64, _x: &mut SVector<S, N>) {}
-
-    #[inline(always)]
-    fn correct(&mut self, _errors: &mut [S; N], _differences: &SVector<S, N>, _allowed: &[S; N]) {}
+    fn complete(&mut self, _stage: usize, _x: &mut SVector<S, N>) {}
 }
 
 /// The rates of all stages of tableau `T`.
 #[derive(Clone, Debug)]
-pub(super) struct Stages<T, S, const N: usize> {
+pub(crate) struct Stages<T, S, const N: usize> {
     pub k: [SVector<S, N>; STAGES],
     tableau: PhantomData<T>,
 }
@@ -82,7 +74,7 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
                 };
             }
             written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
-            completed.complete(stage, T::C[stage], &mut x);
+            completed.complete(stage, &mut x);
             let t = from.t + from.h.times(T::C[stage]);
             if IS_INLINED {
                 rates.inlined_rate(t, &x, &mut self.k[stage]);
@@ -101,8 +93,7 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
         }
     }
 
-    /// Writes the state at the end of a step whose stages' states `completed` completes; gives the largest of the differences to each of the
-    /// embedded methods, in parts of what is allowed and per s: without a second one, zero.
+    /// Writes the state at the end of a step; gives the largest of the differences to each of the embedded methods, in parts of what is allowed and per s: without a second one, zero.
     #[inline(always)]
     pub fn step(
         &mut self,
@@ -111,39 +102,23 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
         scale: &Scale<N>,
         carry: &mut Carry<S, N>,
         end: &mut SVector<S, N>,
-        completed: &mut impl Complete<S, N>,
     ) -> [S; 2] {
         self.k[0] = *from.rate;
-        self.evaluate::<true>(rates, from, 1..T::END, completed);
+        self.evaluate::<true>(rates, from, 1..T::END, &mut ());
         let nothing = from.h.alike(0.0);
-        let (mut differences, mut allowed) = (SVector::from([nothing; N]), [nothing; N]);
         let (mut first, mut second) = ([nothing; N], [nothing; N]);
         let start = &from.x.data.0[0];
         for i in 0..N {
             let slope = self.combine(T::B, i);
             let change = from.h * slope;
             let to = if T::IS_COMPENSATED { carry.add(i, start[i], change) } else { start[i] + change };
-            let difference = self.combine(T::ERROR, i);
             end.data.0[0][i] = to;
-            allowed[i] = scale.allowed(i, start[i], to);
-            differences.data.0[0][i] = difference;
-            first[i] = (difference / allowed[i]).abs();
+            let allowed = scale.allowed(i, start[i], to);
+            first[i] = (self.combine(T::ERROR, i) / allowed).abs();
             if !T::SECOND.is_empty() {
-                second[i] = ((slope - self.combine(T::SECOND, i)) / allowed[i]).abs();
+                second[i] = ((slope - self.combine(T::SECOND, i)) / allowed).abs();
             }
         }
-        completed.correct(&mut first, &differences, &allowed);
-        let first = largest(&first);
-        if T::START.is_empty() {
-            return [first, if T::SECOND.is_empty() { nothing } else { largest(&second) }];
-        }
-        let mut at_start = [nothing; N];
-        for i in 0..N {
-            let difference = self.combine(T::START, i);
-            differences.data.0[0][i] = difference;
-            at_start[i] = (difference / allowed[i]).abs();
-        }
-        completed.correct(&mut at_start, &differences, &allowed);
-        [largest(&at_start).times(AT_START).larger(first), nothing]
+        [largest(&first), if T::SECOND.is_empty() { nothing } else { largest(&second) }]
     }
 }

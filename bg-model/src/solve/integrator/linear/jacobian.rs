@@ -29,13 +29,13 @@ impl<const N: usize> Jacobian<N> {
         Self { entries: Vec::new(), is_replaced: false, slope: SVector::zeros() }
     }
 
-    /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known.
-    pub fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+    /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known. Gives whether all of them are finite.
+    pub fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
         self.is_replaced = false;
         self.entries.resize(flow.sparsity().len(N), 0.0);
         flow.jacobian(start.t, &start.x, &mut self.entries, &mut self.slope);
         if self.is_finite() {
-            return;
+            return true;
         }
         if matches!(flow.sparsity(), Sparsity::Bordered { .. }) {
             self.is_replaced = true;
@@ -44,6 +44,7 @@ impl<const N: usize> Jacobian<N> {
         } else {
             self.replace_faulty(flow, start, h, scale);
         }
+        self.is_finite()
     }
 
     /// Where the entries are.

@@ -7,9 +7,9 @@ use std::ops::Range;
 use nalgebra::SVector;
 
 use super::Nystrom;
-use super::ring::Pull;
+use super::ring::{Pull, reach};
 use super::stages::Stages;
-use super::tableau::STAGES;
+use super::tableau::{ERROR_ORDER, STAGES};
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
@@ -24,12 +24,29 @@ pub(crate) struct NystromInLanes<V, const N: usize> {
     stages: Stages<Lanes<V>, N>,
     /// The directions of the fastest oscillations.
     direction: SVector<Lanes<V>, N>,
+    /// Their frequencies, rad/s.
+    frequency: Lanes<V>,
 }
 
 impl<V: Vector, const N: usize> NystromInLanes<V, N> {
+    /// The power of the step with which the norm of the error estimate falls.
+    pub const ORDER: f64 = ERROR_ORDER;
+
     /// Its work space empty.
     pub fn new() -> Self {
-        Self { stages: Stages::new(), direction: SVector::from([Lanes::from_f64(0.0); N]) }
+        let zero = Lanes::from_f64(0.0);
+        Self { stages: Stages::new(), direction: SVector::from([zero; N]), frequency: zero }
+    }
+
+    /// The frequency of the fastest oscillation at a place is this, rad/s.
+    pub fn hold_to(&mut self, place: usize, frequency: f64) {
+        *self.frequency.0.at_mut(place) = frequency;
+    }
+
+    /// The error norms that keep steps of size `h` (s) where the fastest oscillations are stable.
+    #[inline(always)]
+    pub fn reach(&self, h: Lanes<V>) -> Lanes<V> {
+        reach(h, self.frequency)
     }
 
     /// The directions of the fastest oscillations.
@@ -107,10 +124,6 @@ impl<const N: usize> OfOne<N> for Nystrom<N> {
         (STAGES - 1) as u64
     }
 
-    fn norm(&self, _h: f64, [difference, _]: [f64; 2]) -> f64 {
-        difference
-    }
-
     fn is_due(&self) -> bool {
         self.ring.is_due()
     }
@@ -128,7 +141,15 @@ impl<const N: usize> OfOne<N> for Nystrom<N> {
         self.ring.found(stiffness);
     }
 
+    fn frequency(&self) -> f64 {
+        self.ring.frequency
+    }
+
     fn reach(&self, h: f64) -> f64 {
         self.ring.reach(h)
+    }
+
+    fn advanced(&mut self) {
+        self.ring.advance();
     }
 }

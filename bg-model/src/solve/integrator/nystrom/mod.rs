@@ -146,9 +146,9 @@ impl<const N: usize> Method<N> for Nystrom<N> {
     fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
         self.stages.k[END].0 = end.rate;
         OfFlow(flow).at_start(&end.x, &mut self.stages.k[END].0);
-        let Self { stages: Stages { k }, second, polynomial, .. } = self;
+        let Self { stages: Stages { k }, second, polynomial, arch, .. } = self;
         polynomial.set(start, h, end, |m, ends, out| {
-            write_sum(h, DENSE[m].iter().copied().zip(k.iter().map(|k| &k.0)), out);
+            write_sum(*arch, h, DENSE[m].iter().copied().zip(k.iter().map(|k| &k.0)), out);
             for i in second.clone() {
                 let [first, third] = [1, 2].map(|m| ends[m][i]);
                 // The polynomial of degree 5 through the second derivatives at both ends, too.
@@ -160,6 +160,6 @@ impl<const N: usize> Method<N> for Nystrom<N> {
     }
 
     fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
-        self.polynomial.evaluate(COEFFICIENTS, start, theta, x);
+        self.polynomial.evaluate(self.arch, COEFFICIENTS, start, theta, x);
     }
 }

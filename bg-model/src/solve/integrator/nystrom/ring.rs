@@ -171,8 +171,14 @@ impl<const N: usize> Ring<N> {
 
     /// The error norm that holds a step of size `h` (s) to where the oscillation is stable.
     pub fn reach(&self, h: f64) -> f64 {
-        power(h * self.frequency / tableau::REACH, tableau::ERROR_ORDER as u32)
+        reach(h, self.frequency)
     }
+}
+
+/// The error norm that holds a step of size `h` (s) to where an oscillation of this frequency (rad/s) is stable.
+#[inline(always)]
+pub(super) fn reach<S: Scalar>(h: S, frequency: S) -> S {
+    power(h * frequency / h.alike(tableau::REACH), tableau::ERROR_ORDER as u32)
 }
 
 #[cfg(test)]

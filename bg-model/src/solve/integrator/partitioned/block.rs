@@ -9,8 +9,9 @@ use crate::model::linear::Sparsity;
 use crate::solve::integrator::Arch;
 use nalgebra::SVector;
 
-use super::inverse::{Inverse, LANES, Lanes, groups};
+use super::inverse::Inverse;
 use super::pattern::Pattern;
+use super::places::{Lanes, Places};
 use super::stage::Stages;
 use super::tableau::KennedyCarpenter;
 use crate::solve::integrator::explicit::{Complete, Tableau};
@@ -37,7 +38,7 @@ impl<F: Flow<N>, const N: usize> Flow<N> for Damping<'_, F> {
 
     fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
         self.0.damping(t, x, entries);
-        slope.fill(0.0);
+        *slope = SVector::zeros();
     }
 
     fn second_order(&self) -> Option<impl SecondOrder<f64, N, 0>> {
@@ -61,17 +62,20 @@ pub(super) struct Block<const N: usize> {
     /// The step that the states were chosen for, s, and the Jacobians since then; none where they are to be chosen.
     chosen: Option<(f64, u32)>,
     states: Vec<usize>,
+    places: Places,
     /// The entries of the Jacobian that are in B, each with its place there.
     sources: Vec<(usize, usize)>,
-    /// B, column by column; behind each column, as behind other numbers of the states, are zeros up to whole groups.
+    /// B, column by column; behind each column are zeros up to whole groups.
     matrix: Vec<Lanes>,
     /// How it changes, per s.
     slope: Vec<Lanes>,
     /// Of I - h gamma B.
     inverse: Inverse,
-    /// The start of the step and of the one before; none where what was known no longer holds.
-    start: (f64, SVector<f64, N>),
-    before: Option<(f64, SVector<f64, N>)>,
+    /// The start of the step and of the one before, in turn, and which of them is that of the step.
+    starts: [(f64, SVector<f64, N>); 2],
+    present: usize,
+    /// Whether what is known of the step before still holds.
+    has_before: bool,
     h: f64,
     stages: Stages,
 }
@@ -89,12 +93,14 @@ impl<const N: usize> Block<N> {
             earlier: Vec::new(),
             chosen: None,
             states: Vec::new(),
+            places: Places::default(),
             sources: Vec::new(),
             matrix: Vec::new(),
             slope: Vec::new(),
             inverse: Inverse::new(arch),
-            start: (0.0, SVector::zeros()),
-            before: None,
+            starts: [(0.0, SVector::zeros()); 2],
+            present: 0,
+            has_before: false,
             h: 0.0,
             stages: Stages::default(),
         }
@@ -102,21 +108,20 @@ impl<const N: usize> Block<N> {
 
     /// The last attempt was accepted.
     pub fn advance(&mut self) {
-        self.before = Some(self.start);
+        (self.present, self.has_before) = (1 - self.present, true);
         self.age = self.age.map(|age| age + 1);
     }
 
     /// What was known of the flow no longer holds.
     pub fn restart(&mut self) {
-        (self.before, self.age, self.chosen) = (None, None, None);
+        (self.has_before, self.age, self.chosen) = (false, None, None);
     }
 
     /// Makes ready for a step of size `h` (s) from `start`. Gives whether the Jacobian is one of numbers.
     pub fn prepare(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
-        (self.start, self.h) = ((start.t, start.x), h);
+        (self.starts[self.present], self.h) = ((start.t, start.x), h);
         if self.age.is_none_or(|age| age >= RENEWAL) {
-            self.jacobian.evaluate(&Damping(flow), start, h, scale);
-            if !self.jacobian.is_finite() {
+            if !self.jacobian.evaluate(&Damping(flow), start, h, scale) {
                 return false;
             }
             core::mem::swap(&mut self.entries, &mut self.earlier);
@@ -129,12 +134,10 @@ impl<const N: usize> Block<N> {
         if self.chosen.is_none_or(|(step, _)| h > GROWTH * step) {
             self.choose();
         }
-        let Stages { from, change, .. } = &mut self.stages;
-        gather(&self.states, &start.x, from);
-        let before = self.before.as_ref().map(|(t, x)| (h / (start.t - t), x));
-        for (change, &state) in change.as_flattened_mut().iter_mut().zip(&self.states) {
-            *change = before.map_or(0.0, |(ratio, x)| ratio * (start.x[state] - x[state]));
-        }
+        let (t, before) = &self.starts[1 - self.present];
+        let ratio = self.has_before.then(|| h / (start.t - t));
+        let before = ratio.map(|ratio| (ratio, &before.data.0[0][..]));
+        self.stages.begin(h, &start.x.data.0[0], before);
         true
     }
 
@@ -143,13 +146,13 @@ impl<const N: usize> Block<N> {
         self.chosen = Some((self.h, 0));
         let has_changed = self.pattern.choose(&self.entries, self.h, N, &mut self.states);
         if has_changed {
-            let (n, groups) = (self.states.len(), groups(self.states.len()));
-            self.pattern.sources(&self.states, LANES * groups, &mut self.sources);
-            self.inverse.resize(n);
-            self.stages.resize(groups);
+            self.places.take(&self.states);
+            self.pattern.sources(&self.places, &mut self.sources);
+            self.inverse.resize(&self.places);
+            self.stages.resize(&self.places.groups);
             for matrix in [&mut self.matrix, &mut self.slope] {
                 matrix.clear();
-                matrix.resize(n * groups, Lanes::default());
+                matrix.resize(self.places.entries(), Lanes::default());
             }
             self.take();
         }
@@ -169,50 +172,25 @@ impl<const N: usize> Block<N> {
     pub fn invert(&mut self) -> bool {
         let Self { inverse, matrix, slope, h, .. } = self;
         // In the middle of the step, but no further from the last Jacobian than that is from the one before.
-        let ahead = (self.start.0 + 0.5 * *h - self.time).min(self.interval.unwrap_or(0.0));
+        let ahead = (self.starts[self.present].0 + 0.5 * *h - self.time).min(self.interval.unwrap_or(0.0));
         inverse.invert(matrix, slope, ahead, *h * KennedyCarpenter::GAMMA)
     }
-}
-
-/// Writes these states of `x` side by side.
-#[inline(always)]
-fn gather<const N: usize>(states: &[usize], x: &SVector<f64, N>, to: &mut [Lanes]) {
-    let x = &x.data.0[0];
-    let (whole, rest) = states.as_chunks::<LANES>();
-    to.iter_mut().zip(whole).for_each(|(to, group)| *to = group.map(|state| x[state]));
-    let behind = to[whole.len()..].as_flattened_mut();
-    behind.iter_mut().zip(rest).for_each(|(to, &state)| *to = x[state]);
-}
-
-/// Writes what stands side by side into these states of `x`.
-#[inline(always)]
-fn scatter<const N: usize>(states: &[usize], from: &[Lanes], x: &mut SVector<f64, N>) {
-    let x = &mut x.data.0[0];
-    let (whole, rest) = states.as_chunks::<LANES>();
-    for (from, group) in from.iter().zip(whole) {
-        (0..LANES).for_each(|lane| x[group[lane]] = from[lane]);
-    }
-    let behind = from[whole.len()..].as_flattened();
-    behind.iter().zip(rest).for_each(|(from, &state)| x[state] = *from);
 }
 
 /// Solves for the implicit part of a stage.
 impl<const N: usize> Complete<f64, N> for Block<N> {
     #[inline(always)]
-    fn complete(&mut self, stage: usize, c: f64, x: &mut SVector<f64, N>) {
-        let Self { states, stages, inverse, h, .. } = self;
-        gather(states, x, &mut stages.at);
-        stages.complete(inverse, stage, c, *h);
-        scatter(states, &stages.at, x);
+    fn complete(&mut self, stage: usize, x: &mut SVector<f64, N>) {
+        let Self { stages, inverse, .. } = self;
+        stages.complete(inverse, stage, &mut x.data.0[0]);
     }
+}
 
-    /// What an error of a damped state leaves of itself: its implicit part takes away most of it.
+impl<const N: usize> Block<N> {
+    /// Replaces the differences of two methods by what the implicit part, which takes away most of it, leaves in the damped states.
     #[inline(always)]
-    fn correct(&mut self, errors: &mut [f64; N], differences: &SVector<f64, N>, allowed: &[f64; N]) {
-        let Self { states, stages, inverse, .. } = self;
-        gather(states, differences, &mut stages.at);
-        stages.reduce(inverse);
-        let left = states.iter().zip(stages.at.as_flattened());
-        left.for_each(|(&state, left)| errors[state] = (left / allowed[state]).abs());
+    pub fn reduce(&mut self, differences: [&mut SVector<f64, N>; 2]) {
+        let Self { stages, inverse, .. } = self;
+        stages.reduce(inverse, differences.map(|differences| &mut differences.data.0[0][..]));
     }
 }

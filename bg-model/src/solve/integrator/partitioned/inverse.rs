@@ -7,17 +7,11 @@ use alloc::vec::Vec;
 
 use pulp::NullaryFnOnce;
 
+use super::places::{LANES, Lanes, Places};
 use crate::solve::integrator::Arch;
 
-/// Numbers of states side by side.
-pub(super) const LANES: usize = 4;
-pub(super) type Lanes = [f64; LANES];
-
-/// The groups of a column of `n` rows: few of them, or blocks of four.
-pub(super) fn groups(n: usize) -> usize {
-    let groups = n.div_ceil(LANES);
-    if groups > 4 { groups.next_multiple_of(4) } else { groups }
-}
+/// The part of the largest entry of its column from which on an entry on the diagonal serves as pivot.
+const PIVOT: f64 = 0.1;
 
 /// Takes the groups of a block and the blocks of a column as constants where a column has one block, so that loops over them are
 /// written out.
@@ -59,9 +53,9 @@ pub(super) use in_blocks;
 #[derive(Clone, Debug)]
 pub(super) struct Inverse {
     pub arch: Arch,
-    /// The groups of a column.
-    groups: usize,
     pub columns: Vec<Lanes>,
+    /// One, stored like the inverse.
+    one: Vec<Lanes>,
     exchanges: Vec<usize>,
     pivot: Vec<Lanes>,
 }
@@ -69,27 +63,26 @@ pub(super) struct Inverse {
 impl Inverse {
     /// Nothing yet, calculated in these vectors.
     pub fn new(arch: Arch) -> Self {
-        Self { arch, groups: 0, columns: Vec::new(), exchanges: Vec::new(), pivot: Vec::new() }
+        Self { arch, columns: Vec::new(), one: Vec::new(), exchanges: Vec::new(), pivot: Vec::new() }
     }
 
-    /// Makes room for a matrix of `n` rows.
-    pub fn resize(&mut self, n: usize) {
-        self.groups = groups(n);
-        self.columns.clear();
-        self.columns.resize(n * self.groups, [0.0; LANES]);
-        self.exchanges.resize(n, 0);
-        self.pivot.resize(self.groups, [0.0; LANES]);
+    /// Makes room for the block at these places.
+    pub fn resize(&mut self, places: &Places) {
+        for matrix in [&mut self.columns, &mut self.one] {
+            matrix.clear();
+            matrix.resize(places.entries(), Lanes::default());
+        }
+        for k in 0..places.states.len() {
+            self.one.as_flattened_mut()[k * (places.groups.len() * LANES + 1)] = 1.0;
+        }
+        self.exchanges.resize(places.states.len(), 0);
+        self.pivot.resize(places.groups.len(), Lanes::default());
     }
 
     /// Inverts I - `factor` B, with `matrix` + `ahead` `slope` for B, which are stored as this one is. Gives whether it is regular.
     pub fn invert(&mut self, matrix: &[Lanes], slope: &[Lanes], ahead: f64, factor: f64) -> bool {
-        let Self { arch, groups, columns, exchanges, pivot } = self;
-        arch.dispatch(Invert { matrix, slope, ahead, factor, groups: *groups, columns, exchanges, pivot })
-    }
-
-    /// Writes the product with `vector`.
-    pub fn times(&self, vector: &[Lanes], product: &mut [Lanes]) {
-        self.arch.dispatch(Times { columns: &self.columns, vector, product });
+        let Self { arch, columns, one, exchanges, pivot } = self;
+        arch.dispatch(Invert { matrix, slope, ahead, factor, columns, one, exchanges, pivot })
     }
 }
 
@@ -98,8 +91,8 @@ struct Invert<'a> {
     slope: &'a [Lanes],
     ahead: f64,
     factor: f64,
-    groups: usize,
     columns: &'a mut [Lanes],
+    one: &'a [Lanes],
     exchanges: &'a mut [usize],
     pivot: &'a mut [Lanes],
 }
@@ -109,120 +102,137 @@ impl NullaryFnOnce for Invert<'_> {
 
     #[inline(always)]
     fn call(self) -> bool {
-        let Self { matrix, slope, ahead, factor, groups, columns, exchanges, pivot } = self;
-        for ((to, matrix), slope) in columns.iter_mut().zip(matrix).zip(slope) {
-            *to = core::array::from_fn(|lane| -factor * (matrix[lane] + ahead * slope[lane]));
+        let Self { matrix, slope, ahead, factor, columns, one, exchanges, pivot } = self;
+        for (((to, one), matrix), slope) in columns.iter_mut().zip(one).zip(matrix).zip(slope) {
+            *to = core::array::from_fn(|lane| one[lane] - factor * (matrix[lane] + ahead * slope[lane]));
         }
         exchanges.is_empty()
-            || in_blocks!(groups, G, blocks => {
-                invert::<G>(blocks, columns.as_chunks_mut().0, exchanges, pivot.as_chunks_mut().0)
+            || in_blocks!(pivot.len(), G, blocks => {
+                invert::<G>(blocks, columns.as_chunks_mut().0, one.as_chunks().0, exchanges, pivot.as_chunks_mut().0)
             })
     }
 }
 
-/// Adds I and inverts in place, by elimination with exchanges; `pivot` is work space for a column. Gives whether the matrix is regular.
+/// Inverts in place, by elimination with exchanges where an entry on the diagonal is small; `pivot` is work space for a column. Gives
+/// whether the matrix is regular.
 ///
 /// Columns take the part of rows: the inverse of the transpose is the transpose of the inverse.
 #[inline(always)]
 fn invert<const G: usize>(
     blocks: usize,
     columns: &mut [[Lanes; G]],
+    one: &[[Lanes; G]],
     exchanges: &mut [usize],
     pivot: &mut [[Lanes; G]],
 ) -> bool {
     let (n, pivot) = (exchanges.len(), &mut pivot[..blocks]);
     let columns = &mut columns[..n * blocks];
     for k in 0..n {
-        *entry(blocks, columns, k, k) += 1.0;
-    }
-    for k in 0..n {
-        let (mut best, mut largest) = (k, -1.0);
-        for column in k..n {
-            let size = entry(blocks, columns, column, k).abs();
-            if size > largest {
-                (best, largest) = (column, size);
-            }
-        }
-        exchanges[k] = best;
-        if best != k {
-            (0..blocks).for_each(|block| columns.swap(k * blocks + block, best * blocks + block));
-        }
-        let reciprocal = -1.0 / core::mem::replace(entry(blocks, columns, k, k), 1.0);
+        let (before, from) = columns.split_at_mut(k * blocks);
+        exchanges[k] = exchange(blocks, from, k);
+        let (own, behind) = from.split_at_mut(blocks);
+        let reciprocal = -1.0 / *entry(own, k);
         if !reciprocal.is_finite() {
             return false;
         }
-        for (pivot, entries) in pivot.iter_mut().zip(&columns[k * blocks..][..blocks]) {
-            *pivot = entries.map(|group| group.map(|entry| entry * reciprocal));
-        }
-        for column in 0..n {
-            let factor = *entry(blocks, columns, column, k);
-            for (entries, pivot) in columns[column * blocks..][..blocks].iter_mut().zip(&*pivot) {
-                for (entries, pivot) in entries.iter_mut().zip(pivot) {
-                    *entries = core::array::from_fn(|lane| entries[lane] + factor * pivot[lane]);
-                }
+        let one = &one[k * blocks..][..blocks];
+        for ((pivot, own), one) in pivot.iter_mut().zip(own).zip(one) {
+            for ((pivot, own), one) in pivot.iter_mut().zip(own).zip(one) {
+                // Of row k, to which the product is added, that is to be all that is left.
+                *pivot = core::array::from_fn(|lane| (own[lane] + one[lane]) * reciprocal);
+                *own = core::array::from_fn(|lane| -(pivot[lane] + one[lane]));
             }
-            // A zero there before would have to wait for its way through memory.
-            *entry(blocks, columns, column, k) = factor * reciprocal;
         }
-        for (entries, pivot) in columns[k * blocks..][..blocks].iter_mut().zip(&*pivot) {
-            *entries = pivot.map(|group| group.map(|entry| -entry));
+        // First what the next pivot is in.
+        for columns in [behind, before] {
+            for column in columns.chunks_exact_mut(blocks) {
+                eliminate(column, pivot, k);
+            }
         }
     }
     for (k, &other) in exchanges.iter().enumerate().rev().filter(|(k, other)| *k != **other) {
-        for column in 0..n {
-            let swapped = core::mem::take(entry(blocks, columns, column, k));
-            *entry(blocks, columns, column, k) = core::mem::replace(entry(blocks, columns, column, other), swapped);
+        for column in columns.chunks_exact_mut(blocks) {
+            let swapped = core::mem::take(entry(column, k));
+            *entry(column, k) = core::mem::replace(entry(column, other), swapped);
         }
     }
     true
 }
 
-/// An entry of columns of so many blocks.
+/// Exchanges the first of these columns, where its entry in row `k`, the number of the first one, is small, for the one with the largest entry there;
+/// gives that one's number.
 #[inline(always)]
-fn entry<const G: usize>(blocks: usize, columns: &mut [[Lanes; G]], column: usize, row: usize) -> &mut f64 {
-    let block = G * LANES;
-    let within = if blocks == 1 { row } else { row % block };
-    &mut columns[column * blocks + if blocks == 1 { 0 } else { row / block }].as_flattened_mut()[within]
-}
-
-struct Times<'a> {
-    columns: &'a [Lanes],
-    vector: &'a [Lanes],
-    product: &'a mut [Lanes],
-}
-
-impl NullaryFnOnce for Times<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { columns, vector, product: out } = self;
-        in_blocks!(vector.len(), G, blocks => product::<G>(blocks, columns, vector, out));
+fn exchange<const G: usize>(blocks: usize, columns: &mut [[Lanes; G]], k: usize) -> usize {
+    let own = entry(&mut columns[..blocks], k).abs();
+    if own >= PIVOT * largest(&columns[..blocks]) {
+        return k;
     }
-}
-
-/// Writes the product of a matrix, stored as an inverse is, with `vector`.
-#[inline(always)]
-pub(super) fn product<const G: usize>(blocks: usize, columns: &[Lanes], vector: &[Lanes], product: &mut [Lanes]) {
-    let (columns, product) = (columns.as_chunks::<G>().0, product.as_chunks_mut::<G>().0);
-    for (block, product) in product.iter_mut().enumerate() {
-        let mut sums = [Lanes::default(); G];
-        for (column, entry) in columns.chunks_exact(blocks).zip(vector.as_flattened()) {
-            for (sum, group) in sums.iter_mut().zip(&column[block]) {
-                *sum = core::array::from_fn(|lane| sum[lane] + group[lane] * entry);
-            }
+    let (mut best, mut most) = (0, own);
+    for (number, column) in columns.chunks_exact_mut(blocks).enumerate() {
+        let size = entry(column, k).abs();
+        if size > most {
+            (best, most) = (number, size);
         }
-        *product = sums;
     }
+    (0..blocks).for_each(|block| columns.swap(block, best * blocks + block));
+    k + best
+}
+
+/// Adds its entry in row `k` times the pivot to a column.
+#[inline(always)]
+fn eliminate<const G: usize>(column: &mut [[Lanes; G]], pivot: &[[Lanes; G]], k: usize) {
+    let factor = *entry(column, k);
+    for (column, pivot) in column.iter_mut().zip(pivot) {
+        for (column, pivot) in column.iter_mut().zip(pivot) {
+            *column = core::array::from_fn(|lane| column[lane] + factor * pivot[lane]);
+        }
+    }
+}
+
+/// The largest magnitude in a column.
+#[inline(always)]
+fn largest<const G: usize>(column: &[[Lanes; G]]) -> f64 {
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let mut largest = Lanes::default();
+    for group in column.as_flattened() {
+        largest = core::array::from_fn(|lane| larger(group[lane].abs(), largest[lane]));
+    }
+    let [a, b, c, d] = largest;
+    larger(larger(a, c), larger(b, d))
+}
+
+/// An entry of a column.
+#[inline(always)]
+fn entry<const G: usize>(column: &mut [[Lanes; G]], row: usize) -> &mut f64 {
+    &mut column.as_flattened_mut().as_flattened_mut()[row]
+}
+
+/// The product of a matrix, stored as an inverse is, with `vector`, by a block of rows.
+#[inline(always)]
+pub(super) fn product<const G: usize>(blocks: usize, block: usize, columns: &[Lanes], vector: &[f64]) -> [Lanes; G] {
+    let mut sums = [Lanes::default(); G];
+    for (column, entry) in columns.as_chunks::<G>().0.chunks_exact(blocks).zip(vector) {
+        for (sum, group) in sums.iter_mut().zip(&column[block]) {
+            *sum = core::array::from_fn(|lane| sum[lane] + group[lane] * entry);
+        }
+    }
+    sums
 }
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
+
+    fn places(n: usize) -> Places {
+        let mut places = Places::default();
+        places.take(&(0..n).collect::<Vec<_>>());
+        places
+    }
 
     /// A matrix of `n` rows whose entry in each row and column `entry` gives.
     fn stored(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Lanes> {
-        let groups = groups(n);
+        let groups = places(n).groups.len();
         let lanes = |k: usize| core::array::from_fn(|lane| (k % groups * LANES + lane, k / groups));
         let entry = |(row, column)| if row < n { entry(row, column) } else { 0.0 };
         (0..n * groups).map(|k| lanes(k).map(entry)).collect()
@@ -234,18 +244,22 @@ mod tests {
             let matrix =
                 stored(n, |row, column| ((7 * row + 5 * column) % 11) as f64 - 4.0 + (row * column) as f64 * 0.3);
             let slope = stored(n, |row, column| 0.1 * (row as f64 - column as f64));
+            let groups = places(n).groups.len();
             let whole = stored(n, |row, column| {
-                let [matrix, slope] = [&matrix, &slope].map(|of| of.as_flattened()[column * groups(n) * LANES + row]);
+                let [matrix, slope] = [&matrix, &slope].map(|of| of.as_flattened()[column * groups * LANES + row]);
                 f64::from(row == column) - 0.7 * (matrix + 0.3 * slope)
             });
             let products = [Arch::Scalar, Arch::new()].map(|arch| {
                 let mut inverse = Inverse::new(arch);
-                inverse.resize(n);
+                inverse.resize(&places(n));
                 assert!(inverse.invert(&matrix, &slope, 0.3, 0.7), "{n}");
                 let mut products = vec![[0.0; LANES]; whole.len()];
-                let groups = groups(n);
-                for (column, product) in whole.chunks_exact(groups).zip(products.chunks_exact_mut(groups)) {
-                    inverse.times(column, product);
+                for (column, out) in whole.chunks_exact(groups).zip(products.chunks_exact_mut(groups)) {
+                    in_blocks!(groups, G, blocks => {
+                        for (block, out) in out.as_chunks_mut().0.iter_mut().enumerate() {
+                            *out = product::<G>(blocks, block, &inverse.columns, column.as_flattened());
+                        }
+                    });
                 }
                 products
             });
@@ -259,7 +273,7 @@ mod tests {
     #[test]
     fn a_singular_matrix_is_refused() {
         let mut inverse = Inverse::new(Arch::new());
-        inverse.resize(3);
+        inverse.resize(&places(3));
         let one = stored(3, |row, column| f64::from(row == column));
         assert!(!inverse.invert(&one, &one, 0.0, 1.0));
     }

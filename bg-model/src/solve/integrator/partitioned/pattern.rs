@@ -5,6 +5,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::places::{LANES, Places};
 use crate::model::capability::SecondOrder;
 use crate::model::linear::Sparsity;
 use crate::model::scalar::double::power;
@@ -92,12 +93,12 @@ impl Pattern {
         has_changed
     }
 
-    /// The entries between these states, each with its place in a matrix whose columns have `length` numbers.
-    pub fn sources(&self, states: &[usize], length: usize, sources: &mut Vec<(usize, usize)>) {
-        let mut place = vec![None; self.damped.len()];
-        states.iter().enumerate().for_each(|(k, &state)| place[state] = Some(k));
+    /// The entries between these states, each with its place in their matrix.
+    pub fn sources(&self, places: &Places, sources: &mut Vec<(usize, usize)>) {
+        let (mut rows, length) = (vec![None; self.damped.len()], LANES * places.groups.len());
+        places.states.iter().enumerate().for_each(|(row, &state)| rows[state] = Some(row));
         let within = self.places.iter().enumerate();
         sources.clear();
-        sources.extend(within.filter_map(|(k, &(row, column))| Some((k, place[column]? * length + place[row]?))));
+        sources.extend(within.filter_map(|(k, &(row, column))| Some((k, rows[column]? * length + rows[row]?))));
     }
 }

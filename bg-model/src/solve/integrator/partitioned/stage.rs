@@ -7,54 +7,74 @@ use alloc::vec::Vec;
 
 use pulp::NullaryFnOnce;
 
-use super::inverse::{Inverse, Lanes, in_blocks, product};
+use super::inverse::{Inverse, in_blocks, product};
+use super::places::{Group, Lanes};
 use super::tableau::{KennedyCarpenter, STAGES};
 use crate::solve::integrator::explicit::Tableau;
 
-/// The damped states of a step, in groups; behind them are zeros up to whole groups.
+/// The damped states of a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stages {
-    /// The values at the start of the step, and how much the line changes in it.
-    pub from: Vec<Lanes>,
-    pub change: Vec<Lanes>,
-    /// The values at the present stage; an error, and what the implicit part leaves of it.
-    pub at: Vec<Lanes>,
-    /// How far they are off the line.
+    /// The size of the step, s, and the reciprocal of what its inverse has it times.
+    h: f64,
+    reciprocal: f64,
+    groups: Vec<Damped>,
+    /// How far the values at a stage are off the line; errors.
     off: Vec<Lanes>,
+}
+
+/// A group of them.
+#[derive(Clone, Copy, Debug)]
+struct Damped {
+    states: Group,
+    /// The values at the start of the step, and how much the line changes in it.
+    from: Lanes,
+    change: Lanes,
     /// Stage by stage the implicit part.
-    parts: Vec<Lanes>,
+    parts: [Lanes; STAGES],
 }
 
 impl Stages {
-    /// Makes room for so many groups of states.
-    pub fn resize(&mut self, groups: usize) {
-        let Self { from, change, at, off, parts } = self;
-        for (lanes, length) in [(from, groups), (change, groups), (at, groups), (off, groups), (parts, groups * STAGES)]
-        {
-            lanes.clear();
-            lanes.resize(length, Lanes::default());
+    /// Makes room for these groups of states.
+    pub fn resize(&mut self, groups: &[Group]) {
+        let nothing = Lanes::default();
+        let damped =
+            |states: &Group| Damped { states: *states, from: nothing, change: nothing, parts: [nothing; STAGES] };
+        self.groups.clear();
+        self.groups.extend(groups.iter().map(damped));
+        self.off.resize(groups.len(), nothing);
+    }
+
+    /// A step of size `h` (s) begins at `x`. `before`: its size in parts of the step before, with the start of that one.
+    pub fn begin(&mut self, h: f64, x: &[f64], before: Option<(f64, &[f64])>) {
+        (self.h, self.reciprocal) = (h, 1.0 / (h * KennedyCarpenter::GAMMA));
+        for Damped { states, from, change, .. } in &mut self.groups {
+            *from = states.read(x);
+            *change = before.map_or(Lanes::default(), |(ratio, before)| {
+                let before = states.read(before);
+                core::array::from_fn(|lane| ratio * (from[lane] - before[lane]))
+            });
         }
     }
 
-    /// Adds their implicit part to the values at a stage of a step of size `h` (s), at the part `c` of it.
+    /// Adds their implicit part to the values at a stage.
     #[inline(always)]
-    pub fn complete(&mut self, inverse: &Inverse, stage: usize, c: f64, h: f64) {
-        inverse.arch.dispatch(Complete { stages: self, inverse, stage, c, h });
+    pub fn complete(&mut self, inverse: &Inverse, stage: usize, x: &mut [f64]) {
+        inverse.arch.dispatch(Complete { stages: self, columns: &inverse.columns, stage, x });
     }
 
-    /// Replaces an error by what the implicit part leaves of it.
-    pub fn reduce(&mut self, inverse: &Inverse) {
-        core::mem::swap(&mut self.at, &mut self.off);
-        inverse.times(&self.off, &mut self.at);
+    /// Replaces errors by what the implicit part leaves of them.
+    #[inline(always)]
+    pub fn reduce(&mut self, inverse: &Inverse, errors: [&mut [f64]; 2]) {
+        inverse.arch.dispatch(Reduce { stages: self, columns: &inverse.columns, errors });
     }
 }
 
 struct Complete<'a> {
     stages: &'a mut Stages,
-    inverse: &'a Inverse,
+    columns: &'a [Lanes],
     stage: usize,
-    c: f64,
-    h: f64,
+    x: &'a mut [f64],
 }
 
 impl NullaryFnOnce for Complete<'_> {
@@ -62,36 +82,70 @@ impl NullaryFnOnce for Complete<'_> {
 
     #[inline(always)]
     fn call(self) {
-        in_blocks!(self.stages.at.len(), G, blocks => complete::<G>(blocks, self));
+        in_blocks!(self.stages.groups.len(), G, blocks => complete::<G>(blocks, self));
     }
 }
 
 #[inline(always)]
-fn complete<const G: usize>(blocks: usize, of: Complete<'_>) {
-    let Complete { stages: Stages { from, change, at, off, parts }, inverse: Inverse { columns, .. }, stage, c, h } =
-        of;
-    let groups = blocks * G;
-    let (before, behind) = parts.split_at_mut(stage * groups);
-    let (from, change, more) = (&from[..groups], &change[..groups], KennedyCarpenter::MORE[stage]);
-    let (at, off, part) = (&mut at[..groups], &mut off[..groups], &mut behind[..groups]);
-    let line = |group: usize| -> Lanes { core::array::from_fn(|lane| from[group][lane] + c * change[group][lane]) };
-    for block in 0..blocks {
+fn complete<const G: usize>(blocks: usize, Complete { stages, columns, stage, x }: Complete<'_>) {
+    // Numbers handed over side by side would have to wait for their way through memory.
+    let (h, reciprocal, c) = (stages.h, stages.reciprocal, KennedyCarpenter::C[stage]);
+    let groups = &mut stages.groups.as_chunks_mut::<G>().0[..blocks];
+    let off = &mut stages.off.as_chunks_mut::<G>().0[..blocks];
+    let line = |group: &Damped| -> Lanes {
+        let Damped { from, change, .. } = group;
+        core::array::from_fn(|lane| from[lane] + c * change[lane])
+    };
+    for (groups, off) in groups.iter().zip(&mut *off) {
         let mut sums = [Lanes::default(); G];
-        for &(earlier, weight) in more {
-            for (sum, part) in sums.iter_mut().zip(&before[earlier * groups + block * G..][..G]) {
-                *sum = core::array::from_fn(|lane| sum[lane] + weight * part[lane]);
+        for &(earlier, weight) in KennedyCarpenter::MORE[stage] {
+            for (sum, group) in sums.iter_mut().zip(groups) {
+                *sum = core::array::from_fn(|lane| sum[lane] + weight * group.parts[earlier][lane]);
             }
         }
-        for (sum, group) in sums.into_iter().zip(block * G..) {
-            let line = line(group);
-            off[group] = core::array::from_fn(|lane| at[group][lane] + (h * sum[lane] - line[lane]));
+        for ((sum, group), off) in sums.into_iter().zip(groups).zip(off) {
+            let (at, line) = (group.states.read(x), line(group));
+            *off = core::array::from_fn(|lane| at[lane] + (h * sum[lane] - line[lane]));
         }
     }
-    product::<G>(blocks, columns, off, at);
-    let reciprocal = 1.0 / (h * KennedyCarpenter::GAMMA);
-    for group in 0..groups {
-        let (solved, line) = (at[group], line(group));
-        part[group] = core::array::from_fn(|lane| (solved[lane] - off[group][lane]) * reciprocal);
-        at[group] = core::array::from_fn(|lane| line[lane] + solved[lane]);
+    for (block, groups) in groups.iter_mut().enumerate() {
+        let left = product::<G>(blocks, block, columns, off.as_flattened().as_flattened());
+        for ((left, group), off) in left.into_iter().zip(groups).zip(&off[block]) {
+            let line = line(group);
+            group.parts[stage] = core::array::from_fn(|lane| (left[lane] - off[lane]) * reciprocal);
+            group.states.write(&core::array::from_fn(|lane| line[lane] + left[lane]), x);
+        }
+    }
+}
+
+struct Reduce<'a> {
+    stages: &'a mut Stages,
+    columns: &'a [Lanes],
+    errors: [&'a mut [f64]; 2],
+}
+
+impl NullaryFnOnce for Reduce<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        in_blocks!(self.stages.groups.len(), G, blocks => reduce::<G>(blocks, self));
+    }
+}
+
+#[inline(always)]
+fn reduce<const G: usize>(blocks: usize, Reduce { stages, columns, errors }: Reduce<'_>) {
+    let groups = &stages.groups.as_chunks::<G>().0[..blocks];
+    let off = &mut stages.off.as_chunks_mut::<G>().0[..blocks];
+    for errors in errors {
+        for (group, off) in groups.as_flattened().iter().zip(off.as_flattened_mut()) {
+            *off = group.states.read(errors);
+        }
+        for (block, groups) in groups.iter().enumerate() {
+            let left = product::<G>(blocks, block, columns, off.as_flattened().as_flattened());
+            for (group, left) in groups.iter().zip(&left) {
+                group.states.write(left, errors);
+            }
+        }
     }
 }

@@ -6,11 +6,15 @@
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
+use super::paces::{Control, Judged, Lead, Paces};
+use super::{Judgement, Kept, Step};
+use crate::model::reactions::LoopsInLanes;
 use crate::model::scalar::Scalar;
-use crate::model::scalar::lanes::{Lanes, Vector, at, replace};
+use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace};
 use crate::model::system::System;
 use crate::solve::event::{Readings, Steps};
 use crate::solve::integrator::{AnyInLanes, Begin, OfOne, Point, Rates, Scale, Side};
+use crate::solve::statistics::Statistics;
 
 /// How much less than the projection that is looked at a projection may move a state.
 const CERTAIN: f64 = 0.99;
@@ -32,21 +36,36 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     negative: [V::Mask; G],
     readings: Readings<V, G>,
     method: AnyInLanes<V, N>,
+    paces: Paces<V>,
+    /// A bit for each run whose pace is among them.
+    led: u8,
+    /// A bit for each run whose plain steps are judged here: of its guards nothing is known but what they are at the start.
+    plain: u8,
+    /// Joints that close loops, if they are looked at here.
+    loops: Option<LoopsInLanes<V>>,
+    /// A bit for each run that is known not to start in the neighbourhood of a singular pose, and for the ends of the last attempts.
+    whole: [u8; 2],
+    /// The error norms by which the steps are stable, and those of the last attempts, with what follows from them.
+    reach: Lanes<V>,
+    errors: Lanes<V>,
+    judged: Judged<V>,
 }
 
-/// What has come of steps.
-pub(super) struct Tried<V: Vector> {
-    /// The largest of the differences to two embedded methods, of which each run's method makes the norm of its error.
-    pub differences: [V::Numbers; 2],
-    /// A bit for each that leads to finite states and rates, and is moved by the projection by no more than `moved`.
+/// What has come of steps: a bit for each run.
+pub(super) struct Tried {
+    /// It leads to finite states and rates, and is moved by the projection by no more than `moved`.
     pub fine: u8,
-    /// A bit for each in which all guards keep to their sides.
+    /// All guards keep to their sides.
     pub clear: u8,
+    /// It is accepted, and its run's pace goes on.
+    pub accepted: u8,
+    /// It is rejected, and its run's pace goes on.
+    pub refused: u8,
 }
 
 impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     /// Nobody yet; steps by `method`.
-    pub fn new(method: AnyInLanes<V, N>) -> Self {
+    pub fn new(method: AnyInLanes<V, N>, control: Control) -> Self {
         let zero = Lanes::from_f64(0.0);
         let none = [SVector::from([zero; N]); 2];
         Self {
@@ -59,7 +78,79 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             negative: [false.into(); G],
             readings: Readings::new(),
             method,
+            paces: Paces::new(control),
+            led: 0,
+            plain: 0,
+            loops: None,
+            whole: [0; 2],
+            reach: zero,
+            errors: zero,
+            judged: Judged { logarithm: zero, factor: zero },
         }
+    }
+
+    /// The joints of the runs that are side by side now.
+    pub fn join<Sys>(&mut self, system: &Sys)
+    where
+        Sys: System<Lanes<V>, N, G>,
+    {
+        self.loops = system.joints().and_then(LoopsInLanes::new);
+        self.whole = [0; 2];
+    }
+
+    /// The joints that close loops, if they are looked at here.
+    pub fn loops(&self) -> Option<&LoopsInLanes<V>> {
+        self.loops.as_ref()
+    }
+
+    /// Takes over the pace of a run, which is `plain` where nothing is known of its guards but what they are at the start, with the frequency
+    /// (rad/s) that holds its steps.
+    pub fn lead(&mut self, place: usize, lead: Lead, is_plain: bool, frequency: f64) {
+        self.paces.take(place, lead);
+        self.method.hold_to(place, frequency);
+        self.led |= 1 << place;
+        self.plain = self.plain & !(1 << place) | u8::from(is_plain) << place;
+    }
+
+    /// Gives back the pace of a run, with its steps and rejected attempts since, and the time that it has come to, s; none where it
+    /// is not here.
+    pub fn leave(&mut self, place: usize) -> Option<(Kept, Statistics, f64)> {
+        let is_led = self.led & 1 << place != 0;
+        self.led &= !(1 << place);
+        is_led.then(|| {
+            let (pace, made) = self.paces.give(place);
+            (pace, made, *self.t.0.at(place))
+        })
+    }
+
+    /// Whether steps are held to where the fastest oscillation is stable.
+    pub fn is_held(&self) -> bool {
+        self.method.is_held()
+    }
+
+    /// The frequency of the fastest oscillation of a run is this, rad/s.
+    pub fn hold_to(&mut self, place: usize, frequency: f64) {
+        self.method.hold_to(place, frequency);
+    }
+
+    /// Plans the next steps; gives a bit for each run that may make its step.
+    pub fn plan(&mut self) -> u8 {
+        V::vectorized(Plan { group: self })
+    }
+
+    /// A run makes this step next.
+    pub fn step(&mut self, place: usize, Step { h, t, reach }: Step) {
+        *self.h.0.at_mut(place) = h;
+        *self.t_end.0.at_mut(place) = t;
+        *self.reach.0.at_mut(place) = reach;
+    }
+
+    /// The step that a run has tried, its error norm and what follows from that.
+    pub fn tried(&self, place: usize) -> (Step, f64, Judgement) {
+        let Judged { logarithm, factor } = &self.judged;
+        let at = |of: &Lanes<V>| *of.0.at(place);
+        let step = Step { h: at(&self.h), t: at(&self.t_end), reach: at(&self.reach) };
+        (step, at(&self.errors), Judgement { logarithm: at(logarithm), factor: at(factor) })
     }
 
     /// Takes over a run at a place: where it stands, its branches, the readings of its guards, what its method carries over.
@@ -76,7 +167,15 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             let others = V::bits(*mask) & !bit;
             *mask = V::mask(others | if is_negative { bit } else { 0 });
         }
-        V::vectorized(Load { group: self, bit, point, guards: &guards, carried });
+        self.whole[0] &= !bit;
+        *self.t.0.at_mut(lane) = point.t;
+        let [x, rate] = &mut self.start;
+        put(lane, x, &point.x);
+        put(lane, rate, &point.rate);
+        for (to, from) in self.readings.start.iter_mut().zip(&guards) {
+            put(lane, to, from);
+        }
+        self.carry(lane, carried);
     }
 
     /// The start of a run's step at time `t` (s).
@@ -92,7 +191,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
 
     /// What a run's method carries over is this now.
     pub fn carry(&mut self, lane: usize, carried: &SVector<f64, N>) {
-        V::vectorized(Carry { group: self, bit: 1 << lane, carried });
+        put(lane, self.method.carried(), carried);
     }
 
     /// Hands the stages of a run's step over to its own method.
@@ -133,74 +232,18 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         V::vectorized(Following { group: self, system, due })
     }
 
-    /// Tries steps of these sizes to these times (s).
-    pub fn attempt<Sys>(
-        &mut self,
-        system: &Sys,
-        scale: &Scale<N>,
-        moved: f64,
-        h: V::Numbers,
-        t_end: V::Numbers,
-    ) -> Tried<V>
+    /// Tries the steps. Those of plain runs are judged: accepted where nothing happens in them, rejected where they err too much, both far from
+    /// singular poses.
+    pub fn attempt<Sys>(&mut self, system: &Sys, scale: &Scale<N>, moved: f64) -> Tried
     where
         Sys: System<Lanes<V>, N, G>,
     {
-        (self.h, self.t_end) = (Lanes(V::new(h)), Lanes(V::new(t_end)));
         V::vectorized(Attempt { group: self, system, scale, moved })
     }
 
     /// The steps at the places of `accepted` are made.
     pub fn advance(&mut self, accepted: u8) {
         V::vectorized(Advance { group: self, accepted });
-    }
-}
-
-struct Load<'a, V: Vector, const N: usize, const G: usize> {
-    group: &'a mut Group<V, N, G>,
-    bit: u8,
-    point: &'a Point<N>,
-    guards: &'a [SVector<f64, G>; 2],
-    carried: &'a SVector<f64, N>,
-}
-
-impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Load<'_, V, N, G> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { group: Group { t, start, readings, method, .. }, bit, point, guards, carried } = self;
-        let mask = V::mask(bit);
-        *t = Lanes::select(mask, t.alike(point.t), *t);
-        put(&mut start[0], &point.x, mask);
-        put(&mut start[1], &point.rate, mask);
-        for (to, from) in readings.start.iter_mut().zip(guards) {
-            put(to, from, mask);
-        }
-        put(method.carried(), carried, mask);
-    }
-}
-
-struct Carry<'a, V: Vector, const N: usize, const G: usize> {
-    group: &'a mut Group<V, N, G>,
-    bit: u8,
-    carried: &'a SVector<f64, N>,
-}
-
-impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Carry<'_, V, N, G> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        put(self.group.method.carried(), self.carried, V::mask(self.bit));
-    }
-}
-
-/// Puts numbers at the places of `mask`.
-#[inline(always)]
-fn put<V: Vector, const N: usize>(to: &mut States<V, N>, from: &SVector<f64, N>, mask: V::Mask) {
-    for i in 0..N {
-        let to = &mut to.data.0[0][i];
-        *to = Lanes::select(mask, to.alike(from.data.0[0][i]), *to);
     }
 }
 
@@ -223,6 +266,23 @@ where
     }
 }
 
+struct Plan<'a, V: Vector, const N: usize, const G: usize> {
+    group: &'a mut Group<V, N, G>,
+}
+
+impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Plan<'_, V, N, G> {
+    type Output = u8;
+
+    #[inline(always)]
+    fn call(self) -> u8 {
+        let Group { t, h, t_end, method, paces, led, reach, .. } = self.group;
+        let (size, end, is_possible) = paces.next(*t);
+        (*h, *t_end, *reach) = (size, end, method.reach(size));
+        let is_stable = !V::bits(V::below(size.alike(1.0).0, reach.0));
+        *led & is_possible & is_stable
+    }
+}
+
 struct Attempt<'a, V: Vector, Sys, const N: usize, const G: usize> {
     group: &'a mut Group<V, N, G>,
     system: &'a Sys,
@@ -234,15 +294,16 @@ impl<V: Vector, Sys, const N: usize, const G: usize> NullaryFnOnce for Attempt<'
 where
     Sys: System<Lanes<V>, N, G>,
 {
-    type Output = Tried<V>;
+    type Output = Tried;
 
     #[inline(always)]
-    fn call(self) -> Tried<V> {
+    fn call(self) -> Tried {
         let Self { group, system, scale, moved } = self;
-        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, method } = group;
+        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, method, .. } =
+            group;
         let (t, h, t_end) = (*t, *h, *t_end);
         let side = Side { system, negative };
-        let [first, second] = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
+        let norm = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
         let mut fine = finite(end);
         let has_joints = system.joints().is_some();
         if has_joints {
@@ -256,7 +317,31 @@ where
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
         let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
-        Tried { differences: [first.0.numbers(), second.0.numbers()], fine, clear }
+        let Group { paces, led, plain, reach, errors, judged, loops, whole, .. } = group;
+        let error = Lanes::select(V::below(norm.0, reach.0), *reach, norm);
+        // Of the others it is a number of an ordinary size.
+        *errors = Lanes::select(V::mask(*led), error, h.alike(1.5));
+        *judged = paces.judge(*errors);
+        let [one, infinity] = [1.0, f64::INFINITY].map(|number| h.alike(number));
+        let is_large = V::bits(V::below(one.0, errors.0));
+        let is_number = V::bits(V::below(errors.0, infinity.0));
+        let mut accepted = *led & *plain & is_number & !is_large & fine & clear & !paces.is_due(t_end);
+        let mut refused = *led & *plain & is_number & is_large;
+        if let (Some(loops), Some(joints)) = (loops, system.joints()) {
+            // The ends of steps that may be accepted, then those of steps that err too much before they were projected.
+            let mut ends = [0; 2];
+            for (whole, x) in ends.iter_mut().zip([&*end, &*reached]) {
+                *whole = loops.whole(joints, (t_end, x), negative);
+                if refused == 0 {
+                    break;
+                }
+            }
+            accepted &= ends[0];
+            refused &= whole[0] & ends[1];
+            whole[1] = ends[0];
+        }
+        paces.go_on([h, t_end], *judged, accepted, refused);
+        Tried { fine, clear, accepted, refused }
     }
 }
 
@@ -293,7 +378,8 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Advance<'_, V,
 
     #[inline(always)]
     fn call(self) {
-        let Group { t, t_end, start, end, readings, method, .. } = self.group;
+        let Group { t, t_end, start, end, readings, method, whole, .. } = self.group;
+        whole[0] = whole[0] & !self.accepted | whole[1] & self.accepted;
         let accepted = V::mask(self.accepted);
         *t = Lanes::select(accepted, *t_end, *t);
         for part in 0..2 {

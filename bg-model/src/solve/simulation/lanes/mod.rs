@@ -6,22 +6,25 @@
 //! start.
 
 mod group;
+mod paces;
 
 use nalgebra::SVector;
 
 use super::observer::Observer;
-use super::pace::Judgement;
+use super::pace::{Judgement, Kept};
 use super::run::{Faulty, MOVED, Run};
 use super::settings::{self, Settings, Span};
 use crate::model::capability::SecondOrder;
-use crate::model::scalar::lanes::{Lanes, Vector, exponentials, logarithms};
+use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
 use crate::solve::event::{Crossing, Found, Never, Shortening};
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, Scale};
 use crate::solve::simulation::Samples;
+use crate::solve::statistics::Statistics;
 use crate::solve::stepper::Stepper;
 use group::{Group, Tried};
+use paces::{Control, Lead};
 
 /// A run to be made.
 pub(crate) struct Job<'a, Mo, O, const N: usize> {
@@ -39,13 +42,14 @@ pub(crate) struct Job<'a, Mo, O, const N: usize> {
     pub observer: O,
 }
 
-/// Whether runs of `model` can be made side by side with these settings.
-pub(crate) fn fits<Mo, const N: usize, const G: usize>(model: &Mo, settings: &Settings<N>) -> bool
+/// Whether runs of `model` over `span` can be made side by side with these settings.
+pub(crate) fn fits<Mo, const N: usize, const G: usize>(model: &Mo, span: Span, settings: &Settings<N>) -> bool
 where
     Mo: System<f64, N, G>,
 {
     let each_step = settings.samples == Samples::Steps;
-    model.runs_in_lanes() && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
+    let has_breaks = model.next_break(span.t0) < f64::INFINITY;
+    model.runs_in_lanes() && !has_breaks && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
 }
 
 /// A run at its place.
@@ -115,6 +119,9 @@ where
         Ok(Self { number, values, run, observer, shortening: None })
     }
 
+    /// The evaluations of the guards in a step that has no event.
+    const GUARDS: u64 = if G == 0 { 0 } else { 3 };
+
     fn method(&mut self) -> &mut dyn OfOne<N> {
         self.run.stepper.method.of_one().expect("only runs by such methods are side by side")
     }
@@ -149,6 +156,37 @@ where
     fn rejected(&mut self) {
         self.run.attempts += 1;
         self.run.stepper.statistics.rejected += 1;
+    }
+
+    /// The group goes on with its pace.
+    fn lead<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+        let run = &self.run;
+        let lead = Lead {
+            pace: run.pace.kept(),
+            until: run.sampling.next().min(run.span.t_end),
+            left: run.limit.saturating_sub(run.attempts),
+        };
+        let is_plain = run.watch.is_plain() && run.has_loops_of(group.loops());
+        group.lead(place, lead, is_plain, self.method().frequency());
+    }
+
+    /// The run goes on with its pace itself.
+    fn follow<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+        let Some((pace, made, t)) = group.leave(place) else { return };
+        let Statistics { steps, rejected, .. } = made;
+        let rates = self.method().rates();
+        let run = &mut self.run;
+        run.pace.keep(pace);
+        run.attempts += steps + rejected;
+        run.stepper.statistics.add(&Statistics {
+            rate_evaluations: steps * (rates + 1) + rejected * rates,
+            guard_evaluations: steps * Self::GUARDS,
+            ..made
+        });
+        run.stepper.start.t = t;
+        if steps > 0 {
+            run.faulty = None;
+        }
     }
 
     /// What an attempt leads to that the group has made; `is_fine` says whether it leads to finite numbers, `is_clear` whether the guards keep to
@@ -194,7 +232,7 @@ where
         if !self.holds_together(group, place, t) {
             return Outcome::Fails;
         }
-        self.run.stepper.statistics.guard_evaluations += if G == 0 { 0 } else { GUARDS };
+        self.run.stepper.statistics.guard_evaluations += Self::GUARDS;
         self.run.faulty = None;
         self.run.stepper.statistics.record(h);
         self.run.stepper.start.t = t;
@@ -294,7 +332,8 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
     O: Observer<N, G>,
 {
     let scale = Scale::from(&settings.tolerances);
-    let mut group = Box::new(Group::<V, N, G>::new(method));
+    let control = Control { span, largest: settings.largest_step, order: method.order() };
+    let mut group = Box::new(Group::<V, N, G>::new(method, control));
     let mut lanes: Vec<Option<Lane<'a, Mo, O, N, G>>> = (0..V::LANES).map(|_| None).collect();
     let mut system: Option<Li> = None;
     loop {
@@ -321,7 +360,13 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             // A free place calculates with what another has.
             let values = |lane: usize, k: usize| lanes[lane].as_ref().unwrap_or(any).values[k];
             let packed: Vec<Lanes<V>> = (0..any.values.len()).map(|k| Lanes::each(|lane| values(lane, k))).collect();
-            system = Some(lifted(&packed));
+            let model = lifted(&packed);
+            group.join(&model);
+            for (place, lane) in occupied(&mut lanes).filter(|(_, lane)| lane.shortening.is_none()) {
+                lane.follow(&mut group, place);
+                lane.lead(&mut group, place);
+            }
+            system = Some(model);
         }
         let Some(model) = &system else { return };
         let finished = round(&mut group, &mut lanes, model, &scale);
@@ -332,6 +377,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
                 continue;
             }
             let Some(mut lane) = slot.take() else { continue };
+            group.leave(place);
             if !ended {
                 lane.take_start(&mut group, place);
             }
@@ -354,8 +400,8 @@ where
     Li: System<Lanes<V>, N, G>,
     O: Observer<N, G>,
 {
-    let second = model.second_order().map_or(0..0, |second| second.states());
-    let (mut due, mut accepted, mut failed) = (0_u8, 0_u8, 0_u8);
+    let second = model.second_order().filter(|_| group.is_held()).map_or(0..0, |second| second.states());
+    let (mut due, mut failed) = (0_u8, 0_u8);
     for (place, lane) in occupied(lanes) {
         if second.is_empty() || !lane.method().is_due() {
             continue;
@@ -369,54 +415,54 @@ where
         let stiffnesses = group.follow(model, due);
         for (place, lane) in occupied(lanes).filter(|(place, _)| due & 1 << place != 0) {
             lane.method().stiffness(stiffnesses.as_ref()[place]);
+            group.hold_to(place, lane.method().frequency());
             lane.run.stepper.statistics.rate_evaluations += 1;
         }
     }
-    let mut sizes = V::filled(0.0).numbers();
-    let mut ends = sizes;
-    let mut steps = [None; PLACES];
-    for (place, lane) in occupied(lanes) {
+    let planned = group.plan();
+    let mut trying = planned;
+    for (place, lane) in occupied(lanes).filter(|(place, _)| planned & 1 << place == 0) {
+        lane.follow(group, place);
         match lane.next() {
             Next::Step(step) => {
-                (sizes.as_mut()[place], ends.as_mut()[place]) = (step.h, step.t);
-                steps[place] = Some(step);
+                trying |= 1 << place;
+                if lane.shortening.is_none() {
+                    lane.lead(group, place);
+                }
+                group.step(place, step);
             }
             Next::Fails => failed |= 1 << place,
         }
     }
-    if steps.iter().all(Option::is_none) {
+    if trying == 0 {
         return failed;
     }
-    let Tried { differences, fine, clear } = group.attempt(model, scale, MOVED, sizes, ends);
-    let mut errors = V::filled(1.5).numbers();
-    for (place, lane) in occupied(lanes) {
-        let Some(Step { h, reach, .. }) = steps[place].filter(|_| lane.shortening.is_none()) else { continue };
-        let norm = lane.method().norm(h, differences.each_ref().map(|of| of.as_ref()[place]));
-        errors.as_mut()[place] = if norm < reach { reach } else { norm };
+    let Tried { fine, clear, accepted, refused } = group.attempt(model, scale, MOVED);
+    if group.is_held() {
+        for (_, lane) in occupied(lanes).filter(|(place, _)| accepted & 1 << place != 0) {
+            lane.method().advanced();
+        }
     }
-    let logarithms = logarithms::<V>(errors);
-    let mut factors = logarithms;
-    for (place, lane) in occupied(lanes) {
-        let is_accepted = errors.as_ref()[place] <= 1.0;
-        factors.as_mut()[place] = lane.run.pace.exponent(logarithms.as_ref()[place], is_accepted);
-    }
-    let factors = exponentials::<V>(factors);
-    for (place, lane) in occupied(lanes) {
-        let Some(step) = steps[place] else { continue };
-        let [error, logarithm, factor] = [&errors, &logarithms, &factors].map(|of| of.as_ref()[place]);
-        let (bit, attempted) = (1 << place, Attempted { step, error, judgement: Judgement { logarithm, factor } });
-        match lane.attempted(group, place, attempted, [fine, clear].map(|bits| bits & bit != 0)) {
-            Outcome::Accepted => accepted |= bit,
-            Outcome::Again => {}
-            Outcome::Elsewhere => load(group, place, lane),
+    let (others, mut accepted) = (trying & !(accepted | refused), accepted);
+    for (place, lane) in occupied(lanes).filter(|(place, _)| others & 1 << place != 0) {
+        lane.follow(group, place);
+        let (step, error, judgement) = group.tried(place);
+        let (bit, attempted) = (1 << place, Attempted { step, error, judgement });
+        let outcome = match lane.attempted(group, place, attempted, [fine, clear].map(|bits| bits & bit != 0)) {
             Outcome::Alone => {
                 lane.take_start(group, place);
-                match lane.run.advance(&mut lane.observer) {
-                    Ok(_) => load(group, place, lane),
-                    Err(_) => failed |= bit,
-                }
+                if lane.run.advance(&mut lane.observer).is_ok() { Outcome::Elsewhere } else { Outcome::Fails }
             }
+            other => other,
+        };
+        match outcome {
+            Outcome::Accepted => accepted |= bit,
+            Outcome::Elsewhere => load(group, place, lane),
             Outcome::Fails => failed |= bit,
+            Outcome::Again | Outcome::Alone => {}
+        }
+        if lane.shortening.is_none() {
+            lane.lead(group, place);
         }
     }
     group.advance(accepted);
@@ -427,11 +473,6 @@ where
 fn occupied<T>(lanes: &mut [Option<T>]) -> impl Iterator<Item = (usize, &mut T)> {
     lanes.iter_mut().enumerate().filter_map(|(place, lane)| Some((place, lane.as_mut()?)))
 }
-
-/// The most places of a vector.
-const PLACES: usize = u8::BITS as usize;
-/// The evaluations of the guards in a step that has no event.
-const GUARDS: u64 = 3;
 
 /// Takes a run over into the group.
 fn load<V, Mo, O, const N: usize, const G: usize>(
