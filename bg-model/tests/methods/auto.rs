@@ -7,6 +7,11 @@ use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Finish, Settings, Span, integrate};
 use bg_model::system::Model;
 
+/// Whether a method of this name is explicit.
+fn is_explicit(name: &str) -> bool {
+    ["DOP853", "CFMR7osc", "Nystrom", "Taylor"].contains(&name)
+}
+
 /// A run to `t_end` (s) from t = 0, and when which method took over.
 fn chosen<const N: usize>(
     system: &Flow<Rate<N, 0>, 0>,
@@ -20,12 +25,11 @@ fn chosen<const N: usize>(
 }
 
 #[test]
-fn an_orbit_is_left_to_the_explicit_method() {
+fn an_orbit_is_left_to_the_explicit_methods() {
     let (finish, changes) = chosen(&kepler(), kepler_start().data.0[0], 20.0);
-    assert!(changes.is_empty(), "{changes:?}");
+    assert!(changes.iter().all(|(_, method)| is_explicit(method)), "{changes:?}");
     let (alone, _) = run(&kepler(), Dop853::new(), kepler_start(), 20.0, &settings(1e-6));
-    assert_eq!(finish.x, alone.x);
-    assert_eq!(finish.statistics.steps, alone.statistics.steps);
+    assert!((finish.x - alone.x).amax() < 1e-4, "{:e}", (finish.x - alone.x).amax());
     assert!(finish.statistics.factorisations > 0, "the implicit method was tried");
 }
 
@@ -167,7 +171,8 @@ fn steps_cut_by_events_or_by_the_end_are_no_measure_of_stiffness() {
             let mut settings = settings(tolerance);
             settings.tolerances = Tolerances::new(tolerance, 1e-6 * tolerance);
             integrate(&ringing(), &mut method, &start, span, &settings, &mut ()).unwrap();
-            assert!(method.changes().is_empty(), "{tolerance} to {t_end}: {:?}", method.changes());
+            let changes = method.changes();
+            assert!(changes.iter().all(|change| is_explicit(change.method)), "{tolerance} to {t_end}: {changes:?}");
         }
     }
 }

@@ -278,7 +278,10 @@ impl<E: Ending> Integration<'_, E> {
             Ok(finish) => (finish, None),
             Err(failure) => (*failure.last, Some(failure.cause)),
         };
-        let methods = std::iter::once(first).chain(method.changes().iter().copied()).collect();
+        let changes = method.changes();
+        // What begins may depend on the tolerances.
+        let begins = changes.first().is_some_and(|change| change.reason == Reason::First);
+        let methods = Some(first).filter(|_| !begins).into_iter().chain(changes.iter().copied()).collect();
         Made { finish, cause, methods, wall: clock.elapsed() }.concluded(model, observer.0, request)
     }
 }

@@ -47,6 +47,8 @@ const SUCCESSION: u32 = 8;
 /// the tolerances: of what is damped stiffly only an implicit method keeps these small.
 const HURRY: u32 = 2;
 const HURRIED: u32 = 4;
+/// Where the errors of all trials were so many times what is allowed, the next one is later than else.
+const HOPELESS: f64 = 100.0;
 /// How often a step is doubled at most to find the longest one.
 const DOUBLINGS: usize = 16;
 /// A method that hands back within so many steps took over by mistake: the next trial waits four times as long as before.
@@ -147,6 +149,8 @@ pub struct Auto<const N: usize> {
     hurried: u32,
     /// The longest step tried since the last change, s.
     longest: f64,
+    /// The least error norm of the last trials.
+    nearest: f64,
     changes: Vec<Change>,
     /// The explicit method that was told last.
     told: &'static str,
@@ -169,7 +173,8 @@ struct Claim<const N: usize> {
 const REMEMBERED: usize = 256;
 
 impl<const N: usize> Auto<N> {
-    /// DOP853, CFMR7osc, Nystrom and Taylor series, `ARK5(4)8L[2]SAb`, Radau IIA 9; DOP853 begins.
+    /// DOP853, CFMR7osc, Nystrom and Taylor series, `ARK5(4)8L[2]SAb`, Radau IIA 9; DOP853 begins, at loose
+    /// tolerances where there are few states CFMR7osc.
     #[must_use]
     pub fn new() -> Self {
         let explicit = Race::new();
@@ -192,6 +197,7 @@ impl<const N: usize> Auto<N> {
             since_event: 0,
             hurried: 0,
             longest: 0.0,
+            nearest: 0.0,
             changes: Vec::with_capacity(REMEMBERED),
             told,
         }
@@ -223,6 +229,7 @@ impl<const N: usize> Auto<N> {
     /// Tries the other methods.
     fn try_others(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
         self.since = 0;
+        self.nearest = f64::INFINITY;
         self.tried = self.typical();
         let is_cut_off = self.cut_off >= CUT_OFF;
         for kind in self.kind.others(scale.relative, N) {
@@ -250,6 +257,7 @@ impl<const N: usize> Auto<N> {
             method.restart();
             method.attempt(flow, start, h, scale, &mut x)
         });
+        self.nearest = self.nearest.min(error);
         let is_met = error <= 1.0 && is_finite(&x);
         if is_met && self.cut_off >= CUT_OFF {
             self.change(kind, start.t, Reason::Longer(longer));
@@ -326,7 +334,8 @@ impl<const N: usize> Auto<N> {
 
     /// The method stays: the next trial is later.
     fn stay(&mut self) {
-        self.wait = (2 * self.wait).min(WAIT[1]);
+        let factor = if self.nearest > HOPELESS { 4 } else { 2 };
+        self.wait = (factor * self.wait).min(WAIT[1]);
     }
 
     /// Another method takes over at time `t` (s).
@@ -392,7 +401,8 @@ impl<const N: usize> Method<N> for Auto<N> {
             return error;
         }
         if self.kind == Kind::Explicit && self.explicit.ahead().is_some_and(|ahead| ahead != self.told) {
-            self.tell(start.t, Reason::Further(self.explicit.lead()));
+            let lead = self.explicit.lead();
+            self.tell(start.t, if lead > 1.0 { Reason::Further(lead) } else { Reason::First });
         }
         self.longest = self.longest.max(h);
         let is_met = error <= 1.0 && is_finite(end);
@@ -422,7 +432,7 @@ impl<const N: usize> Method<N> for Auto<N> {
         }
     }
 
-    /// The explicit method begins. The first 256 changes are remembered.
+    /// DOP853 begins where the first of them is none of [`Reason::First`]. The first 256 changes are remembered.
     fn changes(&self) -> &[Change] {
         &self.changes
     }

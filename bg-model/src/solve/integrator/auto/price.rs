@@ -14,14 +14,15 @@ const LOOSEST: f64 = 1e-5;
 /// Operations of a rate of a Runge-Kutta step for each state: its sums, and its part of the error estimate.
 const STATE: f64 = 10.0;
 /// The same of an order, and of a step.
-const STATE_OF_ORDER: f64 = 2.0;
+const STATE_OF_ORDER: f64 = 3.0;
 /// What an operation of an order, the next of the products that it sums up, and the next of those one after the other take,
 /// in operations of a rate.
-const ORDER: f64 = 2.2;
-/// The operations of an order whose code a processor keeps at hand; of more, each takes twice as long.
+const ORDER: f64 = 1.9;
+const PRODUCT: f64 = 0.05;
+const SUM: f64 = 1.0;
+/// The operations of an order whose code a processor keeps at hand; of more, each takes so many times as long.
 const AT_HAND: f64 = 1000.0;
-const PRODUCT: f64 = 0.15;
-const SUM: f64 = 2.0;
+const BEYOND: f64 = 1.35;
 
 /// The price of a step at the relative tolerance `relative`, in rates; none without a series, where its operations are not known, and
 /// where the tolerance is loose.
@@ -36,7 +37,7 @@ fn price(operations: &Operations, states: usize, order: usize) -> f64 {
     let [rate, each, products, sums] = [rate, each, products, sums].map(f64::from);
     let (states, order) = (states as f64, order as f64);
     let lower = 0.5 * (order - 1.0);
-    let of_code = if each > AT_HAND { 2.0 * ORDER } else { ORDER };
+    let of_code = if each > AT_HAND { BEYOND * ORDER } else { ORDER };
     let of_order = of_code * each + STATE_OF_ORDER * states + lower * (PRODUCT * products + SUM * sums);
     // A step of either kind has the rate at its end, the series another one for the defect there.
     let of_rate = (STEP + 1.0) / STEP * rate + STATE * states;
@@ -47,26 +48,33 @@ fn price(operations: &Operations, states: usize, order: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Models with states, and with the time of a step over that of a rate in a step of DOP853, both with AVX2, as measured.
+    /// Models with states, with the time of a step over that of a rate in a step of DOP853, both with AVX2, as measured, and with how much
+    /// the price may be off.
     #[test]
-    fn prices_are_those_that_were_measured_to_a_sixth() {
+    fn prices_are_those_that_were_measured() {
         let of = |rate, order, products, sums| Operations { rate, order, products, sums };
         let motion = of(225, 383, 46, 0);
+        let paper = of(255, 451, 58, 0);
         let slider_crank = of(121, 188, 17, 0);
         let pendulum = of(42, 78, 8, 0);
-        let full = of(826, 1758, 286, 0);
-        for (operations, states, order, measured) in [
-            (motion, 29, 12, 22.5),
-            (motion, 29, 16, 29.7),
-            (slider_crank, 20, 12, 18.2),
-            (slider_crank, 20, 16, 24.1),
-            (slider_crank, 20, 20, 30.4),
-            (pendulum, 14, 16, 18.2),
-            (full, 83, 14, 72.0),
-            (full, 83, 20, 109.0),
+        let full = of(826, 1758, 289, 0);
+        for (operations, states, order, measured, off) in [
+            (motion, 29, 14, 23.3, 0.1),
+            (motion, 29, 16, 26.3, 0.1),
+            (motion, 29, 18, 29.5, 0.1),
+            (motion, 29, 20, 33.3, 0.1),
+            (paper, 31, 16, 29.1, 0.1),
+            (paper, 31, 20, 36.2, 0.1),
+            (slider_crank, 20, 14, 18.0, 0.1),
+            (slider_crank, 20, 16, 21.0, 0.1),
+            (slider_crank, 20, 20, 25.0, 0.1),
+            (full, 83, 14, 39.5, 0.1),
+            (full, 83, 20, 60.7, 0.1),
+            (pendulum, 14, 14, 12.2, 0.3),
+            (pendulum, 14, 20, 15.8, 0.4),
         ] {
             let price = price(&operations, states, order);
-            assert!((price / measured - 1.0).abs() < 1.0 / 6.0, "{price} for {measured}");
+            assert!((price / measured - 1.0).abs() < off, "{price} for {measured}");
         }
     }
 }

@@ -3,26 +3,38 @@
 //! In: the steps of a run. Out: the steps of the method that was ahead in the last race. In a race the methods take turns at making steps of
 //! the run; none of these is lost. Races come more seldom the longer the run is. What limits a step, stability or accuracy, does not
 //! matter, and nothing is estimated: how far a method gets with its rates is what counts. Steps may become longer or shorter while others
-//! run, so there are several rounds, and who takes over has to be ahead in each: who is behind once is out. The Taylor series, whose
-//! steps are the dearest, takes part where it has promised to be ahead each time that it was tried since the last race.
+//! run, so there are several rounds, and who takes over has to be ahead in each: who is behind once is out. Only who has promised to be
+//! ahead where a step of it was tried since the last race takes part, so many rests end without a race.
 
 use nalgebra::SVector;
 
-use super::price;
+use super::{MANY, price};
 use crate::solve::integrator::hand_on::hand_on;
-use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, Point, Scale, StepControl, Taylor};
+use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, Point, Scale, StepControl, Taylor, is_finite};
 
 /// Accepted steps before the first race, and the most between two races.
-const REST: [u32; 2] = [128, 8192];
-/// Accepted steps of a lap, and those at its beginning that do not count: steps find their size.
-const LAP: u32 = 24;
+const REST: [u32; 2] = [16, 8192];
+/// Steps at the beginning of a lap or a rest that do not count: they find their size. Then those of a lap that do.
 const BEGINNING: u32 = 8;
+const LAP: u32 = 16;
+/// The steps after a restart that do not count.
+const AFTER: u32 = 1;
 /// The rounds of a race.
 const ROUNDS: usize = 3;
+/// What is left of a step's weight after each further one, where the speed at a place is asked for.
+const FADING: f64 = 0.75;
 /// A race with more restarts than this is given up.
-const RESTARTS: u32 = 8;
+const RESTARTS: u32 = 32;
 /// Another method has to be ahead by this factor, so that the choice does not swing.
 const AHEAD: f64 = 1.05;
+/// How often in a rest one looks at the other methods, and by which factor one has to promise to be ahead: a step at the limit
+/// of the tolerances is a quarter longer than those that a run makes. The series, whose price is estimated, has to promise more.
+const LOOKS: u32 = 2;
+const PROMISE: f64 = 1.1;
+const PROMISE_OF_SERIES: f64 = 1.3;
+/// The smallest relative tolerance at which CFMR7osc begins where there are few states: its steps are the cheapest, and runs may be over
+/// before the first race. Of many states an implicit method may take over, which DOP853 confirms sooner.
+const LOOSE: f64 = 5e-6;
 
 /// The methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,14 +49,13 @@ impl Runner {
     const ALL: [Self; RUNNERS] = [Self::Dop853, Self::Cfmr7, Self::Nystrom, Self::Taylor];
 }
 
-/// How often in a rest one looks at the Taylor series, and by which factor it has to promise to be ahead each time: a step at the limit of
-/// the tolerances is a quarter longer than those that a run makes.
-const LOOKS: u32 = 4;
-const PROMISE: f64 = 1.5;
 /// The number of methods.
 const RUNNERS: usize = 4;
-/// The rates of a step of DOP853.
+/// The rates of a step of DOP853, and those of CFMR7osc and Nystrom.
 pub(super) const STEP: f64 = 12.0;
+const SHORTER_STEP: f64 = 9.0;
+/// What a rate costs that gives second derivatives, in others: 1.05 to 1.6 on nine models.
+const OF_SECOND_ORDER: f64 = 1.2;
 
 /// Calls the method that makes the steps, borrowed as `$borrow`.
 macro_rules! present {
@@ -70,6 +81,38 @@ macro_rules! present {
     };
 }
 
+/// Some steps: how many, how far they came, s, and their rates.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stretch {
+    steps: u32,
+    way: f64,
+    rates: f64,
+}
+
+impl Stretch {
+    /// These and others.
+    fn with(self, others: Self) -> Self {
+        let Self { steps, way, rates } = others;
+        Self { steps: self.steps + steps, way: self.way + way, rates: self.rates + rates }
+    }
+
+    /// These but for some of them.
+    fn without(self, some: Self) -> Self {
+        let Self { steps, way, rates } = some;
+        Self { steps: self.steps - steps, way: self.way - way, rates: self.rates - rates }
+    }
+
+    /// These with less weight.
+    fn faded(self) -> Self {
+        Self { way: FADING * self.way, rates: FADING * self.rates, ..self }
+    }
+
+    /// How far they came with each rate, s.
+    fn speed(self) -> f64 {
+        self.way / self.rates
+    }
+}
+
 /// The explicit methods, one of which makes the steps.
 #[derive(Clone, Debug)]
 pub(super) struct Race<const N: usize> {
@@ -79,8 +122,11 @@ pub(super) struct Race<const N: usize> {
     taylor: Taylor<N>,
     /// What a step of the Taylor series costs, in rates; none where it takes no part.
     series: Option<f64>,
-    /// How often in a row it has promised to be ahead, in this rest.
-    promises: u32,
+    /// Whether the first method has been chosen.
+    has_begun: bool,
+    /// The looks in this rest, and who has promised to be ahead in one of them.
+    looks: u32,
+    promises: [bool; RUNNERS],
     /// The method that makes the steps, and the one that was ahead.
     runner: Runner,
     ahead: Runner,
@@ -93,10 +139,17 @@ pub(super) struct Race<const N: usize> {
     restarts: u32,
     /// Whether the next attempt is the first after an accepted step.
     is_fresh: bool,
-    /// Accepted steps of this lap or rest; how far they came since its beginning, s, and their rates.
+    /// Accepted steps of this lap or rest.
     steps: u32,
-    way: f64,
-    rates: f64,
+    /// Those of them that count, how far they came, s, and their rates; the same of the last step, and the steps to come that do not
+    /// count.
+    counted: Stretch,
+    last: Stretch,
+    /// The last of them, with weights that fade.
+    recent: Stretch,
+    skipped: u32,
+    /// The rates of the attempts since the last accepted step.
+    pending: f64,
     /// The accepted steps until the next race.
     rest: u32,
     /// The step under way, s.
@@ -104,7 +157,7 @@ pub(super) struct Race<const N: usize> {
 }
 
 impl<const N: usize> Race<N> {
-    /// DOP853 begins.
+    /// DOP853 begins, or at loose tolerances CFMR7osc.
     pub fn new() -> Self {
         Self {
             dop853: Dop853::new(),
@@ -112,7 +165,9 @@ impl<const N: usize> Race<N> {
             nystrom: Nystrom::new(),
             taylor: Taylor::new(),
             series: None,
-            promises: 0,
+            has_begun: false,
+            looks: 0,
+            promises: [false; RUNNERS],
             runner: Runner::Dop853,
             ahead: Runner::Dop853,
             lead: 1.0,
@@ -122,8 +177,11 @@ impl<const N: usize> Race<N> {
             restarts: 0,
             is_fresh: false,
             steps: 0,
-            way: 0.0,
-            rates: 0.0,
+            counted: Stretch::default(),
+            last: Stretch::default(),
+            recent: Stretch::default(),
+            skipped: BEGINNING,
+            pending: 0.0,
             rest: REST[0],
             h: 0.0,
         }
@@ -139,44 +197,53 @@ impl<const N: usize> Race<N> {
         self.lead
     }
 
-    /// What a step of the present method costs, in steps of DOP853 where that is known to differ much.
+    /// What a step of the present method costs, in steps of DOP853.
     pub fn dearness(&self) -> f64 {
-        self.series.filter(|_| self.runner == Runner::Taylor).map_or(1.0, |rates| rates / STEP)
+        let [attempt, accepted] = self.rates();
+        (attempt + accepted) / STEP
     }
 
-    /// The rates of a step of the present method.
-    fn rates(&self) -> f64 {
-        match self.runner {
-            Runner::Dop853 => STEP,
-            Runner::Cfmr7 | Runner::Nystrom => 9.0,
-            Runner::Taylor => self.series.unwrap_or(f64::INFINITY),
+    /// What a step of a method costs, in rates; none where it cannot take part.
+    fn price(&self, runner: Runner, flow: &impl Flow<N>, scale: &Scale<N>) -> Option<f64> {
+        match runner {
+            Runner::Dop853 => Some(STEP),
+            Runner::Cfmr7 => Some(SHORTER_STEP),
+            Runner::Nystrom => flow.second_order().map(|_| OF_SECOND_ORDER * SHORTER_STEP),
+            Runner::Taylor => price::of_step(flow, scale.relative),
         }
     }
 
-    /// Passes on where a lap or a rest is over. A method for states of second order takes part where there are some, and the Taylor
-    /// series where it promises to be ahead.
+    /// The rates of an attempt of the present method, and those of an accepted step beside: one series serves all attempts.
+    fn rates(&self) -> [f64; 2] {
+        match self.runner {
+            Runner::Dop853 => [STEP, 0.0],
+            Runner::Cfmr7 => [SHORTER_STEP, 0.0],
+            Runner::Nystrom => [OF_SECOND_ORDER * SHORTER_STEP, 0.0],
+            Runner::Taylor => [0.0, self.series.unwrap_or(f64::INFINITY)],
+        }
+    }
+
+    /// Passes on where a lap or a rest is over. Who has promised to be ahead takes part.
     fn turn(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
         let Some(round) = self.round else {
-            self.look_at_series(flow, start, scale);
+            self.look(flow, start, scale);
             if self.steps >= self.rest {
-                (self.round, self.restarts) = (Some(0), 0);
-                self.is_in = Runner::ALL.map(|runner| match runner {
-                    Runner::Dop853 | Runner::Cfmr7 => true,
-                    Runner::Nystrom => flow.second_order().is_some(),
-                    Runner::Taylor => self.promises == LOOKS,
-                });
-                self.begin(self.ahead);
+                self.is_in = self.promises;
+                self.is_in[self.ahead as usize] = true;
+                if self.looks == LOOKS && self.is_in.iter().filter(|is_in| **is_in).count() > 1 {
+                    (self.round, self.restarts) = (Some(0), 0);
+                    self.begin(self.ahead);
+                } else {
+                    self.end();
+                }
             }
             return;
         };
-        if self.steps == BEGINNING {
-            (self.way, self.rates) = (0.0, 0.0);
-        }
-        if self.steps < LAP {
+        if self.counted.steps < LAP {
             return;
         }
         let (runner, ahead) = (self.runner as usize, self.ahead as usize);
-        self.speeds[runner][round] = self.way / self.rates;
+        self.speeds[runner][round] = self.counted.speed();
         self.is_in[runner] &= runner == ahead || self.speeds[runner][round] > self.speeds[ahead][round];
         // The one that was ahead begins each round.
         let is_next = |next: &Runner| *next != self.ahead && (runner == ahead || *next as usize > runner);
@@ -191,18 +258,39 @@ impl<const N: usize> Race<N> {
         }
     }
 
-    /// Looks several times in a rest whether a step of the Taylor series from `start` would get further with its price than the
-    /// steps since the last race did with their rates. Who breaks its promise once is not looked at again in this rest.
-    fn look_at_series(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
-        if self.promises == LOOKS || self.steps != (self.promises + 1) * self.rest / LOOKS {
+    /// Looks several times in a rest whether a step of another method from `start` would get further with its price than the last steps
+    /// did with their rates. Who does so once takes part in the race.
+    fn look(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
+        let next = BEGINNING + (self.looks + 1) * (self.rest - BEGINNING) / LOOKS;
+        if self.looks == LOOKS || self.steps < next || self.counted.steps == 0 {
             return;
         }
-        self.series = price::of_step(flow, scale.relative);
-        let Some(price) = self.series else { return };
-        let h = PROMISE * price * self.way / self.rates;
-        if self.ahead == Runner::Taylor || self.taylor.reaches(flow, start, h, scale) {
-            self.promises += 1;
+        self.looks += 1;
+        for runner in Runner::ALL {
+            if runner != self.ahead && !self.promises[runner as usize] {
+                let price = self.price(runner, flow, scale);
+                self.promises[runner as usize] =
+                    price.is_some_and(|price| self.reaches(runner, flow, start, price * self.recent.speed(), scale));
+            }
         }
+    }
+
+    /// Whether a step of this method meets the tolerances that is longer than `h` (s) by what it has to promise.
+    fn reaches(&mut self, runner: Runner, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+        if runner == Runner::Taylor {
+            self.series = self.price(runner, flow, scale);
+            return self.taylor.reaches(flow, start, PROMISE_OF_SERIES * h, scale);
+        }
+        let mut end = start.x;
+        let present = core::mem::replace(&mut self.runner, runner);
+        let error = present!((&mut) self, method => {
+            method.restart();
+            let error = method.attempt(flow, start, PROMISE * h, scale, &mut end);
+            method.restart();
+            error
+        });
+        self.runner = present;
+        error <= 1.0 && is_finite(&end)
     }
 
     /// A lap or a rest of this method begins.
@@ -211,7 +299,8 @@ impl<const N: usize> Race<N> {
             self.runner = runner;
             present!((&mut) self, method => method.restart());
         }
-        (self.steps, self.way, self.rates) = (0, 0.0, 0.0);
+        (self.steps, self.skipped, self.pending) = (0, BEGINNING, 0.0);
+        (self.counted, self.last, self.recent) = (Stretch::default(), Stretch::default(), Stretch::default());
     }
 
     /// The race is over.
@@ -219,13 +308,15 @@ impl<const N: usize> Race<N> {
         let sum = |runner: Runner| self.speeds[runner as usize].iter().sum::<f64>();
         let others = Runner::ALL.into_iter().filter(|runner| *runner != self.ahead && self.is_in[*runner as usize]);
         let best = others.reduce(|best, next| if sum(next) > sum(best) { next } else { best });
-        if let Some(best) = best.filter(|best| sum(*best) > AHEAD * sum(self.ahead)) {
+        if self.round.is_some()
+            && let Some(best) = best.filter(|best| sum(*best) > AHEAD * sum(self.ahead))
+        {
             self.lead = sum(best) / sum(self.ahead);
             self.ahead = best;
         }
         self.round = None;
         self.rest = (2 * self.rest).min(REST[1]);
-        self.promises = 0;
+        (self.looks, self.promises) = (0, [false; RUNNERS]);
         self.begin(self.ahead);
     }
 }
@@ -241,37 +332,46 @@ impl<const N: usize> Method<N> for Race<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
+        if !core::mem::replace(&mut self.has_begun, true) && scale.relative >= LOOSE && N < MANY {
+            self.ahead = Runner::Cfmr7;
+            self.begin(self.ahead);
+        }
         if core::mem::take(&mut self.is_fresh) {
             self.turn(flow, start, scale);
         }
         self.h = h;
-        // One series serves all attempts from its start.
-        if self.runner != Runner::Taylor {
-            self.rates += self.rates();
-        }
+        self.pending += self.rates()[0];
         present!((&mut) self, method => method.attempt(flow, start, h, scale, end))
     }
 
     fn advance(&mut self) {
         self.is_fresh = true;
         self.steps += 1;
-        self.way += self.h;
-        if self.runner == Runner::Taylor {
-            self.rates += self.rates();
+        let rates = core::mem::take(&mut self.pending) + self.rates()[1];
+        self.last = Stretch::default();
+        if self.skipped == 0 {
+            self.last = Stretch { steps: 1, way: self.h, rates };
         }
+        self.skipped = self.skipped.saturating_sub(1);
+        self.counted = self.counted.with(self.last);
+        self.recent = self.recent.faded().with(self.last);
         present!((&mut) self, method => method.advance());
     }
 
-    /// A lap begins anew: steps find their size. Where that happens too often for a race, there is none.
+    /// The steps around an event do not count: it has cut the last one, and been located by attempts at it. Where that happens too
+    /// often for a race, there is none.
     fn restart(&mut self) {
         present!((&mut) self, method => method.restart());
+        let last = core::mem::take(&mut self.last);
+        self.counted = self.counted.without(last);
+        self.recent = self.recent.without(last);
+        self.pending = 0.0;
+        self.skipped = self.skipped.max(AFTER);
         if self.round.is_some() {
             self.restarts += 1;
             if self.restarts > RESTARTS {
                 self.is_in = [false; RUNNERS];
                 self.end();
-            } else {
-                self.begin(self.runner);
             }
         }
     }
