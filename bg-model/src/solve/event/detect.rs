@@ -12,7 +12,7 @@ use super::minimum::minimum;
 use super::noise::larger;
 use super::{Crossing, Reading, Watch, check_finite, clearance, read};
 use crate::model::scalar::Scalar;
-use crate::solve::integrator::{Arch, middle_in};
+use crate::solve::integrator::hermite;
 
 /// The number of parts of a step at whose ends the dense output is looked at.
 const PARTS: usize = 8;
@@ -92,7 +92,7 @@ impl<const G: usize> Watch<G> {
         self.end = read(step, end.t, &end.x, &end.rate, h);
         check_finite(&self.end.value)?;
         let mut x = SVector::zeros();
-        middle_in(Arch::new(), step.start(), h, &end, &mut x);
+        hermite(step.start(), h, &end, 0.5, &mut x);
         let middle = step.start().t + 0.5 * h;
         let middle = step.guards(middle, &x);
         // As long as the noise is not known it counts as none: there are only more suspects.

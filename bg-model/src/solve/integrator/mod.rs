@@ -45,7 +45,7 @@ pub use explicit::{
 pub use gauss::Gauss6;
 #[cfg(feature = "std")]
 pub(crate) use hermite::between;
-use hermite::hermite;
+pub(crate) use hermite::hermite;
 #[cfg(feature = "std")]
 pub(crate) use lanes::{AnyInLanes, OfOne, Side};
 pub use nystrom::Nystrom;
@@ -58,7 +58,7 @@ pub(crate) use steps::{Begin, Rates};
 pub use taylor::Taylor;
 pub(crate) use tolerances::rounding;
 pub use tolerances::{Absolute, Scale, Tolerances};
-pub(crate) use vectors::{Arch, middle_in, rate_in};
+pub(crate) use vectors::{Arch, rate_in};
 
 /// A smooth flow: a system with its switches frozen. Only the rate has to be written; capabilities are those of a system
 /// without switches.

@@ -93,7 +93,8 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
         }
     }
 
-    /// Writes the state at the end of a step; gives the largest of the differences to each of the embedded methods, in parts of what is allowed and per s: without a second one, zero.
+    /// Writes the state at the end of a step; gives the largest of the differences to each of the embedded methods, in parts of what is
+    /// allowed and per s: without a second one, zero.
     #[inline(always)]
     pub fn step(
         &mut self,

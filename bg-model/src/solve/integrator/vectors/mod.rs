@@ -10,7 +10,7 @@ mod tests;
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
-use super::{Flow, Point, Scale, hermite};
+use super::{Flow, Point, Scale};
 use crate::model::capability::Elimination;
 use crate::model::linear::Field;
 pub(crate) use crate::model::scalar::machine::Arch;
@@ -92,28 +92,6 @@ pub(crate) fn rate_in<const N: usize>(
     } else {
         arch.dispatch(Rate { flow, t, x, dx });
     }
-}
-
-struct Middle<'a, const N: usize> {
-    start: &'a Point<N>,
-    h: f64,
-    end: &'a Point<N>,
-    x: &'a mut SVector<f64, N>,
-}
-
-impl<const N: usize> NullaryFnOnce for Middle<'_, N> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { start, h, end, x } = self;
-        hermite(start, h, end, 0.5, x);
-    }
-}
-
-/// Writes the state of the cubic in the middle of a step in the vectors `arch`.
-pub(crate) fn middle_in<const N: usize>(arch: Arch, start: &Point<N>, h: f64, end: &Point<N>, x: &mut SVector<f64, N>) {
-    arch.dispatch(Middle { start, h, end, x });
 }
 
 struct Eliminate<'a, E, F, const N: usize> {
