@@ -15,7 +15,6 @@ use super::factors::Factors;
 use super::{Hold, dropped, slipping};
 use crate::model::capability::Joints;
 use crate::model::holding::{Redundancy, Slipping};
-#[cfg(feature = "std")]
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
 use crate::model::scalar::lanes::{Lanes, Vector};
@@ -24,6 +23,12 @@ use crate::model::scalar::lanes::{Lanes, Vector};
 const FOLLOWING: f64 = 1e-6;
 /// How much faster than the fastest of the others it may be: Baumgarte's terms leave some flow.
 const FASTER: f64 = 1e3;
+/// The fastest flow that may follow from others, of which this is the fastest.
+#[inline(always)]
+fn followed<S: Scalar>(others: S) -> S {
+    others.times(FASTER) + others.alike(FOLLOWING)
+}
+
 /// A pivot below this part of its row's mobility is of a pose 1e-4 rad from a singular one. Two steps in a row that end there creep.
 const NEAR: f64 = 1e-8;
 
@@ -104,7 +109,7 @@ impl LoopWatch {
             rows.max_by(|&a, &b| flows[a].abs().total_cmp(&flows[b].abs()))
         };
         let others = fastest(false).map_or(0.0, |row| flows[row].abs());
-        let row = fastest(true).filter(|&row| flows[row].abs() > FOLLOWING + FASTER * others)?;
+        let row = fastest(true).filter(|&row| flows[row].abs() > followed(others))?;
         Some(slipping(&hold.held, row, flows[row]))
     }
 
@@ -164,8 +169,7 @@ impl<V: Vector> LoopsInLanes<V> {
                 others = flow.larger(others);
             }
         }
-        let allowed = others.times(FASTER) + t.alike(FOLLOWING);
-        let mut whole = !V::bits(V::below(allowed.0, fastest.0));
+        let mut whole = !V::bits(V::below(followed(others).0, fastest.0));
         factors.factor_without(hold.matrix(), dropped, pivots);
         for (row, [pivot, mobility]) in pivots.iter().enumerate() {
             if !dropped[row] {

@@ -47,6 +47,16 @@ enum Runner {
 
 impl Runner {
     const ALL: [Self; RUNNERS] = [Self::Dop853, Self::Cfmr7, Self::Nystrom, Self::Taylor];
+
+    /// The rates of an attempt; none of the series, of which one serves all attempts at a step.
+    const fn of_attempt(self) -> Option<f64> {
+        match self {
+            Self::Dop853 => Some(STEP),
+            Self::Cfmr7 => Some(SHORTER_STEP),
+            Self::Nystrom => Some(OF_SECOND_ORDER * SHORTER_STEP),
+            Self::Taylor => None,
+        }
+    }
 }
 
 /// The number of methods.
@@ -206,20 +216,16 @@ impl<const N: usize> Race<N> {
     /// What a step of a method costs, in rates; none where it cannot take part.
     fn price(&self, runner: Runner, flow: &impl Flow<N>, scale: &Scale<N>) -> Option<f64> {
         match runner {
-            Runner::Dop853 => Some(STEP),
-            Runner::Cfmr7 => Some(SHORTER_STEP),
-            Runner::Nystrom => flow.second_order().map(|_| OF_SECOND_ORDER * SHORTER_STEP),
-            Runner::Taylor => price::of_step(flow, scale.relative),
+            Runner::Nystrom if flow.second_order().is_none() => None,
+            _ => runner.of_attempt().or_else(|| price::of_step(flow, scale.relative)),
         }
     }
 
-    /// The rates of an attempt of the present method, and those of an accepted step beside: one series serves all attempts.
+    /// The rates of an attempt of the present method, and those of an accepted step beside.
     fn rates(&self) -> [f64; 2] {
-        match self.runner {
-            Runner::Dop853 => [STEP, 0.0],
-            Runner::Cfmr7 => [SHORTER_STEP, 0.0],
-            Runner::Nystrom => [OF_SECOND_ORDER * SHORTER_STEP, 0.0],
-            Runner::Taylor => [0.0, self.series.unwrap_or(f64::INFINITY)],
+        match self.runner.of_attempt() {
+            Some(rates) => [rates, 0.0],
+            None => [0.0, self.series.unwrap_or(f64::INFINITY)],
         }
     }
 
