@@ -13,7 +13,7 @@ use crate::program::{self, Programs};
 use crate::source::ast::{Graph, Name, Source};
 use crate::source::part::{self, Flattened};
 use crate::source::scene::{self, Variant};
-use crate::source::{mechanism, names, unused};
+use crate::source::{mechanism, names};
 use crate::system::equations::{self, StateEquations};
 use crate::system::jacobian::{self, Jacobian};
 use crate::system::projection;
@@ -89,9 +89,8 @@ fn of_graphs(flattened: &Flattened) -> Staged<Vec<Compiled>> {
             Err(found) => faults.extend(found),
         }
     }
-    // A name that is wrong may be meant for what nothing uses, so this is told of what is right but for it.
     if faults.is_empty() {
-        faults.extend(flattened.source.graphs.iter().flat_map(unused::check));
+        faults.extend(flattened.unused_parameters.iter().cloned());
     }
     if faults.is_empty() { Ok(models) } else { Err(faults) }
 }

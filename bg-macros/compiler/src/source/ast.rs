@@ -138,6 +138,18 @@ pub enum Item {
     For(For),
 }
 
+impl Item {
+    /// The parameter or input that it declares, with its word.
+    #[must_use]
+    pub fn adjustable(&self) -> Option<(&'static str, &Name)> {
+        match self {
+            Self::Parameter(parameter) => Some(("parameter", &parameter.name)),
+            Self::Input(input) => Some(("input", &input.name)),
+            _ => None,
+        }
+    }
+}
+
 /// A parameter: a number that stays the same during a run.
 #[derive(Clone, Debug)]
 pub struct Parameter {

@@ -13,6 +13,5 @@ pub mod print;
 mod print_part;
 pub mod scene;
 pub mod syntax;
-pub mod unused;
 pub(crate) mod walk;
 pub(crate) mod words;

@@ -65,15 +65,10 @@ pub fn check(source: &Source) -> Staged<()> {
 
 /// Parameters, or inputs, whose paths differ but not as words.
 fn fields(graph: &Graph) -> Faults {
-    let mut taken: BTreeMap<(bool, String), &str> = BTreeMap::new();
+    let mut taken: BTreeMap<(&str, String), &str> = BTreeMap::new();
     let mut faults = Faults::new();
-    for item in &graph.items {
-        let (is_input, name) = match item {
-            Item::Parameter(parameter) => (false, &parameter.name),
-            Item::Input(input) => (true, &input.name),
-            _ => continue,
-        };
-        let of = *taken.entry((is_input, field(&name.text))).or_insert(&name.text);
+    for (word, name) in graph.items.iter().filter_map(Item::adjustable) {
+        let of = *taken.entry((word, field(&name.text))).or_insert(&name.text);
         if of != name.text {
             let fault = NameFault::SameField { name: name.text.clone(), of: of.to_owned() };
             faults.push(Fault::new(name.span, &fault));

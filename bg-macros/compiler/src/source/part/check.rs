@@ -7,10 +7,9 @@ use proc_macro2::Span;
 use super::PartFault;
 use super::flat::Flat;
 use super::level::Level;
-use crate::fault::{DeclaredTwice, Fault};
+use crate::fault::{DeclaredTwice, Fault, Faults};
 use crate::source::ast::{Element, ElementKind, Expression, ExpressionKind, Graph, Item, Name, Part};
 use crate::source::drawing::Drawing;
-use crate::source::unused::Unused;
 
 /// Every port of a part inside has a bond on this level, or is a port of this level.
 pub(super) fn ports(level: &mut Level) {
@@ -31,14 +30,14 @@ fn last(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-/// Every parameter and input of a part is used in it.
-pub(super) fn open(level: &mut Level, part: &Part) {
-    for (word, name) in std::mem::take(&mut level.open) {
-        if !level.names.mentions(&name.text) {
-            let of = format!("part `{}`", part.name.text);
-            level.faults.push(Fault::new(name.span, &Unused { of, word, name: name.text }));
-        }
-    }
+/// A fault for each parameter and input of a level that nothing in it uses: a value given to it would change nothing. `of` is what the level
+/// is of, such as "part `Leg`".
+pub(super) fn open(level: &Level, of: &str) -> Faults {
+    let unused = level.open.iter().filter(|(_, name)| !level.names.uses(&name.text));
+    let fault = |(word, name): &(&'static str, Name)| {
+        Fault::new(name.span, &PartFault::Unused { of: of.to_owned(), word, name: name.text.clone() })
+    };
+    unused.map(fault).collect()
 }
 
 /// No output of a part has the name of something in it: both would have one path.

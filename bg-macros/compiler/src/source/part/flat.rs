@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 
 use proc_macro2::Span;
 
+use crate::fault::Faults;
 use crate::source::ast::{ExpressionKind, Item, Name, Observation, Part};
 use crate::source::walk::{Met, each_name, of_observation, walk};
 use crate::source::words::{GROUND, QUANTITIES};
@@ -25,6 +26,8 @@ pub(super) struct Flat {
     pub aliases: Vec<(String, String)>,
     /// The parts inside.
     pub uses: Vec<Placed>,
+    /// Of a graph: a fault for each parameter and input that nothing uses.
+    pub unused: Faults,
 }
 
 /// A use of a part.

@@ -10,8 +10,7 @@ use super::names::Names;
 use super::watch::Seen;
 use super::{check, place};
 use crate::fault::Faults;
-use crate::source::ast::{Item, Name, Part, Point, Port, Scene, Start, Use, Watch};
-use crate::source::unused::adjustable;
+use crate::source::ast::{Item, Name, Point, Port, Scene, Start, Use, Watch};
 
 /// A level while it is written out.
 pub(super) struct Level<'f> {
@@ -85,7 +84,7 @@ impl<'f> Level<'f> {
 
     /// A statement of this level itself.
     fn item(&mut self, mut item: Item) {
-        self.open.extend(adjustable(&item).map(|(word, name)| (word, name.clone())));
+        self.open.extend(item.adjustable().map(|(word, name)| (word, name.clone())));
         match &mut item {
             // What is watched is looked at when everything is there.
             Item::Observe(_) => return self.flat.items.push(item),
@@ -121,15 +120,18 @@ impl<'f> Level<'f> {
         self.starts.push(start);
     }
 
-    /// The level, whose statements are all there; of a part, where `whose` says so.
-    pub fn finish(mut self, whose: Option<&Part>) -> Flat {
+    /// The level, whose statements are all there: that of a part or of a graph, which `of` names, such as "part `Leg`".
+    pub fn finish(mut self, of: &str, is_part: bool) -> Flat {
         place::start(&mut self.flat.items, std::mem::take(&mut self.starts), self.faults);
         self.one_ground();
-        self.watch(whose.is_some());
+        self.watch(is_part);
         check::ports(&mut self);
-        if let Some(part) = whose {
-            check::open(&mut self, part);
+        let unused = check::open(&self, of);
+        if is_part {
+            self.faults.extend(unused);
             check::outputs(&mut self);
+        } else {
+            self.flat.unused = unused;
         }
         self.flat.names = self.names.declared().map(str::to_owned).collect();
         self.flat

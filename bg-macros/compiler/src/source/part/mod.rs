@@ -34,6 +34,8 @@ pub struct Flattened {
     pub source: Source,
     /// Each part that no graph of the call uses, as a graph of its own with something at each of its ports.
     pub unused: Vec<Graph>,
+    /// Parameters and inputs of graphs that nothing uses. A name that is wrong may be meant for one, so this is told where nothing else is wrong.
+    pub unused_parameters: Faults,
     uses: Vec<Placed>,
 }
 
@@ -61,7 +63,9 @@ pub fn flatten_leniently(source: &Source) -> (Flattened, Faults) {
     let mut flattened = Flattened::default();
     let call = Scope { key: String::new(), source };
     for graph in &source.graphs {
-        let Flat { items, uses, .. } = stage.level(&call, &graph.items, None);
+        let of = format!("graph `{}`", graph.name.text);
+        let Flat { items, uses, unused, .. } = stage.level(&call, &graph.items, &of, false);
+        flattened.unused_parameters.extend(unused);
         flattened.source.graphs.push(Graph { items, ..graph.clone() });
         flattened.uses.extend(uses);
     }
@@ -120,11 +124,11 @@ struct Flattening {
 
 impl Flattening {
     /// The statements of a graph, or of a part, without parts.
-    fn level(&mut self, scope: &Scope, items: &[Item], whose: Option<&Part>) -> Flat {
+    fn level(&mut self, scope: &Scope, items: &[Item], of: &str, is_part: bool) -> Flat {
         let items = repeat::unrolled(items, &mut self.faults);
         let uses = items.iter().filter_map(|item| if let Item::Use(used) = item { Some(used) } else { None });
         let inside = uses.map(|used| self.used(scope, used).unwrap_or_default()).collect();
-        Level::of(items, inside, &mut self.faults).finish(whose)
+        Level::of(items, inside, &mut self.faults).finish(of, is_part)
     }
 
     /// A part, written out once.
@@ -134,7 +138,7 @@ impl Flattening {
             return flat.clone();
         }
         self.around.push(key.clone());
-        let flat = self.level(scope, &part.items, Some(part));
+        let flat = self.level(scope, &part.items, &format!("part `{}`", part.name.text), true);
         self.around.pop();
         self.parts.insert(key, flat.clone());
         flat

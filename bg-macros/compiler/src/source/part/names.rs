@@ -25,8 +25,8 @@ pub(super) struct Names {
     aliases: BTreeMap<String, String>,
     /// What parts inside observe.
     outputs: BTreeMap<String, Observation>,
-    /// What is mentioned on this level.
-    mentioned: BTreeSet<String>,
+    /// What the expressions of this level name.
+    used: BTreeSet<String>,
 }
 
 impl Names {
@@ -82,9 +82,9 @@ impl Names {
         self.arrays.get(array).into_iter().flatten().map(move |number| format!("{array}[{number}]"))
     }
 
-    /// Whether something on this level mentions `name`.
-    pub fn mentions(&self, name: &str) -> bool {
-        self.mentioned.contains(name)
+    /// Whether an expression of this level names `name`. What a scene tunes is no use of it.
+    pub fn uses(&self, name: &str) -> bool {
+        self.used.contains(name)
     }
 
     /// Gives the names of a statement the meaning that they have here.
@@ -109,6 +109,7 @@ impl Names {
             if variable.is_some_and(|variable| is_at(&name.text, variable)) {
                 return;
             }
+            self.used.insert(name.text.clone());
             self.check(&name.text, value.span, faults);
             let path = Name::new(self.path(&name.text), value.span);
             value.kind = self.observed(&path.text).unwrap_or(ExpressionKind::Name(path));
@@ -152,7 +153,6 @@ impl Names {
 
     /// Faults of numbers in brackets, and of arrays without.
     fn check(&mut self, name: &str, span: Span, faults: &mut Faults) {
-        self.mentioned.insert(name.to_owned());
         let wrong = elements(name).find_map(|(array, index)| match self.arrays.get(array) {
             None => Some(PartFault::NotAnArray { name: array.to_owned() }),
             Some(numbers) if numbers.contains(&index) => None,

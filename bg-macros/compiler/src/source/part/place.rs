@@ -52,11 +52,7 @@ pub(super) fn shown(used: &Use) -> String {
 
 /// The name of a parameter or input.
 fn open(item: &Item) -> Option<&Name> {
-    match item {
-        Item::Parameter(parameter) => Some(&parameter.name),
-        Item::Input(input) => Some(&input.name),
-        _ => None,
-    }
+    item.adjustable().map(|(_, name)| name)
 }
 
 /// An input may be anything, also what changes.

@@ -368,3 +368,23 @@ fn a_graph_of_parts_has_the_equations_of_the_graph_written_out() {
     let stiffness = left.replace("stiffness a_stiffness of", "stiffness k of");
     assert_eq!(stiffness, right);
 }
+
+#[test]
+fn what_nothing_in_a_graph_uses_is_told_where_nothing_else_is_wrong() {
+    const REST: &str = "Se s = 1; 1 a: translation; I m = 2; s -> a -> m; observe { a.flow }";
+    let found = faults(&format!("graph A {{ param k: N = 1; input u: N; {REST} scene B {{ tune {{ k }} }} }}"));
+    assert_eq!(
+        found,
+        "1:17 BG0811 nothing in graph `A` uses its parameter `k` | remove it, or use it\n\
+         1:33 BG0811 nothing in graph `A` uses its input `u` | remove it, or use it"
+    );
+    // A law's variable of its name is that variable.
+    assert!(faults(&format!("graph A {{ param v: N = 1; {REST} R r(v) = 2 * v; a -> r; }}")).contains("parameter `v`"));
+    // An output of a scene uses it, and so does what is given to a part.
+    assert_eq!(faults(&format!("graph A {{ param k: N = 1; {REST} scene B {{ observe {{ o = k }} }} }}")), "");
+    let given = "part P { param j: N = 1; let i = j; }";
+    assert_eq!(faults(&format!("graph A {{ param k: N = 1; {REST} part p: P {{ j = k; }} }}\n{given}")), "");
+    // The misspelt name alone.
+    let found = faults(&format!("graph A {{ param force: N = 1; {REST} Se t = forec; t -> a; }}"));
+    assert!(found.contains("BG0303") && !found.contains("BG0811"), "{found}");
+}
