@@ -74,6 +74,11 @@ pub trait SecondOrder<S: Scalar, const N: usize, const G: usize> {
     /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second
     /// derivatives: what the rate and then [`SecondOrder::second_derivatives`] give, to rounding.
     fn forces(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);
+
+    /// The operations of a rate and of [`SecondOrder::forces`]; none by default. `auto` compares methods by them.
+    fn operations(&self) -> Option<[u32; 2]> {
+        None
+    }
 }
 
 /// A system that knows the Taylor series of its states.

@@ -248,6 +248,14 @@ impl Running {
 }
 
 impl SecondOrderPrograms {
+    /// The operations of a rate and of one with second derivatives.
+    #[must_use]
+    pub fn operations(&self, running: &Running) -> [usize; 2] {
+        let rate = running.rate.counts.total();
+        let one_after_the_other = rate + self.second_derivatives.counts.total();
+        [rate, self.forces.as_ref().map_or(one_after_the_other, |forces| forces.counts.total())]
+    }
+
     /// Both, or the one that there is.
     pub fn routines(&self) -> impl Iterator<Item = &Routine> {
         [&self.second_derivatives].into_iter().chain(&self.forces)

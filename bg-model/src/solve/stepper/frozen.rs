@@ -143,6 +143,10 @@ where
         count(self.counters.rates, 1);
         self.system.forces(t, x, self.negative, dx);
     }
+
+    fn operations(&self) -> Option<[u32; 2]> {
+        self.system.operations()
+    }
 }
 
 impl<C, const N: usize, const G: usize> Series<f64, N, 0> for Frozen<'_, C, G>

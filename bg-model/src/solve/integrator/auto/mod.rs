@@ -56,7 +56,7 @@ const STINT: u32 = 256;
 
 /// The smallest relative tolerance at which steps are worth their cost that are implicit in some states only: below it order 9 takes
 /// far longer ones.
-const LOOSE: f64 = 1e-7;
+const LOOSE: f64 = 1e-10;
 
 /// The least number of states, for the same reason: of few states a factorisation costs little beside the rates.
 const MANY: usize = 24;

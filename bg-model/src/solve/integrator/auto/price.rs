@@ -1,11 +1,11 @@
-//! What a step of the Taylor series costs, in rates of explicit methods, without a clock.
+//! What a step of the Taylor series and a rate with second derivatives cost, in rates of explicit methods, without a clock.
 //!
-//! In: the operations of a rate and of its series, which the compiler counts, and a relative tolerance. Out: the price. What an operation
-//! takes beside others depends on the machine; the weights are what fits several models on machines with AVX2.
+//! In: the operations of a rate, of one with second derivatives and of a series, which the compiler counts, and a relative tolerance. Out:
+//! the price. What an operation takes beside others depends on the machine; the weights are what fits several models on machines with AVX2.
 
 use super::super::taylor::order_for;
 use super::race::STEP;
-use crate::model::capability::{Operations, Series};
+use crate::model::capability::{Operations, SecondOrder, Series};
 use crate::solve::integrator::Flow;
 
 /// The loosest relative tolerance at which the series is worth a trial: its lowest orders are dear for what they reach.
@@ -20,6 +20,10 @@ const STATE_OF_ORDER: f64 = 3.0;
 const ORDER: f64 = 1.9;
 const PRODUCT: f64 = 0.05;
 const SUM: f64 = 1.0;
+/// Operations for each state of a rate with second derivatives: of states of second order there are two sums.
+const STATE_OF_FORCES: f64 = 12.0;
+/// The price of a rate with second derivatives where nobody has counted.
+const OF_FORCES: f64 = 1.2;
 /// The operations of an order whose code a processor keeps at hand; of more, each takes so many times as long.
 const AT_HAND: f64 = 1000.0;
 const BEYOND: f64 = 1.35;
@@ -29,6 +33,17 @@ const BEYOND: f64 = 1.35;
 pub(super) fn of_step<const N: usize>(flow: &impl Flow<N>, relative: f64) -> Option<f64> {
     let operations = flow.series().filter(|_| relative <= LOOSEST)?.operations()?;
     Some(price(&operations, N, order_for(relative)))
+}
+
+/// The price of a rate that gives second derivatives; none where there are none.
+pub(super) fn of_forces<const N: usize>(flow: &impl Flow<N>) -> Option<f64> {
+    Some(flow.second_order()?.operations().map_or(OF_FORCES, |operations| forces(operations, N)))
+}
+
+/// The price of a rate with second derivatives of a system with so many states, from the operations of a rate and of such a one.
+fn forces([rate, forces]: [u32; 2], states: usize) -> f64 {
+    let states = states as f64;
+    (f64::from(forces) + STATE_OF_FORCES * states) / (f64::from(rate) + STATE * states)
 }
 
 /// The price of a step of a system with so many states by a series of this order.

@@ -47,16 +47,6 @@ enum Runner {
 
 impl Runner {
     const ALL: [Self; RUNNERS] = [Self::Dop853, Self::Cfmr7, Self::Nystrom, Self::Taylor];
-
-    /// The rates of an attempt; none of the series, of which one serves all attempts at a step.
-    const fn of_attempt(self) -> Option<f64> {
-        match self {
-            Self::Dop853 => Some(STEP),
-            Self::Cfmr7 => Some(SHORTER_STEP),
-            Self::Nystrom => Some(OF_SECOND_ORDER * SHORTER_STEP),
-            Self::Taylor => None,
-        }
-    }
 }
 
 /// The number of methods.
@@ -64,8 +54,6 @@ const RUNNERS: usize = 4;
 /// The rates of a step of DOP853, and those of CFMR7osc and Nystrom.
 pub(super) const STEP: f64 = 12.0;
 const SHORTER_STEP: f64 = 9.0;
-/// What a rate costs that gives second derivatives, in others: 1.05 to 1.6 on nine models.
-const OF_SECOND_ORDER: f64 = 1.2;
 
 /// Calls the method that makes the steps, borrowed as `$borrow`.
 macro_rules! present {
@@ -130,7 +118,8 @@ pub(super) struct Race<const N: usize> {
     cfmr7: Cfmr7<N>,
     nystrom: Nystrom<N>,
     taylor: Taylor<N>,
-    /// What a step of the Taylor series costs, in rates; none where it takes no part.
+    /// What a rate with second derivatives costs and a step of the Taylor series, in rates; none where they take no part.
+    forces: Option<f64>,
     series: Option<f64>,
     /// Whether the first method has been chosen.
     has_begun: bool,
@@ -174,6 +163,7 @@ impl<const N: usize> Race<N> {
             cfmr7: Cfmr7::new(),
             nystrom: Nystrom::new(),
             taylor: Taylor::new(),
+            forces: None,
             series: None,
             has_begun: false,
             looks: 0,
@@ -215,15 +205,22 @@ impl<const N: usize> Race<N> {
 
     /// What a step of a method costs, in rates; none where it cannot take part.
     fn price(&self, runner: Runner, flow: &impl Flow<N>, scale: &Scale<N>) -> Option<f64> {
+        if runner == Runner::Taylor { price::of_step(flow, scale.relative) } else { self.of_attempt(runner) }
+    }
+
+    /// The rates of an attempt; none where it cannot take part, and of the series, of which one serves all attempts at a step.
+    fn of_attempt(&self, runner: Runner) -> Option<f64> {
         match runner {
-            Runner::Nystrom if flow.second_order().is_none() => None,
-            _ => runner.of_attempt().or_else(|| price::of_step(flow, scale.relative)),
+            Runner::Dop853 => Some(STEP),
+            Runner::Cfmr7 => Some(SHORTER_STEP),
+            Runner::Nystrom => self.forces.map(|rate| rate * SHORTER_STEP),
+            Runner::Taylor => None,
         }
     }
 
     /// The rates of an attempt of the present method, and those of an accepted step beside.
     fn rates(&self) -> [f64; 2] {
-        match self.runner.of_attempt() {
+        match self.of_attempt(self.runner) {
             Some(rates) => [rates, 0.0],
             None => [0.0, self.series.unwrap_or(f64::INFINITY)],
         }
@@ -299,6 +296,15 @@ impl<const N: usize> Race<N> {
         error <= 1.0 && is_finite(&end)
     }
 
+    /// Before the first attempt: prices, and who makes it.
+    fn prepare(&mut self, flow: &impl Flow<N>, scale: &Scale<N>) {
+        self.forces = price::of_forces(flow);
+        if scale.relative >= LOOSE && N < MANY {
+            self.ahead = Runner::Cfmr7;
+            self.begin(self.ahead);
+        }
+    }
+
     /// A lap or a rest of this method begins.
     fn begin(&mut self, runner: Runner) {
         if runner != self.runner {
@@ -338,9 +344,8 @@ impl<const N: usize> Method<N> for Race<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        if !core::mem::replace(&mut self.has_begun, true) && scale.relative >= LOOSE && N < MANY {
-            self.ahead = Runner::Cfmr7;
-            self.begin(self.ahead);
+        if !core::mem::replace(&mut self.has_begun, true) {
+            self.prepare(flow, scale);
         }
         if core::mem::take(&mut self.is_fresh) {
             self.turn(flow, start, scale);
