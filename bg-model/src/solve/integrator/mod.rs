@@ -108,6 +108,11 @@ pub trait Flow<const N: usize> {
         None::<Absent>
     }
 
+    /// Whether joints hold motions, so that the end of each step is moved back onto them.
+    fn is_held(&self) -> bool {
+        false
+    }
+
     /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small pivot.
     fn count_factorisation(&self, _is_fallback: bool) {}
 }

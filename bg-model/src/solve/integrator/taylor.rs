@@ -113,12 +113,13 @@ impl<const N: usize> Taylor<N> {
         power * largest::<f64, N>(&core::array::from_fn(|i| (self.series[k].data.0[0][i] * weights[i]).abs()))
     }
 
-    /// Whether a step of the series of `h` (s) from `start` meets the tolerances. The method begins anew after it.
-    pub(super) fn reaches(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+    /// The error of a step of the series of `h` (s) from `start`, in parts of the tolerances; infinite where there is none. The method
+    /// begins anew after it.
+    pub(super) fn error(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
         let mut end = start.x;
         let norm = self.attempt(flow, start, h, scale, &mut end);
         self.restart();
-        norm <= 1.0 && !self.is_by_other && is_finite(&end)
+        if self.is_by_other || !is_finite(&end) { f64::INFINITY } else { norm }
     }
 }
 

@@ -118,6 +118,10 @@ where
         self.system.series().map(|series| self.of(series))
     }
 
+    fn is_held(&self) -> bool {
+        self.system.joints().is_some()
+    }
+
     fn count_factorisation(&self, is_fallback: bool) {
         count(self.counters.factorisations, 1);
         count(self.counters.pivoted, u64::from(is_fallback));

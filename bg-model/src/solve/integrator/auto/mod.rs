@@ -48,7 +48,7 @@ const SUCCESSION: u32 = 8;
 const HURRY: u32 = 2;
 const HURRIED: u32 = 4;
 /// Where the errors of all trials were so many times what is allowed, the next one is later than else.
-const HOPELESS: f64 = 100.0;
+const HOPELESS: f64 = 1e3;
 /// How often a step is doubled at most to find the longest one.
 const DOUBLINGS: usize = 16;
 /// A method that hands back within so many steps took over by mistake: the next trial waits four times as long as before.

@@ -9,7 +9,10 @@ use crate::model::capability::{Operations, SecondOrder, Series};
 use crate::solve::integrator::Flow;
 
 /// The loosest relative tolerance at which the series is worth a trial: its lowest orders are dear for what they reach.
-const LOOSEST: f64 = 1e-5;
+const LOOSEST: f64 = 1e-4;
+
+/// The price of an accepted step beside its attempts, where joints hold motions: its end is projected, and what they hold is looked at.
+pub(super) const HELD: f64 = 5.0;
 
 /// Operations of a rate of a Runge-Kutta step for each state: its sums, and its part of the error estimate.
 const STATE: f64 = 10.0;

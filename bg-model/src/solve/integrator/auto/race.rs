@@ -14,6 +14,8 @@ use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, Point, Scal
 
 /// Accepted steps before the first race, and the most between two races.
 const REST: [u32; 2] = [16, 8192];
+/// After a change a rest is so many times shorter than the last one, so that one by mistake does not last.
+const SOONER: u32 = 4;
 /// Steps at the beginning of a lap or a rest that do not count: they find their size. Then those of a lap that do.
 const BEGINNING: u32 = 8;
 const LAP: u32 = 16;
@@ -32,6 +34,8 @@ const AHEAD: f64 = 1.05;
 const LOOKS: u32 = 2;
 const PROMISE: f64 = 1.1;
 const PROMISE_OF_SERIES: f64 = 1.3;
+/// A method whose step errs by so many times what is allowed is not looked at again in this rest.
+const FAR_OFF: f64 = 100.0;
 /// The smallest relative tolerance at which CFMR7osc begins where there are few states: its steps are the cheapest, and runs may be over
 /// before the first race. Of many states an implicit method may take over, which DOP853 confirms sooner.
 const LOOSE: f64 = 5e-6;
@@ -47,6 +51,28 @@ enum Runner {
 
 impl Runner {
     const ALL: [Self; RUNNERS] = [Self::Dop853, Self::Cfmr7, Self::Nystrom, Self::Taylor];
+}
+
+/// What the looks of a rest have shown of a method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Promise {
+    /// It would not get further.
+    None,
+    /// It would by far not.
+    FarOff,
+    /// It would.
+    Given,
+}
+
+impl Promise {
+    /// Of a step with this error, in parts of the tolerances.
+    fn of(error: f64) -> Self {
+        match error {
+            _ if error <= 1.0 => Self::Given,
+            _ if error <= FAR_OFF => Self::None,
+            _ => Self::FarOff,
+        }
+    }
 }
 
 /// The number of methods.
@@ -121,11 +147,13 @@ pub(super) struct Race<const N: usize> {
     /// What a rate with second derivatives costs and a step of the Taylor series, in rates; none where they take no part.
     forces: Option<f64>,
     series: Option<f64>,
+    /// What an accepted step costs beside.
+    held: f64,
     /// Whether the first method has been chosen.
     has_begun: bool,
     /// The looks in this rest, and who has promised to be ahead in one of them.
     looks: u32,
-    promises: [bool; RUNNERS],
+    promises: [Promise; RUNNERS],
     /// The method that makes the steps, and the one that was ahead.
     runner: Runner,
     ahead: Runner,
@@ -165,9 +193,10 @@ impl<const N: usize> Race<N> {
             taylor: Taylor::new(),
             forces: None,
             series: None,
+            held: 0.0,
             has_begun: false,
             looks: 0,
-            promises: [false; RUNNERS],
+            promises: [Promise::None; RUNNERS],
             runner: Runner::Dop853,
             ahead: Runner::Dop853,
             lead: 1.0,
@@ -200,12 +229,13 @@ impl<const N: usize> Race<N> {
     /// What a step of the present method costs, in steps of DOP853.
     pub fn dearness(&self) -> f64 {
         let [attempt, accepted] = self.rates();
-        (attempt + accepted) / STEP
+        (attempt + accepted) / (STEP + self.held)
     }
 
     /// What a step of a method costs, in rates; none where it cannot take part.
     fn price(&self, runner: Runner, flow: &impl Flow<N>, scale: &Scale<N>) -> Option<f64> {
-        if runner == Runner::Taylor { price::of_step(flow, scale.relative) } else { self.of_attempt(runner) }
+        let of_series = || (runner == Runner::Taylor).then(|| price::of_step(flow, scale.relative)).flatten();
+        self.of_attempt(runner).or_else(of_series).map(|price| price + self.held)
     }
 
     /// The rates of an attempt; none where it cannot take part, and of the series, of which one serves all attempts at a step.
@@ -221,7 +251,7 @@ impl<const N: usize> Race<N> {
     /// The rates of an attempt of the present method, and those of an accepted step beside.
     fn rates(&self) -> [f64; 2] {
         match self.of_attempt(self.runner) {
-            Some(rates) => [rates, 0.0],
+            Some(rates) => [rates, self.held],
             None => [0.0, self.series.unwrap_or(f64::INFINITY)],
         }
     }
@@ -231,7 +261,7 @@ impl<const N: usize> Race<N> {
         let Some(round) = self.round else {
             self.look(flow, start, scale);
             if self.steps >= self.rest {
-                self.is_in = self.promises;
+                self.is_in = self.promises.map(|promise| promise == Promise::Given);
                 self.is_in[self.ahead as usize] = true;
                 if self.looks == LOOKS && self.is_in.iter().filter(|is_in| **is_in).count() > 1 {
                     (self.round, self.restarts) = (Some(0), 0);
@@ -270,19 +300,22 @@ impl<const N: usize> Race<N> {
         }
         self.looks += 1;
         for runner in Runner::ALL {
-            if runner != self.ahead && !self.promises[runner as usize] {
-                let price = self.price(runner, flow, scale);
-                self.promises[runner as usize] =
-                    price.is_some_and(|price| self.reaches(runner, flow, start, price * self.recent.speed(), scale));
+            if runner == self.ahead || self.promises[runner as usize] != Promise::None {
+                continue;
+            }
+            if let Some(price) = self.price(runner, flow, scale) {
+                let error = self.error(runner, flow, start, price * self.recent.speed(), scale);
+                self.promises[runner as usize] = Promise::of(error);
             }
         }
     }
 
-    /// Whether a step of this method meets the tolerances that is longer than `h` (s) by what it has to promise.
-    fn reaches(&mut self, runner: Runner, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+    /// The error of a step of this method, in parts of the tolerances, that is longer than `h` (s) by what it has to promise; infinite where
+    /// its end is not finite.
+    fn error(&mut self, runner: Runner, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
         if runner == Runner::Taylor {
             self.series = self.price(runner, flow, scale);
-            return self.taylor.reaches(flow, start, PROMISE_OF_SERIES * h, scale);
+            return self.taylor.error(flow, start, PROMISE_OF_SERIES * h, scale);
         }
         let mut end = start.x;
         let present = core::mem::replace(&mut self.runner, runner);
@@ -293,12 +326,13 @@ impl<const N: usize> Race<N> {
             error
         });
         self.runner = present;
-        error <= 1.0 && is_finite(&end)
+        if is_finite(&end) { error } else { f64::INFINITY }
     }
 
     /// Before the first attempt: prices, and who makes it.
     fn prepare(&mut self, flow: &impl Flow<N>, scale: &Scale<N>) {
         self.forces = price::of_forces(flow);
+        self.held = if flow.is_held() { price::HELD } else { 0.0 };
         if scale.relative >= LOOSE && N < MANY {
             self.ahead = Runner::Cfmr7;
             self.begin(self.ahead);
@@ -325,10 +359,12 @@ impl<const N: usize> Race<N> {
         {
             self.lead = sum(best) / sum(self.ahead);
             self.ahead = best;
+            self.rest = (self.rest / SOONER).max(REST[0]);
+        } else {
+            self.rest = (2 * self.rest).min(REST[1]);
         }
         self.round = None;
-        self.rest = (2 * self.rest).min(REST[1]);
-        (self.looks, self.promises) = (0, [false; RUNNERS]);
+        (self.looks, self.promises) = (0, [Promise::None; RUNNERS]);
         self.begin(self.ahead);
     }
 }
