@@ -130,7 +130,7 @@ fn at_rest(name: &'static str, crank_angle: f64) -> Case {
     hacksaw(name, "at a dead centre without weight and torque", machine::planar(&changes, Scale::Fixed(1.0)), table)
 }
 
-/// What is watched at the start.
+/// What is observed at the start.
 fn start_of(problem: &dyn Followable) -> Vec<f64> {
     let request = super::request(1e-6, &[0.0], 1);
     problem.run(crate::hardcases::integrator("dop853"), &request).rows.remove(0)

@@ -1,7 +1,7 @@
 //! Every parameter of the paper's case at 1e-12, at 1e12 and at the ends of its range, one at a time: a right answer or a
 //! named error.
 //!
-//! In: the length of a run and a limit of steps. Out: for each parameter and value what came of it. An answer is right where
+//! In: the length of a run and a limit of steps. Out: for each parameter and value the result. An answer is right where
 //! the default at a relative tolerance of 1e-6 agrees with Radau IIA 5 at 1e-8, and where the energies balance, both to
 //! [`AGREEMENT`]. An answer that only one of the two gives counts by its energy balance, and is marked so.
 
@@ -36,7 +36,7 @@ pub struct Extreme {
     pub name: &'static str,
     /// Its value in its SI unit.
     pub value: f64,
-    /// What came of it.
+    /// The result.
     pub answer: Answer,
     /// The largest difference of a pose between the two integrators, over the larger of 1 and the pose.
     pub difference: f64,

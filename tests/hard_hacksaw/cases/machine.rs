@@ -1,4 +1,4 @@
-//! The hacksaw as a problem that can be run, and what is watched of it.
+//! The hacksaw as a problem that can be run, and what is observed of it.
 //!
 //! In: changed parameters, a disturbance of the start. Out: problems whose rows are the links' poses and two residuals: that
 //! of the energy balance and that of the orientations' orthogonality. A row's components are of one size, so that one
@@ -17,7 +17,7 @@ use crate::hardcases::case::larger;
 use crate::hardcases::problem::{Followable, followable};
 
 /// What is made of a model's outputs.
-type Watch<const M: usize> = Box<dyn Fn(&[f64; M]) -> Vec<f64>>;
+type Observe<const M: usize> = Box<dyn Fn(&[f64; M]) -> Vec<f64>>;
 
 /// Names of parameters and their values.
 pub type Changes<'a> = &'a [(&'static str, f64)];
@@ -55,7 +55,12 @@ pub enum Scale {
 
 /// The poses called `names`; (stored - supplied + dissipated energy, less what is stored in `start`, the outputs at the start)
 /// over the scale; max |R R^T - 1| of the links.
-fn watch<const M: usize>(outputs: &'static [OutputInfo], names: &[String], scale: Scale, start: [f64; M]) -> Watch<M> {
+fn observe<const M: usize>(
+    outputs: &'static [OutputInfo],
+    names: &[String],
+    scale: Scale,
+    start: [f64; M],
+) -> Observe<M> {
     let place = |name: &str| {
         let found = outputs.iter().position(|output| output.name == name);
         found.unwrap_or_else(|| panic!("no output `{name}`"))
@@ -89,7 +94,7 @@ pub fn orthogonality(r: [f64; 9]) -> f64 {
     [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(entry).into_iter().fold(0.0, larger)
 }
 
-/// The model from the state `start`, its poses called `names` watched.
+/// The model from the state `start`, its poses called `names` observed.
 fn problem<Mo, const N: usize, const G: usize, const M: usize>(
     model: Mo,
     start: SVector<f64, N>,
@@ -101,8 +106,8 @@ where
 {
     let mut outputs = SVector::<f64, M>::zeros();
     model.outputs(0.0, &start, &[false; G], &mut outputs);
-    let watch = watch(model.description().outputs, names, scale, outputs.data.0[0]);
-    followable(model, start, watch)
+    let observe = observe(model.description().outputs, names, scale, outputs.data.0[0]);
+    followable(model, start, observe)
 }
 
 /// The defaults with `changes`.

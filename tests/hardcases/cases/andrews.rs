@@ -12,7 +12,7 @@ use super::problem::{self, Problem};
 use super::{EXPLICIT, QUAD, STIFF};
 
 /// The angles and their rates.
-const WATCHED: usize = PlanarSqueezer::<f64>::OUTPUTS;
+const OBSERVED: usize = PlanarSqueezer::<f64>::OUTPUTS;
 
 bond_graph! {
     /// The motor turns the crank (K1) about O, the spring pulls the triangle (K3). Coupler (K2), triangle and two rods
@@ -122,10 +122,10 @@ pub const ON_BUSHINGS: [(f64, f64, f64); 14] = [
     (1e9, 0.0, 15.8095702615),
 ];
 
-/// A squeezer on bushings, of whose angles and rates `watch` makes something.
-fn on_bushings(stiffness: f64, damping: f64, watch: fn(&[f64; WATCHED]) -> Vec<f64>) -> Box<dyn Problem> {
+/// A squeezer on bushings, of whose angles and rates `observe` makes something.
+fn on_bushings(stiffness: f64, damping: f64, observe: fn(&[f64; OBSERVED]) -> Vec<f64>) -> Box<dyn Problem> {
     let parameters = PlanarSqueezerParameters { stiffness, damping };
-    problem::outputs(PlanarSqueezer::new(parameters).expect("in range"), watch)
+    problem::outputs(PlanarSqueezer::new(parameters).expect("in range"), observe)
 }
 
 /// The squeezer on bushings of one line of [`ON_BUSHINGS`], to t = 0.03.

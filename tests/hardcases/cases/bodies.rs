@@ -91,7 +91,7 @@ fn top(name: &'static str, problem: Box<dyn Problem>) -> Case {
             -5.923291348117337,
         ],
     ];
-    let watched = |[a, b, c, d, wx, wy, wz]: [f64; 7]| [&matrix([a, b, c, d])[..], &[wx, wy, wz]].concat();
+    let observed = |[a, b, c, d, wx, wy, wz]: [f64; 7]| [&matrix([a, b, c, d])[..], &[wx, wy, wz]].concat();
     Case {
         name,
         source: "github jgerstmayr/EXUDYN, main/pythonDev/TestModels/heavyTop.py, after Terze, Mueller, Zlatar 2016",
@@ -101,7 +101,7 @@ fn top(name: &'static str, problem: Box<dyn Problem>) -> Case {
         amplification: 1.0,
         floor: 1e-11,
         instants: vec![0.1, 0.2, 0.5, 1.0],
-        reference: published.map(watched).to_vec(),
+        reference: published.map(observed).to_vec(),
         moderate: 1e-6,
         fitting: EXPLICIT,
         problem,

@@ -48,7 +48,7 @@ pub struct Case {
     pub floor: f64,
     /// The instants of the reference, ascending; the run starts at 0 and ends with the last.
     pub instants: Vec<f64>,
-    /// What is watched at each of them.
+    /// What is observed at each of them.
     pub reference: Vec<Vec<f64>>,
     /// The relative tolerance of the suite.
     pub moderate: f64,
@@ -160,7 +160,7 @@ impl Case {
         Outcome { error, between, is_wrong_between, statistics: run.statistics, verdict }
     }
 
-    /// The error of what was watched at instant `k`.
+    /// The error of what was observed at instant `k`.
     #[must_use]
     pub fn error(&self, k: usize, row: &[f64]) -> f64 {
         assert_eq!(row.len(), self.reference[k].len(), "{}: as many components as the reference", self.name);

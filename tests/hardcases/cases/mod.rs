@@ -1,6 +1,6 @@
 //! Hard cases: published problems on which integrators break, each with the reference it is held against.
 //!
-//! In: nothing. Out: [`cases`], to be run with any integrator at any tolerance; tables of what came of it
+//! In: nothing. Out: [`cases`], to be run with any integrator at any tolerance; tables of the results
 //! ([`report`]); the orders observed on a stiff joint ([`orders`]). The suite `hardcases` and the bench `stability` use
 //! them. Reference values are copied here with their source; nothing is read at run time.
 

@@ -227,7 +227,7 @@ fn double(name: &'static str, problem: Box<dyn Problem>) -> Case {
         [-0.4829715342517544, -1.3240487123023625, 3.0652881920734014, 2.949271547571619],
         [-0.6271867050665307, -1.3013155502098117, 2.1254086738429105, 3.8818887272656073],
     ];
-    let watched = |[a, b, a_rate, b_rate]: [f64; 4]| {
+    let observed = |[a, b, a_rate, b_rate]: [f64; 4]| {
         let (s, c, s2, c2) = (libm::sin(a), libm::cos(a), libm::sin(b), libm::cos(b));
         let (u, v) = (c * a_rate, s * a_rate);
         vec![s, -c, s + s2, -c - c2, u, v, u + c2 * b_rate, v + s2 * b_rate]
@@ -241,7 +241,7 @@ fn double(name: &'static str, problem: Box<dyn Problem>) -> Case {
         amplification: 1.0,
         floor: 1e-11,
         instants: vec![1.0, 2.0, 5.0],
-        reference: published.map(watched).to_vec(),
+        reference: published.map(observed).to_vec(),
         moderate: 1e-6,
         fitting: EXPLICIT,
         problem,

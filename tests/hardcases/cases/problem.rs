@@ -1,6 +1,6 @@
 //! A problem with its number of states forgotten, so that problems of different size stand in one list.
 //!
-//! In: a system, its start and what is watched of it. Out: a run by any integrator, as rows of what was watched.
+//! In: a system, its start and what is observed of it. Out: a run by any integrator, as rows of what was observed.
 
 use bg_model::failure::Cause;
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
@@ -29,7 +29,7 @@ pub struct Request<'a> {
 /// What a run gave.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What was watched, at each instant that was reached.
+    /// What was observed, at each instant that was reached.
     pub rows: Vec<Vec<f64>>,
     /// What it cost.
     pub statistics: Statistics,
@@ -70,35 +70,35 @@ pub trait Followable: Problem {
     ) -> Followed;
 }
 
-/// A system, its start, and what is watched of it at an instant.
-pub struct Watched<Sys, F, const N: usize, const G: usize> {
+/// A system, its start, and what is observed of it at an instant.
+pub struct Observed<Sys, F, const N: usize, const G: usize> {
     system: Sys,
     start: SVector<f64, N>,
-    watch: F,
+    observe: F,
 }
 
-/// A problem whose states are watched as they are.
+/// A problem whose states are observed as they are.
 #[must_use]
 pub fn states<Sys, const N: usize, const G: usize>(system: Sys, start: [f64; N]) -> Box<dyn Problem>
 where
     Sys: System<f64, N, G> + 'static,
 {
-    let watch = |_: &Sys, _: f64, x: &SVector<f64, N>, _: &[bool; G]| x.as_slice().to_vec();
-    Box::new(Watched { system, start: SVector::from(start), watch })
+    let observe = |_: &Sys, _: f64, x: &SVector<f64, N>, _: &[bool; G]| x.as_slice().to_vec();
+    Box::new(Observed { system, start: SVector::from(start), observe })
 }
 
-/// A problem of a generated model of which `watch` makes something of the outputs.
+/// A problem of a generated model of which `observe` makes something of the outputs.
 ///
 /// # Panics
 /// The start does not close.
 #[must_use]
-pub fn outputs<Mo, F, const N: usize, const G: usize, const M: usize>(model: Mo, watch: F) -> Box<dyn Problem>
+pub fn outputs<Mo, F, const N: usize, const G: usize, const M: usize>(model: Mo, observe: F) -> Box<dyn Problem>
 where
     Mo: Model<f64, N, G, M> + 'static,
     F: Fn(&[f64; M]) -> Vec<f64> + 'static,
 {
     let start = model.start().expect("the mechanism closes");
-    followable(model, start, watch)
+    followable(model, start, observe)
 }
 
 /// The same from any start, and to be followed.
@@ -106,21 +106,21 @@ where
 pub fn followable<Mo, F, const N: usize, const G: usize, const M: usize>(
     model: Mo,
     start: SVector<f64, N>,
-    watch: F,
+    observe: F,
 ) -> Box<dyn Followable>
 where
     Mo: Model<f64, N, G, M> + 'static,
     F: Fn(&[f64; M]) -> Vec<f64> + 'static,
 {
-    let watch = move |model: &Mo, t: f64, x: &SVector<f64, N>, negative: &[bool; G]| {
+    let observe = move |model: &Mo, t: f64, x: &SVector<f64, N>, negative: &[bool; G]| {
         let mut y = SVector::<f64, M>::zeros();
         model.outputs(t, x, negative, &mut y);
-        watch(&y.data.0[0])
+        observe(&y.data.0[0])
     };
-    Box::new(Watched { system: model, start, watch })
+    Box::new(Observed { system: model, start, observe })
 }
 
-impl<Sys, F, const N: usize, const G: usize> Problem for Watched<Sys, F, N, G>
+impl<Sys, F, const N: usize, const G: usize> Problem for Observed<Sys, F, N, G>
 where
     Sys: System<f64, N, G>,
     F: Fn(&Sys, f64, &SVector<f64, N>, &[bool; G]) -> Vec<f64>,
@@ -138,7 +138,7 @@ where
     }
 }
 
-impl<Sys, F, const N: usize, const G: usize> Followable for Watched<Sys, F, N, G>
+impl<Sys, F, const N: usize, const G: usize> Followable for Observed<Sys, F, N, G>
 where
     Sys: System<f64, N, G>,
     F: Fn(&Sys, f64, &SVector<f64, N>, &[bool; G]) -> Vec<f64>,
@@ -159,7 +159,7 @@ where
             samples,
         };
         let span = Span { t0: 0.0, t_end: request.instants.last().copied().unwrap_or(0.0) };
-        let mut follower = Follower { watched: self, each, events: Vec::new() };
+        let mut follower = Follower { observed: self, each, events: Vec::new() };
         let (statistics, failure) =
             match integrate(&self.system, &mut method, &self.start, span, &settings, &mut follower) {
                 Ok(finish) => (finish.statistics, None),
@@ -169,9 +169,9 @@ where
     }
 }
 
-/// Hands on what is watched, and notes the switchings.
+/// Hands on what is observed, and notes the switchings.
 struct Follower<'a, Sys, F, const N: usize, const G: usize> {
-    watched: &'a Watched<Sys, F, N, G>,
+    observed: &'a Observed<Sys, F, N, G>,
     each: &'a mut dyn FnMut(f64, Vec<f64>),
     events: Vec<f64>,
 }
@@ -181,8 +181,8 @@ where
     F: Fn(&Sys, f64, &SVector<f64, N>, &[bool; G]) -> Vec<f64>,
 {
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
-        let Watched { system, watch, .. } = self.watched;
-        (self.each)(t, watch(system, t, x, negative));
+        let Observed { system, observe, .. } = self.observed;
+        (self.each)(t, observe(system, t, x, negative));
     }
 
     fn event(&mut self, t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {

@@ -18,7 +18,7 @@ pub struct Row {
     pub integrator: String,
     /// The relative tolerance; a fixed-step method's steps are chosen by it.
     pub tolerance: f64,
-    /// What came of it.
+    /// The result.
     pub outcome: Outcome,
     /// The time it took, s.
     pub seconds: f64,

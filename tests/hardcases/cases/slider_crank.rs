@@ -107,7 +107,7 @@ fn case(name: &'static str, problem: Box<dyn Problem>) -> Case {
             0.03973149599132174,
         ],
     ];
-    let watched = |[q, x, p, q_rate, x_rate, p_rate]: [f64; 6]| {
+    let observed = |[q, x, p, q_rate, x_rate, p_rate]: [f64; 6]| {
         vec![libm::cos(q), libm::sin(q), x, libm::sin(p), q_rate, x_rate, p_rate]
     };
     Case {
@@ -119,7 +119,7 @@ fn case(name: &'static str, problem: Box<dyn Problem>) -> Case {
         amplification: 1.0,
         floor: 1e-12,
         instants: vec![1.0, 2.0, 5.0, 10.0],
-        reference: published.map(watched).to_vec(),
+        reference: published.map(observed).to_vec(),
         moderate: 1e-6,
         fitting: &["auto", "dop853", "rodas5p", "radau5"],
         problem,

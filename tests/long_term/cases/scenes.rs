@@ -99,10 +99,10 @@ pub struct Scene {
 
 /// A problem from the model's own start.
 macro_rules! problem {
-    ($model:expr, $watch:expr) => {{
+    ($model:expr, $observe:expr) => {{
         let model = $model;
         let start: SVector<f64, _> = model.start().expect("the mechanism closes");
-        followable(model, start, $watch)
+        followable(model, start, $observe)
     }};
 }
 

@@ -77,7 +77,7 @@ fn found(plant: &Plant, t: f64, guess: &DVector<f64>) -> Result<Equilibrium, Lin
 fn search(plant: &Plant, t: f64, guess: &DVector<f64>, steady: bool) -> Result<Equilibrium, LinearError> {
     let mut x = guess.clone();
     let mut seen = Seen::default();
-    let mut pace = Pace::default();
+    let mut strides = StrideController::default();
     let mut without_reach = 0;
     for steps in 0..ITERATIONS {
         let (local, settled) = Local::settled(plant, t, &x, steady)?;
@@ -98,11 +98,11 @@ fn search(plant: &Plant, t: f64, guess: &DVector<f64>, steady: bool) -> Result<E
         let reaches = local.reaches();
         without_reach += usize::from(!reaches);
         let newton = if stability.growth == 0.0 && reaches { newton(plant, &local, &x) } else { None };
-        let h = pace.next(&local, &stability);
+        let h = strides.next(&local, &stability);
         let transient = || {
             let steps = (0..60).map(|k| h * 0.5_f64.powi(k)).filter_map(|h| Some((h, local.direction(Some(h))?)));
             let (h, step) = { steps }.find(|(_, step)| local.length(step, &x) <= LONGEST)?;
-            pace.made(h);
+            strides.made(h);
             let next = local.moved(plant, &x, &step);
             next.iter().all(|value| value.is_finite()).then_some(next)
         };
@@ -117,14 +117,14 @@ fn search(plant: &Plant, t: f64, guess: &DVector<f64>, steady: bool) -> Result<E
 /// The lengths of the pseudo-transient's steps, s. A stride moves soft directions and stretches stiff joints by the
 /// curve of their ways; short steps let these come to rest before the next one.
 #[derive(Default)]
-struct Pace {
+struct StrideController {
     stride: f64,
     rest: f64,
     /// The rates at the last stride.
     level: f64,
 }
 
-impl Pace {
+impl StrideController {
     fn next(&mut self, local: &Local, stability: &Stability) -> f64 {
         let shortest = 5.0 / stability.fastest.max(f64::MIN_POSITIVE);
         let rates = local.balanced(&local.rates).norm();
@@ -140,7 +140,7 @@ impl Pace {
         if stability.growth > 0.0 { h.min(0.25 / stability.growth) } else { h }
     }
 
-    /// Takes note of the length that was made, at most that of [`Pace::next`].
+    /// Takes note of the length that was made, at most that of [`StrideController::next`].
     fn made(&mut self, h: f64) {
         if self.rest == 0.0 {
             self.stride = h;

@@ -11,8 +11,8 @@
 mod factors;
 mod immobile;
 mod impact;
+mod monitor;
 mod shared;
-mod watch;
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -27,10 +27,10 @@ use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign};
 use factors::{Factors, Matrix};
 pub(crate) use impact::{After, Collision};
-pub use shared::{kept, redundant, share};
 #[cfg(feature = "std")]
-pub(crate) use watch::LoopsInLanes;
-pub(crate) use watch::{Broken, LoopWatch};
+pub(crate) use monitor::LoopsInLanes;
+pub(crate) use monitor::{Broken, LoopMonitor};
+pub use shared::{kept, redundant, share};
 
 /// A start state whose joints fit.
 #[derive(Clone, Copy, Debug, PartialEq)]

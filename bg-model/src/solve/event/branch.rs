@@ -4,7 +4,7 @@
 //! sign. Where the other branch is right in this sense and this one is not, the other one is taken.
 
 use super::guarded::Guarded;
-use super::{CERTAIN, Watch, check_finite, clearance};
+use super::{CERTAIN, EventMonitor, check_finite, clearance};
 use crate::model::reactions::Collision;
 use crate::model::system::{System, branches_by_sign};
 use crate::solve::integrator::{Method, is_finite};
@@ -14,7 +14,7 @@ use crate::solve::stepper::Stepper;
 /// vanishes.
 const PROBES: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
-impl<const G: usize> Watch<G> {
+impl<const G: usize> EventMonitor<G> {
     /// Chooses the branches at the start of the run by the signs of the guards, where stops are reached after the impact. Gives
     /// the switches of stops that are left again.
     pub fn begin_by_sign<Sys, M, const N: usize>(

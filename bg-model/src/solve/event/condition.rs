@@ -9,7 +9,7 @@ use nalgebra::SVector;
 
 use super::guarded::Guarded;
 use super::noise::larger;
-use super::{CERTAIN, Watch, check_finite, clearance, read};
+use super::{CERTAIN, EventMonitor, check_finite, clearance, read};
 use crate::model::system::System;
 use crate::solve::integrator::{Method, Point};
 use crate::solve::stepper::Stepper;
@@ -71,23 +71,23 @@ impl<const N: usize, const G: usize> Condition<N, G> for Never {}
 #[derive(Debug)]
 pub(crate) struct Located<C> {
     condition: C,
-    watch: Watch<1>,
+    monitor: EventMonitor<1>,
     /// Whether it is on its negative side; nothing as long as it stays zero.
     side: Option<bool>,
 }
 
 impl<C> Located<C> {
     pub fn new(condition: C) -> Self {
-        Self { condition, watch: Watch::new(), side: None }
+        Self { condition, monitor: EventMonitor::new(), side: None }
     }
 
     /// The step with the condition as its guard.
     fn on<'s, 'a, Sys, M, const N: usize, const G: usize>(
         &'s mut self,
         stepper: &'s mut Stepper<'a, Sys, M, N, G>,
-    ) -> (&'s mut Watch<1>, Conditional<'s, 'a, Sys, M, C, N, G>) {
-        let Self { condition, watch, side } = self;
-        (watch, Conditional { stepper, condition, is_negative: side.unwrap_or(false) })
+    ) -> (&'s mut EventMonitor<1>, Conditional<'s, 'a, Sys, M, C, N, G>) {
+        let Self { condition, monitor, side } = self;
+        (monitor, Conditional { stepper, condition, is_negative: side.unwrap_or(false) })
     }
 }
 
@@ -100,16 +100,16 @@ where
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
-        let (watch, mut step) = self.on(stepper);
-        watch.read_start(&mut step, reach);
-        check_finite(&watch.start.value).map_err(|(_, value)| value)?;
-        let (start, value) = (*step.start(), watch.start.value);
-        self.side = if value[0].abs() > CERTAIN * rounding(watch, &mut step, &start, value, watch.start.slope[0]) {
+        let (monitor, mut step) = self.on(stepper);
+        monitor.read_start(&mut step, reach);
+        check_finite(&monitor.start.value).map_err(|(_, value)| value)?;
+        let (start, value) = (*step.start(), monitor.start.value);
+        self.side = if value[0].abs() > CERTAIN * rounding(monitor, &mut step, &start, value, monitor.start.slope[0]) {
             Some(value[0] < 0.0)
         } else {
             // What a run that ended here before has left.
-            watch.leave(0, value[0]);
-            watch.probe(&mut step, &[true], reach)[0]
+            monitor.leave(0, value[0]);
+            monitor.probe(&mut step, &[true], reach)[0]
         };
         Ok(())
     }
@@ -124,25 +124,25 @@ where
         M: Method<N>,
     {
         let is_undecided = self.side.is_none();
-        let (watch, mut step) = self.on(stepper);
+        let (monitor, mut step) = self.on(stepper);
         if is_undecided {
             let (end, h) = (*step.end(), step.size());
-            watch.end = read(&mut step, end.t, &end.x, &end.rate, h);
-            check_finite(&watch.end.value).map_err(|(_, value)| value)?;
-            let value = watch.end.value;
-            let is_certain = value[0].abs() > CERTAIN * watch.noise(&mut step, end.t, &end.x, &value)[0];
+            monitor.end = read(&mut step, end.t, &end.x, &end.rate, h);
+            check_finite(&monitor.end.value).map_err(|(_, value)| value)?;
+            let value = monitor.end.value;
+            let is_certain = value[0].abs() > CERTAIN * monitor.noise(&mut step, end.t, &end.x, &value)[0];
             self.side = is_certain.then_some(value[0] < 0.0);
             return Ok(None);
         }
-        Ok(match watch.inspect(&mut step).map_err(|(_, value)| value)? {
+        Ok(match monitor.inspect(&mut step).map_err(|(_, value)| value)? {
             Some(crossing) if crossing.is_at_start => Some(Stop::AtStart),
             Some(_) => Some(Stop::AtEnd),
-            None => (is_at_event && arrives(watch, &mut step)).then_some(Stop::AtEnd),
+            None => (is_at_event && arrives(monitor, &mut step)).then_some(Stop::AtEnd),
         })
     }
 
     fn advance(&mut self) {
-        self.watch.advance();
+        self.monitor.advance();
     }
 
     fn jumps<Sys, M>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, reach: f64) -> Result<bool, f64>
@@ -151,34 +151,34 @@ where
         M: Method<N>,
     {
         let side = self.side;
-        let (watch, mut step) = self.on(stepper);
-        watch.forget();
-        watch.read_start(&mut step, reach);
-        check_finite(&watch.start.value).map_err(|(_, value)| value)?;
-        let (start, value) = (*step.start(), watch.start.value);
-        let noise = watch.noise(&mut step, start.t, &start.x, &value)[0];
+        let (monitor, mut step) = self.on(stepper);
+        monitor.forget();
+        monitor.read_start(&mut step, reach);
+        check_finite(&monitor.start.value).map_err(|(_, value)| value)?;
+        let (start, value) = (*step.start(), monitor.start.value);
+        let noise = monitor.noise(&mut step, start.t, &start.x, &value)[0];
         Ok(side.is_some_and(|negative| clearance(value[0], negative) < -noise))
     }
 }
 
 /// Whether the condition has come from its side to zero, to rounding, at the end of a step: at an event it may stay
 /// there.
-fn arrives<const N: usize>(watch: &Watch<1>, step: &mut impl Guarded<N, 1>) -> bool {
+fn arrives<const N: usize>(monitor: &EventMonitor<1>, step: &mut impl Guarded<N, 1>) -> bool {
     let (end, negative) = (*step.end(), step.negative()[0]);
-    let (from, to) = (watch.start.value[0], watch.end.value);
-    let rounding = rounding(watch, step, &end, to, watch.end.slope[0]);
+    let (from, to) = (monitor.start.value[0], monitor.end.value);
+    let rounding = rounding(monitor, step, &end, to, monitor.end.slope[0]);
     to[0].abs() <= rounding && clearance(from, negative) > CERTAIN * rounding
 }
 
 /// How far from zero the condition may be by rounding at a point where it is at zero, of the states or of the time.
 fn rounding<const N: usize>(
-    watch: &Watch<1>,
+    monitor: &EventMonitor<1>,
     step: &mut impl Guarded<N, 1>,
     at: &Point<N>,
     value: SVector<f64, 1>,
     slope: f64,
 ) -> f64 {
-    let noise = watch.noise(step, at.t, &at.x, &value)[0];
+    let noise = monitor.noise(step, at.t, &at.x, &value)[0];
     larger(4.0 * f64::EPSILON * (at.t * slope).abs(), noise)
 }
 

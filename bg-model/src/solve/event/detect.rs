@@ -10,7 +10,7 @@ use super::guarded::Guarded;
 use super::locate::{Found, Shortening};
 use super::minimum::minimum;
 use super::noise::larger;
-use super::{Crossing, Reading, Watch, check_finite, clearance, read};
+use super::{Crossing, EventMonitor, Reading, check_finite, clearance, read};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::hermite;
 
@@ -52,7 +52,7 @@ pub(super) fn enclosing<S: Scalar>([from, to]: [S; 2], middle: S, [leaving, arri
     [from, leave, bend, arrive, to]
 }
 
-impl<const G: usize> Watch<G> {
+impl<const G: usize> EventMonitor<G> {
     /// Looks for events in the step just made, whose end has been projected and whose rates are known at both ends.
     ///
     /// Shortens the step to the first event. Fails with the first guard that is not finite.
@@ -83,7 +83,7 @@ impl<const G: usize> Watch<G> {
         }
     }
 
-    /// Looks for events in the step just made, as [`Watch::inspect`] does, but leaves it as it is.
+    /// Looks for events in the step just made, as [`EventMonitor::inspect`] does, but leaves it as it is.
     pub fn look<const N: usize>(&mut self, step: &mut impl Guarded<N, G>) -> Result<Option<Found<G>>, (usize, f64)> {
         if G == 0 {
             return Ok(None);
@@ -112,7 +112,7 @@ impl<const G: usize> Watch<G> {
     }
 
     /// Takes over a step of size `h` (s) at whose ends and in whose `middle` all guards keep to their sides; gives whether they do,
-    /// which counts three evaluations, as [`Watch::inspect`] does. Nothing changes where they may not.
+    /// which counts three evaluations, as [`EventMonitor::inspect`] does. Nothing changes where they may not.
     #[cfg(feature = "std")]
     pub fn pass(
         &mut self,

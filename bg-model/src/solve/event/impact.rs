@@ -11,7 +11,7 @@
 use nalgebra::SVector;
 
 use super::guarded::Guarded;
-use super::{CERTAIN, Watch};
+use super::{CERTAIN, EventMonitor};
 use crate::model::reactions::{After, Collision};
 use crate::model::system::System;
 use crate::solve::integrator::Method;
@@ -33,7 +33,7 @@ pub(crate) struct Struck<const G: usize> {
     pub jumps: bool,
 }
 
-impl<const G: usize> Watch<G> {
+impl<const G: usize> EventMonitor<G> {
     /// Lets the state at the start of the next step jump if a stop is reached there: `switches` are those whose guards have come
     /// to zero.
     pub fn strike<Sys, M, const N: usize>(

@@ -9,7 +9,7 @@ use super::detect::{Bracket, Course};
 use super::guarded::Guarded;
 use super::noise::larger;
 use super::zero::{Precision, Search, zero};
-use super::{Crossing, Watch, clearance};
+use super::{Crossing, EventMonitor, clearance};
 
 /// The part of a guard's values around a zero up to which what is left of it there is rounding, of the states that stiff forces
 /// lead to, where it stops falling. A guard of which more is left jumps there.
@@ -49,7 +49,7 @@ impl<const G: usize> Shortening<G> {
 
     /// Looks at the step, which has this size; gives whether it ends at the first event: where the guard that was foreseen vanishes, or
     /// one that turns out to cross before it. Else it is to be tried again, with another size unless that is the same.
-    pub fn take<const N: usize>(&mut self, watch: &Watch<G>, step: &mut impl Guarded<N, G>) -> bool {
+    pub fn take<const N: usize>(&mut self, monitor: &EventMonitor<G>, step: &mut impl Guarded<N, G>) -> bool {
         let end = *step.end();
         self.value = step.guards(end.t, &end.x);
         let (value, negative) = (self.value, step.negative());
@@ -68,7 +68,7 @@ impl<const G: usize> Shortening<G> {
         if self.rounds > G {
             return true;
         }
-        let noise = watch.noise_after(step, &value);
+        let noise = monitor.noise_after(step, &value);
         let Some(earlier) = (0..G).find(|&k| k != self.switch && side(k) < -noise[k]) else { return true };
         self.switch = earlier;
         if self.rounds == G {
@@ -76,8 +76,8 @@ impl<const G: usize> Shortening<G> {
             return false;
         }
         let (h, behind) = (step.size(), side(earlier));
-        let slope = -(watch.start.slope[earlier].abs().max(f64::MIN_POSITIVE));
-        let size = larger(watch.start.value[earlier].abs(), behind.abs());
+        let slope = -(monitor.start.slope[earlier].abs().max(f64::MIN_POSITIVE));
+        let size = larger(monitor.start.value[earlier].abs(), behind.abs());
         let precision = precise_to(size, noise[earlier], end.t * slope);
         let search = Search::new(0.0, h, h - behind / slope, slope, precision);
         (self.size, self.search) = (search.at(), Some(search));
@@ -94,7 +94,7 @@ pub(crate) enum Found<const G: usize> {
     Inside(Shortening<G>),
 }
 
-impl<const G: usize> Watch<G> {
+impl<const G: usize> EventMonitor<G> {
     /// The first of the crossings in `courses`, if there is one.
     pub(super) fn first_crossing<const N: usize>(
         &self,

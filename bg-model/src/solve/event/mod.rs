@@ -48,7 +48,7 @@ struct Reading<const G: usize> {
 
 /// What is known of the guards.
 #[derive(Clone, Debug)]
-pub(crate) struct Watch<const G: usize> {
+pub(crate) struct EventMonitor<const G: usize> {
     start: Reading<G>,
     end: Reading<G>,
     /// What its last event has left of each guard that has stayed near zero since.
@@ -69,7 +69,7 @@ pub(crate) struct Crossing<const G: usize> {
     pub is_at_start: bool,
 }
 
-impl<const G: usize> Watch<G> {
+impl<const G: usize> EventMonitor<G> {
     pub fn new() -> Self {
         let reading = Reading { value: SVector::zeros(), slope: SVector::zeros(), noise: [0.0; G] };
         Self { start: reading, end: reading, remainder: [0.0; G], is_stop: [false; G], crowd: 0, crowd_start: f64::NAN }

@@ -6,7 +6,7 @@
 
 use nalgebra::SVector;
 
-use super::Watch;
+use super::EventMonitor;
 use super::guarded::Guarded;
 
 /// How far rounding displaces a sum of some terms, in parts of the largest: the weights of methods go up to 30.
@@ -14,7 +14,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// How much more than the remainder of its last event a guard may be off.
 const MARGIN: f64 = 4.0;
 
-impl<const G: usize> Watch<G> {
+impl<const G: usize> EventMonitor<G> {
     /// How far each guard may be on the wrong side by rounding alone at time `t` (s) and state `x`, where they have this
     /// `value`, in a step that begins where `step` does. Evaluates the guards twice.
     pub(super) fn noise<const N: usize>(

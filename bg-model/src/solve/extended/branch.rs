@@ -3,7 +3,7 @@
 
 use nalgebra::SVector;
 
-use super::guard::clearance;
+use super::monitor::clearance;
 use super::{CLOSEST, CROWD, Event, Fault, Run};
 use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign};
@@ -39,7 +39,7 @@ where
         self.choose(&switches);
         for _ in 0..G {
             let value = self.guards();
-            let is_wrong = |k: usize| clearance(value[k], self.negative[k]).to_f64() < -self.watch.noise(k);
+            let is_wrong = |k: usize| clearance(value[k], self.negative[k]).to_f64() < -self.monitor.noise(k);
             let Some(pushed) = (0..G).find(|k| !switches[*k] && is_wrong(*k)) else { break };
             switches[pushed] = true;
             self.negative[pushed] = !self.negative[pushed];
@@ -70,9 +70,9 @@ where
         let mut signs = [None; G];
         for part in PROBES {
             self.attempt(S::from_f64(part * self.step));
-            let value = self.watch.end();
+            let value = self.monitor.end();
             for k in 0..G {
-                if signs[k].is_none() && value[k].to_f64().abs() > CERTAIN * self.watch.noise(k) {
+                if signs[k].is_none() && value[k].to_f64().abs() > CERTAIN * self.monitor.noise(k) {
                     signs[k] = Some(value[k].to_f64() < 0.0);
                 }
             }

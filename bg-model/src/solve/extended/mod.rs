@@ -9,7 +9,7 @@
 
 mod branch;
 mod extrapolation;
-mod guard;
+mod monitor;
 #[cfg(test)]
 mod tests;
 
@@ -21,7 +21,7 @@ use crate::model::system::System;
 use crate::solve::failure::switch_text;
 use crate::solve::simulation::Span;
 use extrapolation::Extrapolation;
-use guard::{Course, Watch};
+use monitor::{Course, GuardMonitor};
 
 /// How exactly to integrate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,7 +153,7 @@ struct Run<'a, S, Sys, const N: usize, const G: usize> {
     /// The size of the next step, s.
     step: f64,
     method: Extrapolation<S, N>,
-    watch: Watch<S, G>,
+    monitor: GuardMonitor<S, G>,
     events: Vec<Event<S>>,
     steps: u64,
     rejected: u64,
@@ -176,7 +176,7 @@ where
             negative: [false; G],
             step: FIRST * length,
             method: Extrapolation::new(accuracy.columns),
-            watch: Watch::new(accuracy.tolerance),
+            monitor: GuardMonitor::new(accuracy.tolerance),
             events: Vec::new(),
             steps: 0,
             rejected: 0,
@@ -209,11 +209,11 @@ where
                 self.shorten(h, self.factor(error));
                 continue;
             }
-            match self.watch.course(&self.negative) {
+            match self.monitor.course(&self.negative) {
                 Course::Unclear if h.to_f64() > CLOSEST * self.length => self.shorten(h, 0.5),
                 Course::WrongFromStart => {
                     let before = self.negative;
-                    self.switch(self.watch.wrong(&before))?;
+                    self.switch(self.monitor.wrong(&before))?;
                     if self.negative == before {
                         // The branch is right, so the step is too long for the guard's course.
                         self.shorten(h, 0.1);
@@ -236,7 +236,7 @@ where
     /// Tries a step of size `h` (s) and looks at the guards on its way and at its projected end; gives the estimated error
     /// over the tolerance.
     fn attempt(&mut self, h: S) -> f64 {
-        let Self { system, negative, watch, rate_evaluations, .. } = self;
+        let Self { system, negative, monitor, rate_evaluations, .. } = self;
         let rate = |t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>| {
             *rate_evaluations += 1;
             system.rate(t, x, negative, dx);
@@ -246,11 +246,11 @@ where
             system.guards(t, x, negative, &mut value);
             value
         };
-        watch.begin_step(guards(self.t, &self.x), h);
-        self.method.attempt(self.t, &self.x, h, rate, |t, x| watch.pass(guards(t, x)));
+        monitor.begin_step(guards(self.t, &self.x), h);
+        self.method.attempt(self.t, &self.x, h, rate, |t, x| monitor.pass(guards(t, x)));
         let error = self.method.error(&self.x, self.accuracy.tolerance);
         self.system.project(self.t + h, negative, &mut self.method.end);
-        self.watch.end_step(guards(self.t + h, &self.method.end));
+        self.monitor.end_step(guards(self.t + h, &self.method.end));
         error
     }
 

@@ -46,7 +46,7 @@ fn growth(t: DoubleDouble, x: &SVector<DoubleDouble, 1>, dx: &mut SVector<Double
     dx[0] = x[0] * x[0] * t.cos();
 }
 
-/// x counts the time with a watch that runs twice as fast where its guard is negative; the guard is a function of time.
+/// x counts the time with a clock that runs twice as fast where its guard is negative; the guard is a function of time.
 struct Timer<F>(F);
 
 impl<S: Scalar<Switch = bool>, F: Fn(S) -> S> System<S, 1, 1> for Timer<F> {

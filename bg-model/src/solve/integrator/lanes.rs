@@ -89,10 +89,10 @@ where
 /// What a run's own method tells where runs are side by side, and is told.
 pub(crate) trait OfOne<const N: usize> {
     /// What it carries over from step to step, state by state.
-    fn carried(&mut self) -> &mut SVector<f64, N>;
+    fn compensation(&mut self) -> &mut SVector<f64, N>;
 
-    /// Takes over what it would carry over from an attempt, and the rates of the attempt's stages, of which `stage` gives each.
-    fn keep(&mut self, carried: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>);
+    /// Takes over what it would keep of an attempt for its compensated sum, and the rates of the attempt's stages, of which `stage` gives each.
+    fn keep(&mut self, compensation: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>);
 
     /// The rates of an attempt, without that at its start.
     fn rates(&self) -> u64;
@@ -153,15 +153,15 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
     }
 
     /// What each run's method carries over from step to step.
-    pub fn carried(&mut self) -> &mut SVector<Lanes<V>, N> {
+    pub fn compensation(&mut self) -> &mut SVector<Lanes<V>, N> {
         match self {
-            Self::Cfmr7(method) => method.carried(),
-            Self::Dop853(method) => method.carried(),
-            Self::Nystrom(method) => method.carried(),
+            Self::Cfmr7(method) => method.compensation(),
+            Self::Dop853(method) => method.compensation(),
+            Self::Nystrom(method) => method.compensation(),
         }
     }
 
-    /// What each run's method would carry over from its attempt.
+    /// What each run's method would keep of its attempt for its compensated sum.
     fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
         match self {
             Self::Cfmr7(method) => method.to_be_carried(),

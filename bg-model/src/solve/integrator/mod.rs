@@ -9,9 +9,9 @@
 
 mod any;
 mod auto;
-mod carry;
 mod choice;
 mod collocation;
+mod compensated;
 mod dense;
 mod explicit;
 mod gauss;

@@ -13,7 +13,7 @@ use alloc::vec::Vec;
 use crate::solve::integrator::Arch;
 use nalgebra::SVector;
 
-use super::carry::Carry;
+use super::compensated::CompensatedSum;
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in, rate_in};
 use super::{Bs5, Flow, Method, Point, Scale, StepControl, first_not_finite, is_finite};
@@ -39,7 +39,7 @@ pub struct Taylor<const N: usize> {
     /// Whether the series is that of the present start.
     is_current: bool,
     /// What rounding has kept from the states.
-    carry: Carry<f64, N>,
+    sum: CompensatedSum<f64, N>,
     /// The method that makes the step where the series is not of numbers, and whether it does.
     other: Bs5<N>,
     is_by_other: bool,
@@ -57,7 +57,7 @@ impl<const N: usize> Taylor<N> {
             rows: Vec::new(),
             unit: 0.0,
             is_current: false,
-            carry: Carry::new(),
+            sum: CompensatedSum::new(),
             other: Bs5::new(),
             is_by_other: false,
             arch: Arch::new(),
@@ -167,7 +167,7 @@ impl<const N: usize> Vectorised<N> for Taylor<N> {
         let mut weights = [0.0; N];
         for i in 0..N {
             let from = start.x.data.0[0][i];
-            let to = self.carry.add(i, from, change[i]);
+            let to = self.sum.add(i, from, change[i]);
             end.data.0[0][i] = to;
             weights[i] = 1.0 / scale.allowed(i, from, to);
         }
@@ -229,15 +229,15 @@ impl<const N: usize> Method<N> for Taylor<N> {
     fn advance(&mut self) {
         self.is_current = false;
         if self.is_by_other {
-            self.carry.restart();
+            self.sum.restart();
         } else {
-            self.carry.advance();
+            self.sum.advance();
         }
     }
 
     fn restart(&mut self) {
         self.is_current = false;
-        self.carry.restart();
+        self.sum.restart();
     }
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {

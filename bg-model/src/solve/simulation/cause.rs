@@ -20,7 +20,7 @@ where
     pub fn check_start(&self) -> Result<(), Cause> {
         match first_not_finite(&self.stepper.start.rate) {
             Some(fault) => Err(self.not_finite(Quantity::Rate, fault, 0.0)),
-            None => self.watch.check_start().map_err(|guard| self.not_finite_watched(Faulty::Guard(guard), 0.0)),
+            None => self.monitor.check_start().map_err(|guard| self.not_finite_monitored(Faulty::Guard(guard), 0.0)),
         }
     }
 
@@ -28,7 +28,7 @@ where
     pub fn lost(&self, error: f64) -> Cause {
         let Stepper { method, start, end, h, scale, .. } = &self.stepper;
         if let Some(faulty) = self.faulty {
-            return self.not_finite_watched(faulty, *h);
+            return self.not_finite_monitored(faulty, *h);
         }
         if !error.is_finite() {
             if let Some(fault) = method.faulty_rate() {
@@ -43,17 +43,17 @@ where
             if let Some(fault) = self.stepper.faulty_derivative() {
                 return self.not_finite(Quantity::Derivative, fault, 0.0);
             }
-            if !self.pace.is_adaptive() {
+            if !self.controller.is_adaptive() {
                 return Cause::NotSolved { t: start.t, h: *h };
             }
         }
         let index = if error.is_finite() { method.largest_error(start, scale, &end.x) } else { scale.fastest(start) };
         let state = self.stepper.system.state_name(index);
-        Cause::StepTooSmall { state, index, value: start.x[index], t: start.t, h: self.pace.step() }
+        Cause::StepTooSmall { state, index, value: start.x[index], t: start.t, h: self.controller.step() }
     }
 
-    /// What is watched in a step of size `h` (s) is not finite.
-    pub fn not_finite_watched(&self, faulty: Faulty, h: f64) -> Cause {
+    /// What is monitored in a step of size `h` (s) is not finite.
+    pub fn not_finite_monitored(&self, faulty: Faulty, h: f64) -> Cause {
         match faulty {
             Faulty::Guard(fault) => self.not_finite(Quantity::Guard, fault, h),
             Faulty::Condition(value) => Cause::Condition { value, t: self.stepper.start.t, h },

@@ -9,12 +9,12 @@ mod cause;
 pub(crate) mod lanes;
 mod observer;
 mod ongoing;
-mod pace;
 mod recording;
 mod rounding;
 mod run;
 mod sampling;
 mod settings;
+mod step_size;
 
 use alloc::boxed::Box;
 

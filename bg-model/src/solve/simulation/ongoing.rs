@@ -9,12 +9,12 @@ use alloc::boxed::Box;
 use nalgebra::SVector;
 
 use super::observer::Observer;
-use super::pace::Pace;
-use super::rounding::RoundingWatch;
+use super::rounding::RoundingMonitor;
 use super::run::Run;
 use super::settings::{self, Settings, Span};
+use super::step_size::StepSizeController;
 use crate::model::system::System;
-use crate::solve::event::{Never, Watch};
+use crate::solve::event::{EventMonitor, Never};
 use crate::solve::failure::{Cause, Failure};
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Method, Point, Scale};
@@ -47,10 +47,10 @@ use crate::solve::stepper::Stepper;
 pub struct Ongoing<const N: usize, const G: usize> {
     start: Point<N>,
     negative: [bool; G],
-    watch: Watch<G>,
-    rounding: Option<RoundingWatch>,
+    monitor: EventMonitor<G>,
+    rounding: Option<RoundingMonitor>,
     /// None where the start has to be looked at.
-    pace: Option<Pace>,
+    controller: Option<StepSizeController>,
     /// The size of the next step, s, where it is known.
     step: Option<f64>,
     statistics: Statistics,
@@ -61,7 +61,15 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
     #[must_use]
     pub fn at(t: f64, x: SVector<f64, N>) -> Self {
         let (start, statistics) = (Point::at(t, x), Statistics::default());
-        Self { start, negative: [false; G], watch: Watch::new(), rounding: None, pace: None, step: None, statistics }
+        Self {
+            start,
+            negative: [false; G],
+            monitor: EventMonitor::new(),
+            rounding: None,
+            controller: None,
+            step: None,
+            statistics,
+        }
     }
 
     /// The time that it has reached, s.
@@ -97,7 +105,7 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
     /// The system has changed, as where an input has jumped: branches and rate are found anew, as at the start of a run. The next
     /// step is tried with `step` (s), where that is given, else with the size that it was to have.
     pub fn renew(&mut self, step: Option<f64>) {
-        self.pace = None;
+        self.controller = None;
         self.step = step.or(self.step);
     }
 
@@ -128,25 +136,26 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         let outcome = settings::check(system, control, &self.start.x, span, settings)
             .and_then(|()| settings::check_series(system, needs_series))
             .map_err(Cause::from)
-            .and_then(|()| match self.pace.take() {
+            .and_then(|()| match self.controller.take() {
                 None => run.begin(control, settings),
-                Some(pace) => {
-                    (run.stepper.negative, run.pace, run.watch) = (self.negative, pace, self.watch.clone());
+                Some(controller) => {
+                    (run.stepper.negative, run.controller, run.monitor) =
+                        (self.negative, controller, self.monitor.clone());
                     run.rounding = self.rounding.take();
                     Ok(())
                 }
             })
             .and_then(|()| {
-                run.pace.go_on(span);
+                run.controller.go_on(span);
                 run.advance_to_end(observer)
             });
-        let Run { stepper, pace, watch, rounding, .. } = run;
-        (self.start, self.negative, self.watch, self.rounding) = (stepper.start, stepper.negative, watch, rounding);
+        let Run { stepper, controller, monitor, rounding, .. } = run;
+        (self.start, self.negative, self.monitor, self.rounding) = (stepper.start, stepper.negative, monitor, rounding);
         self.statistics = stepper.statistics;
         match outcome {
             Ok(ended) => {
-                self.step = pace.is_adaptive().then(|| pace.step());
-                self.pace = Some(pace);
+                self.step = controller.is_adaptive().then(|| controller.step());
+                self.controller = Some(controller);
                 Ok(ended)
             }
             Err(cause) => {

@@ -17,12 +17,12 @@ const ESTIMATE: f64 = 4.0;
 
 /// Looks at the rounding now and then.
 #[derive(Clone, Debug, Default)]
-pub(super) struct RoundingWatch {
+pub(super) struct RoundingMonitor {
     /// Whether rounding was above the tolerances at the last look.
     is_above: bool,
 }
 
-impl RoundingWatch {
+impl RoundingMonitor {
     /// None where the tolerances are far above rounding.
     pub fn new(relative: f64) -> Option<Self> {
         may_matter(relative).then(Self::default)

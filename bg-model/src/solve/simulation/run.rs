@@ -4,17 +4,17 @@
 //! samples and events told to the observer on the way; or why it cannot go on (`cause`).
 
 use super::observer::{Observer, Switching};
-use super::pace::{self, Pace};
-use super::rounding::RoundingWatch;
+use super::rounding::RoundingMonitor;
 use super::sampling::Sampling;
 use super::settings::{Settings, Span};
+use super::step_size::{self, StepSizeController};
 #[cfg(feature = "std")]
 use crate::model::reactions::LoopsInLanes;
-use crate::model::reactions::{After, Broken, Collision, LoopWatch};
+use crate::model::reactions::{After, Broken, Collision, LoopMonitor};
 #[cfg(feature = "std")]
 use crate::model::scalar::lanes::Vector;
 use crate::model::system::System;
-use crate::solve::event::{Condition, Crossing, Stop, Struck, Watch};
+use crate::solve::event::{Condition, Crossing, EventMonitor, Stop, Struck};
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Method, StepControl, is_finite};
@@ -31,24 +31,24 @@ const AGAIN: f64 = 0.05;
 /// A run under way.
 pub(crate) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
     pub stepper: Stepper<'a, Sys, M, N, G>,
-    pub pace: Pace,
+    pub controller: StepSizeController,
     /// What was not finite at the end of a longer step from the present start.
     pub faulty: Option<Faulty>,
-    pub watch: Watch<G>,
+    pub monitor: EventMonitor<G>,
     condition: C,
     pub sampling: Sampling<'a>,
     pub span: Span,
     pub attempts: u64,
     pub limit: u64,
     /// Of joints that close loops, where there are any.
-    loops: Option<LoopWatch>,
+    loops: Option<LoopMonitor>,
     /// Of impacts on stops, where there are any.
     collision: Option<Collision<f64>>,
     /// Of the error estimates, where the tolerances may be below it.
-    pub rounding: Option<RoundingWatch>,
+    pub rounding: Option<RoundingMonitor>,
 }
 
-/// What is watched in a step and is not finite at its end.
+/// What is monitored in a step and is not finite at its end.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Faulty {
     /// The guard of this index, and its value.
@@ -71,13 +71,13 @@ where
         settings: &'a Settings<N>,
     ) -> Self {
         let has_breaks = stepper.system.next_break(span.t0) < f64::INFINITY;
-        let loops = stepper.system.joints().and_then(LoopWatch::new);
+        let loops = stepper.system.joints().and_then(LoopMonitor::new);
         let collision = stepper.system.impacts().map(Collision::new);
         Self {
             stepper,
-            pace: Pace::new(control, span, settings, has_breaks),
+            controller: StepSizeController::new(control, span, settings, has_breaks),
             faulty: None,
-            watch: Watch::new(),
+            monitor: EventMonitor::new(),
             condition,
             sampling: Sampling::new(&settings.samples, span),
             span,
@@ -85,27 +85,27 @@ where
             limit: settings.step_limit,
             loops,
             collision,
-            rounding: RoundingWatch::new(settings.tolerances.relative),
+            rounding: RoundingMonitor::new(settings.tolerances.relative),
         }
     }
 
     /// Finds the first step, the branches at the start and the condition's side.
     pub fn begin(&mut self, control: StepControl, settings: &Settings<N>) -> Result<(), Cause> {
-        let clear = self.watch.begin_by_sign(&mut self.stepper, self.collision.as_mut());
+        let clear = self.monitor.begin_by_sign(&mut self.stepper, self.collision.as_mut());
         self.stepper.evaluate_start();
         self.check_start()?;
         let longest = self.span.length().min(settings.largest_step);
         if let (Some(order), None) = (control.order(), settings.first_step) {
             let (_, flow, start, _, scale) = self.stepper.split();
-            let first = pace::first_step(&flow, start, scale, order, longest);
-            self.pace.begin(first);
+            let first = step_size::first_step(&flow, start, scale, order, longest);
+            self.controller.begin(first);
         }
-        self.watch.begin_by_probe(&mut self.stepper, clear, self.pace.reach());
+        self.monitor.begin_by_probe(&mut self.stepper, clear, self.controller.reach());
         self.stepper.end = self.stepper.start;
         self.check_start()?;
-        let outcome = self.condition.begin(&mut self.stepper, self.pace.reach());
+        let outcome = self.condition.begin(&mut self.stepper, self.controller.reach());
         self.stepper.end = self.stepper.start;
-        outcome.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))
+        outcome.map_err(|value| self.not_finite_monitored(Faulty::Condition(value), 0.0))
     }
 
     /// Whether joints close loops.
@@ -148,9 +148,9 @@ where
             return Ok(Some(Ended::AtEnd));
         }
         self.try_steps()?;
-        match self.watch.inspect(&mut self.stepper) {
+        match self.monitor.inspect(&mut self.stepper) {
             Ok(crossing) => self.conclude(crossing, observer),
-            Err(guard) => self.retreat(Faulty::Guard(guard)).map(|()| None),
+            Err(guard) => self.reject_not_finite(Faulty::Guard(guard)).map(|()| None),
         }
     }
 
@@ -166,7 +166,7 @@ where
         }
         let h = self.stepper.h;
         match self.condition.inspect(&mut self.stepper, crossing.is_some()) {
-            Err(value) => self.retreat(Faulty::Condition(value)).map(|()| None),
+            Err(value) => self.reject_not_finite(Faulty::Condition(value)).map(|()| None),
             Ok(Some(Stop::AtStart)) => Ok(Some(self.end_at_start(observer))),
             Ok(Some(Stop::AtEnd)) => {
                 let crossing = if self.stepper.h == h { crossing } else { self.still_crossing(crossing) };
@@ -191,29 +191,29 @@ where
         let next_break = self.next_break(t);
         let mut error = 0.0_f64;
         loop {
-            if self.pace.is_lost(t) {
+            if self.controller.is_lost(t) {
                 return Err(self.lost(error));
             }
             if self.attempts >= self.limit {
                 return Err(Cause::TooManySteps { limit: self.limit, t, h: self.stepper.h });
             }
             self.attempts += 1;
-            let t_new = self.pace.next_end(t, next_break);
+            let t_new = self.controller.next_end(t, next_break);
             let h = t_new - t;
             error = self.stepper.attempt(h);
-            self.pace.follow(self.stepper.method.control());
+            self.controller.follow(self.stepper.method.control());
             self.stepper.end.t = t_new;
             if error > 1.0 && self.is_around_singular() {
                 error = self.stepper.error_after_projection().unwrap_or(error);
             }
             if error <= 1.0 && is_finite(&self.stepper.end.x) {
-                let is_near = self.project() || !self.pace.is_adaptive();
+                let is_near = self.project() || !self.controller.is_adaptive();
                 // Ahead of the rate, for neither to wait for the other.
-                let mut next = self.pace.clone();
+                let mut next = self.controller.clone();
                 next.accept(t_new, h, error);
                 self.stepper.evaluate_end();
                 if is_near && is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
-                    self.pace = next;
+                    self.controller = next;
                     return Ok(());
                 }
             }
@@ -221,8 +221,8 @@ where
                 error = f64::NAN;
             }
             self.stepper.statistics.rejected += 1;
-            self.pace.reject(h, error);
-            if !self.pace.is_adaptive() {
+            self.controller.reject(h, error);
+            if !self.controller.is_adaptive() {
                 return Err(self.lost(error));
             }
         }
@@ -252,7 +252,7 @@ where
     /// The first instant after `t` (s) and before the end, by more than rounding, at which the system has a step end;
     /// infinity where there is none.
     pub fn next_break(&self, t: f64) -> f64 {
-        let latest = self.span.t_end - self.pace.least(self.span.t_end);
+        let latest = self.span.t_end - self.controller.least(self.span.t_end);
         let mut last = t;
         loop {
             let next = self.stepper.system.next_break(last);
@@ -260,7 +260,7 @@ where
             if next.is_nan() || next <= last || next >= latest {
                 return f64::INFINITY;
             }
-            if next - t > self.pace.least(t) {
+            if next - t > self.controller.least(t) {
                 return next;
             }
             last = next;
@@ -268,13 +268,13 @@ where
     }
 
     /// Gives up a step at whose end something is not finite, for a shorter one.
-    pub fn retreat(&mut self, faulty: Faulty) -> Result<(), Cause> {
+    pub fn reject_not_finite(&mut self, faulty: Faulty) -> Result<(), Cause> {
         let h = self.stepper.h;
         self.stepper.statistics.rejected += 1;
-        self.pace.reject(h, f64::NAN);
+        self.controller.reject(h, f64::NAN);
         self.faulty = Some(faulty);
-        let is_last = !self.pace.is_adaptive() || self.pace.is_lost(self.stepper.start.t);
-        if is_last { Err(self.not_finite_watched(faulty, h)) } else { Ok(()) }
+        let is_last = !self.controller.is_adaptive() || self.controller.is_lost(self.stepper.start.t);
+        if is_last { Err(self.not_finite_monitored(faulty, h)) } else { Ok(()) }
     }
 
     /// Takes the step over: gives its samples and makes its end the start of the next one. Gives whether the observer
@@ -333,7 +333,7 @@ where
 
     /// What is left of an event at the end of a step that the condition has shortened: nothing where it is later.
     fn still_crossing(&mut self, crossing: Option<Crossing<G>>) -> Option<Crossing<G>> {
-        let switches = self.watch.still_at_zero(&mut self.stepper, crossing?.switches);
+        let switches = self.monitor.still_at_zero(&mut self.stepper, crossing?.switches);
         switches.contains(&true).then_some(Crossing { switches, is_at_start: false })
     }
 
@@ -345,7 +345,7 @@ where
         observer: &mut impl Observer<N, G>,
     ) -> Result<bool, Cause> {
         let Some(Crossing { switches, is_at_start }) = crossing else {
-            self.watch.advance();
+            self.monitor.advance();
             self.condition.advance();
             return Ok(false);
         };
@@ -355,13 +355,13 @@ where
         if is_at_start && self.stepper.negative == before && !jumps {
             // The branch is right, so the step was too long for the guard's course.
             self.stepper.statistics.rejected += 1;
-            self.pace.reject(h, f64::NAN);
-            if self.pace.is_lost(self.stepper.start.t) {
+            self.controller.reject(h, f64::NAN);
+            if self.controller.is_lost(self.stepper.start.t) {
                 return Err(self.accumulate(switches));
             }
         }
-        let jumps = self.condition.jumps(&mut self.stepper, self.pace.reach());
-        jumps.map_err(|value| self.not_finite_watched(Faulty::Condition(value), 0.0))
+        let jumps = self.condition.jumps(&mut self.stepper, self.controller.reach());
+        jumps.map_err(|value| self.not_finite_monitored(Faulty::Condition(value), 0.0))
     }
 
     /// Lets the switches whose guards are at zero find their branches at the start of the next step, where the state jumps if
@@ -369,9 +369,9 @@ where
     fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<bool, Cause> {
         let t = self.stepper.start.t;
         let (before, point, reached) = (self.stepper.negative, self.stepper.start, switches);
-        let struck = self.watch.strike(&mut self.stepper, switches, self.collision.as_mut());
+        let struck = self.monitor.strike(&mut self.stepper, switches, self.collision.as_mut());
         let Struck { switches, rebounds, jumps } = struck;
-        self.watch.settle(&mut self.stepper, switches, self.pace.reach());
+        self.monitor.settle(&mut self.stepper, switches, self.controller.reach());
         self.check_start()?;
         if jumps || self.stepper.negative != before {
             let mut left = [false; G];
@@ -393,7 +393,7 @@ where
                 observer.event(t, &self.stepper.start.x, switch, &self.stepper.negative);
             }
         }
-        let is_crowded = self.watch.is_crowded(t, self.span.t_end - self.span.t0);
+        let is_crowded = self.monitor.is_crowded(t, self.span.t_end - self.span.t0);
         if is_crowded { Err(self.accumulate(switches)) } else { Ok(jumps) }
     }
 

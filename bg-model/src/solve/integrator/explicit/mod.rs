@@ -24,7 +24,7 @@ pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
 
-use super::carry::Carry;
+use super::compensated::CompensatedSum;
 use super::dense::{FROM_ENDS, Polynomial, write_sum};
 use super::steps::{Begin, OfFlow};
 use super::tolerances::{index_of_largest, largest};
@@ -95,7 +95,7 @@ pub struct Explicit<T, const N: usize> {
     /// The dense output's coefficients.
     polynomial: Polynomial<N, COEFFICIENTS>,
     /// What rounding has kept from the states.
-    carry: Carry<f64, N>,
+    sum: CompensatedSum<f64, N>,
     /// The machine's vectors.
     arch: Arch,
 }
@@ -104,7 +104,7 @@ impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        Self { stages: Stages::new(), polynomial: Polynomial::zero(), carry: Carry::new(), arch: Arch::new() }
+        Self { stages: Stages::new(), polynomial: Polynomial::zero(), sum: CompensatedSum::new(), arch: Arch::new() }
     }
 }
 
@@ -148,7 +148,7 @@ impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
         end: &mut SVector<f64, N>,
     ) -> f64 {
         let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
-        norm::<T, _>(h, self.stages.step(&OfFlow(flow), &from, scale, &mut self.carry, end))
+        norm::<T, _>(h, self.stages.step(&OfFlow(flow), &from, scale, &mut self.sum, end))
     }
 }
 
@@ -210,12 +210,12 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
 
     fn advance(&mut self) {
         if T::IS_COMPENSATED {
-            self.carry.advance();
+            self.sum.advance();
         }
     }
 
     fn restart(&mut self) {
-        self.carry.restart();
+        self.sum.restart();
     }
 
     fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {

@@ -11,7 +11,7 @@ use nalgebra::SVector;
 use super::{Row, Tableau};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::Scale;
-use crate::solve::integrator::carry::Carry;
+use crate::solve::integrator::compensated::CompensatedSum;
 use crate::solve::integrator::steps::{Begin, Rates};
 use crate::solve::integrator::tolerances::largest;
 
@@ -101,7 +101,7 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
         rates: &impl Rates<S, N>,
         from: &Begin<'_, S, N>,
         scale: &Scale<N>,
-        carry: &mut Carry<S, N>,
+        sum: &mut CompensatedSum<S, N>,
         end: &mut SVector<S, N>,
     ) -> [S; 2] {
         self.k[0] = *from.rate;
@@ -112,7 +112,7 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
         for i in 0..N {
             let slope = self.combine(T::B, i);
             let change = from.h * slope;
-            let to = if T::IS_COMPENSATED { carry.add(i, start[i], change) } else { start[i] + change };
+            let to = if T::IS_COMPENSATED { sum.add(i, start[i], change) } else { start[i] + change };
             end.data.0[0][i] = to;
             let allowed = scale.allowed(i, start[i], to);
             first[i] = (self.combine(T::ERROR, i) / allowed).abs();

@@ -50,7 +50,7 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
     }
 
     /// The directions of the fastest oscillations.
-    pub fn carried(&mut self) -> &mut SVector<Lanes<V>, N> {
+    pub fn compensation(&mut self) -> &mut SVector<Lanes<V>, N> {
         &mut self.direction
     }
 
@@ -111,12 +111,12 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
 
 impl<const N: usize> OfOne<N> for Nystrom<N> {
     /// The direction of the fastest oscillation.
-    fn carried(&mut self) -> &mut SVector<f64, N> {
+    fn compensation(&mut self) -> &mut SVector<f64, N> {
         &mut self.ring.direction
     }
 
-    fn keep(&mut self, carried: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>) {
-        self.ring.direction = carried;
+    fn keep(&mut self, compensation: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>) {
+        self.ring.direction = compensation;
         self.stages.k[..STAGES].iter_mut().enumerate().for_each(|(index, k)| k.0 = stage(index));
     }
 

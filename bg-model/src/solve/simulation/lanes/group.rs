@@ -6,7 +6,7 @@
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
-use super::paces::{Control, Judged, Lead, Paces};
+use super::controllers::{Control, Controllers, Judged, Lead};
 use super::{Judgement, Kept, Step};
 use crate::model::reactions::LoopsInLanes;
 use crate::model::scalar::Scalar;
@@ -36,8 +36,8 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     negative: [V::Mask; G],
     readings: Readings<V, G>,
     method: AnyInLanes<V, N>,
-    paces: Paces<V>,
-    /// A bit for each run whose pace is among them.
+    controllers: Controllers<V>,
+    /// A bit for each run whose controller is among them.
     led: u8,
     /// A bit for each run whose plain steps are judged here: of its guards nothing is known but what they are at the start.
     plain: u8,
@@ -57,9 +57,9 @@ pub(super) struct Tried {
     pub fine: u8,
     /// All guards keep to their sides.
     pub clear: u8,
-    /// It is accepted, and its run's pace goes on.
+    /// It is accepted, and the controller of its run has chosen the next one.
     pub accepted: u8,
-    /// It is rejected, and its run's pace goes on.
+    /// It is rejected, and the controller of its run has chosen a shorter one.
     pub refused: u8,
 }
 
@@ -78,7 +78,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             negative: [false.into(); G],
             readings: Readings::new(),
             method,
-            paces: Paces::new(control),
+            controllers: Controllers::new(control),
             led: 0,
             plain: 0,
             loops: None,
@@ -103,23 +103,23 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         self.loops.as_ref()
     }
 
-    /// Takes over the pace of a run, which is `plain` where nothing is known of its guards but what they are at the start, with the frequency
+    /// Takes over the controller of a run, which is `plain` where nothing is known of its guards but what they are at the start, with the frequency
     /// (rad/s) that holds its steps.
     pub fn lead(&mut self, place: usize, lead: Lead, is_plain: bool, frequency: f64) {
-        self.paces.take(place, lead);
+        self.controllers.take(place, lead);
         self.method.hold_to(place, frequency);
         self.led |= 1 << place;
         self.plain = self.plain & !(1 << place) | u8::from(is_plain) << place;
     }
 
-    /// Gives back the pace of a run, with its steps and rejected attempts since, and the time that it has come to, s; none where it
+    /// Gives back the controller of a run, with its steps and rejected attempts since, and the time that it has come to, s; none where it
     /// is not here.
     pub fn leave(&mut self, place: usize) -> Option<(Kept, Statistics, f64)> {
         let is_led = self.led & 1 << place != 0;
         self.led &= !(1 << place);
         is_led.then(|| {
-            let (pace, made) = self.paces.give(place);
-            (pace, made, *self.t.0.at(place))
+            let (controller, made) = self.controllers.give(place);
+            (controller, made, *self.t.0.at(place))
         })
     }
 
@@ -160,7 +160,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         point: &Point<N>,
         negative: [bool; G],
         guards: [SVector<f64, G>; 2],
-        carried: &SVector<f64, N>,
+        compensation: &SVector<f64, N>,
     ) {
         let bit = 1 << lane;
         for (mask, is_negative) in self.negative.iter_mut().zip(negative) {
@@ -175,7 +175,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         for (to, from) in self.readings.start.iter_mut().zip(&guards) {
             put(lane, to, from);
         }
-        self.carry(lane, carried);
+        self.set_compensation(lane, compensation);
     }
 
     /// The start of a run's step at time `t` (s).
@@ -185,13 +185,13 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     }
 
     /// What a run's method carries over from step to step.
-    pub fn carried(&mut self, lane: usize) -> SVector<f64, N> {
-        at(lane, self.method.carried())
+    pub fn compensation(&mut self, lane: usize) -> SVector<f64, N> {
+        at(lane, self.method.compensation())
     }
 
     /// What a run's method carries over is this now.
-    pub fn carry(&mut self, lane: usize, carried: &SVector<f64, N>) {
-        put(lane, self.method.carried(), carried);
+    pub fn set_compensation(&mut self, lane: usize, compensation: &SVector<f64, N>) {
+        put(lane, self.method.compensation(), compensation);
     }
 
     /// Hands the stages of a run's step over to its own method.
@@ -275,8 +275,8 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Plan<'_, V, N,
 
     #[inline(always)]
     fn call(self) -> u8 {
-        let Group { t, h, t_end, method, paces, led, reach, .. } = self.group;
-        let (size, end, is_possible) = paces.next(*t);
+        let Group { t, h, t_end, method, controllers, led, reach, .. } = self.group;
+        let (size, end, is_possible) = controllers.next(*t);
         (*h, *t_end, *reach) = (size, end, method.reach(size));
         let is_stable = !V::bits(V::below(size.alike(1.0).0, reach.0));
         *led & is_possible & is_stable
@@ -317,15 +317,15 @@ where
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
         let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
-        let Group { paces, led, plain, reach, errors, judged, loops, whole, .. } = group;
+        let Group { controllers, led, plain, reach, errors, judged, loops, whole, .. } = group;
         let error = Lanes::select(V::below(norm.0, reach.0), *reach, norm);
         // Of the others it is a number of an ordinary size.
         *errors = Lanes::select(V::mask(*led), error, h.alike(1.5));
-        *judged = paces.judge(*errors);
+        *judged = controllers.judge(*errors);
         let [one, infinity] = [1.0, f64::INFINITY].map(|number| h.alike(number));
         let is_large = V::bits(V::below(one.0, errors.0));
         let is_number = V::bits(V::below(errors.0, infinity.0));
-        let mut accepted = *led & *plain & is_number & !is_large & fine & clear & !paces.is_due(t_end);
+        let mut accepted = *led & *plain & is_number & !is_large & fine & clear & !controllers.is_due(t_end);
         let mut refused = *led & *plain & is_number & is_large;
         if let (Some(loops), Some(joints)) = (loops, system.joints()) {
             // The ends of steps that may be accepted, then those of steps that err too much before they were projected.
@@ -340,7 +340,7 @@ where
             refused &= whole[0] & ends[1];
             whole[1] = ends[0];
         }
-        paces.go_on([h, t_end], *judged, accepted, refused);
+        controllers.go_on([h, t_end], *judged, accepted, refused);
         Tried { fine, clear, accepted, refused }
     }
 }

@@ -5,15 +5,15 @@
 //! that is not finite) its run makes by itself and then comes back. A run that fails is given back to be made by itself from its
 //! start.
 
+mod controllers;
 mod group;
-mod paces;
 
 use nalgebra::SVector;
 
 use super::observer::Observer;
-use super::pace::{Judgement, Kept};
 use super::run::{Faulty, MOVED, Run};
 use super::settings::{self, Settings, Span};
+use super::step_size::{Judgement, Kept};
 use crate::model::capability::SecondOrder;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
@@ -23,8 +23,8 @@ use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, Scal
 use crate::solve::simulation::Samples;
 use crate::solve::statistics::Statistics;
 use crate::solve::stepper::Stepper;
+use controllers::{Control, Lead};
 use group::{Group, Tried};
-use paces::{Control, Lead};
 
 /// A run to be made.
 pub(crate) struct Job<'a, Mo, O, const N: usize> {
@@ -139,17 +139,17 @@ where
         }
         let next_break = self.run.next_break(t);
         loop {
-            if self.run.pace.is_lost(t) || self.run.attempts >= self.run.limit {
+            if self.run.controller.is_lost(t) || self.run.attempts >= self.run.limit {
                 return Next::Fails;
             }
-            let end = self.run.pace.next_end(t, next_break);
+            let end = self.run.controller.next_end(t, next_break);
             let h = end - t;
             let reach = self.method().reach(h);
             if reach <= 1.0 {
                 return Next::Step(Step { h, t: end, reach });
             }
             self.rejected();
-            self.run.pace.reject(h, reach);
+            self.run.controller.reject(h, reach);
         }
     }
 
@@ -158,25 +158,25 @@ where
         self.run.stepper.statistics.rejected += 1;
     }
 
-    /// The group goes on with its pace.
+    /// The group's controller goes on from the run's.
     fn lead<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
         let run = &self.run;
         let lead = Lead {
-            pace: run.pace.kept(),
+            controller: run.controller.kept(),
             until: run.sampling.next().min(run.span.t_end),
             left: run.limit.saturating_sub(run.attempts),
         };
-        let is_plain = run.watch.is_plain() && run.has_loops_of(group.loops());
+        let is_plain = run.monitor.is_plain() && run.has_loops_of(group.loops());
         group.lead(place, lead, is_plain, self.method().frequency());
     }
 
-    /// The run goes on with its pace itself.
+    /// The run's controller goes on from the group's.
     fn follow<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
-        let Some((pace, made, t)) = group.leave(place) else { return };
+        let Some((controller, made, t)) = group.leave(place) else { return };
         let Statistics { steps, rejected, .. } = made;
         let rates = self.method().rates();
         let run = &mut self.run;
-        run.pace.keep(pace);
+        run.controller.keep(controller);
         run.attempts += steps + rejected;
         run.stepper.statistics.add(&Statistics {
             rate_evaluations: steps * (rates + 1) + rejected * rates,
@@ -206,9 +206,9 @@ where
             self.run.stepper.statistics.rate_evaluations += self.method().rates();
             self.rejected();
             if error < f64::INFINITY {
-                self.run.pace.reject_by(h, judgement);
+                self.run.controller.reject_by(h, judgement);
             } else {
-                self.run.pace.reject(h, error);
+                self.run.controller.reject(h, error);
             }
             return Outcome::Again;
         }
@@ -216,15 +216,15 @@ where
             return Outcome::Alone;
         }
         self.run.attempts += 1;
-        self.run.pace.accept_by(t, h, judgement);
+        self.run.controller.accept_by(t, h, judgement);
         self.run.stepper.statistics.rate_evaluations += self.method().rates() + 1;
         // Of a plain step the group alone keeps what the guards are.
         let is_quiet = !self.run.sampling.is_due(t)
-            && (is_clear && self.run.watch.is_plain() || {
+            && (is_clear && self.run.monitor.is_plain() || {
                 let (end, middle) = group.guards(place);
                 let negative = self.run.stepper.negative;
-                self.run.watch.take_start(group.guards_at_start(place));
-                self.run.watch.pass(negative, end, &middle, h, is_clear)
+                self.run.monitor.take_start(group.guards_at_start(place));
+                self.run.monitor.pass(negative, end, &middle, h, is_clear)
             });
         if !is_quiet {
             return self.inspected(group, place, attempted.step);
@@ -247,18 +247,22 @@ where
         let end = Point { t, x: group.end(place), rate: group.rate(place) };
         let run = &mut self.run;
         run.stepper.take_over(h, end);
-        let crossing = match run.watch.look(&mut run.stepper) {
+        let crossing = match run.monitor.look(&mut run.stepper) {
             Ok(None) => None,
             Ok(Some(Found::AtStart(crossing))) => Some(crossing),
             Ok(Some(Found::Inside(shortening))) if run.sampling.is_due(t) => {
-                Some(run.watch.shorten(&mut run.stepper, shortening))
+                Some(run.monitor.shorten(&mut run.stepper, shortening))
             }
             Ok(Some(Found::Inside(shortening))) => {
                 self.shortening = Some(shortening);
                 return Outcome::Again;
             }
             Err(guard) => {
-                return if run.retreat(Faulty::Guard(guard)).is_ok() { Outcome::Again } else { Outcome::Fails };
+                return if run.reject_not_finite(Faulty::Guard(guard)).is_ok() {
+                    Outcome::Again
+                } else {
+                    Outcome::Fails
+                };
             }
         };
         self.concluded(crossing)
@@ -275,13 +279,13 @@ where
             let moved = run.stepper.moved(&group.reached(place), &x);
             run.stepper.settle_further(moved);
         }
-        while !shortening.take(&run.watch, &mut run.stepper) {
+        while !shortening.take(&run.monitor, &mut run.stepper) {
             if shortening.size() != h {
                 self.shortening = Some(shortening);
                 return Outcome::Again;
             }
         }
-        let crossing = run.watch.crossing(&mut run.stepper, shortening);
+        let crossing = run.monitor.crossing(&mut run.stepper, shortening);
         self.concluded(Some(crossing))
     }
 
@@ -294,8 +298,8 @@ where
     fn take_start<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
         let Point { t, .. } = self.run.stepper.start;
         self.run.stepper.start = group.start(place, t);
-        self.run.watch.take_start(group.guards_at_start(place));
-        *self.method().carried() = group.carried(place);
+        self.run.monitor.take_start(group.guards_at_start(place));
+        *self.method().compensation() = group.compensation(place);
     }
 
     /// Whether a step to `t` (s) begins or ends in the neighbourhood of a singular pose.
@@ -408,7 +412,7 @@ where
         }
         due |= 1 << place;
         if lane.method().begins(&second) {
-            group.carry(place, lane.method().carried());
+            group.set_compensation(place, lane.method().compensation());
         }
     }
     if due != 0 {
@@ -484,6 +488,6 @@ fn load<V, Mo, O, const N: usize, const G: usize>(
     Mo: System<f64, N, G>,
     O: Observer<N, G>,
 {
-    let (start, negative, guards) = (lane.run.stepper.start, lane.run.stepper.negative, lane.run.watch.at_start());
-    group.load(place, &start, negative, guards, lane.method().carried());
+    let (start, negative, guards) = (lane.run.stepper.start, lane.run.stepper.negative, lane.run.monitor.at_start());
+    group.load(place, &start, negative, guards, lane.method().compensation());
 }

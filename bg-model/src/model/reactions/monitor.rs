@@ -46,14 +46,14 @@ pub(crate) enum Broken {
 }
 
 /// What is looked at.
-pub(crate) struct LoopWatch {
+pub(crate) struct LoopMonitor {
     hold: Hold<f64>,
     factors: Factors<f64>,
     dropped: Vec<bool>,
     was_near: bool,
 }
 
-impl LoopWatch {
+impl LoopMonitor {
     /// Room for what is held; none where no joint closes a loop.
     pub fn new<J, const N: usize, const G: usize>(joints: &J) -> Option<Self>
     where

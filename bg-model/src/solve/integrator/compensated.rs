@@ -1,4 +1,4 @@
-//! Compensated sums of the states over the steps: what rounding keeps from a sum is carried over to the next step.
+//! Compensated sums of the states over the steps: what rounding keeps from a sum is added to the next step.
 //!
 //! In: a state and its change in a step. Out: their sum. Without it the momenta of long runs drift by a random walk. Source:
 //! W. Kahan, Communications of the ACM 8 (1965); Hairer, Lubich, Wanner, section VIII.5.
@@ -9,14 +9,14 @@ use crate::model::scalar::Scalar;
 
 /// What rounding has kept from the states.
 #[derive(Clone, Debug)]
-pub(super) struct Carry<S, const N: usize> {
+pub(super) struct CompensatedSum<S, const N: usize> {
     /// At the start of the step.
     pub start: SVector<S, N>,
     /// At the end of the step that was tried last.
     pub end: SVector<S, N>,
 }
 
-impl<S: Scalar, const N: usize> Carry<S, N> {
+impl<S: Scalar, const N: usize> CompensatedSum<S, N> {
     /// Nothing yet.
     pub fn new() -> Self {
         let nothing = SVector::from([S::from_f64(0.0); N]);
@@ -37,7 +37,7 @@ impl<S: Scalar, const N: usize> Carry<S, N> {
         self.start = self.end;
     }
 
-    /// Nothing is carried over to the next step.
+    /// Nothing is added to the next step.
     pub fn restart(&mut self) {
         self.start.fill(S::from_f64(0.0));
     }

@@ -1,4 +1,4 @@
-//! The pace: which step is tried next.
+//! The step-size controller: which step is tried next.
 //!
 //! In: the error norms of the steps tried, the instants at which the system has steps end. Out: the end of the next
 //! step; one that such an instant cuts short leaves the size of the step after it as it was.
@@ -19,7 +19,7 @@ const SAFETY: f64 = 0.9;
 /// Limits of the ratio of a step to the one before.
 const RATIO: [f64; 2] = [0.333, 6.0];
 /// The ratio after an attempt that gave no number.
-const RETREAT: f64 = 0.1;
+const NO_NUMBER: f64 = 0.1;
 /// The ratio after an iteration that did not converge.
 const HALF: f64 = 0.5;
 /// A predictive control keeps a step that would grow by less than this ratio.
@@ -33,7 +33,7 @@ pub(super) const STRETCH: f64 = 0.01;
 /// A part of a fixed step that rounding may make: such a sliver is no step.
 const SLIVER: f64 = 1e-9;
 
-/// What the size of the next step follows from: the logarithm of an error norm, and the exponential of [`Pace::exponent`] of it.
+/// What the size of the next step follows from: the logarithm of an error norm, and the exponential of [`StepSizeController::exponent`] of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Judgement {
     pub logarithm: f64,
@@ -59,7 +59,7 @@ pub(super) struct Kept {
 
 /// Chooses steps.
 #[derive(Clone, Debug)]
-pub(super) struct Pace {
+pub(super) struct StepSizeController {
     control: StepControl,
     span: Span,
     largest: f64,
@@ -81,7 +81,7 @@ pub(super) struct Pace {
     goes_on: bool,
 }
 
-impl Pace {
+impl StepSizeController {
     pub fn new<const N: usize>(control: StepControl, span: Span, settings: &Settings<N>, has_breaks: bool) -> Self {
         let asked = match control {
             StepControl::Fixed { step } => step,
@@ -197,7 +197,7 @@ impl Pace {
     /// an iteration did not converge.
     pub fn reject(&mut self, h: f64, error: f64) {
         let ratio = match error {
-            _ if error.is_nan() => RETREAT,
+            _ if error.is_nan() => NO_NUMBER,
             f64::INFINITY => HALF,
             _ if self.is_adaptive() => shortening(self.judge(error, false).factor),
             _ => SAFETY,
@@ -349,10 +349,10 @@ pub(super) fn first_step<const N: usize>(
 mod tests {
     use super::*;
 
-    /// A pace of a run of 100 s from a first step of 1 s.
-    fn pace(control: StepControl, largest_step: f64) -> Pace {
+    /// A controller of a run of 100 s from a first step of 1 s.
+    fn controller(control: StepControl, largest_step: f64) -> StepSizeController {
         let settings = Settings::<1> { first_step: Some(1.0), largest_step, ..Settings::default() };
-        Pace::new(control, Span { t0: 0.0, t_end: 100.0 }, &settings, true)
+        StepSizeController::new(control, Span { t0: 0.0, t_end: 100.0 }, &settings, true)
     }
 
     /// `dop853.f` and `radau5.f`: the step after a rejected one is not longer than it.
@@ -362,14 +362,14 @@ mod tests {
         let controls =
             [StepControl::Adaptive { order }, StepControl::Stabilised { order }, StepControl::Predictive { order }];
         for control in controls {
-            let mut pace = pace(control, f64::INFINITY);
-            pace.reject(1.0, 32.0);
-            let h = pace.step();
+            let mut controller = controller(control, f64::INFINITY);
+            controller.reject(1.0, 32.0);
+            let h = controller.step();
             assert!((h - 0.45).abs() < 1e-15, "{control:?}: {h}");
-            pace.accept(h, h, 1e-12);
-            assert_eq!(pace.step(), h, "{control:?}");
-            pace.accept(2.0 * h, h, 1e-12);
-            assert!(pace.step() > 1.5 * h, "{control:?}: {}", pace.step());
+            controller.accept(h, h, 1e-12);
+            assert_eq!(controller.step(), h, "{control:?}");
+            controller.accept(2.0 * h, h, 1e-12);
+            assert!(controller.step() > 1.5 * h, "{control:?}: {}", controller.step());
         }
     }
 
@@ -377,32 +377,32 @@ mod tests {
     #[test]
     fn the_last_step_is_stretched_up_to_the_largest() {
         let control = StepControl::Adaptive { order: 5.0 };
-        assert_eq!(pace(control, f64::INFINITY).next_end(98.995, f64::INFINITY), 100.0);
-        assert_eq!(pace(control, 1.0).next_end(98.995, f64::INFINITY), 99.995);
-        assert_eq!(pace(control, 1.0).next_end(99.0, f64::INFINITY), 100.0);
-        assert_eq!(pace(control, 1.01).next_end(98.995, f64::INFINITY), 100.0);
+        assert_eq!(controller(control, f64::INFINITY).next_end(98.995, f64::INFINITY), 100.0);
+        assert_eq!(controller(control, 1.0).next_end(98.995, f64::INFINITY), 99.995);
+        assert_eq!(controller(control, 1.0).next_end(99.0, f64::INFINITY), 100.0);
+        assert_eq!(controller(control, 1.01).next_end(98.995, f64::INFINITY), 100.0);
     }
 
     /// Pieces of a run that goes on end in two even steps; a whole run ends as `dop853.f` does, in a whole step and the rest.
     #[test]
     fn a_piece_ends_in_even_steps() {
-        let mut pace = pace(StepControl::Adaptive { order: 5.0 }, f64::INFINITY);
-        assert_eq!(pace.next_end(98.75, f64::INFINITY), 99.75);
-        pace.go_on(Span { t0: 0.0, t_end: 100.0 });
-        assert_eq!(pace.next_end(97.5, f64::INFINITY), 98.5);
-        assert_eq!(pace.next_end(98.75, f64::INFINITY), 99.375);
+        let mut controller = controller(StepControl::Adaptive { order: 5.0 }, f64::INFINITY);
+        assert_eq!(controller.next_end(98.75, f64::INFINITY), 99.75);
+        controller.go_on(Span { t0: 0.0, t_end: 100.0 });
+        assert_eq!(controller.next_end(97.5, f64::INFINITY), 98.5);
+        assert_eq!(controller.next_end(98.75, f64::INFINITY), 99.375);
         // Both are cut, so the step after them is as long as it was to be.
-        pace.accept(99.375, 0.625, 1e-3);
-        assert_eq!(pace.next_end(99.375, f64::INFINITY), 100.0);
-        pace.accept(100.0, 0.625, 0.2);
-        assert!(pace.step() >= 0.7, "{}", pace.step());
+        controller.accept(99.375, 0.625, 1e-3);
+        assert_eq!(controller.next_end(99.375, f64::INFINITY), 100.0);
+        controller.accept(100.0, 0.625, 0.2);
+        assert!(controller.step() >= 0.7, "{}", controller.step());
     }
 
     #[test]
     fn a_first_step_beyond_the_end_reaches_as_far_as_the_run() {
         let settings = Settings::<1> { first_step: Some(f64::INFINITY), ..Settings::default() };
         let span = Span { t0: 1.0, t_end: 3.0 };
-        let mut pace = Pace::new(StepControl::Adaptive { order: 5.0 }, span, &settings, false);
-        assert_eq!((pace.reach(), pace.next_end(1.0, f64::INFINITY)), (2.0, 3.0));
+        let mut controller = StepSizeController::new(StepControl::Adaptive { order: 5.0 }, span, &settings, false);
+        assert_eq!((controller.reach(), controller.next_end(1.0, f64::INFINITY)), (2.0, 3.0));
     }
 }

@@ -1,17 +1,19 @@
-//! The paces of runs side by side: which steps they try, as far as that is the same operations for all.
+//! The step-size controllers of runs side by side: which steps they try, as far as that is the same operations for all.
 //!
-//! In: the pace of each run, the error norms of the steps tried. Out: the next steps, which each run's own [`Pace`] would choose to the bit,
-//! and what has come of them since the paces were taken over. For a stabilised control on a system without breaks.
+//! In: the controller of each run, the error norms of the steps tried. Out: the next steps, which each run's own [`StepSizeController`] would
+//! choose to the bit, and the counts of steps since the controllers were taken over. For a stabilised control on a system without breaks.
 //!
-//! [`Pace`]: crate::solve::simulation::pace::Pace
+//! [`StepSizeController`]: crate::solve::simulation::step_size::StepSizeController
 
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector};
-use crate::solve::simulation::pace::{Kept, STRETCH, bounded, least, noted, shortening, smaller, stabilised, within};
 use crate::solve::simulation::settings::Span;
+use crate::solve::simulation::step_size::{
+    Kept, STRETCH, bounded, least, noted, shortening, smaller, stabilised, within,
+};
 use crate::solve::statistics::Statistics;
 
-/// What the paces of all runs have in common.
+/// What the controllers of all runs have in common.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Control {
     /// The time that the runs cover.
@@ -25,17 +27,17 @@ pub(super) struct Control {
 /// How a run goes on in company.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lead {
-    /// Its pace.
-    pub pace: Kept,
+    /// Its controller.
+    pub controller: Kept,
     /// The first instant at which a step is looked at by the run itself, s.
     pub until: f64,
     /// The attempts that it may still make.
     pub left: u64,
 }
 
-/// The paces of runs side by side.
+/// The controllers of runs side by side.
 #[derive(Debug)]
-pub(super) struct Paces<V: Vector> {
+pub(super) struct Controllers<V: Vector> {
     control: Control,
     step: Lanes<V>,
     /// The last accepted step, s, and the logarithm of its error norm.
@@ -43,7 +45,7 @@ pub(super) struct Paces<V: Vector> {
     rejected: V::Mask,
     until: Lanes<V>,
     left: Lanes<V>,
-    /// Since the paces were taken over: steps, rejected attempts, the smallest and the largest step.
+    /// Since the controllers were taken over: steps, rejected attempts, the smallest and the largest step.
     steps: Lanes<V>,
     refused: Lanes<V>,
     smallest: Lanes<V>,
@@ -59,7 +61,7 @@ pub(super) struct Judged<V> {
     pub factor: Lanes<V>,
 }
 
-impl<V: Vector> Paces<V> {
+impl<V: Vector> Controllers<V> {
     /// Nobody's yet.
     pub fn new(control: Control) -> Self {
         let zero = Lanes::from_f64(0.0);
@@ -77,12 +79,12 @@ impl<V: Vector> Paces<V> {
         }
     }
 
-    /// Takes over the pace of a run.
-    pub fn take(&mut self, place: usize, Lead { pace, until, left }: Lead) {
-        let (h, logarithm) = pace.accepted.unwrap_or_default();
+    /// Takes over the controller of a run.
+    pub fn take(&mut self, place: usize, Lead { controller, until, left }: Lead) {
+        let (h, logarithm) = controller.accepted.unwrap_or_default();
         let [last, before] = &mut self.accepted;
         let numbers = [
-            (&mut self.step, pace.step),
+            (&mut self.step, controller.step),
             (last, h),
             (before, logarithm),
             (&mut self.until, until),
@@ -96,10 +98,10 @@ impl<V: Vector> Paces<V> {
             *to.0.at_mut(place) = number;
         }
         let others = V::bits(self.rejected) & !(1 << place);
-        self.rejected = V::mask(others | u8::from(pace.is_rejected) << place);
+        self.rejected = V::mask(others | u8::from(controller.is_rejected) << place);
     }
 
-    /// Gives back the pace of a run, and its steps and rejected attempts since that was taken over.
+    /// Gives back the controller of a run, and its steps and rejected attempts since that was taken over.
     pub fn give(&self, place: usize) -> (Kept, Statistics) {
         let at = |of: &Lanes<V>| *of.0.at(place);
         let (steps, rejected) = (at(&self.steps) as u64, at(&self.refused) as u64);

@@ -15,7 +15,7 @@ const NEAR: f64 = 0.25;
 
 /// What is known of the guards during the last step tried.
 #[derive(Debug)]
-pub struct Watch<S, const G: usize> {
+pub struct GuardMonitor<S, const G: usize> {
     tolerance: f64,
     /// The size of the step, s.
     h: S,
@@ -47,7 +47,7 @@ pub enum Course<S> {
     Crosses(Crossing<S>),
 }
 
-impl<S: Scalar, const G: usize> Watch<S, G> {
+impl<S: Scalar, const G: usize> GuardMonitor<S, G> {
     pub fn new(tolerance: f64) -> Self {
         Self { tolerance, h: S::from_f64(0.0), values: Vec::new(), largest: [0.0; G] }
     }
@@ -151,12 +151,12 @@ where
         for _ in 0..G {
             let (zero, slope) = self.zero(h, crossing);
             h = zero;
-            let wrong = self.watch.wrong(&self.negative);
+            let wrong = self.monitor.wrong(&self.negative);
             let Some(switch) = (0..G).find(|k| *k != crossing.switch && wrong[*k]) else { break };
             crossing = Crossing { switch, guess: S::from_f64(0.5) * h, slope };
         }
-        let value = self.watch.end();
-        let is_at_zero = |k: usize| k == crossing.switch || value[k].to_f64().abs() <= self.watch.noise(k);
+        let value = self.monitor.end();
+        let is_at_zero = |k: usize| k == crossing.switch || value[k].to_f64().abs() <= self.monitor.noise(k);
         (h, std::array::from_fn(is_at_zero))
     }
 
@@ -173,7 +173,7 @@ where
         let mut value = self.clearance_after(at, switch);
         let (mut best, mut least, mut stalls) = (at, value.abs(), 0);
         for step in 0..STEPS {
-            let is_done = stalls >= STALLS && least.to_f64() <= self.watch.noise(switch);
+            let is_done = stalls >= STALLS && least.to_f64() <= self.monitor.noise(switch);
             if value.to_f64() == 0.0 || is_done {
                 break;
             }
@@ -198,7 +198,7 @@ where
             }
         }
         // At a jump the end on the wrong side.
-        let end = if least.to_f64() <= self.watch.noise(switch) { best } else { wrong };
+        let end = if least.to_f64() <= self.monitor.noise(switch) { best } else { wrong };
         self.clearance_after(end, switch);
         (end, slope)
     }
@@ -206,6 +206,6 @@ where
     fn clearance_after(&mut self, h: S, switch: usize) -> S {
         self.rejected += 1;
         self.attempt(h);
-        clearance(self.watch.end()[switch], self.negative[switch])
+        clearance(self.monitor.end()[switch], self.negative[switch])
     }
 }
