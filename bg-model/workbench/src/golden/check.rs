@@ -58,7 +58,7 @@ impl Deviating {
     pub fn lines(&self) -> impl Iterator<Item = String> {
         let Self { name, differences, recorded_by, renewal } = self;
         let by = recorded_by.as_ref().map(|version| format!("recorded by version {version}, this is {VERSION}; "));
-        let last = format!("{name}: {}if that is meant, record it anew: {renewal}", by.unwrap_or_default());
+        let last = format!("{name}: {}if this change is intended, record it again: {renewal}", by.unwrap_or_default());
         differences.iter().map(move |difference| format!("{name}: {difference}")).chain(std::iter::once(last))
     }
 }

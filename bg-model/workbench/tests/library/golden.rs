@@ -133,7 +133,7 @@ fn field(text: &str, line: usize, column: usize) -> &str {
     text.lines().nth(line).unwrap().split(',').nth(column).unwrap()
 }
 
-const RENEWAL: &str = "literal: if that is meant, record it anew: slide golden record --scene literal \
+const RENEWAL: &str = "literal: if this change is intended, record it again: slide golden record --scene literal \
                        --t-end 1 --step 0.1 --method auto --rtol 1e-8 --out DIR";
 
 #[test]
@@ -286,7 +286,7 @@ fn what_is_recorded_by_another_version_says_so_where_it_differs() {
     check::<now::Slide>(bench.folder()).unwrap();
     bench.edit("literal.toml", "events = 0", "events = 1");
     let text = bench.fault::<now::Slide>();
-    let this = concat!("recorded by version 0.0.7, this is ", env!("CARGO_PKG_VERSION"), "; if that is meant");
+    let this = concat!("recorded by version 0.0.7, this is ", env!("CARGO_PKG_VERSION"), "; if this change is intended");
     assert!(text.contains(this), "{text}");
 }
 
@@ -299,7 +299,7 @@ fn a_renewal_says_all_that_the_record_says() {
     let renewal = "slide golden record --scene literal --set mass=1e7 --set start=-0.2 --t-end 1 --step 0.1 \
                    --method auto --rtol 1e-8 --atol 1e-12 --name 'slow one' --out DIR";
     let text = bench.fault::<now::Slide>();
-    assert!(text.ends_with(&format!("slow one: if that is meant, record it anew: {renewal}")), "{text}");
+    assert!(text.ends_with(&format!("slow one: if this change is intended, record it again: {renewal}")), "{text}");
 }
 
 #[test]
