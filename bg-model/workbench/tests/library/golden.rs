@@ -286,7 +286,8 @@ fn what_is_recorded_by_another_version_says_so_where_it_differs() {
     check::<now::Slide>(bench.folder()).unwrap();
     bench.edit("literal.toml", "events = 0", "events = 1");
     let text = bench.fault::<now::Slide>();
-    let this = concat!("recorded by version 0.0.7, this is ", env!("CARGO_PKG_VERSION"), "; if this change is intended");
+    let this =
+        concat!("recorded by version 0.0.7, this is ", env!("CARGO_PKG_VERSION"), "; if this change is intended");
     assert!(text.contains(this), "{text}");
 }
 
