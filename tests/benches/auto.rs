@@ -3,12 +3,13 @@
 //! `cargo bench -p bond-graph-tests --bench auto [-- WORD]`, for all models or those whose name contains the word. Times are those of the
 //! processor, minima of [`ROUNDS`] rounds in which the methods take turns. Runs of less than a millisecond show what the trials cost.
 //! The error is the largest difference of an output to a run at [`TIGHT`] at 21 instants, over the largest value in its unit, in parts
-//! of the tolerance.
+//! of the tolerance; that of the fastest method by name stands beside it. Forces and torques do not count: reactions near a dead centre have
+//! spikes as narrow as a step.
 #![allow(missing_docs)]
 
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::Mechanism;
-use bg_model::run::{Request, Simulation};
+use bg_model::run::{Request, Simulation, Trajectory};
 use bg_model::simulation::{Column, Recording, Samples};
 use bg_workbench::tables::table;
 use bond_graph_tests::models::double_pendulum::{
@@ -44,7 +45,7 @@ fn main() {
     measured.add("motion", 5.0, EXPLICIT, &Motion::new(MotionParameters::default()).expect("defaults"));
     measured.add("full", 5.0, EXPLICIT, &Full::new(FullParameters::default()).expect("defaults"));
     let off = FullParameters { rod_offset: 0.025, ..FullParameters::default() };
-    measured.add("full, rod off", 0.5, IMPLICIT, &Full::new(off).expect("in range"));
+    measured.add("full, rod off", 5.0, IMPLICIT, &Full::new(off).expect("in range"));
     measured.add("rigid", 5.0, EXPLICIT, &Rigid::new(RigidParameters::default()).expect("defaults"));
     let slider = PlanarSliderCrankParameters::default();
     let soft = PlanarSliderCrankParameters { stiffness: 5e4, damping: 50.0, ..slider.clone() };
@@ -59,7 +60,8 @@ fn main() {
     print!("{}", table(&measured.rows));
 }
 
-const HEAD: [&str; 7] = ["model", "s", "rtol", "ms: auto, then by name", "auto / best", "error / rtol", "at the end"];
+const HEAD: [&str; 7] =
+    ["model", "s", "rtol", "ms: auto, then by name", "auto / best", "error / rtol: auto, best", "at the end"];
 
 /// The rows that are printed, and the words that choose models; none for all.
 struct Table {
@@ -89,14 +91,15 @@ impl Table {
                     }
                 }
             }
-            let best = least[1..].iter().copied().fold(f64::INFINITY, f64::min);
-            let sampled = run(Integrator::Auto, rtol, t_end / INSTANTS);
-            let (error, chosen) = sampled.map_or((f64::INFINITY, String::new()), |run| {
-                let chosen = run.methods.last().map_or_else(String::new, |change| change.method.to_owned());
-                (distance(&run.recording, &tight.recording), chosen)
-            });
+            let best = (1..methods.len()).min_by(|a, b| least[*a].total_cmp(&least[*b])).expect("a method by name");
+            let sampled = |method| run(method, rtol, t_end / INSTANTS).ok();
+            let error = |run: &Option<Trajectory>| {
+                run.as_ref().map_or(f64::INFINITY, |run| distance(&run.recording, &tight.recording) / rtol)
+            };
+            let (auto, by_name) = (sampled(methods[0]), sampled(methods[best]));
+            let last = auto.as_ref().and_then(|run| run.methods.last());
             let times = least.iter().map(|ms| if ms.is_finite() { format!("{ms:.3}") } else { "-".to_owned() });
-            let ratio = format!("{:.2}", least[0] / best);
+            let ratio = format!("{:.2}", least[0] / least[best]);
             let times = times.collect::<Vec<_>>().join(", ");
             self.rows.push([
                 name.to_owned(),
@@ -104,8 +107,8 @@ impl Table {
                 format!("{rtol:e}"),
                 times,
                 ratio,
-                format!("{:.1}", error / rtol),
-                chosen,
+                format!("{:.1}, {:.1}", error(&auto), error(&by_name)),
+                last.map_or_else(String::new, |change| change.method.to_owned()),
             ]);
         }
     }
@@ -122,5 +125,6 @@ fn distance(run: &Recording, reference: &Recording) -> f64 {
         let differences: Vec<f64> = column.values.iter().zip(&reference.values).map(|(a, b)| a - b).collect();
         largest(&differences) / size(&reference.unit)
     };
-    run.columns.iter().zip(&reference.columns).map(of_column).fold(0.0, f64::max)
+    let is_motion = |(_, reference): &(&Column, &Column)| !reference.unit.starts_with('N');
+    run.columns.iter().zip(&reference.columns).filter(is_motion).map(of_column).fold(0.0, f64::max)
 }

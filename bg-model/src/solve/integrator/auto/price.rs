@@ -27,9 +27,10 @@ const SUM: f64 = 1.0;
 const STATE_OF_FORCES: f64 = 12.0;
 /// The price of a rate with second derivatives where nobody has counted.
 const OF_FORCES: f64 = 1.2;
-/// The operations of an order whose code a processor keeps at hand; of more, each takes so many times as long.
+/// The operations of an order whose code a processor keeps at hand; of more, each takes so many times as long: 1.35 on an AMD EPYC
+/// of 2024, 1.75 on an Intel Xeon of 2023.
 const AT_HAND: f64 = 1000.0;
-const BEYOND: f64 = 1.35;
+const BEYOND: f64 = 1.53;
 
 /// The price of a step at the relative tolerance `relative`, in rates; none without a series, where its operations are not known, and
 /// where the tolerance is loose.
@@ -67,7 +68,7 @@ mod tests {
     use super::*;
 
     /// Models with states, with the time of a step over that of a rate in a step of DOP853, both with AVX2, as measured, and with how much
-    /// the price may be off.
+    /// the price may be off; of `full` on two machines.
     #[test]
     fn prices_are_those_that_were_measured() {
         let of = |rate, order, products, sums| Operations { rate, order, products, sums };
@@ -86,8 +87,10 @@ mod tests {
             (slider_crank, 20, 14, 18.0, 0.1),
             (slider_crank, 20, 16, 21.0, 0.1),
             (slider_crank, 20, 20, 25.0, 0.1),
-            (full, 83, 14, 39.5, 0.1),
-            (full, 83, 20, 60.7, 0.1),
+            (full, 83, 14, 39.5, 0.2),
+            (full, 83, 14, 49.0, 0.2),
+            (full, 83, 20, 60.7, 0.2),
+            (full, 83, 20, 78.0, 0.2),
             (pendulum, 14, 14, 12.2, 0.3),
             (pendulum, 14, 20, 15.8, 0.4),
         ] {
