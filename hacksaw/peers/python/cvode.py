@@ -26,7 +26,7 @@ METHODS = (("CVODE Adams", 1, range(3, 14)), ("CVODE BDF", 2, range(3, 12)))
 
 def solvers(problem):
     """CVODE's two families of methods."""
-    integrate = compiled()
+    integrate = compiled(problem["c_flags"])
     model = [value for name in CONSTANTS for value in flat(problem["constants"][name])]
     times = problem["samples"]
     model, start, instants = doubles(model), doubles(problem["start"]), doubles(times)
@@ -62,7 +62,7 @@ def solvers(problem):
     ]
 
 
-def compiled():
+def compiled(c_flags):
     """The function `run` of cvode.c, compiled and linked with the package's libraries."""
     package = os.path.dirname(importlib.util.find_spec("sksundae").origin)
     folder = os.path.join(os.path.dirname(package), "scikit_sundae.libs")
@@ -72,7 +72,7 @@ def compiled():
     source = os.path.join(os.path.dirname(__file__), "cvode.c")
     with tempfile.TemporaryDirectory() as target:
         output = os.path.join(target, "cvode.so")
-        flags = ["-std=gnu11", "-O3", "-Wall", "-fPIC", "-shared"]
+        flags = ["-std=gnu11", *c_flags, "-Wall", "-fPIC", "-shared"]
         subprocess.run(["cc", *flags, source, "-o", output, *libraries, "-lm"], check=True)
         return ctypes.CDLL(output).run
 

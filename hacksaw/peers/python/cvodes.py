@@ -53,7 +53,7 @@ def runner(problem, system, options):
                 "max_num_steps": 1_000_000_000,
                 "jit": True,
                 "compiler": "shell",
-                "jit_options": {"flags": ["-O3"], "verbose": False},
+                "jit_options": {"flags": problem["c_flags"], "verbose": False},
             }
             integrator = ca.integrator("hacksaw", "cvodes", system, times[0], times[1:], everything)
             made[tolerance] = integrator, time.perf_counter() - clock

@@ -1,7 +1,7 @@
 """Runs the solvers that come with Python packages, one run for each line on standard input.
 
 The first line in is JSON: {"constants": .., "start": [24 numbers], "cutting": true, "samples": [times], "absolute": ratio,
-"sources": [names]}. The first line out is the JSON list of solvers; after that each line {"solver": i, "setting": x} in is
+"sources": [names], "c_flags": [flags]}. The first line out is the JSON list of solvers; after that each line {"solver": i, "setting": x} in is
 answered with {"seconds": .., "poses": [[12 numbers] ..], "work": {..}} or {"fault": ".."}. A line {"batch": tolerance,
 "values": [[4 numbers] ..]}, whose runs number a multiple of heyoka's batch, is answered with the poses at their ends. What has to be compiled is
 compiled when the list is made or at the first run, outside of the time taken.

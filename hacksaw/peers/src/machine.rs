@@ -20,6 +20,10 @@ pub struct Machine {
     pub versions: BTreeMap<String, String>,
 }
 
+/// Whether this program was built for the processor at hand, by `RUSTFLAGS="-C target-cpu=native"`: a build for every x86-64 has no
+/// AVX2.
+pub const IS_FOR_THIS_PROCESSOR: bool = cfg!(target_feature = "avx2");
+
 /// The crates whose versions matter.
 const CRATES: [&str; 6] = ["bg-model", "differential-equations", "diffsol", "hacksaw", "nalgebra", "ode_solvers"];
 
@@ -46,12 +50,13 @@ impl Machine {
     pub fn sentence(&self) -> String {
         let versions: Vec<String> = self.versions.iter().map(|(name, version)| format!("{name} {version}")).collect();
         format!(
-            "Measured on {}: {}, {} cores, {}; {}.",
+            "Measured on {}: {}, {} cores, {}; {}. Rust and C are compiled {}.",
             self.date,
             self.processor,
             self.cores,
             self.system,
-            versions.join(", ")
+            versions.join(", "),
+            if IS_FOR_THIS_PROCESSOR { "for this processor" } else { "for every processor of its kind" }
         )
     }
 }

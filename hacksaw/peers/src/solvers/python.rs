@@ -16,6 +16,7 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::{Line, Run, Setting, Solver, Source, Work};
+use crate::machine::IS_FOR_THIS_PROCESSOR;
 use crate::poses::Poses;
 use crate::problem::{ABSOLUTE, Problem, instants};
 
@@ -141,9 +142,14 @@ fn spawned(python: &Path, problem: &Problem, sources: &[Source]) -> Result<(Proc
     let names: Vec<String> = sources.iter().map(|&source| name(source)).collect();
     let offer = process.ask(&json!({
         "constants": problem.constants(), "start": problem.start, "cutting": problem.cuts_after(&problem.start),
-        "samples": instants(), "absolute": ABSOLUTE, "sources": names,
+        "samples": instants(), "absolute": ABSOLUTE, "sources": names, "c_flags": c_flags(),
     }))?;
     Ok((process, offer))
+}
+
+/// The flags of the C compiler: those that match the build of the Rust crates.
+fn c_flags() -> Vec<&'static str> {
+    if IS_FOR_THIS_PROCESSOR { vec!["-O3", "-march=native"] } else { vec!["-O3"] }
 }
 
 fn name(source: Source) -> String {
