@@ -52,6 +52,16 @@ pub(super) fn enclosing<S: Scalar>([from, to]: [S; 2], middle: S, [leaving, arri
     [from, leave, bend, arrive, to]
 }
 
+/// Whether the quartic with these Bernstein coefficients, of which the first is zero, rises from there on: its mean slope since the start
+/// keeps as far from zero as a clearance has to. That is a cubic with the coefficients below.
+fn rises(&[_, first, second, third, fourth]: &[f64; 5]) -> bool {
+    let slopes = [4.0 * first, 2.0 * second, 4.0 / 3.0 * third, fourth];
+    let smaller = |a: f64, b: f64| if b < a { b } else { a };
+    let low = slopes.into_iter().fold(f64::INFINITY, smaller);
+    let high = slopes.into_iter().fold(f64::NEG_INFINITY, larger);
+    low > FAR * (high - low)
+}
+
 impl<const G: usize> EventMonitor<G> {
     /// Looks for events in the step just made, whose end has been projected and whose rates are known at both ends.
     ///
@@ -173,7 +183,7 @@ impl<const G: usize> EventMonitor<G> {
         let enclosing = enclosing([from, to], middle, [leaving, arriving]);
         let low = enclosing.into_iter().fold(f64::INFINITY, smaller);
         let high = enclosing.into_iter().fold(f64::NEG_INFINITY, larger);
-        if low > FAR * (high - low) {
+        if low > FAR * (high - low) || from == 0.0 && rises(&enclosing) {
             return false;
         }
         let quartic = |part: f64| {
@@ -281,5 +291,27 @@ impl<const G: usize> EventMonitor<G> {
             wrong = (part, near);
         }
         Course::WrongFromStart
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{enclosing, rises};
+
+    #[test]
+    fn a_guard_that_starts_at_zero_is_clear_where_it_rises_for_good() {
+        // Values at the end and in the middle, changes in a step at the rates of both ends.
+        let of = |guard: fn(f64) -> f64, slope: fn(f64) -> f64| {
+            rises(&enclosing([0.0, guard(1.0)], guard(0.5), [slope(0.0), slope(1.0)]))
+        };
+        assert!(of(|s| s, |_| 1.0));
+        assert!(of(|s| s + s * s, |s| 1.0 + 2.0 * s));
+        // It returns to zero, dips below it, touches it.
+        assert!(!of(|s| s * (1.0 - s), |s| 1.0 - 2.0 * s));
+        assert!(!of(|s| s * (s - 0.4) * (s - 0.6), |s| 3.0 * s * s - 2.0 * s + 0.24));
+        assert!(!of(|s| s * (s - 0.5) * (s - 0.5), |s| 3.0 * s * s - 2.0 * s + 0.25));
+        // At rest and falling.
+        assert!(!of(|_| 0.0, |_| 0.0));
+        assert!(!of(|s| -s, |_| -1.0));
     }
 }
