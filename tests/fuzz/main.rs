@@ -45,7 +45,7 @@ fn fresh(tally: &mut Tally, kind: Kind, count: u64) {
     }
 }
 
-/// The stages whose codes are among these: the digits behind `BG`.
+/// The stages whose codes are among these: the digits after `BG`.
 fn stages(codes: &BTreeSet<&str>) -> BTreeSet<String> {
     codes.iter().filter_map(|code| code.strip_prefix("BG")).map(|digits| digits[..2].to_owned()).collect()
 }

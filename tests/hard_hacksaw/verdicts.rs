@@ -13,7 +13,7 @@ const ENOUGH: u64 = 5000;
 /// Integrators that do not come to the end within these steps: eigenvalues of -2.5e6 1/s limit those of explicit ones.
 const TOO_COSTLY: &[(&str, &str)] = &[("hacksaw-offset", "dop853")];
 
-/// The case up to the first instant of its reference, or to the first behind the reversal of the torque.
+/// The case up to the first instant of its reference, or to the first after the reversal of the torque.
 fn short(case: Case) -> Case {
     let least = if case.name.starts_with("hacksaw-reversed") { REVERSAL } else { 0.0 };
     let end = case.instants.iter().copied().find(|t| *t > least).expect("an instant behind the reversal");

@@ -10,7 +10,7 @@ use bond_graph_tests::switching::cases;
 const TOLERANCES: [f64; 4] = [1e-4, 1e-6, 1e-8, 1e-10];
 /// An error up to this multiple of the tolerance, amplified, follows it.
 const FOLLOWS: f64 = 100.0;
-/// Errors below this are rounding: of times up to 50 s and of the states behind up to 20 events.
+/// Errors below this are rounding: of times up to 50 s and of the states after up to 20 events.
 const FLOOR: f64 = 3e-12;
 
 /// The largest errors of a case's event times by an integrator, s: at the tolerances, or with steps of h to h / 8.

@@ -98,7 +98,7 @@ impl Counts {
 }
 
 /// The names of all variables, in the order of their value references. Inputs and outputs keep theirs, then states; a parameter
-/// or state of a name that is taken gets its kind behind it, as `angle_parameter`.
+/// or state of a name that is taken gets its kind after it, as `angle_parameter`.
 pub(crate) fn names(description: &Description) -> Vec<String> {
     let counts = Counts::of(description);
     let mut taken = BTreeSet::from(["time".to_owned()]);

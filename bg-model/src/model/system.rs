@@ -19,7 +19,7 @@ use crate::model::scalar::Scalar;
 /// Inside a step the branches stay as the integrator hands them over, so that f is smooth there; the integrator
 /// locates the guard's sign change and then changes the branch.
 ///
-/// A system written by hand needs its rate only. What else it knows of itself it implements as a capability and hands
+/// A hand-written system needs its rate only. What else it knows of itself it implements as a capability and hands
 /// over as `Some(self)`; what it does not know is [`Absent`].
 pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`. `negative[k]` says that switch `k` is in the branch of its

@@ -53,7 +53,7 @@ const SHARES: [u64; 5] = [180, 20, 32, 1, 167];
 pub enum Input {
     /// The text of a macro call.
     Call(String),
-    /// A parameter file's bytes and the texts behind `--set`.
+    /// A parameter file's bytes and the texts after `--set`.
     Settings {
         /// The file.
         file: Vec<u8>,

@@ -28,7 +28,7 @@ pub fn seeds(workspace: &Path) -> io::Result<Vec<String>> {
     Ok(texts)
 }
 
-/// The kept inputs of a folder by file name: `*.bond` is a macro call, `*.toml` a parameter file, `*.set` one text behind
+/// The kept inputs of a folder by file name: `*.bond` is a macro call, `*.toml` a parameter file, `*.set` one text after
 /// `--set` a line.
 ///
 /// # Errors

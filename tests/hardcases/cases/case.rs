@@ -1,4 +1,4 @@
-//! A hard case: what is run, what it is held against, and what came of a run.
+//! A hard case: what is run, what it is held against, and the result of a run.
 //!
 //! In: a case, an integrator and a tolerance. Out: the error reached, the counts and a verdict, whatever the number of
 //! states. The error is taken at the end of the run, where a step ends; what the dense output gave at the instants before
@@ -73,7 +73,7 @@ pub enum Verdict {
     Unchecked,
     /// The limit of steps was reached.
     TooCostly,
-    /// The integrator needs a Taylor series that the problem, written by hand, does not have.
+    /// The integrator needs a Taylor series that the hand-written problem does not have.
     NoSeries,
     /// The run ended with this error.
     Failed(String),

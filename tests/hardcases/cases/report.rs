@@ -63,7 +63,7 @@ fn cells(row: &Row) -> [String; HEAD.len()] {
     ]
 }
 
-/// The rows as a table of text, with a `!` behind a wrong error of the dense output, and the errors that ended runs below it.
+/// The rows as a table of text, with a `!` after a wrong error of the dense output, and the errors that ended runs below it.
 #[must_use]
 pub fn table(rows: &[Row]) -> String {
     let lines: Vec<Vec<String>> =

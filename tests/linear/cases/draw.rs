@@ -207,7 +207,7 @@ impl Sketch {
         (text, of([value + TIME * &rate, rate]))
     }
 
-    /// A number, one number an axis or a symmetric matrix, all positive; as text with `unit` behind each number.
+    /// A number, one number an axis or a symmetric matrix, all positive; as text with `unit` after each number.
     fn positive(&mut self, size: usize, unit: &str) -> (String, DMatrix<f64>) {
         if size == 1 || self.rng.u32(..3) == 0 {
             let number = self.number();

@@ -1,4 +1,4 @@
-//! Switched problems written by hand.
+//! Hand-written switched problems.
 
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 

@@ -145,7 +145,7 @@ impl Blocks {
         targets.filter(|target| self.places.contains_key(target))
     }
 
-    /// A result of the routine, behind its blocks.
+    /// A result of the routine, after its blocks.
     pub(super) fn result(&self, result: &Operand, names: &Names) -> String {
         as_temporary(result).map_or_else(|| operand(result, names), |temporary| self.place(temporary))
     }

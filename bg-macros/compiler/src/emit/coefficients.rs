@@ -22,9 +22,9 @@ pub(super) struct Writer<'w, 'n> {
     pub(super) products: usize,
     /// The products written so far.
     pub(super) product: usize,
-    /// The places behind those of the products.
+    /// The places after those of the products.
     others: usize,
-    /// In a loop: where an iteration's places of products begin, and those behind the places of all products.
+    /// In a loop: where an iteration's places of products begin, and those after the places of all products.
     begins: Option<[String; 2]>,
 }
 
@@ -44,7 +44,7 @@ impl<'w, 'n> Writer<'w, 'n> {
         Self { names, changes, is_start, products, product: 0, others: 0, begins: None }
     }
 
-    /// How many numbers each order takes, behind all steps.
+    /// How many numbers each order takes, after all steps.
     pub(super) fn places(&self) -> usize {
         (2 * self.products + self.others).next_multiple_of(4)
     }

@@ -43,7 +43,7 @@ pub(super) fn parsed_each(values: impl IntoIterator<Item = String>) -> Vec<Token
     values.map(|value| value[..value.len() - 1].iter().cloned().collect()).collect()
 }
 
-/// The assignments of the routine, and its results behind them.
+/// The assignments of the routine, and after them its results.
 pub fn statements(routine: &Routine, names: &Names) -> (TokenStream, Vec<TokenStream>) {
     if !routine.is_long() {
         let results = routine.results.iter().map(|result| operand(result, names));

@@ -2,7 +2,7 @@
 //!
 //! In: the routine of the rates. Out: the body of `expand` of `Series`: its assignments once for the values at the start, and once, in
 //! a loop over the orders, for the coefficients. Products, quotients and functions need the coefficients of lower orders as
-//! well, which rows of a work table keep; see `bg_model::series`. What does not change has no coefficients behind the
+//! well, which rows of a work table keep; see `bg_model::series`. What does not change has no coefficients after the
 //! start: nothing is left of it in the loop.
 //!
 //! What iterations find is a number at the start only. A step of Newton's iteration on series gives the coefficient of an order

@@ -22,7 +22,7 @@ use crate::system::equations::solution::Solution;
 pub struct Jacobian {
     /// The expressions.
     pub pool: Pool,
-    /// The reactions that stand beside the states, each with the equation that gives it: rows and columns behind those of
+    /// The reactions that stand beside the states, each with the equation that gives it: rows and columns after those of
     /// the states.
     pub unknowns: Vec<Symbol>,
     /// The entries, row by row, in each row by column.
@@ -35,7 +35,7 @@ pub struct Jacobian {
 /// An entry that is not identically zero.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Entry {
-    /// The rate's state, or, behind the states, the unknown whose equation it is.
+    /// The rate's state, or, after the states, the unknown whose equation it is.
     pub row: usize,
     /// The state or the unknown that it is differentiated by.
     pub column: usize,

@@ -125,7 +125,7 @@ pub enum Substep {
     },
 }
 
-/// Plans the elimination for a Jacobian of `n` states and `unknowns` behind them with these places.
+/// Plans the elimination for a Jacobian of `n` states and `unknowns` after them with these places.
 #[must_use]
 pub fn plan(n: usize, unknowns: usize, places: &[(usize, usize)]) -> Elimination {
     let order = order::best(&Pattern::new(n + unknowns, places));

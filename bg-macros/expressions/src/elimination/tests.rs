@@ -87,7 +87,7 @@ fn steps_solve_the_system() {
     }
 }
 
-/// With unknowns z behind the states: (I - c f_x) y - c f_z z = b, r_x y + r_z z = 0.
+/// With unknowns z after the states: (I - c f_x) y - c f_z z = b, r_x y + r_z z = 0.
 #[test]
 fn unknowns_are_solved_for_beside_the_states() {
     for seed in 0..400 {

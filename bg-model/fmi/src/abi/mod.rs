@@ -74,7 +74,7 @@ impl Logger {
         match &self.log {
             // SAFETY: the host gave this function with this environment, for as long as the instance lives.
             Log::Three(Some(log)) => unsafe { log(self.environment, status, category.as_ptr(), message.as_ptr()) },
-            // SAFETY: as above; what comes behind the format is what the format asks for.
+            // SAFETY: as above; what comes after the format is what the format asks for.
             Log::Two(Some(log), name) => unsafe {
                 log(self.environment, name.as_ptr(), status, category.as_ptr(), c"%s".as_ptr(), message.as_ptr());
             },

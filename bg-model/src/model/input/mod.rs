@@ -130,7 +130,7 @@ impl Input {
 impl Input {
     /// The derivative with respect to time at time `t` (s), in the input's unit per s: [`Input::rate`] where that is
     /// known, else the slope at `t` of the parabola through three values of the closure, at `t` and up to
-    /// 3e-8 max(1, |t|) s behind it. It never asks for the time before `t`. A closure that changes within so short a
+    /// 3e-8 max(1, |t|) s after it. It never asks for the time before `t`. A closure that changes within so short a
     /// time, or jumps, should be given with its rate.
     pub fn slope<S: Scalar>(&self, t: S) -> S {
         match &self.law {
@@ -161,7 +161,7 @@ fn distance(t: f64) -> f64 {
     root(f64::EPSILON) * if size > 1.0 { size } else { 1.0 }
 }
 
-/// The derivative at `t` of the parabola through `value` at `t` and two times behind it: Newton's divided differences
+/// The derivative at `t` of the parabola through `value` at `t` and two times after it: Newton's divided differences
 /// at the times as rounded.
 fn parabola_slope(value: &dyn Fn(f64) -> f64, t: f64) -> f64 {
     let distance = distance(t);

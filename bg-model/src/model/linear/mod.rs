@@ -25,7 +25,7 @@ pub enum Sparsity {
     /// At these places only, with unknowns l beside the states that equations r(x, l) = 0 give: df/dx is
     /// f_x - f_l (r_l)^-1 r_x of the rates f(x, l).
     Bordered {
-        /// Row and column of every entry, in the order of storage: those of the unknowns and their equations are behind those
+        /// Row and column of every entry, in the order of storage: those of the unknowns and their equations are after those
         /// of the states.
         places: &'static [(u16, u16)],
         /// How many unknowns there are.

@@ -196,7 +196,7 @@ fn faults_say_what_and_when() {
     assert!(matches!(run(2.0, 1, &[]), Fault::BadInput(_)));
     assert!(matches!(run(2.0, 4, &[0.5, 0.25]), Fault::BadInput(_)));
     assert!(matches!(run(2.0, 4, &[2.0]), Fault::BadInput(_)));
-    // The rate at the end of a step is that at the start of the next one, so a step may end a little behind.
+    // The rate at the end of a step is that at the start of the next one, so a step may end a little later.
     let Fault::StepTooSmall { t, .. } = run(2.0, 4, &[0.5]) else { panic!("a rate that is no number") };
     assert!((t - 0.75).abs() < 1e-6, "{t}");
     let Fault::EventsAccumulate { switch: 0, t, .. } = run(0.5, 4, &[]) else { panic!("no motion is possible") };

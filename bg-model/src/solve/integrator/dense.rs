@@ -27,8 +27,8 @@ impl<const N: usize, const C: usize> Polynomial<N, C> {
         Self { coefficients: [[0.0; N]; C] }
     }
 
-    /// Sets the coefficients that follow from the ends of the step, and those behind them to what `write` writes: it gets the
-    /// coefficients of the ends and the count of the one to be written, from the first behind them.
+    /// Sets the coefficients that follow from the ends of the step, and those after them to what `write` writes: it gets the
+    /// coefficients of the ends and the count of the one to be written, from the first after them.
     pub fn set(
         &mut self,
         start: &Point<N>,

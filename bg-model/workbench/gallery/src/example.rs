@@ -15,7 +15,7 @@ pub struct Example {
     pub text: String,
     /// The output that is drawn: the first name in the text that stands in backticks.
     pub output: String,
-    /// What to try, behind `--`.
+    /// What to try, after `--`.
     pub arguments: Vec<String>,
 }
 

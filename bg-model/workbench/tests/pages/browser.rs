@@ -29,7 +29,7 @@ pub struct Visit {
     pub console: Vec<String>,
 }
 
-/// Opens a file with `fragment` behind `#` and waits until the page says that it is loaded.
+/// Opens a file with `fragment` after `#` and waits until the page says that it is loaded.
 pub fn visit(browser: &str, page: &Path, fragment: &str, arguments: &[&str]) -> Visit {
     let folder = tempfile::tempdir().expect("a folder for the browser's profile");
     let out = folder.path().join("document");

@@ -17,7 +17,7 @@ impl Emission<'_> {
         self.check(false, &quote!(&parameters.numbers()), &quote!(&[0.0; #unknowns]))
     }
 
-    /// The check in `start`, behind the assembly.
+    /// The check in `start`, after the assembly.
     pub(super) fn required_at_start(&self) -> Option<TokenStream> {
         self.check(true, &quote!(&numbers), &quote!(&unknowns))
     }

@@ -44,7 +44,7 @@ fn the_third_order_estimate_of_dop853_has_the_weight_of_a_hundredth() {
     }
 }
 
-/// A rate that sets in behind the last stage but the two at the end of the step is seen by the second estimate of BS5 only, and
+/// A rate that sets in after the last stage but the two at the end of the step is seen by the second estimate of BS5 only, and
 /// in full.
 #[test]
 fn the_late_estimate_of_bs5_counts_in_full() {

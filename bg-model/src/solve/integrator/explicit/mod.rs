@@ -53,7 +53,7 @@ pub type Row = &'static [(usize, f64)];
 /// The coefficients of a method.
 ///
 /// Stages are counted from 0, the rate at the start of the step. Stage [`Tableau::END`] is the rate at its end; what comes
-/// behind serves the dense output only.
+/// after serves the dense output only.
 pub trait Tableau {
     /// The method's name.
     const NAME: &'static str;

@@ -66,7 +66,7 @@ pub(super) struct Block<const N: usize> {
     places: Places,
     /// The entries of the Jacobian that are in B, each with its place there.
     sources: Vec<(usize, usize)>,
-    /// B, column by column; behind each column are zeros up to whole groups.
+    /// B, column by column; after each column are zeros up to whole groups.
     matrix: Vec<Lanes>,
     /// How it changes, per s.
     slope: Vec<Lanes>,

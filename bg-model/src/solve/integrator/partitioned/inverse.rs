@@ -49,7 +49,7 @@ macro_rules! in_blocks {
 
 pub(super) use in_blocks;
 
-/// The inverse, column by column; behind each column are zeros up to whole groups.
+/// The inverse, column by column; after each column are zeros up to whole groups.
 #[derive(Clone, Debug)]
 pub(super) struct Inverse {
     pub arch: Arch,
