@@ -10,7 +10,8 @@
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::Mechanism;
 use bg_model::run::{Request, Simulation, Trajectory};
-use bg_model::simulation::{Column, Recording, Samples};
+use bg_model::simulation::{Recording, Samples};
+use bg_workbench::compare::{Deviation, deviations};
 use bg_workbench::tables::table;
 use bond_graph_tests::models::double_pendulum::{
     RigidPendulum, RigidPendulumParameters, RodAngles, RodAnglesParameters,
@@ -114,17 +115,13 @@ impl Table {
     }
 }
 
-/// The largest difference of a value, over the largest value in its unit.
+/// The largest difference of a motion, over the largest value in its unit.
 fn distance(run: &Recording, reference: &Recording) -> f64 {
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let is_motion = |deviation: &Deviation| !deviation.unit.starts_with('N');
+    let found: Vec<Deviation> = deviations(run, reference).into_iter().filter(is_motion).collect();
     let size = |unit: &str| {
-        let of_unit = reference.columns.iter().filter(|column| column.unit == unit);
-        of_unit.map(|column| largest(&column.values)).fold(f64::MIN_POSITIVE, f64::max)
+        let of_unit = found.iter().filter(|deviation| deviation.unit == unit);
+        of_unit.map(|deviation| deviation.magnitude).fold(f64::MIN_POSITIVE, f64::max)
     };
-    let of_column = |(column, reference): (&Column, &Column)| {
-        let differences: Vec<f64> = column.values.iter().zip(&reference.values).map(|(a, b)| a - b).collect();
-        largest(&differences) / size(&reference.unit)
-    };
-    let is_motion = |(_, reference): &(&Column, &Column)| !reference.unit.starts_with('N');
-    run.columns.iter().zip(&reference.columns).filter(is_motion).map(of_column).fold(0.0, f64::max)
+    found.iter().map(|deviation| deviation.largest / size(&deviation.unit)).fold(0.0, f64::max)
 }

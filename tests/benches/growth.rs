@@ -35,19 +35,18 @@ const HEAD: [&str; 13] = [
 /// A kind of chain.
 struct Kind {
     name: &'static str,
-    /// Of its joints.
-    clauses: &'static str,
     /// Of the scene that is measured; none where the graph itself is.
     scene: Option<&'static str>,
     /// The axes about which its hinges turn, by turns.
     axes: &'static [char],
 }
 
-const COMPLIANT: &str = "stiffness 1e5; damping 10; tilt stiffness 1e3; tilt damping 1;";
+/// Of every joint; a scene may make it rigid.
+const JOINT: &str = "stiffness 1e5; damping 10; tilt stiffness 1e3; tilt damping 1;";
 const KINDS: [Kind; 3] = [
-    Kind { name: "compliant, in the plane", clauses: COMPLIANT, scene: Some("expect planar;"), axes: &['z'] },
-    Kind { name: "compliant, in space", clauses: COMPLIANT, scene: None, axes: &['y', 'z'] },
-    Kind { name: "rigid, in the plane", clauses: COMPLIANT, scene: Some("rigid joints; expect planar;"), axes: &['z'] },
+    Kind { name: "compliant, in the plane", scene: Some("expect planar;"), axes: &['z'] },
+    Kind { name: "compliant, in space", scene: None, axes: &['y', 'z'] },
+    Kind { name: "rigid, in the plane", scene: Some("rigid joints; expect planar;"), axes: &['z'] },
 ];
 
 fn main() {
@@ -112,28 +111,10 @@ fn measured(kind: &Kind, links: usize) -> [String; 13] {
     let program = PathBuf::from(FOLDER).join("target/release").join(&name);
     let output = Command::new(program).output().expect("the program that was built").stdout;
     let output = String::from_utf8(output).expect("numbers");
-    let mut numbers = output.split_whitespace().map(str::to_owned);
-    let mut next = || numbers.next().expect("seven numbers");
-    let [check_time, check_memory] = used(&check);
-    let [build_time, build_memory] = used(&build);
-    let (states, counts, times) = (next(), [next(), next(), next()], [next(), next(), next()]);
-    let [rate, jacobian, elimination] = counts;
-    let [rate_time, jacobian_time, elimination_time] = times;
-    [
-        kind.name.to_owned(),
-        links.to_string(),
-        states,
-        rate,
-        jacobian,
-        elimination,
-        rate_time,
-        jacobian_time,
-        elimination_time,
-        check_time,
-        check_memory,
-        build_time,
-        build_memory,
-    ]
+    let mut row = vec![kind.name.to_owned(), links.to_string()];
+    row.extend(output.split_whitespace().map(str::to_owned));
+    row.extend([used(&check), used(&build)].into_iter().flatten());
+    row.try_into().expect("a cell for each column")
 }
 
 /// CPU time, s, and the largest memory of a process, MB.
@@ -170,17 +151,17 @@ fn file(kind: &Kind, links: usize) -> String {
     format!("{}_{links}", name.replace(' ', "_"))
 }
 
-/// A program with a chain of links of 1 m and 1 kg, level at the start, that hangs on the ground by one end.
+/// A program with a chain of links of 1 m and 1 kg, level at the start, held by the ground at one end.
 fn program(kind: &Kind, links: usize) -> String {
     let mut parts = String::new();
     for link in 0..links {
         let held = if link == 0 { "ground.O".to_owned() } else { format!("link{}.right", link - 1) };
-        let (axis, clauses) = (kind.axes[link % kind.axes.len()], kind.clauses);
+        let axis = kind.axes[link % kind.axes.len()];
         writeln!(
             parts,
             "        body link{link} {{ mass 1; inertia [1e-3, 1 / 12, 1 / 12]; point left = [-0.5, 0, 0]; \
              point right = [0.5, 0, 0]; start left at [{link}, 0, 0]; }}\n        \
-             joint pin{link}: revolute {axis} ({held} -> link{link}.left) {{ {clauses} }}"
+             joint pin{link}: revolute {axis} ({held} -> link{link}.left) {{ {JOINT} }}"
         )
         .expect("a string");
     }
@@ -195,7 +176,7 @@ fn program(kind: &Kind, links: usize) -> String {
     )
 }
 
-/// The rest of each program: it prints states, operations and nanoseconds.
+/// The rest of each program: it prints states, counts and nanoseconds, in the order of the columns.
 const MEASURE: &str = r#"
 use std::hint::black_box;
 

@@ -52,14 +52,22 @@ pub(super) fn enclosing<S: Scalar>([from, to]: [S; 2], middle: S, [leaving, arri
     [from, leave, bend, arrive, to]
 }
 
-/// Whether the quartic with these Bernstein coefficients, of which the first is zero, rises from there on: its mean slope since the start
-/// keeps as far from zero as a clearance has to. That is a cubic with the coefficients below.
-fn rises(&[_, first, second, third, fourth]: &[f64; 5]) -> bool {
-    let slopes = [4.0 * first, 2.0 * second, 4.0 / 3.0 * third, fourth];
-    let smaller = |a: f64, b: f64| if b < a { b } else { a };
-    let low = slopes.into_iter().fold(f64::INFINITY, smaller);
-    let high = slopes.into_iter().fold(f64::NEG_INFINITY, larger);
+/// Whether a polynomial with these Bernstein coefficients is so far above zero that what it stands for needs no look.
+fn is_far(coefficients: &[f64]) -> bool {
+    let low = coefficients.iter().copied().fold(f64::INFINITY, smaller);
+    let high = coefficients.iter().copied().fold(f64::NEG_INFINITY, larger);
     low > FAR * (high - low)
+}
+
+/// Whether the quartic with these Bernstein coefficients, of which the first is zero, rises from there on: its mean slope since the start,
+/// a cubic, is far from zero.
+fn rises(&[_, first, second, third, fourth]: &[f64; 5]) -> bool {
+    is_far(&[4.0 * first, 2.0 * second, 4.0 / 3.0 * third, fourth])
+}
+
+/// The smaller number; `a` where `b` is none. Comparisons, not `f64::min`: its optimised form was seen to drop an end.
+fn smaller(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
 }
 
 impl<const G: usize> EventMonitor<G> {
@@ -178,12 +186,8 @@ impl<const G: usize> EventMonitor<G> {
         let (middle, to) = (side(middle), side(self.end.value[k]));
         let (leaving, arriving) = (h * side(self.start.slope[k]), h * side(self.end.slope[k]));
         let bulge = 16.0 * (middle - 0.5 * (from + to) - 0.125 * (leaving - arriving));
-        // Comparisons, not `f64::min`: its optimised form was seen to drop an end.
-        let smaller = |a: f64, b: f64| if b < a { b } else { a };
         let enclosing = enclosing([from, to], middle, [leaving, arriving]);
-        let low = enclosing.into_iter().fold(f64::INFINITY, smaller);
-        let high = enclosing.into_iter().fold(f64::NEG_INFINITY, larger);
-        if low > FAR * (high - low) || from == 0.0 && rises(&enclosing) {
+        if is_far(&enclosing) || from == 0.0 && rises(&enclosing) {
             return false;
         }
         let quartic = |part: f64| {
