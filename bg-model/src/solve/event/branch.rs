@@ -7,7 +7,7 @@ use super::guarded::Guarded;
 use super::{CERTAIN, EventMonitor, check_finite, clearance};
 use crate::model::reactions::Collision;
 use crate::model::system::{System, branches_by_sign};
-use crate::solve::integrator::{Method, is_finite};
+use crate::solve::integrator::{Method, Point, is_finite};
 use crate::solve::stepper::Stepper;
 
 /// Small steps, as parts of the next step: the first shows the guard's derivative, the others a guard whose derivative
@@ -154,8 +154,38 @@ impl<const G: usize> EventMonitor<G> {
         if !is_finite(&stepper.start.rate) {
             return *switches;
         }
+        if self.agree(stepper, switches, step) {
+            return [false; G];
+        }
         let signs = self.probe(stepper, switches, step);
         core::array::from_fn(|k| switches[k] && signs[k].is_some_and(|negative| negative != stepper.negative[k]))
+    }
+
+    /// Whether the guards of all `switches` beyond doubt move to the side of their present branches: after Euler's step as long as the first
+    /// small one they are there, and their changes at the rates at both of its ends are much alike. One rate in place of a method's.
+    fn agree<Sys, M, const N: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        switches: &[bool; G],
+        reach: f64,
+    ) -> bool
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let (start, h) = (stepper.start, small(PROBES[0], reach, stepper.start.t));
+        stepper.take_over(h, Point::at(start.t + h, start.x + start.rate * h));
+        stepper.evaluate_end();
+        let end = stepper.end;
+        let before = stepper.guards(start.t, &start.x);
+        let value = stepper.guards(end.t, &end.x);
+        let further = stepper.guards(end.t + h, &(end.x + end.rate * h));
+        let noise = self.noise(stepper, end.t, &end.x, &value);
+        (0..G).filter(|&k| switches[k]).all(|k| {
+            let side = |value: f64| clearance(value, stepper.negative[k]);
+            let (first, second) = (side(value[k] - before[k]), side(further[k] - value[k]));
+            side(value[k]) > CERTAIN * noise[k] && first < 2.0 * second && second < 2.0 * first
+        })
     }
 
     /// Whether the guards of `switches` are negative a little later under the present branches, by steps that are small
@@ -168,9 +198,7 @@ impl<const G: usize> EventMonitor<G> {
     ) -> [Option<bool>; G] {
         let mut signs = [None; G];
         for part in PROBES {
-            // Long enough to be seen in the time as well.
-            let h = (part * reach).max(1024.0 * f64::EPSILON * step.start().t.abs());
-            step.resize(h);
+            step.resize(small(part, reach, step.start().t));
             let end = *step.end();
             let value = step.guards(end.t, &end.x);
             let noise = self.noise(step, end.t, &end.x, &value);
@@ -185,4 +213,9 @@ impl<const G: usize> EventMonitor<G> {
         }
         signs
     }
+}
+
+/// The size (s) of a small step from time `t` (s): a part of `reach` (s), and long enough to be seen in the time as well.
+fn small(part: f64, reach: f64, t: f64) -> f64 {
+    (part * reach).max(1024.0 * f64::EPSILON * t.abs())
 }

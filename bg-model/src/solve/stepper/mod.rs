@@ -67,7 +67,6 @@ where
     }
 
     /// Takes over an attempt of size `h` (s) to `end`, which was made elsewhere. Its method is to know its stages.
-    #[cfg(feature = "std")]
     pub fn take_over(&mut self, h: f64, end: Point<N>) {
         (self.h, self.end, self.dense_is_ready) = (h, end, false);
     }
