@@ -58,8 +58,8 @@ fn errors_and_counts_of_the_paper_are_pinned() {
             (Integrator::Cfmr7, 1e-5, "2.2e-7", [17385, 8, 158_939, 0, 0, 0, 60]),
             (Integrator::Nystrom, 1e-5, "6.2e-8", [17249, 22, 162_748, 0, 0, 0, 60]),
             // Nystrom makes most of these steps.
-            (Integrator::Auto, 1e-3, "3.3e-5", [9493, 71, 93_750, 0, 16, 24, 60]),
-            (Integrator::Auto, 1e-6, "3.7e-7", [15374, 139, 190_812, 266, 14, 21, 60]),
+            (Integrator::Auto, 1e-3, "1.2e-4", [9513, 71, 94_098, 0, 16, 24, 60]),
+            (Integrator::Auto, 1e-6, "3.7e-7", [15310, 117, 190_317, 574, 14, 21, 60]),
             (Integrator::Taylor, 1e-8, "2.0e-12", [12109, 60, 24466, 193_760, 0, 0, 60]),
         ],
     );
@@ -67,7 +67,14 @@ fn errors_and_counts_of_the_paper_are_pinned() {
 
 #[test]
 fn errors_and_counts_with_rigid_joints_are_pinned() {
-    pinned("rigid", [(Integrator::Auto, 1e-6, "2.1e-6", [1541, 284, 26413, 84, 4, 12, 96])]);
+    pinned(
+        "rigid",
+        [
+            // CFMR7osc makes these steps: where events are many, it matters that its attempts to locate one have fewer rates.
+            (Integrator::Auto, 1e-5, "2.0e-5", [1456, 259, 19193, 108, 4, 12, 96]),
+            (Integrator::Auto, 1e-6, "2.1e-6", [1541, 284, 26413, 84, 4, 12, 96]),
+        ],
+    );
 }
 
 #[test]

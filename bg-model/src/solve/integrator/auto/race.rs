@@ -21,6 +21,8 @@ const BEGINNING: u32 = 8;
 const LAP: u32 = 16;
 /// The steps after a restart that do not count.
 const AFTER: u32 = 1;
+/// The attempts by which an event is located. Of a series, which serves all of them, each has one rate.
+const LOCATING: f64 = 3.0;
 /// The rounds of a race.
 const ROUNDS: usize = 3;
 /// What is left of a step's weight after each further one, where the speed at a place is asked for.
@@ -130,11 +132,6 @@ impl Stretch {
     fn faded(self) -> Self {
         Self { way: FADING * self.way, rates: FADING * self.rates, ..self }
     }
-
-    /// How far they came with each rate, s.
-    fn speed(self) -> f64 {
-        self.way / self.rates
-    }
 }
 
 /// The explicit methods, one of which makes the steps.
@@ -177,6 +174,10 @@ pub(super) struct Race<const N: usize> {
     skipped: u32,
     /// The rates of the attempts since the last accepted step.
     pending: f64,
+    /// How far the run has come, s, with how many events, and whether a step has been accepted since the last one.
+    way: f64,
+    events: u32,
+    is_under_way: bool,
     /// The accepted steps until the next race.
     rest: u32,
     /// The step under way, s.
@@ -211,6 +212,9 @@ impl<const N: usize> Race<N> {
             recent: Stretch::default(),
             skipped: BEGINNING,
             pending: 0.0,
+            way: 0.0,
+            events: 0,
+            is_under_way: false,
             rest: REST[0],
             h: 0.0,
         }
@@ -256,6 +260,20 @@ impl<const N: usize> Race<N> {
         }
     }
 
+    /// How far the present method comes with each rate, s, by these steps, the share of events in the whole run included.
+    fn speed(&self, Stretch { way, rates, .. }: Stretch) -> f64 {
+        way / (rates + way * self.of_events(self.runner))
+    }
+
+    /// The rates that this method needs to locate the events of a second, of which there were as many in the run so far.
+    fn of_events(&self, runner: Runner) -> f64 {
+        if self.events == 0 {
+            0.0
+        } else {
+            LOCATING * self.of_attempt(runner).unwrap_or(1.0) * f64::from(self.events) / self.way
+        }
+    }
+
     /// Passes on where a lap or a rest is over. Who has promised to be ahead takes part.
     fn turn(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
         let Some(round) = self.round else {
@@ -276,7 +294,7 @@ impl<const N: usize> Race<N> {
             return;
         }
         let (runner, ahead) = (self.runner as usize, self.ahead as usize);
-        self.speeds[runner][round] = self.counted.speed();
+        self.speeds[runner][round] = self.speed(self.counted);
         self.is_in[runner] &= runner == ahead || self.speeds[runner][round] > self.speeds[ahead][round];
         // The one that was ahead begins each round.
         let is_next = |next: &Runner| *next != self.ahead && (runner == ahead || *next as usize > runner);
@@ -303,8 +321,12 @@ impl<const N: usize> Race<N> {
             if runner == self.ahead || self.promises[runner as usize] != Promise::None {
                 continue;
             }
-            if let Some(price) = self.price(runner, flow, scale) {
-                let error = self.error(runner, flow, start, price * self.recent.speed(), scale);
+            // What the present method needs for a second, less the share of events: none is left for the steps of one that they cost more.
+            let rates = 1.0 / self.speed(self.recent) - self.of_events(runner);
+            if rates > 0.0
+                && let Some(price) = self.price(runner, flow, scale)
+            {
+                let error = self.error(runner, flow, start, price / rates, scale);
                 self.promises[runner as usize] = Promise::of(error);
             }
         }
@@ -392,8 +414,9 @@ impl<const N: usize> Method<N> for Race<N> {
     }
 
     fn advance(&mut self) {
-        self.is_fresh = true;
+        (self.is_fresh, self.is_under_way) = (true, true);
         self.steps += 1;
+        self.way += self.h;
         let rates = core::mem::take(&mut self.pending) + self.rates()[1];
         self.last = Stretch::default();
         if self.skipped == 0 {
@@ -405,10 +428,11 @@ impl<const N: usize> Method<N> for Race<N> {
         present!((&mut) self, method => method.advance());
     }
 
-    /// The steps around an event do not count: it has cut the last one, and been located by attempts at it. Where that happens too
-    /// often for a race, there is none.
+    /// The steps around an event do not count: it has cut the last one, and been located by attempts at it; these count by what is usual.
+    /// Where that happens too often for a race, there is none.
     fn restart(&mut self) {
         present!((&mut) self, method => method.restart());
+        self.events += u32::from(core::mem::take(&mut self.is_under_way));
         let last = core::mem::take(&mut self.last);
         self.counted = self.counted.without(last);
         self.recent = self.recent.without(last);
