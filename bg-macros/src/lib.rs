@@ -700,6 +700,7 @@ use proc_macro::TokenStream;
 /// | `rigid joints;`, `rigid { a, b }` | all joints, or these, are [rigid](#rigid-joints) |
 /// | `all reactions;` | every momentum and position of a body stays a state, and every direction of a rigid joint has a reaction that is solved for in each rate. Without it, where that takes fewer operations, momenta and positions that rigid joints determine are expressions of the others, and rates need the reactions of joints that close loops only; outputs show all of them, with the same values |
 /// | `expect independent speeds;` | an error (BG0611), with the reason, where that has not been done |
+/// | `dependent rod;`, `dependent { coupler, rocker }` | the orientations of these bodies follow from the others by [loops in closed form](#loops-in-closed-form), also where no bounds prove it for all poses; an error (BG0613) where no loop gives them |
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
 /// | `expect integral causality;` | an error (BG0403) where a storage is in [derivative causality](#derivative-causality) |
 /// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |
@@ -779,13 +780,50 @@ use proc_macro::TokenStream;
 /// | parameters folded | nothing: a parameter that is not tuned is its default. A switch whose guard has become a number is decided |
 /// | constant states | that the rates of all of them, and what `project` gives them, vanish or stay while all of them have their start values: the greatest such set, found by dropping what does not hold until nothing does. By induction in time they keep their values. A start value that depends on a `guess` is not taken for constant |
 /// | equal states | that states with the same start value up to sign have the same rate up to sign, while all the equalities hold: classes are split until none splits |
-/// | states of joints expressed | that a rigid joint determines the momentum of a body and its position, or two bodies turn alike by it: its row is solved for them, with a pivot that cannot vanish, and no rate needs its reaction. Not done where velocities at the start need not fit, where rows that close loops may hold all that is left, where an output shows a reaction that several joints may share, where the scene says `all reactions;`, or where rates would take more operations: the report then says which |
+/// | states of joints expressed | that a rigid joint determines the momentum of a body and its position, or two bodies turn alike by it, or a [loop](#loops-in-closed-form) gives the orientation and the momentum of a link: its row is solved for them, with a pivot that cannot vanish, and no rate needs its reaction. Not done where velocities at the start need not fit, where rows that close loops may hold all that is left, where an output shows a reaction that several joints may share, where the scene says `all reactions;`, or where rates would take more operations: the report then says which |
 /// | reactions solved | nothing: this is where the multipliers of rigid joints are solved for, on what is left |
 /// | affine states | that the rate of a displacement or integral is a combination, with fixed numbers, of the rates of other displacements, integrals, positions and orientations: the difference vanishes as a polynomial. It then is its start value plus what the others have changed |
 /// | unwatched states | that no output depends on it, nor the rate, projection or switch of anything that an output depends on |
 ///
 /// Operations are those of the rate function that would be generated at that point; before the reactions are solved,
 /// these are unknowns there and cost nothing.
+///
+/// ## Loops in closed form
+///
+/// A joint that closes a loop of links in the plane leaves rows that no other joint needs: a slide or a slot one, a pin two. They give the
+/// orientation and the momentum of a link as expressions of the others, by a square root: of the connecting rod of a slider-crank, with a pin
+/// those of two links, the coupler and the rocker of a four-bar. A slider-crank is then left with three states, those of its crank, and rates
+/// take neither reactions nor projections. On which of its two sides such a loop is assembled, the start pose says.
+///
+/// The root is zero where the link could turn either way: a rod perpendicular to its slide, a coupler and a rocker in line. So this is done
+/// where bounds of the lengths prove that no pose comes near it, as those of a crank that is shorter than its rod, and where a rate with its
+/// part of a projection takes fewer operations. Lengths have to be numbers for that, or parameters with ranges that leave no doubt. Where you know what
+/// bounds do not show, say so in the scene: `dependent rod;`. A run that comes to such a pose all the same ends with an error that names
+/// the joint.
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// bond_graph! {
+///     /// A crank, a connecting rod and a piston.
+///     graph Engine {
+///         param torque: N*m = 3;
+///         param rod: m = 0.3, above 0;
+///         ground { point O = [0, 0, 0]; }
+///         body crank { mass 2; inertia [0.02, 0.02, 0.02]; point pin = [0.1, 0, 0]; start at [0, 0, 0]; }
+///         body link { mass 1; inertia [0.01, 0.01, 0.01]; point low = [-rod / 2, 0, 0]; point high = [rod / 2, 0, 0]; start low at [0.1, 0, 0]; }
+///         body piston { mass 0.5; inertia [0.01, 0.01, 0.01]; start at [0.1 + rod, 0, 0]; }
+///         joint main: revolute z (ground.O -> crank) { rigid; }
+///         joint big_end: revolute z (crank.pin -> link.low) { rigid; }
+///         joint small_end: revolute z (link.high -> piston) { rigid; }
+///         joint bore: prismatic x (ground.O -> piston) { rigid; }
+///         drive starter on main torque = torque;
+///         observe { angle: rad = crank.angle; x: m = piston.position.x; side: N = bore.force.y; }
+///         scenes only;
+///         scene AnyRod { dependent link; expect states = 3; }
+///         scene Engine { tune { torque } expect states = 3; }
+///     }
+/// }
+/// ```
 ///
 /// What a scene does not do:
 ///
@@ -1191,6 +1229,8 @@ use proc_macro::TokenStream;
 /// | BG0609 | `scenes only` in a graph without a scene |
 /// | BG0610 | with `scenes only`: a scene that adjusts what the first one does not |
 /// | BG0611 | with `expect independent speeds`: a scene that keeps the reactions of all rigid joints |
+/// | BG0612 | no body of this name to be `dependent` |
+/// | BG0613 | a `dependent` body whose orientation no loop gives |
 /// | **values** | |
 /// | BG0701 | a number that no physics allows, such as a mass of 0 |
 /// | BG0702 | a matrix that no physics allows |

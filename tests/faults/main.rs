@@ -233,7 +233,7 @@ const MORE: [(&str, &str); 32] = [
 ];
 
 /// A mass on a spring, with a place for scenes.
-const SCENES: [(&str, &str); 10] = [
+const SCENES: [(&str, &str); 12] = [
     (
         "BG0601",
         "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene A { observe { m.p } } scene ▸A { observe { j.flow } }",
@@ -262,6 +262,13 @@ const SCENES: [(&str, &str); 10] = [
         "gravity [1, 0, 0]; ground { point O = [0, 0, 0]; } body rod { sphere radius 1; density 1; start at [0, 1, 0]; point low = [0, -1, 0]; }\n\
          joint pin: revolute z (ground.O -> rod.low) { rigid; }\n\
          scene A { all reactions; expect ▸independent speeds; }",
+    ),
+    ("BG0612", "body rod { sphere radius 1; density 1; }\nscene A { dependent ▸rood; }"),
+    (
+        "BG0613",
+        "gravity [0, 1, 0]; ground { point O = [0, 0, 0]; } body rod { sphere radius 1; density 1; start at [1, 0, 0]; point low = [-1, 0, 0]; }\n\
+         joint pin: revolute z (ground.O -> rod.low) { rigid; }\n\
+         scene A { dependent ▸rod; }",
     ),
 ];
 

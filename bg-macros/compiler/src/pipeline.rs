@@ -172,7 +172,7 @@ fn reduced(variant: &Variant, mut equations: StateEquations) -> Staged<(StateEqu
         reduce::solve_reactions(&mut equations);
         return Ok((equations, None));
     };
-    let wanted = expectation::wanted(scene, &equations.parameters)?;
+    let wanted = expectation::wanted(scene, &equations)?;
     let (mut equations, report) = reduce::for_scene(equations, &wanted, &mut program::rate_operations);
     expectation::check(scene, &report)?;
     equations.requirements.decide(&equations.parameters)?;

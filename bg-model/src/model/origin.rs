@@ -29,6 +29,9 @@ impl Origin {
             "algebraic loop" => {
                 "Newton's iteration finds no solution of these laws there: they may have none, or not be smooth at it"
             }
+            "closed loop" => {
+                "the mechanism comes to a pose there in which a dependent body may turn either way: leave it out of `dependent`"
+            }
             _ => "keep what its law divides by, or takes a root, power or logarithm of, in range",
         }
     }

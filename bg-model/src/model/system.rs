@@ -192,6 +192,12 @@ pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: Syst
         Vec::new()
     }
 
+    /// What the start pose decides for all of a run: for each row that closes a loop whether it takes part, 1 or 0; for each loop that is
+    /// closed by a root on which side of zero this is, 1 or -1.
+    fn decided(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// The kinetic energy that the impulses of the rigid joints take at the start, J, not negative: 0 without
     /// `start impulse;`, and where the start velocities fit. The energies of a run count from after the impulses.
     ///

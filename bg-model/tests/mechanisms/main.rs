@@ -2,6 +2,7 @@
 
 mod all_reactions;
 mod bricard;
+mod closed_loops;
 mod immobile;
 mod loops;
 mod orifice;

@@ -169,6 +169,7 @@ fn scene(rng: &mut Rng, index: usize, bodies: usize) -> String {
     clauses.push(clause(rng, 3, &["rigid joints;", "rigid { pin0 }"]));
     clauses.push(clause(rng, 4, &["without { coil0 }", "without { act0 }", "without { pin0 }", "without { seat0 }"]));
     clauses.push(clause(rng, 4, &["angles;"]));
+    clauses.push(clause(rng, 8, &["dependent b0;", "dependent { b0, b1 }"]));
     clauses.push(clause(rng, 8, &["expect planar;", "expect states = 7;"]));
     format!("scene Scene{index} {{ {} }}", clauses.join(" "))
 }

@@ -87,7 +87,7 @@ impl Emission<'_> {
         let doc = &self.model.derived.causal.graph.docs;
         let picture = picture::text(self.model);
         let tables = documentation::tables(self.model, costs);
-        let (table_fields, kept, p) = (&constants.fields, self.shared().field(), &self.shape.p);
+        let (table_fields, decided, p) = (&constants.fields, self.decided().fields(), &self.shape.p);
         // The empty lines end a paragraph and HTML; rustdoc drops those inside a text at its ends.
         quote! {
             #[doc = #doc]
@@ -99,7 +99,7 @@ impl Emission<'_> {
             pub struct #name<#scalar: ::bg_model::scalar::Scalar = ::core::primitive::f64> {
                 #fields
                 values: [#scalar; #p],
-                #kept
+                #decided
                 #table_fields
             }
         }
@@ -142,11 +142,12 @@ impl Emission<'_> {
         let input_value = has_inputs.then(|| quote!(inputs,));
         let input_pass = has_inputs.then(|| quote!(, inputs));
         let (starting, required) = (self.starting(), self.required());
-        let shared = self.shared();
-        let (kept_argument, kept_value) = (shared.owned(), shared.value());
+        let decided = self.decided();
+        let (decided_arguments, decided_values) = (decided.owned(), decided.values());
         let construction = self.construction(has_inputs);
-        let (pose, reactions) = (self.pose(), self.reactions());
-        let (input_copied, kept_copied) = (has_inputs.then(|| quote!(inputs: first.inputs.clone(),)), shared.copied());
+        let (pose, reactions, sides) = (self.pose(), self.reactions(), self.sides_of_roots());
+        let input_copied = has_inputs.then(|| quote!(inputs: first.inputs.clone(),));
+        let decided_copied = decided.copied();
         let Tables { values, functions, lets, moved, .. } = tables;
         let Shape { n, g, m, p } = &self.shape;
         quote! {
@@ -200,9 +201,9 @@ impl Emission<'_> {
                     #construction
                 }
 
-                fn made(parameters: Parameters, values: [S; #p] #input_argument #kept_argument) -> Self {
+                fn made(parameters: Parameters, values: [S; #p] #input_argument #decided_arguments) -> Self {
                     #lets
-                    Self { parameters, values, #input_value #kept_value #values }
+                    Self { parameters, values, #input_value #decided_values #values }
                 }
 
                 /// The model each of whose numbers `of` makes of those of several.
@@ -214,7 +215,7 @@ impl Emission<'_> {
                         parameters: first.parameters.clone(),
                         values: joined(models, |model| &model.values, of),
                         #input_copied
-                        #kept_copied
+                        #decided_copied
                         #values
                     }
                 }
@@ -233,6 +234,8 @@ impl Emission<'_> {
                 #pose
 
                 #reactions
+
+                #sides
             }
         }
     }

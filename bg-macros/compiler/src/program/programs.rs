@@ -94,6 +94,8 @@ pub struct Starting {
     pub gaps: Program<1>,
     /// The start state.
     pub start_state: Program<1>,
+    /// What the sides of roots have the signs of, where there are any.
+    pub sides: Option<Program<1>>,
 }
 
 /// Schedules all functions of a model. The pools gain nodes of parameters and numbers.
@@ -214,6 +216,7 @@ fn starting(equations: &mut StateEquations) -> Starting {
         guesses: alone(pool, "guesses", &equations.guesses),
         gaps: alone(pool, "gaps", &gaps),
         start_state: alone(pool, "start_state", &starts),
+        sides: (!equations.sides.is_empty()).then(|| alone(pool, "sides", &equations.sides)),
     }
 }
 
@@ -264,9 +267,8 @@ impl SecondOrderPrograms {
 
 impl Starting {
     /// All of them.
-    #[must_use]
-    pub fn programs(&self) -> [&Program<1>; 3] {
-        [&self.guesses, &self.gaps, &self.start_state]
+    pub fn programs(&self) -> impl Iterator<Item = &Program<1>> {
+        [&self.guesses, &self.gaps, &self.start_state].into_iter().chain(&self.sides)
     }
 }
 

@@ -111,6 +111,7 @@ fn leaf(symbol: Symbol, solution: &Solution) -> Option<(u32, u32)> {
         Symbol::Input(index) => Some((4, index)),
         Symbol::Slope(index) => Some((5, index)),
         Symbol::Found(index) => Some((11, index)),
+        Symbol::Side(index) => Some((12, index)),
         Symbol::Multiplier(_) => solution.row(symbol).map(|row| (10, count(row))),
         Symbol::Unknown(_)
         | Symbol::Law(_)

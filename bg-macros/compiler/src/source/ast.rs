@@ -466,6 +466,8 @@ pub struct Scene {
     pub angles: bool,
     /// `all reactions;`: what rigid joints determine of bodies stays in the states, with a reaction for each row of each joint.
     pub all_reactions: bool,
+    /// `dependent { rod }`: bodies of which loops give the orientations.
+    pub dependent: Vec<Name>,
     /// `expect planar;`, `expect states = 29;`, `expect independent speeds;`, `expect integral causality;`
     pub expect: Vec<Expectation>,
 }

@@ -342,6 +342,9 @@ impl Display for Scene {
             Rigid::All(_) => entries.push("rigid joints;".into()),
             Rigid::Some(names) => entries.push(format!("rigid {}", list(names, ", "))),
         }
+        if !self.dependent.is_empty() {
+            entries.push(format!("dependent {}", list(&self.dependent, ", ")));
+        }
         entries.extend(self.all_reactions.then(|| "all reactions;".into()));
         entries.extend(self.angles.then(|| "angles;".into()));
         entries.extend(self.expect.iter().map(Expectation::to_string));

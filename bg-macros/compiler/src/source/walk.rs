@@ -203,7 +203,7 @@ fn of_scene(scene: &mut Scene, each: &mut dyn FnMut(Met)) {
         Tune::Only(names) | Tune::AllBut(names) => Some(names),
     };
     let rigid = if let Rigid::Some(names) = &mut scene.rigid { Some(names) } else { None };
-    let lists = [tuned, Some(&mut scene.without), rigid];
+    let lists = [tuned, Some(&mut scene.without), rigid, Some(&mut scene.dependent)];
     lists.into_iter().flatten().flatten().for_each(|name| each(Met::Named(name)));
 }
 

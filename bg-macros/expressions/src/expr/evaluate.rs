@@ -27,6 +27,8 @@ pub struct Environment<'a> {
     pub found: &'a [f64],
     /// Weights of results.
     pub weights: &'a [f64],
+    /// On which side of zero each root is by which a loop is closed; 1 for those that are not here.
+    pub sides: &'a [f64],
     /// Whether each switch's guard is below zero.
     pub negative: &'a [bool],
 }
@@ -45,6 +47,7 @@ impl Environment<'_> {
             Symbol::Found(index) => self.found[index as usize],
             Symbol::Weight(index) => self.weights[index as usize],
             Symbol::Kept(_) => 1.0,
+            Symbol::Side(index) => self.sides.get(index as usize).copied().unwrap_or(1.0),
             Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Unsolved(_) => {
                 panic!("no value of {symbol:?}")
             }

@@ -4,6 +4,7 @@
 //! their derivatives, antiderivatives, values, texts and identities.
 
 mod antiderivative;
+mod bounds;
 mod calculus;
 mod circle;
 mod evaluate;
@@ -22,6 +23,7 @@ mod sum;
 mod text;
 
 pub use antiderivative::antiderivative;
+pub use bounds::{Bounds, bounds};
 pub use calculus::{derivative, gradient, partial};
 pub use circle::Circles;
 pub use evaluate::{Environment, apply, evaluate};

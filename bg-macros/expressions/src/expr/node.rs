@@ -29,6 +29,8 @@ pub enum Symbol {
     Multiplier(u32),
     /// Whether a row of the rigid joints takes part, 1 or 0: one that follows from the others does not. Known before a run.
     Kept(u32),
+    /// On which side of zero a root is by which a loop is closed, 1 or -1. Known before a run.
+    Side(u32),
     /// A bond variable or state whose equation is not solved yet.
     Unsolved(u32),
     /// What an iteration has found for a bond variable, nearly its value. It has no derivatives: the last step of the iteration,

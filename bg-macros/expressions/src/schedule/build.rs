@@ -42,7 +42,11 @@ impl Sweep<'_, '_> {
         let fixed = Value { coefficient: id, core: ONE };
         match node {
             Node::Number(_) => fixed,
-            Node::Symbol(Symbol::Parameter(_) | Symbol::Kept(_)) if self.parameters == Parameters::Static => fixed,
+            Node::Symbol(Symbol::Parameter(_) | Symbol::Kept(_) | Symbol::Side(_))
+                if self.parameters == Parameters::Static =>
+            {
+                fixed
+            }
             Node::Symbol(symbol) => {
                 Value { coefficient: self.statics.one, core: self.graph.cores.intern(Core::Symbol(*symbol)) }
             }

@@ -46,6 +46,8 @@ pub struct Moment<'a> {
     pub reactions: &'a [f64],
     /// What has been found for the unknowns of algebraic loops.
     pub found: &'a [f64],
+    /// On which sides of zero the roots are by which loops are closed, 1 or -1.
+    pub sides: &'a [f64],
 }
 
 impl Tape {
@@ -99,6 +101,7 @@ impl Reader<'_> {
             }
             10 => moment.reactions[self.index()],
             11 => moment.found[self.index()],
+            12 => moment.sides[self.index()],
             other => unreachable!("a tape has no operation {other}"),
         })
     }
@@ -208,6 +211,7 @@ mod tests {
             negative: &[false, true],
             reactions: &[],
             found: &[],
+            sides: &[-1.0],
         };
         let mut values = Vec::new();
         tape.evaluate(&moment, &mut values);

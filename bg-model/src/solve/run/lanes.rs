@@ -38,7 +38,8 @@ pub enum LaneError {
 ///
 /// They are made one after the other where that is not possible: on other machines, by another method than those of
 /// [`Integrator::is_for_lanes`](crate::integrator::Integrator::is_for_lanes), with a sample at each step, at relative tolerances up to 1e-10,
-/// of models with an input that changes, with an iteration in their rate, or of more than some 400 operations.
+/// of models with an input that changes, with an iteration in their rate, or of more than some 400 operations; and those that close a loop
+/// on another side than the first, or whose joints hold another motion twice.
 pub fn in_lanes<Me: Mechanism>(
     model: &Me,
     request: &Request,
@@ -107,6 +108,11 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
             Some((model, start, method.clone()))
         };
         let mut own: Vec<Option<(Mo, SVector<f64, N>, AnyMethod<N>)>> = self.values.iter().map(made).collect();
+        // What a start pose decides is one number for all lanes.
+        let decided = own.iter().flatten().next().map(|(model, ..)| model.decided());
+        for own in &mut own {
+            *own = own.take().filter(|(model, ..)| Some(model.decided()) == decided);
+        }
         let jobs = own.iter_mut().zip(self.values).enumerate().filter_map(|(number, (own, values))| {
             let (model, start, method) = own.as_mut()?;
             let model = &*model;

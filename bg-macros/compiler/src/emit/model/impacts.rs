@@ -26,7 +26,7 @@ impl Emission<'_> {
         let (moved, integrals) = (states(&impacts.moves), states(&impacts.integrals));
         let rigid = Literal::usize_unsuffixed(impacts.rigid.len());
         let closing = closing(&impacts.rigid);
-        let kept = self.shared().kept();
+        let kept = self.kept();
         let (body, entries) = self.running(routine, &format_ident!("impact_constants"));
         Some(quote! {
             impl<S: Scalar> ::bg_model::capability::Impacts<S, #n, #g> for Model<S> {

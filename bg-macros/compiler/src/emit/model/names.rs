@@ -51,6 +51,10 @@ impl Emission<'_> {
                 let (name, index) = (self.symbol_name(symbol), Literal::u32_unsuffixed(index));
                 Some(quote!(let #name = S::from_f64(kept[#index]);))
             }
+            Symbol::Side(index) => {
+                let (name, index) = (self.symbol_name(symbol), Literal::u32_unsuffixed(index));
+                Some(quote!(let #name = S::from_f64(sides[#index]);))
+            }
             _ => None,
         })
     }
@@ -131,6 +135,7 @@ impl Emission<'_> {
             Symbol::Input(index) => format_ident!("u_{}", input(index)),
             Symbol::Slope(index) => format_ident!("slope_{}", input(index)),
             Symbol::Kept(index) => format_ident!("kept_{index}"),
+            Symbol::Side(index) => format_ident!("side_{index}"),
             _ => unreachable!("{symbol:?} is no variable"),
         }
     }
@@ -171,7 +176,7 @@ fn entry(array: &str, index: u32) -> String {
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
-    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner at first_product next_product reactions kept found weights by_state by_constants \
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner at first_product next_product reactions kept sides found weights by_state by_constants \
         DESCRIPTION Some None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {

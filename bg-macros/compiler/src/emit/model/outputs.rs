@@ -14,7 +14,7 @@ impl Emission<'_> {
         let Shape { n, g, m, .. } = &self.shape;
         let (start, started) = self.start();
         let (outputs, stored_energy, powers) = (self.outputs(), self.stored_energy(), self.powers());
-        let (shown, redundant) = (self.shown(), self.redundant());
+        let (shown, redundant, decided) = (self.shown(), self.redundant(), self.decided().handed_over());
         let reversed = self.model.programs.reversed.as_ref();
         let reversed = reversed.map(|_| accessor("reversed", &quote!(Reversed<S, #n, #g, #m>), &quote!(Some(self))));
         quote! {
@@ -25,6 +25,7 @@ impl Emission<'_> {
                 }
                 #start
                 #redundant
+                #decided
                 #outputs
                 #stored_energy
                 #powers
@@ -52,6 +53,7 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let (reactions, values) = self.shown_reactions();
         let (iterated, found) = self.shown_found();
+        let sides = if self.model.equations.sides.is_empty() { quote!(&[]) } else { quote!(&self.sides) };
         let inputs: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         quote! {
             fn shown(
@@ -71,6 +73,7 @@ impl Emission<'_> {
                         negative,
                         reactions: #values,
                         found: #found,
+                        sides: #sides,
                     },
                     values,
                 );

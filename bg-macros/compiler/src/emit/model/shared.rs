@@ -1,58 +1,104 @@
-//! Reactions that joints share: of a model whose joints close loops, which of its rows are kept, and reactions of least norm.
+//! Loops: which rows of the joints that close them are kept, on which side they are closed, and reactions of least norm.
 //!
-//! In: held motions with numbers of their own. Out: the field `kept` with its value, what functions of constants take for
-//! it, and the reactions that outputs read. Nothing for other models.
+//! In: held motions with numbers of their own, sides of roots. Out: the fields `kept` and `sides` with their values, what functions of
+//! constants take for them, and the reactions that outputs read. Nothing for other models.
 
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
 
 use super::start::lifted;
 use super::{Emission, Shape};
 use crate::system::equations::Slip;
 
-/// How many rows may follow from others.
-pub(super) struct Shared {
-    rows: usize,
+/// What the start pose decides for a run, each an array of numbers of this many places: which rows are kept, on which sides roots are.
+pub(super) struct Decided {
+    arrays: Vec<(Ident, usize)>,
 }
 
-impl Shared {
-    fn where_any(&self, tokens: impl FnOnce(usize) -> TokenStream) -> Option<TokenStream> {
-        (self.rows > 0).then(|| tokens(self.rows))
+impl Decided {
+    fn each(&self, tokens: impl Fn(&Ident, usize) -> TokenStream) -> TokenStream {
+        self.arrays.iter().map(|(name, count)| tokens(name, *count)).collect()
     }
 
-    /// The field of the model's struct.
-    pub fn field(&self) -> Option<TokenStream> {
-        self.where_any(|rows| quote!(kept: [::core::primitive::f64; #rows],))
+    /// The fields of the model's struct.
+    pub fn fields(&self) -> TokenStream {
+        self.each(|name, count| quote!(#name: [::core::primitive::f64; #count],))
     }
 
-    /// Its value in a constructor.
-    pub fn value(&self) -> Option<TokenStream> {
-        self.where_any(|_| quote!(kept,))
+    /// Their values in a constructor.
+    pub fn values(&self) -> TokenStream {
+        self.each(|name, _| quote!(#name,))
     }
 
-    /// Its value in another model of the same parameters.
-    pub fn copied(&self) -> Option<TokenStream> {
-        self.where_any(|_| quote!(kept: first.kept,))
+    /// Their values in another model of the same parameters.
+    pub fn copied(&self) -> TokenStream {
+        self.each(|name, _| quote!(#name: first.#name,))
     }
 
-    /// The argument of a function that calculates constants.
-    pub fn argument(&self) -> Option<TokenStream> {
-        self.where_any(|rows| quote!(, kept: &[f64; #rows]))
+    /// The arguments of a function that calculates constants.
+    pub fn arguments(&self) -> TokenStream {
+        self.each(|name, count| quote!(, #name: &[f64; #count]))
     }
 
-    /// The argument of a function that makes the model.
-    pub fn owned(&self) -> Option<TokenStream> {
-        self.where_any(|rows| quote!(, kept: [f64; #rows]))
+    /// The arguments of a function that makes the model.
+    pub fn owned(&self) -> TokenStream {
+        self.each(|name, count| quote!(, #name: [f64; #count]))
     }
 
-    /// What is passed for it where `kept` is a variable.
-    pub fn pass(&self) -> Option<TokenStream> {
-        self.where_any(|_| quote!(, &kept))
+    /// What is passed for them where they are variables.
+    pub fn pass(&self) -> TokenStream {
+        self.each(|name, _| quote!(, &#name))
     }
 
-    /// The function of `Joints` that hands it over.
-    pub fn kept(&self) -> Option<TokenStream> {
-        self.where_any(|_| {
+    /// The same, handed over.
+    fn moved(&self) -> TokenStream {
+        self.each(|name, _| quote!(, #name))
+    }
+
+    /// What stands for them while they are not known.
+    fn assumed(&self) -> TokenStream {
+        self.each(|_, count| quote!(, [1.0; #count]))
+    }
+
+    /// `let`s of them in a function of the model.
+    pub fn read(&self) -> TokenStream {
+        self.each(|name, _| quote!(let #name = &self.#name;))
+    }
+
+    /// The function of `Model` that hands them over.
+    pub fn handed_over(&self) -> Option<TokenStream> {
+        let names = self.arrays.iter().map(|(name, _)| name);
+        (!self.arrays.is_empty()).then(|| {
+            quote! {
+                fn decided(&self) -> ::bg_model::__private::vec::Vec<f64> {
+                    [#(&self.#names[..]),*].concat()
+                }
+            }
+        })
+    }
+}
+
+impl Emission<'_> {
+    /// What the start pose decides.
+    pub(super) fn decided(&self) -> Decided {
+        let counts = [("kept", self.closing_rows()), ("sides", self.model.equations.sides.len())];
+        let arrays = counts.into_iter().filter(|(_, count)| *count > 0);
+        Decided { arrays: arrays.map(|(name, count)| (format_ident!("{name}"), count)).collect() }
+    }
+
+    /// How many rows may follow from others.
+    fn closing_rows(&self) -> usize {
+        let numbers = self.model.equations.holding.rigid.iter().filter_map(|slip| slip.kept);
+        numbers.max().map_or(0, |last| last as usize + 1)
+    }
+
+    fn where_shared(&self, tokens: impl FnOnce(usize) -> TokenStream) -> Option<TokenStream> {
+        Some(self.closing_rows()).filter(|&rows| rows > 0).map(tokens)
+    }
+
+    /// The function of `Joints` that hands over which rows are kept.
+    pub(super) fn kept(&self) -> Option<TokenStream> {
+        self.where_shared(|_| {
             quote!(
                 fn kept(&self) -> &[f64] {
                     &self.kept
@@ -61,36 +107,47 @@ impl Shared {
         })
     }
 
-    /// `let kept` in a function of the model.
-    pub fn read(&self) -> Option<TokenStream> {
-        self.where_any(|_| quote!(let kept = &self.kept;))
-    }
-}
-
-impl Emission<'_> {
-    /// What the model's joints share.
-    pub(super) fn shared(&self) -> Shared {
-        let numbers = self.model.equations.holding.rigid.iter().filter_map(|slip| slip.kept);
-        Shared { rows: numbers.max().map_or(0, |last| last as usize + 1) }
-    }
-
-    /// The body of a constructor after the checks: the model with the rows that are kept.
+    /// The body of a constructor after the checks: the model with what its start pose decides.
     pub(super) fn construction(&self, has_inputs: bool) -> TokenStream {
         let (inputs, cloned) = (has_inputs.then(|| quote!(, inputs)), has_inputs.then(|| quote!(, inputs.clone())));
-        let kept = self.shared().where_any(|rows| {
+        let decided = self.decided();
+        let (assumed, moved) = (decided.assumed(), decided.moved());
+        let made = |arguments: &TokenStream| quote!(Model::<f64>::made(parameters.clone(), parameters.numbers() #cloned #arguments));
+        let sides = (!self.model.equations.sides.is_empty()).then(|| {
+            let made = made(&assumed);
+            quote!(let sides = #made.sides_of_roots();)
+        });
+        let kept = self.where_shared(|rows| {
+            let made = made(&moved);
             quote! {
-                let all = Model::<f64>::made(parameters.clone(), parameters.numbers() #cloned, [1.0; #rows]);
+                let kept = [1.0; #rows];
+                let all = #made;
                 let kept = ::bg_model::__private::kept(&all, all.pose().ok());
             }
         });
-        let pass = self.shared().where_any(|_| quote!(, kept));
-        quote!(#kept Ok(Self::made(parameters, values #inputs #pass)))
+        quote!(#sides #kept Ok(Self::made(parameters, values #inputs #moved)))
+    }
+
+    /// `sides_of_roots`: the signs of the roots in the closed start pose; 1 where there is none.
+    pub(super) fn sides_of_roots(&self) -> Option<TokenStream> {
+        let (count, closed) = (self.model.equations.sides.len(), self.closed_pose());
+        (count > 0).then(|| {
+            quote! {
+                fn sides_of_roots(&self) -> [f64; #count] {
+                    let found = || -> Result<[f64; #count], ::bg_model::assembly::AssemblyError> {
+                        #closed
+                        Ok(Model::<f64>::sides(&numbers, &unknowns))
+                    };
+                    found().map_or([1.0; #count], |sides| sides.map(|side| if side < 0.0 { -1.0 } else { 1.0 }))
+                }
+            }
+        })
     }
 
     /// `pose`: the state at the closed start pose, guessed velocities as they are.
     pub(super) fn pose(&self) -> Option<TokenStream> {
         let (n, closed, lifted) = (&self.shape.n, self.closed_pose(), lifted());
-        self.shared().where_any(|_| {
+        self.where_shared(|_| {
             quote! {
                 fn pose(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
                     #closed
@@ -106,7 +163,7 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let (body, reactions) = self.function(&self.model.programs.running.reactions);
         let count = reactions.len();
-        self.shared().where_any(|_| {
+        self.where_shared(|_| {
             quote! {
                 fn reactions(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> [S; #count] {
                     let (state, mut reactions) = (x, { #body [#(#reactions),*] });
@@ -119,7 +176,7 @@ impl Emission<'_> {
 
     /// The function of `Model` that names the joints.
     pub(super) fn redundant(&self) -> Option<TokenStream> {
-        self.shared().where_any(|_| {
+        self.where_shared(|_| {
             quote! {
                 fn redundant(&self) -> ::bg_model::__private::vec::Vec<::bg_model::holding::Redundancy> {
                     let Ok(pose) = self.pose() else { return ::bg_model::__private::vec::Vec::new() };
@@ -131,12 +188,12 @@ impl Emission<'_> {
 
     /// `let reactions` in a function of the model.
     pub(super) fn with_reactions(&self) -> Option<TokenStream> {
-        self.shared().where_any(|_| quote!(let reactions = self.reactions(t, x, negative);))
+        self.where_shared(|_| quote!(let reactions = self.reactions(t, x, negative);))
     }
 
     /// The reactions that pictures show, as `f64`, and what is handed over of them.
     pub(super) fn shown_reactions(&self) -> (Option<TokenStream>, TokenStream) {
-        let reactions = self.shared().where_any(|_| {
+        let reactions = self.where_shared(|_| {
             quote! {
                 let state = x.map(S::from_f64);
                 let switches = negative.map(S::Switch::from);

@@ -19,7 +19,7 @@ impl Emission<'_> {
     pub(super) fn starting(&self) -> TokenStream {
         let (unknowns, parameters) = (self.model.equations.guesses.len(), &self.shape.p);
         let Programs { starting, required, .. } = &self.model.programs;
-        let functions = starting.programs().into_iter().chain(required.iter().flatten()).map(|program| {
+        let functions = starting.programs().chain(required.iter().flatten()).map(|program| {
             let [routine] = &program.routines;
             let function = identifier(&routine.name);
             let constants = self.own_constants(program);
@@ -147,7 +147,7 @@ impl Emission<'_> {
         let closing = closing(&holding.rigid);
         let pose = self.states_of(&[Kind::Position, Kind::Orientation, Kind::Angle, Kind::Displacement]);
         let turning = self.states_of(&[Kind::Orientation, Kind::Angle]);
-        let (kept, is_driven) = (self.shared().kept(), self.is_driven());
+        let (kept, is_driven) = (self.kept(), self.is_driven());
         let (body, entries) = self.running(routine, &format_ident!("holding_constants"));
         let arguments = quote!(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]);
         let written = quote! {

@@ -212,7 +212,7 @@ impl Emission<'_> {
             quote!(("input", #name, self.inputs.#field.value(t)))
         });
         let constants = self.own_constants(program);
-        let kept = self.shared().read();
+        let decided = self.decided().read();
         let bindings = self.dynamic_bindings(routine);
         let (statements, values) = self.body(routine);
         let laws = fallible.iter().zip(values).map(|(law, value)| {
@@ -225,7 +225,7 @@ impl Emission<'_> {
                 &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g],
             ) -> Option<::bg_model::failure::Origin> {
                 let parameters = &self.values;
-                #kept
+                #decided
                 #constants
                 let [x] = &x.data.0;
                 #bindings

@@ -71,8 +71,8 @@ impl Emission<'_> {
         let (count, body) = (constants.results.len(), self.constant_table(constants));
         let parameters = &self.shape.p;
         made.fields.extend(quote!(#field: [#scalar; #count],));
-        let shared = self.shared();
-        let (pass, argument) = (shared.pass(), shared.argument());
+        let decided = self.decided();
+        let (pass, argument) = (decided.pass(), decided.arguments());
         made.lets.extend(quote!(let #field = Self::#function(&values #pass);));
         made.moved.extend(quote!(let #field = joined(models, |model| &model.#field, of);));
         made.functions.extend(quote! {

@@ -12,8 +12,11 @@ use super::{
 use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene, Tune, Watch};
 
 /// The block of a scene.
-const SCENE: Place =
-    Place { name: "a scene", words: &["observe", "tune", "without", "rigid", "all", "angles", "expect"], list: false };
+const SCENE: Place = Place {
+    name: "a scene",
+    words: &["observe", "tune", "without", "rigid", "all", "dependent", "angles", "expect"],
+    list: false,
+};
 
 /// `observe { ... }`
 const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
@@ -71,6 +74,7 @@ impl Cursor<'_> {
             rigid: Rigid::None,
             angles: false,
             all_reactions: false,
+            dependent: Vec::new(),
             expect: Vec::new(),
         };
         let block = self.group(Delimiter::Brace, "`{ ... }`", &SCENE);
@@ -124,6 +128,11 @@ impl Cursor<'_> {
                 self.expect_word("reactions")?;
                 self.end_statement("");
                 scene.all_reactions = true;
+            }
+            Some("dependent") => {
+                self.advance();
+                let names = self.name_list("a body")?;
+                scene.dependent.extend(names);
             }
             Some("expect") => {
                 let expectation = self.expectation()?;

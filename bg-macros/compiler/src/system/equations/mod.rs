@@ -91,6 +91,8 @@ pub struct StateEquations {
     pub reactions: Vec<Reaction>,
     /// Those that are: symbols in the equations until these are closed.
     pub solution: Solution,
+    /// What the sides of roots have the signs of, from parameters and unknowns; `Symbol::Side` counts them.
+    pub sides: Vec<Id>,
     /// What joints hold.
     pub holding: Holding,
     /// What impacts are calculated from.
@@ -246,6 +248,7 @@ fn symbol_name(symbol: Symbol, states: &[State], parameters: &[Parameter], input
         Symbol::Flow(index) => format!("flow_{index}"),
         Symbol::Multiplier(index) => format!("multiplier_{index}"),
         Symbol::Kept(index) => format!("kept_{index}"),
+        Symbol::Side(index) => format!("side_{index}"),
         Symbol::Unsolved(index) => format!("unsolved_{index}"),
         Symbol::Found(index) => format!("found_{index}"),
         Symbol::Slope(index) => format!("{}'", inputs[index as usize].name.text),

@@ -25,6 +25,7 @@ impl StateEquations {
         for iteration in &mut self.iterations {
             roots.extend(iteration.roots());
         }
+        roots.extend(&mut self.sides);
         roots.extend(self.projections.iter_mut().chain(&mut self.settled).map(|(_, id)| id));
         roots
     }

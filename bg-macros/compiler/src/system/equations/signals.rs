@@ -143,6 +143,7 @@ impl<'a> Signals<'a> {
             iterations: Vec::new(),
             reactions,
             solution: Solution::default(),
+            sides: Vec::new(),
             holding,
             impacts: Impacts::default(),
             impulse: self.graph.impulse,

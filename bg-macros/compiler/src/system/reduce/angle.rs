@@ -10,21 +10,21 @@ use super::report::{Fate, Report, show};
 use crate::expr::{Function, Id, Node, Pool, Symbol, same_polynomial};
 use crate::system::equations::{Origin, State, StateEquations};
 
+/// What rounding may leave of the sum of two squares that is 1.
+const ROUNDING: f64 = 1e-14;
+
 /// A cosine and a sine among the states, of one track.
-struct Turn {
-    track: usize,
-    cosine: usize,
-    sine: usize,
+pub(super) struct Turn {
+    pub track: usize,
+    pub cosine: usize,
+    pub sine: usize,
     start: Id,
-    rate: Id,
+    pub rate: Id,
 }
 
 /// Replaces every planar orientation by its angle.
 pub(super) fn integrate(equations: &mut StateEquations, report: &mut Report) {
-    let turns: Vec<Turn> = pairs(equations)
-        .into_iter()
-        .filter_map(|(track, cosine, sine)| proved(equations, track, cosine, sine))
-        .collect();
+    let turns = turns(equations);
     let mut images: BTreeMap<usize, Id> = BTreeMap::new();
     let mut kept = vec![true; equations.states.len()];
     for Turn { track, cosine, sine, start, rate } in turns {
@@ -44,11 +44,10 @@ pub(super) fn integrate(equations: &mut StateEquations, report: &mut Report) {
     super::live::keep_states(equations, report, &kept);
 }
 
-/// The states that are the cosine and the sine of one angle.
-pub(super) fn circles(equations: &mut StateEquations) -> Vec<(usize, usize)> {
+/// The orientations that turn about one axis.
+pub(super) fn turns(equations: &mut StateEquations) -> Vec<Turn> {
     let pairs = pairs(equations).into_iter();
-    let proved = pairs.filter_map(|(track, cosine, sine)| proved(equations, track, cosine, sine));
-    proved.map(|turn| (turn.cosine, turn.sine)).collect()
+    pairs.filter_map(|(track, cosine, sine)| proved(equations, track, cosine, sine)).collect()
 }
 
 /// The orientations with two components left: a track, its diagonal component, and the other.
@@ -86,8 +85,9 @@ fn proved(equations: &mut StateEquations, track: usize, cosine: usize, sine: usi
 
 /// The angle whose cosine and sine are the start values: 0 for 1 and 0, u for cos u and sin u, -u for cos u and -sin u.
 fn start(pool: &mut Pool, cosine: Id, sine: Id) -> Option<Id> {
-    if pool.as_number(cosine) == Some(1.0) && pool.is_zero(sine) {
-        return Some(pool.zero());
+    if let [Some(c), Some(s)] = [cosine, sine].map(|id| pool.as_number(id)) {
+        let is_one = (c * c + s * s - 1.0).abs() < ROUNDING;
+        return is_one.then(|| pool.call(Function::Atan2, &[sine, cosine]));
     }
     let Node::Call(Function::Cos, arguments) = pool.node(cosine).clone() else { return None };
     let positive = pool.call(Function::Sin, &arguments);

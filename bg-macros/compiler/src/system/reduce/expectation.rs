@@ -5,7 +5,11 @@
 use super::{Fate, Kept, Report, Wanted};
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::graph::Parameter;
-use crate::source::ast::{Expectation, Scene};
+use crate::source::ast::{Expectation, Name, Scene};
+use crate::system::equations::StateEquations;
+
+/// What the name of a body's orientation has after the body's.
+const ORIENTATION: &str = ".orientation";
 
 /// How many states a message lists.
 const LISTED: usize = 40;
@@ -18,6 +22,8 @@ pub enum ExpectationFault {
     NotPlanar { scene: String, states: Vec<String> },
     StateCount { scene: String, expected: usize, states: Vec<String> },
     AllReactions { scene: String, kept: Kept },
+    UnknownBody { name: String, near: Option<String> },
+    Independent { name: String, kept: Option<Kept> },
 }
 
 use ExpectationFault as F;
@@ -29,6 +35,8 @@ impl Explain for ExpectationFault {
             F::NotPlanar { .. } => "BG0604",
             F::StateCount { .. } => "BG0605",
             F::AllReactions { .. } => "BG0611",
+            F::UnknownBody { .. } => "BG0612",
+            F::Independent { .. } => "BG0613",
         }
     }
 
@@ -44,6 +52,14 @@ impl Explain for ExpectationFault {
             F::AllReactions { scene, kept } => {
                 format!("scene `{scene}` keeps the reactions of all rigid joints: {kept}")
             }
+            F::UnknownBody { name, .. } => format!("there is no body `{name}` to be dependent"),
+            F::Independent { name, kept: Some(kept) } => {
+                format!("no loop gives the orientation of body `{name}`: {kept}")
+            }
+            F::Independent { name, kept: None } => format!(
+                "no loop gives the orientation of body `{name}`: the gap of no rigid joint that closes a loop is linear in its \
+                 cosine and its sine"
+            ),
         }
     }
 
@@ -55,6 +71,13 @@ impl Explain for ExpectationFault {
                 "find what moves them: a tuned parameter out of the plane, a start value, a force".to_owned()
             }
             F::StateCount { .. } => "correct the number, or what the scene watches and tunes".to_owned(),
+            F::UnknownBody { near: Some(near), .. } => format!("did you mean `{near}`?"),
+            F::UnknownBody { .. } => "name a body of the graph".to_owned(),
+            F::Independent { .. } => {
+                "name a link that turns in the plane between two others; where a pin closes the loop, name both links, as in \
+                 `dependent coupler, rocker;`. Without it the loop is closed by projection"
+                    .to_owned()
+            }
             F::AllReactions { kept, .. } => match kept {
                 Kept::Asked => "leave out `all reactions;`".to_owned(),
                 Kept::NothingRigid => "make joints rigid: `rigid joints;`".to_owned(),
@@ -78,9 +101,32 @@ fn list(states: &[String]) -> String {
 /// What the reduction is to keep for the scene.
 ///
 /// # Errors
-/// Names to tune that are no parameters.
-pub fn wanted(scene: &Scene, parameters: &[Parameter]) -> Staged<Wanted> {
-    Ok(Wanted { tuned: tuned(scene, parameters)?, angles: scene.angles, speeds: !scene.all_reactions })
+/// Names to tune that are no parameters, dependent bodies that there are not.
+pub fn wanted(scene: &Scene, equations: &StateEquations) -> Staged<Wanted> {
+    let unknown = unknown_bodies(scene, &equations.tracks);
+    let tuned = match tuned(scene, &equations.parameters) {
+        Ok(tuned) if unknown.is_empty() => tuned,
+        others => return Err(others.err().unwrap_or_default().into_iter().chain(unknown).collect()),
+    };
+    let links = scene.dependent.iter().map(orientation).collect();
+    Ok(Wanted { tuned, angles: scene.angles, speeds: !scene.all_reactions, links })
+}
+
+/// The name of a body's orientation.
+fn orientation(body: &Name) -> String {
+    format!("{}{ORIENTATION}", body.text)
+}
+
+/// The dependent bodies that have no orientation.
+fn unknown_bodies(scene: &Scene, tracks: &[String]) -> Vec<Fault> {
+    let bodies = || tracks.iter().filter_map(|track| track.strip_suffix(ORIENTATION));
+    let unknown = scene.dependent.iter().filter(|name| bodies().all(|body| body != name.text));
+    unknown
+        .map(|name| {
+            let near = near_miss(&name.text, bodies()).map(str::to_owned);
+            Fault::new(name.span, &F::UnknownBody { name: name.text.clone(), near })
+        })
+        .collect()
 }
 
 /// For each parameter whether the scene tunes it.
@@ -104,6 +150,12 @@ fn tuned(scene: &Scene, parameters: &[Parameter]) -> Staged<Vec<bool>> {
 pub fn check(scene: &Scene, report: &Report) -> Staged<()> {
     let name = &scene.name.text;
     let mut faults = Vec::new();
+    for body in &scene.dependent {
+        if !report.closed.contains(&orientation(body)) {
+            let fault = F::Independent { name: body.text.clone(), kept: report.kept.clone() };
+            faults.push(Fault::new(body.span, &fault));
+        }
+    }
     for expectation in &scene.expect {
         match expectation {
             // The graph's strokes have been checked.
@@ -174,7 +226,7 @@ mod tests {
 
     fn report(variant: &Variant) -> Report {
         let equations = pipeline::derive(&variant.graph).expect("equations").equations;
-        let wanted = wanted(scene(variant), &equations.parameters).expect("parameters");
+        let wanted = wanted(scene(variant), &equations).expect("parameters");
         reduce::for_scene(equations, &wanted, &mut |_| 0).1
     }
 

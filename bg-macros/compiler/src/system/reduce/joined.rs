@@ -8,10 +8,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::dyad::{Root, Turned};
 use super::report::Fate;
 use super::speeds::of_kind;
 use super::{angle, friction};
-use crate::expr::{Circles, Id, Pool, Symbol, derivative, partial, same_polynomial, substitute};
+use crate::expr::{Circles, Environment, Id, Pool, Symbol, derivative, evaluate, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, Origin, StateEquations};
 
 /// A gap at the start below it is rounding of the numbers that place the bodies, m.
@@ -31,16 +32,25 @@ pub(super) struct Choice {
     pub loads: Vec<Option<BTreeMap<usize, Id>>>,
     /// The velocity of each momentum: the derivative of the energy.
     pub velocities: BTreeMap<usize, Id>,
-    /// The cosines and sines of the angles that stay.
+    /// The cosines and sines of the angles that stay, and of those that loops give.
     pub circles: Circles,
+    /// The tracks of the orientations that loops give.
+    pub closed: Vec<usize>,
+    /// The states of these, over those that stay: put in last.
+    pub given: Images,
+    /// The roots by which loops are closed.
+    pub roots: Vec<Root>,
+    /// The pins among the joints that close them.
+    pub turned: Vec<Turned>,
 }
 
 /// States with their images.
-type Images = BTreeMap<usize, Id>;
+pub(super) type Images = BTreeMap<usize, Id>;
 
 impl Choice {
-    /// What can be solved; none where nothing can.
-    pub fn of(equations: &mut StateEquations) -> Option<Self> {
+    /// What can be solved; none where nothing can. With `links` loops are closed in closed form, for the links of these orientations without
+    /// a proof that it holds in all poses.
+    pub fn of(equations: &mut StateEquations, links: Option<&[String]>) -> Option<Self> {
         let rigid = friction::rigid(&equations.reactions);
         let momenta: Vec<usize> = of_kind(equations, Kind::Momentum).collect();
         let velocities = velocities(equations, &momenta)?;
@@ -53,6 +63,10 @@ impl Choice {
             loads,
             velocities,
             circles: Circles::default(),
+            closed: Vec::new(),
+            given: Images::new(),
+            roots: Vec::new(),
+            turned: Vec::new(),
         };
         for row in 0..rigid {
             let solved = choice.translation(equations, row).or_else(|| choice.rotation(equations, row));
@@ -62,6 +76,9 @@ impl Choice {
             }
         }
         choice.circles = choice.circles(equations);
+        if let Some(links) = links {
+            choice.close_loops(equations, links);
+        }
         let (states, before): (Vec<usize>, Vec<Id>) = choice.images.iter().map(|(&state, &id)| (state, id)).unzip();
         let after = choice.circles.shortened(&mut equations.pool, &before);
         choice.images = states.into_iter().zip(after).collect();
@@ -70,11 +87,18 @@ impl Choice {
 
     /// The cosines and sines among the states that stay.
     fn circles(&self, equations: &mut StateEquations) -> Circles {
-        let pairs = angle::circles(equations);
+        let turns = angle::turns(equations);
         let stays = |state: &usize| !self.images.contains_key(state);
-        let pairs = pairs.into_iter().filter(|(cosine, sine)| stays(cosine) && stays(sine));
+        let turns = turns.into_iter().filter(|turn| stays(&turn.cosine) && stays(&turn.sine));
         let mut symbol = |state: usize| equations.pool.symbol(Symbol::state(state));
-        Circles::new(pairs.map(|(cosine, sine)| (symbol(cosine), symbol(sine))).collect())
+        Circles::new(turns.map(|turn| (symbol(turn.cosine), symbol(turn.sine))).collect())
+    }
+
+    /// For each state whether it stays.
+    pub fn kept(&self, equations: &StateEquations) -> Vec<bool> {
+        (0..equations.states.len())
+            .map(|state| !self.images.contains_key(&state) && !self.given.contains_key(&state))
+            .collect()
     }
 
     /// Whether a row is solved.
@@ -103,7 +127,7 @@ impl Choice {
         self.circles.shortened(pool, &applied)
     }
 
-    fn add(&mut self, equations: &mut StateEquations, row: usize, images: Images) {
+    pub(super) fn add(&mut self, equations: &mut StateEquations, row: usize, images: Images) {
         let (states, before): (Vec<usize>, Vec<Id>) = self.images.iter().map(|(&state, &id)| (state, id)).unzip();
         let after = applied(&mut equations.pool, &before, &images);
         self.images = states.into_iter().zip(after).collect();
@@ -114,14 +138,15 @@ impl Choice {
     }
 
     /// The flow and the gap of a row, with the coefficient of every momentum; none where the flow is not linear in these alone.
-    fn row(&self, equations: &mut StateEquations, row: usize) -> Option<Row> {
+    pub(super) fn row(&self, equations: &mut StateEquations, row: usize) -> Option<Row> {
         self.loads[row].as_ref()?;
         let slip = &equations.reactions[row].slip;
         let before = [slip.flow, slip.gap?];
         let pool = &mut equations.pool;
         let [flow, gap] = self.applied(pool, &before)[..] else { return None };
         let symbols = pool.symbols(&[flow, gap]);
-        if !symbols.iter().all(|symbol| matches!(symbol, Symbol::State(_) | Symbol::Parameter(_))) {
+        if !symbols.iter().all(|symbol| matches!(symbol, Symbol::State(_) | Symbol::Parameter(_) | Symbol::Unsolved(_)))
+        {
             return None;
         }
         let is_momentum = |symbol: Symbol| symbol.as_state().filter(|state| self.velocities.contains_key(state));
@@ -136,13 +161,13 @@ impl Choice {
     }
 
     /// Whether the gap of a row is zero at the start, or is closed by guesses. An open one is for the run time to refuse.
-    fn is_closed(equations: &mut StateEquations, row: usize) -> bool {
+    pub(super) fn is_closed(equations: &mut StateEquations, row: usize) -> bool {
         let StateEquations { pool, states, reactions, .. } = equations;
         let gap = reactions[row].slip.gap.unwrap_or(pool.zero());
         let at_start = substitute(pool, &[gap], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
         let is_guessed = pool.symbols(&[at_start]).into_iter().any(|symbol| matches!(symbol, Symbol::Unknown(_)));
         let zero = pool.zero();
-        let is_rounding = pool.as_number(at_start).is_some_and(|gap| gap.abs() < ROUNDING);
+        let is_rounding = value(pool, at_start).is_some_and(|gap| gap.abs() < ROUNDING);
         is_guessed || is_rounding || same_polynomial(pool, at_start, zero)
     }
 
@@ -243,15 +268,20 @@ impl Choice {
         let seeds: BTreeMap<Symbol, Id> = of.iter().map(|&state| Symbol::state(state)).zip(rates).collect();
         let (change, zero) = (derivative(pool, &[id], &seeds)[0], pool.zero());
         let start = substitute(pool, &[id], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
-        same_polynomial(pool, change, zero) && pool.as_number(start).is_some_and(|start| start != 0.0)
+        same_polynomial(pool, change, zero) && value(pool, start).is_some_and(|start| start.abs() > ROUNDING)
     }
 }
 
 /// A row over the states that stay.
-struct Row {
-    flow: Id,
-    gap: Id,
-    slopes: BTreeMap<usize, Id>,
+pub(super) struct Row {
+    pub flow: Id,
+    pub gap: Id,
+    pub slopes: BTreeMap<usize, Id>,
+}
+
+/// The value of an expression of numbers alone.
+fn value(pool: &Pool, of: Id) -> Option<f64> {
+    pool.symbols(&[of]).is_empty().then(|| evaluate(pool, &[of], &Environment::default())[0])
 }
 
 /// The state in which an expression that is linear in it, with this slope, is zero.

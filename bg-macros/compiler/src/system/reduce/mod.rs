@@ -7,6 +7,7 @@
 mod affine;
 mod angle;
 mod closing;
+mod dyad;
 mod equal;
 pub mod expectation;
 mod friction;
@@ -34,6 +35,8 @@ pub struct Wanted {
     pub angles: bool,
     /// Whether what rigid joints determine of bodies is to be expressed by the other states.
     pub speeds: bool,
+    /// The orientations of the links that loops give, as the scene says, without a proof that they do in every pose.
+    pub links: Vec<String>,
 }
 
 /// One reduction.
@@ -42,42 +45,55 @@ struct Pass {
     name: &'static str,
     /// Whether there is anything to do.
     applies: fn(&StateEquations, &Wanted) -> bool,
-    run: fn(&mut StateEquations, &Wanted, &mut Report),
+    run: fn(&mut StateEquations, &Wanted, &mut Report, &mut Operations<'_>),
 }
+
+/// What tells how many operations the rate function of equations takes.
+type Operations<'a> = dyn FnMut(&mut StateEquations) -> usize + 'a;
 
 /// The reductions in the order in which they find most.
 const PASSES: [Pass; 8] = [
-    Pass { name: "parameters folded", applies: always, run: |equations, wanted, _| fold_parameters(equations, wanted) },
+    Pass {
+        name: "parameters folded",
+        applies: always,
+        run: |equations, wanted, _, _| fold_parameters(equations, wanted),
+    },
     Pass {
         name: "constant states folded",
         applies: always,
-        run: |equations, _, report| invariant::fold(equations, report),
+        run: |equations, _, report, _| invariant::fold(equations, report),
     },
-    Pass { name: "equal states merged", applies: always, run: |equations, _, report| equal::merge(equations, report) },
+    Pass {
+        name: "equal states merged",
+        applies: always,
+        run: |equations, _, report, _| equal::merge(equations, report),
+    },
     Pass {
         name: "states of joints expressed",
         applies: |equations, _| !equations.reactions.is_empty(),
-        run: |equations, wanted, report| report.kept = speeds::choose(equations, wanted, report).err(),
+        run: |equations, wanted, report, operations| {
+            report.kept = speeds::choose(equations, wanted, report, operations).err();
+        },
     },
     Pass {
         name: "reactions solved",
         applies: |equations, _| !equations.reactions.is_empty(),
-        run: |equations, _, _| reaction::solve(equations),
+        run: |equations, _, _, _| reaction::solve(equations),
     },
     Pass {
         name: "orientations turned into angles",
         applies: |_, wanted| wanted.angles,
-        run: |equations, _, report| angle::integrate(equations, report),
+        run: |equations, _, report, _| angle::integrate(equations, report),
     },
     Pass {
         name: "affine states recovered",
         applies: always,
-        run: |equations, _, report| affine::recover(equations, report),
+        run: |equations, _, report, _| affine::recover(equations, report),
     },
     Pass {
         name: "unwatched states dropped",
         applies: always,
-        run: |equations, _, report| live::drop_unwatched(equations, report),
+        run: |equations, _, report, _| live::drop_unwatched(equations, report),
     },
 ];
 
@@ -90,7 +106,7 @@ fn always(_: &StateEquations, _: &Wanted) -> bool {
 pub fn for_scene(
     mut equations: StateEquations,
     wanted: &Wanted,
-    operations: &mut dyn FnMut(&mut StateEquations) -> usize,
+    operations: &mut Operations<'_>,
 ) -> (StateEquations, Report) {
     let mut report = Report::new(&equations);
     report.count("literal", equations.states.len(), operations(&mut equations));
@@ -98,7 +114,7 @@ pub fn for_scene(
         if !(pass.applies)(&equations, wanted) {
             continue;
         }
-        (pass.run)(&mut equations, wanted, &mut report);
+        (pass.run)(&mut equations, wanted, &mut report, operations);
         report.count(pass.name, equations.states.len(), operations(&mut equations));
     }
     (equations, report)

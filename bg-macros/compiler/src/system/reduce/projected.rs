@@ -9,6 +9,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::dyad::Turned;
 use super::inverse::Inverse;
 use super::joined::Choice;
 use super::speeds::of_kind;
@@ -89,10 +90,12 @@ fn forces(equations: &mut StateEquations, choice: &Choice, momenta: &[usize], so
 fn drifts(equations: &mut StateEquations, choice: &Choice, images: &[Id]) -> Vec<Id> {
     let StateEquations { pool, states, .. } = equations;
     let is_pose = |&state: &usize| states[state].origin.kind() != Kind::Momentum;
-    let pose: Vec<usize> = pool.symbols(images).into_iter().filter_map(Symbol::as_state).filter(is_pose).collect();
+    let all: Vec<Id> = images.iter().copied().chain(choice.roots.iter().map(|root| root.slope)).collect();
+    let pose: Vec<usize> = pool.symbols(&all).into_iter().filter_map(Symbol::as_state).filter(is_pose).collect();
     let rates: Vec<Id> = pose.iter().map(|&state| states[state].rate).collect();
     let rates = choice.applied(pool, &rates);
-    let seeds = pose.into_iter().map(Symbol::state).zip(rates).collect();
+    let mut seeds: BTreeMap<Symbol, Id> = pose.into_iter().map(Symbol::state).zip(rates).collect();
+    choice.seed_roots(pool, &mut seeds);
     let drifts = derivative(pool, images, &seeds);
     choice.circles.shortened(pool, &drifts)
 }
@@ -142,6 +145,39 @@ fn reactions(
         let loads = choice.applied(pool, &loads);
         rows.push(columns.into_iter().zip(loads).collect());
     }
-    let solution = solve_linear(pool, Linear { rows, right }, &|_, _| true).ok()?;
-    Some(multipliers.into_iter().zip(solution.values).collect())
+    let turned = turned(pool, choice);
+    for (columns, by) in &turned {
+        rows.iter_mut().for_each(|row| turn(pool, row, *columns, *by, 1.0));
+    }
+    let mut values = solve_linear(pool, Linear { rows, right }, &|_, _| true).ok()?.values;
+    for ([one, other], by) in turned {
+        let mut pair = BTreeMap::from([(0, values[one]), (1, values[other])]);
+        turn(pool, &mut pair, [0, 1], by, -1.0);
+        (values[one], values[other]) = (pair[&0], pair[&1]);
+    }
+    Some(multipliers.into_iter().zip(values).collect())
+}
+
+/// The pins that close loops: the places of their two rows among the solved ones, and the vector along which and across which their
+/// reactions give one momentum each.
+fn turned(pool: &mut Pool, choice: &Choice) -> Vec<([usize; 2], [Id; 2])> {
+    let place = |row: usize| choice.rows.iter().position(|&(solved, _)| solved == row);
+    let pins = choice.turned.iter().filter_map(|Turned { rows: [one, other], by }| {
+        let by = choice.applied(pool, by);
+        Some(([place(*one)?, place(*other)?], [by[0], by[1]]))
+    });
+    pins.collect()
+}
+
+/// The parts of two columns along a vector and across it in their places; with the sense -1 what these are along the axes.
+fn turn(pool: &mut Pool, row: &mut BTreeMap<usize, Id>, [one, other]: [usize; 2], [x, y]: [Id; 2], sense: f64) {
+    let part = |row: &BTreeMap<usize, Id>, place: usize, pool: &Pool| row.get(&place).copied().unwrap_or(pool.zero());
+    let (a, b) = (part(row, one, pool), part(row, other, pool));
+    if pool.is_zero(a) && pool.is_zero(b) {
+        return;
+    }
+    let products = [pool.mul(x, a), pool.mul(y, b), pool.mul(x, b), pool.mul(y, a)];
+    let along = pool.linear(0.0, &[(products[0], 1.0), (products[1], sense)]);
+    let across = pool.linear(0.0, &[(products[2], 1.0), (products[3], -sense)]);
+    row.extend([(one, along), (other, across)]);
 }

@@ -20,6 +20,8 @@ pub enum Fate {
     Recovered(String),
     /// This joint determines it from others.
     Joined(String),
+    /// This joint closes a loop and gives it from others, by a root.
+    Closed(String),
     /// It reaches no output.
     Unwatched,
 }
@@ -35,6 +37,9 @@ impl std::fmt::Display for Fate {
             Self::Equal(other) => write!(f, "equal: it starts as {other} and has its rate"),
             Self::Recovered(value) => write!(f, "recovered: its rate is that of {value}"),
             Self::Joined(joint) => write!(f, "joined: the rigid joint `{joint}` gives it from others"),
+            Self::Closed(joint) => {
+                write!(f, "closed: the rigid joint `{joint}` closes a loop and gives it from others")
+            }
             Self::Unwatched => f.write_str("unwatched: no output and no other state depends on it"),
         }
     }
@@ -105,6 +110,8 @@ pub struct Report {
     pub counts: Vec<Count>,
     /// Why all joints have kept their reactions, where they have.
     pub kept: Option<Kept>,
+    /// The orientations that loops give.
+    pub closed: Vec<String>,
     /// For each state still there its index in `fates`.
     left: Vec<usize>,
 }
@@ -114,7 +121,7 @@ impl Report {
         let fates: Vec<(State, Fate)> =
             equations.states.iter().map(|state| (state.clone(), Fate::Integrated)).collect();
         let left = (0..fates.len()).collect();
-        Self { fates, counts: Vec::new(), kept: None, left }
+        Self { fates, counts: Vec::new(), kept: None, closed: Vec::new(), left }
     }
 
     /// Notes the size of the model.
@@ -148,13 +155,12 @@ impl Report {
 impl std::fmt::Display for Report {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let of = |wanted: fn(&Fate) -> bool| self.fates.iter().filter(|(_, fate)| wanted(fate)).count();
-        let joined = match of(|fate| matches!(fate, Fate::Joined(_))) {
-            0 => String::new(),
-            joined => format!(" {joined} joined;"),
-        };
+        let where_any = |count: usize, word: &str| if count == 0 { String::new() } else { format!(" {count} {word};") };
+        let joined = where_any(of(|fate| matches!(fate, Fate::Joined(_))), "joined");
+        let closed = where_any(of(|fate| matches!(fate, Fate::Closed(_))), "closed");
         writeln!(
             f,
-            "{} states: {} constant; {} equal up to sign; {} recovered;{joined} {} unwatched; {} integrated; {} for outputs only",
+            "{} states: {} constant; {} equal up to sign; {} recovered;{joined}{closed} {} unwatched; {} integrated; {} for outputs only",
             self.fates.len(),
             of(|fate| matches!(fate, Fate::Constant(_))),
             of(|fate| matches!(fate, Fate::Equal(_))),

@@ -13,12 +13,20 @@ use std::collections::BTreeSet;
 
 use super::joined::Choice;
 use super::report::{Kept, Report};
-use super::{Wanted, closing, friction, projected};
+use super::{Operations, Wanted, closing, friction, projected};
 use crate::expr::{Id, Symbol, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, StateEquations};
 
+/// The rates of a step, those of DOP853.
+const RATES: usize = 12;
+
 /// Takes momenta out of the equations that rigid joints determine, where rates take fewer operations then; else says why not.
-pub(super) fn choose(equations: &mut StateEquations, wanted: &Wanted, report: &mut Report) -> Result<(), Kept> {
+pub(super) fn choose(
+    equations: &mut StateEquations,
+    wanted: &Wanted,
+    report: &mut Report,
+    operations: &mut Operations<'_>,
+) -> Result<(), Kept> {
     if !wanted.speeds {
         return Err(Kept::Asked);
     }
@@ -28,23 +36,42 @@ pub(super) fn choose(equations: &mut StateEquations, wanted: &Wanted, report: &m
     if equations.baumgarte.is_some() {
         return Err(Kept::Baumgarte);
     }
-    let mut changed = equations.clone();
-    let choice = Choice::of(&mut changed).ok_or(Kept::NoPivot)?;
-    check(&mut changed, &choice)?;
-    if !put(&mut changed, &choice) {
-        return Err(Kept::Load);
+    let is_asked = !wanted.links.is_empty();
+    let closed = attempt(equations, Some(&wanted.links));
+    let closes = closed.as_ref().is_ok_and(|(_, choice)| !choice.closed.is_empty());
+    let attempts = match (closes, is_asked) {
+        (false, false) => vec![attempt(equations, None)],
+        (true, false) => vec![attempt(equations, None), closed],
+        (_, true) => vec![closed],
+    };
+    let mut reason = Kept::NoPivot;
+    let mut found: Vec<(usize, StateEquations, Choice)> = Vec::new();
+    for attempt in attempts {
+        match attempt {
+            Ok((changed, choice)) => found.push((cost(&changed, &choice.kept(&changed), operations), changed, choice)),
+            Err(kept) => reason = kept,
+        }
     }
-    let [by_speeds, before] = [cost(&changed), cost(equations)];
-    if by_speeds >= before {
+    let (by_speeds, changed, choice) = found.into_iter().min_by_key(|&(cost, ..)| cost).ok_or(reason)?;
+    let before = cost(equations, &vec![true; equations.states.len()], operations);
+    if by_speeds >= before && !(is_asked && closes) {
         return Err(Kept::Costs(by_speeds, before));
     }
     for (&state, fate) in &choice.fates {
         report.say(state, fate.clone());
     }
+    report.closed = choice.closed.iter().map(|&track| equations.tracks[track].clone()).collect();
     *equations = changed;
-    let kept: Vec<bool> = (0..equations.states.len()).map(|state| !choice.images.contains_key(&state)).collect();
-    super::live::keep_states(equations, report, &kept);
+    super::live::keep_states(equations, report, &choice.kept(equations));
     Ok(())
+}
+
+/// The equations without the momenta that rigid joints determine; with `links` without loops that are closed in closed form, too.
+fn attempt(equations: &StateEquations, links: Option<&[String]>) -> Result<(StateEquations, Choice), Kept> {
+    let mut changed = equations.clone();
+    let choice = Choice::of(&mut changed, links).ok_or(Kept::NoPivot)?;
+    check(&mut changed, &choice)?;
+    if put(&mut changed, &choice) { Ok((changed, choice)) } else { Err(Kept::Load) }
 }
 
 /// Puts what is chosen into the equations; false where the rows act on what cannot be projected.
@@ -64,6 +91,9 @@ fn put(equations: &mut StateEquations, choice: &Choice) -> bool {
         !choice.is_solved(row - 1)
     });
     write_by_momenta(equations, choice);
+    if !choice.roots.is_empty() {
+        choice.put_roots(equations);
+    }
     true
 }
 
@@ -86,16 +116,14 @@ fn keep_mobilities(equations: &mut StateEquations, choice: &Choice) -> bool {
     true
 }
 
-/// About how many operations the rates take that are left, when the reactions are solved for.
-fn cost(equations: &StateEquations) -> usize {
+/// How many operations a rate of these states takes when the reactions are solved for, with its part of the projection after a step: what
+/// joints hold takes about as many for the pose and again for the momenta.
+fn cost(equations: &StateEquations, kept: &[bool], operations: &mut Operations<'_>) -> usize {
     let mut solved = equations.clone();
+    super::live::keep_states(&mut solved, &mut Report::new(equations), kept);
     super::reaction::solve(&mut solved);
-    let StateEquations { pool, states, solution, .. } = &mut solved;
-    let is_named: BTreeSet<Symbol> = pool.symbols(&states.iter().map(|state| state.rate).collect::<Vec<_>>());
-    let rates = states.iter().enumerate().filter(|(state, _)| is_named.contains(&Symbol::state(*state)));
-    let rates: Vec<Id> = rates.map(|(_, state)| state.rate).collect();
-    let rates = solution.closed(pool, &rates);
-    pool.cost(&rates)
+    let held = solved.holding.entries(&solved.pool);
+    operations(&mut solved) + 2 * solved.pool.cost(&held) / RATES
 }
 
 /// Says why the mechanism cannot do without the reactions of the chosen rows, if so.
@@ -124,7 +152,7 @@ fn is_watched(equations: &StateEquations, choice: &Choice) -> bool {
 }
 
 /// Whether the flow of a row is zero at the start, whatever the parameters and the pose are.
-fn starts_at_rest(equations: &mut StateEquations, row: usize) -> bool {
+pub(super) fn starts_at_rest(equations: &mut StateEquations, row: usize) -> bool {
     let StateEquations { pool, states, reactions, .. } = equations;
     let flow = reactions[row].slip.flow;
     let at_start = substitute(pool, &[flow], &|symbol| symbol.as_state().map(|state| states[state].start))[0];

@@ -14,6 +14,7 @@ use crate::system::reduce::expectation::wanted;
 use crate::{pipeline, program};
 
 mod dependent;
+mod dyads;
 mod networks;
 mod speeds;
 
@@ -42,7 +43,7 @@ pub(super) fn attempt(statements: &str, clauses: &str) -> Result<Scene, Faults> 
     let variant = variants(&source.graphs[0])?.remove(1);
     let Variant { scene: Some(scene), .. } = &variant else { panic!("the second variant is the scene") };
     let derived = pipeline::derive(&variant.graph)?.equations;
-    let wanted = wanted(scene, &derived.parameters)?;
+    let wanted = wanted(scene, &derived)?;
     let mut literal = derived.clone();
     solve_reactions(&mut literal);
     literal.close();
@@ -142,6 +143,7 @@ pub(super) fn word(fate: &Fate) -> String {
         Fate::Equal(other) => format!("equal {other}"),
         Fate::Recovered(value) => format!("recovered {value}"),
         Fate::Joined(joint) => format!("joined {joint}"),
+        Fate::Closed(joint) => format!("closed {joint}"),
         Fate::Unwatched => "unwatched".to_owned(),
     }
 }
@@ -156,13 +158,11 @@ fn outputs(of: &StateEquations, parameters: &[f64], unknowns: &[f64]) -> Vec<Vec
     let guards: Vec<Id> = of.switches.iter().map(|switch| switch.guard).collect();
     let values: Vec<Id> = of.outputs.iter().map(|output| output.value).collect();
     let projected: Vec<Id> = of.projections.iter().map(|&(_, id)| id).collect();
+    let given = Environment { parameters, unknowns, ..Environment::default() };
+    let sides: Vec<f64> = evaluate(&of.pool, &of.sides, &given).into_iter().map(f64::signum).collect();
     let at = |roots: &[Id], time: f64, states: &[f64], negative: &[bool]| {
         let inputs: Vec<f64> = (0..of.inputs.len()).map(|k| (2.0 * time + k as f64).sin()).collect();
-        evaluate(
-            &of.pool,
-            roots,
-            &Environment { time, states, parameters, inputs: &inputs, unknowns, negative, ..Environment::default() },
-        )
+        evaluate(&of.pool, roots, &Environment { time, states, inputs: &inputs, sides: &sides, negative, ..given })
     };
     let mut x = at(&starts, 0.0, &[], &[]);
     let mut negative = vec![false; guards.len()];

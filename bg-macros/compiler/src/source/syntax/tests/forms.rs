@@ -90,6 +90,7 @@ fn blocks_print_one_statement_per_line() {
         tune { c, d }
         without { e }
         rigid joints;
+        dependent { f, g }
         all reactions;
         expect planar;
         expect independent speeds;
