@@ -66,7 +66,7 @@ impl Forty {
         let variant = scene::variants(&source.graphs[0]).unwrap_or_else(|faults| panic!("{faults:?}")).remove(1);
         let wanted = |equations: &StateEquations| {
             let scene = variant.scene.as_ref().expect("the scene");
-            reduce::expectation::wanted(scene, &equations).unwrap_or_else(|faults| panic!("{faults:?}"))
+            reduce::expectation::wanted(scene, equations).unwrap_or_else(|faults| panic!("{faults:?}"))
         };
         let derived = pipeline::derive(&variant.graph).unwrap_or_else(|faults| panic!("{faults:?}"));
         let wanted = wanted(&derived.equations);
