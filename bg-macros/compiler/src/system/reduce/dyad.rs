@@ -383,11 +383,13 @@ fn is_apart(equations: &mut StateEquations, part: Id, square: Id) -> bool {
 /// Whether two links keep away from being stretched and folded in all poses: the distance of their outer ends between the difference
 /// and the sum of their lengths. All squared.
 fn is_between(equations: &mut StateEquations, distance: Id, lengths: [Id; 2]) -> bool {
-    let [Some(own), Some(other)] = lengths.map(|length| equations.pool.as_number(length)) else { return false };
-    let Bounds { least, most } = bounds_of(equations, distance);
-    // It has its extremes at the ends: between them it has at most a least value, above 0.
-    let part = |distance: f64| (own + distance - other) / (2.0 * (own * distance).sqrt());
-    least > 0.0 && most.is_finite() && part(least).abs().max(part(most).abs()) < FAR
+    let [own, other, distance] = [lengths[0], lengths[1], distance]
+        .map(|id| bounds_of(equations, id))
+        .map(|Bounds { least, most }| [least, most]);
+    let is_known = [own, other, distance].iter().all(|[least, most]| *least > 0.0 && most.is_finite());
+    // The cosine of the angle at the first link has its extremes at the ends of the ranges: between them at most a least value, above 0.
+    let mut ends = own.into_iter().flat_map(|a| other.into_iter().flat_map(move |b| distance.map(|d| (a, b, d))));
+    is_known && ends.all(|(a, b, d)| ((a + d - b) / (2.0 * (a * d).sqrt())).abs() < FAR)
 }
 
 /// The bounds of an expression in all poses. What it has of the cosine and the sine of one link is a cosine of its angle, too.

@@ -21,7 +21,7 @@ fn slider_crank(is_in_front: bool) -> String {
 }
 
 /// A crank and a rocker, whose coupler may be above the line of their pins or below it; its pins are off the links' axes, and the
-/// ground's are `tilt` off the x axis.
+/// ground's are `tilt` off the x axis. `GUESS` stands before what may be guessed.
 fn four_bar(crank: f64, is_above: bool, tilt: f64) -> String {
     // The distance of the coupler's pins is 1, the rocker's are 0.8 apart, the ground's 1; the crank starts along these.
     let distance = 1.0 - crank;
@@ -35,9 +35,9 @@ fn four_bar(crank: f64, is_above: bool, tilt: f64) -> String {
         body crank {{ mass 1; inertia [0.02, 0.02, 0.02]; point O = [-0.1, 0, 0]; point A = [{crank} - 0.1, 0, 0]; start O at [0, 0, 0];
             start turned rotation_z({tilt:?}); }}
         body link {{ mass 2; inertia [0.1, 0.1, 0.1]; point A = [-0.5, 0.1, 0]; point B = [0.5, 0.1, 0];
-            start A at [{a:?}, {b:?}, 0]; start turned rotation_z({link:?}); }}
+            start A at [{a:?}, {b:?}, 0]; start turned rotation_z(GUESS({link:?})); }}
         body rocker {{ mass 1.5; inertia [0.1, 0.1, 0.2]; point Q = [-0.3, 0, 0]; point B = [0.5, 0, 0];
-            start Q at [{x:?}, {y:?}, 0]; start turned rotation_z({rocker:?}); }}
+            start Q at [{x:?}, {y:?}, 0]; start turned rotation_z(GUESS({rocker:?})); }}
         joint o: revolute z (ground.O -> crank.O) {{ rigid; }}
         joint a: revolute z (crank.A -> link.A) {{ rigid; }}
         joint q: revolute z (ground.Q -> rocker.Q) {{ rigid; }}
@@ -81,7 +81,7 @@ fn a_slider_crank_is_left_with_its_crank_on_either_side() {
 #[test]
 fn a_crank_and_rocker_are_left_with_the_crank_above_and_below() {
     for (crank, is_above, tilt) in [(0.3, true, 0.0), (0.3, false, 0.0), (0.75, true, 0.8), (0.75, false, -0.5)] {
-        let graph = four_bar(crank, is_above, tilt);
+        let graph = four_bar(crank, is_above, tilt).replace("GUESS", "");
         let scene = scene(&graph, "tune { torque }");
         let left = ["crank.orientation_11", "crank.orientation_12", "crank.angular.p_z"];
         assert_eq!(scene.left(), left, "{}", scene.report);
@@ -90,7 +90,7 @@ fn a_crank_and_rocker_are_left_with_the_crank_above_and_below() {
         let bound = if crank < 0.5 { 1e-6 } else { 1e-3 };
         assert!(apart(&graph, &scene) < bound, "{:e}", apart(&graph, &scene));
     }
-    let turning = four_bar(0.799, true, 0.0);
+    let turning = four_bar(0.799, true, 0.0).replace("GUESS", "");
     assert_eq!(scene(&turning, "tune {}").left().len(), 9, "with this crank coupler and rocker are nearly stretched");
 }
 
@@ -104,5 +104,28 @@ fn without_a_proof_loops_are_closed_where_the_scene_says_so() {
     for (rod, states) in [("0.2", 6), ("0.201", 3)] {
         let graph = graph.replace("rod: m = 0.5", &format!("rod: m = {rod}"));
         assert_eq!(scene(&graph, "tune {}").left().len(), states, "a crank of 0.2 m and a rod of {rod} m");
+    }
+}
+
+/// Ranges of lengths prove what numbers do.
+#[test]
+fn ranges_of_lengths_prove_that_a_loop_may_be_closed() {
+    let slide = SLIDER_CRANK
+        .replace("TURN", "guess(0.2)")
+        .replace("start at [0.2 + rod * cos(guess(0.2)), ", "start at [guess(0.7), ");
+    let rocker = four_bar(0.3, true, 0.0)
+        .replace("GUESS", "guess")
+        .replace("torque: N*m = 3;", "torque: N*m = 3; param arm: m = 0.8, RANGE;")
+        .replace("point B = [0.5, 0, 0];", "point B = [arm - 0.3, 0, 0];");
+    for (graph, wide, narrow) in [
+        (
+            slide,
+            ("rod: m = 0.5, above 0", "rod: m = 0.5, above 0"),
+            ("rod: m = 0.5, above 0", "rod: m = 0.5, at least 0.35"),
+        ),
+        (rocker, ("RANGE", "above 0"), ("RANGE", "at least 0.7, at most 0.9")),
+    ] {
+        let states = [wide, narrow].map(|(from, to)| scene(&graph.replace(from, to), "").left().len());
+        assert!(states[0] > states[1] && states[1] == 3, "{states:?}");
     }
 }
