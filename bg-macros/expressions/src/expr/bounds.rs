@@ -3,9 +3,8 @@
 //! In: a node and the bounds of its symbols. Out: its bounds, for all values of the symbols in theirs.
 //! Method: interval arithmetic (Moore 1966, Interval Analysis), rounded to nearest: bounds are right to rounding. They can be too wide.
 
-use rustc_hash::FxHashMap;
-
-use super::{Function, Id, Node, Pool, Symbol};
+use super::domain::{Domain, known};
+use super::{Function, Id, Pool, Symbol};
 
 /// The least and the largest value.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -19,7 +18,9 @@ pub struct Bounds {
 impl Bounds {
     /// Nothing is known.
     pub const ANY: Self = Self { least: f64::NEG_INFINITY, most: f64::INFINITY };
+}
 
+impl Domain for Bounds {
     fn of(value: f64) -> Self {
         if value.is_nan() { Self::ANY } else { Self { least: value, most: value } }
     }
@@ -52,35 +53,22 @@ impl Bounds {
     fn or(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), most: self.most.max(other.most) }
     }
+
+    fn call(function: Function, arguments: &[Self]) -> Self {
+        match (function, arguments) {
+            (Function::Sqrt, &[Self { least, most }]) => {
+                Self { least: least.max(0.0).sqrt(), most: most.max(0.0).sqrt() }
+            }
+            (Function::Sin | Function::Cos | Function::Tanh, _) => Self { least: -1.0, most: 1.0 },
+            _ => Self::ANY,
+        }
+    }
 }
 
 /// The bounds of the root.
 #[must_use]
 pub fn bounds(pool: &Pool, root: Id, of: &dyn Fn(Symbol) -> Bounds) -> Bounds {
-    let mut known: FxHashMap<Id, Bounds> = FxHashMap::default();
-    for id in pool.reachable(&[root]) {
-        let bounds = match pool.node(id) {
-            Node::Number(number) => Bounds::of(number.value()),
-            Node::Symbol(symbol) => of(*symbol),
-            Node::Sum { constant, terms } => {
-                terms.iter().fold(Bounds::of(constant.value()), |sum, (term, coefficient)| {
-                    sum.plus(known[term].times(Bounds::of(coefficient.value())))
-                })
-            }
-            Node::Product(factors) => factors
-                .iter()
-                .fold(Bounds::of(1.0), |product, (base, exponent)| product.times(known[base].power(*exponent))),
-            Node::Call(Function::Sqrt, arguments) => {
-                let Bounds { least, most } = known[&arguments[0]];
-                Bounds { least: least.max(0.0).sqrt(), most: most.max(0.0).sqrt() }
-            }
-            Node::Call(Function::Sin | Function::Cos | Function::Tanh, _) => Bounds { least: -1.0, most: 1.0 },
-            Node::Call(..) => Bounds::ANY,
-            Node::Select { negative, positive, .. } => known[negative].or(known[positive]),
-        };
-        known.insert(id, bounds);
-    }
-    known[&root]
+    known(pool, root, of)
 }
 
 #[cfg(test)]

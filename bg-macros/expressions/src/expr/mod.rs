@@ -7,6 +7,7 @@ mod antiderivative;
 mod bounds;
 mod calculus;
 mod circle;
+mod domain;
 mod evaluate;
 mod function;
 mod gauss;

@@ -4,9 +4,8 @@
 //! Method: interval arithmetic with the intervals below, at and above zero (Moore 1966, Interval Analysis); it can say too much, never
 //! too little, but for underflow.
 
-use rustc_hash::FxHashMap;
-
-use super::{Function, Id, Node, Pool, Symbol};
+use super::domain::{Domain, known};
+use super::{Function, Id, Pool, Symbol};
 
 /// The signs that a value can have.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -27,11 +26,6 @@ impl Signs {
     /// 0 or above.
     pub const NOT_BELOW: Self = Self { below: false, zero: true, above: true };
 
-    /// The signs of a number.
-    fn of(value: f64) -> Self {
-        if value.is_nan() { Self::ANY } else { Self { below: value < 0.0, zero: value == 0.0, above: value > 0.0 } }
-    }
-
     /// The signs of values in a range: each end with whether it is in it.
     #[must_use]
     pub fn between(lower: Option<(f64, bool)>, upper: Option<(f64, bool)>) -> Self {
@@ -44,6 +38,16 @@ impl Signs {
             zero: has_zero(lower, |end| end < 0.0) && has_zero(upper, |end| end > 0.0),
             above: reaches(upper, |end| end > 0.0),
         }
+    }
+
+    fn without_below(self) -> Self {
+        Self { below: false, ..self }
+    }
+}
+
+impl Domain for Signs {
+    fn of(value: f64) -> Self {
+        if value.is_nan() { Self::ANY } else { Self { below: value < 0.0, zero: value == 0.0, above: value > 0.0 } }
     }
 
     fn plus(self, other: Self) -> Self {
@@ -74,38 +78,19 @@ impl Signs {
         if exponent % 2 == 0 { self.times(self).without_below() } else { self }
     }
 
-    fn without_below(self) -> Self {
-        Self { below: false, ..self }
+    fn call(function: Function, arguments: &[Self]) -> Self {
+        match (function, arguments) {
+            (Function::Sqrt | Function::Abs, &[argument]) if argument.zero || argument.below => Self::NOT_BELOW,
+            (Function::Sqrt | Function::Abs | Function::Exp, _) => Self::ABOVE,
+            _ => Self::ANY,
+        }
     }
 }
 
 /// The signs that the root can have.
 #[must_use]
 pub fn signs(pool: &Pool, root: Id, of: &dyn Fn(Symbol) -> Signs) -> Signs {
-    let mut known: FxHashMap<Id, Signs> = FxHashMap::default();
-    for id in pool.reachable(&[root]) {
-        let signs = match pool.node(id) {
-            Node::Number(number) => Signs::of(number.value()),
-            Node::Symbol(symbol) => of(*symbol),
-            Node::Sum { constant, terms } => {
-                terms.iter().fold(Signs::of(constant.value()), |sum, (term, coefficient)| {
-                    sum.plus(known[term].times(Signs::of(coefficient.value())))
-                })
-            }
-            Node::Product(factors) => factors
-                .iter()
-                .fold(Signs::ABOVE, |product, (base, exponent)| product.times(known[base].power(*exponent))),
-            Node::Call(Function::Sqrt | Function::Abs, arguments) => {
-                let argument = known[&arguments[0]];
-                if argument.zero || argument.below { Signs::NOT_BELOW } else { Signs::ABOVE }
-            }
-            Node::Call(Function::Exp, _) => Signs::ABOVE,
-            Node::Call(..) => Signs::ANY,
-            Node::Select { negative, positive, .. } => known[negative].or(known[positive]),
-        };
-        known.insert(id, signs);
-    }
-    known[&root]
+    known(pool, root, of)
 }
 
 #[cfg(test)]
