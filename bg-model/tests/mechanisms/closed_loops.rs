@@ -83,6 +83,39 @@ mod slides {
     }
 }
 
+/// A slider-crank whose block rubs and bounces off an end, and is pulled by a spring.
+mod bumper {
+    use super::bond_graph;
+
+    bond_graph! {
+        pub graph Bumper {
+            param half: m = 0.15, above 0;
+            gravity [0, -9.81, 0];
+            ground { point O = [0, 0, 0]; point wall = [0.2, 0.3, 0]; }
+            body crank { mass 2; inertia [0.02, 0.02, 0.02]; point pin = [0.1, 0, 0]; start at [0, 0, 0]; }
+            body link { mass 1; inertia [0.01, 0.01, 0.01]; point low = [-half, 0, 0]; point high = [half, 0, 0]; start low at [0.1, 0, 0]; }
+            body block { mass 0.5; inertia [0.01, 0.01, 0.01]; start at [0.1 + 2 * half, 0, 0]; }
+            joint main: revolute z (ground.O -> crank) { rigid; }
+            joint big_end: revolute z (crank.pin -> link.low) { rigid; }
+            joint small_end: revolute z (link.high -> block) { rigid; }
+            joint bore: prismatic x (ground.O -> block) { rigid; }
+            spring band (ground.wall -> block) { stiffness 40; length 0.1; }
+            drive starter on main torque = 2 * sin(3 * t);
+            friction rub on bore { coulomb 0.5; static 0.8; }
+            stop end on bore { at least 0.25; restitution 0.6; }
+            observe {
+                crank.angle; link.angle; block.position.x; main.force; small_end.force; bore.force; end.effort;
+                energy: J = stored_energy; lost: J = integral(dissipated_power);
+            }
+            scenes only;
+            scene BumperWithAll { all reactions; expect planar; }
+            scene Left { expect planar; expect states = 6; }
+            scene Bumper { tune {} expect planar; expect states = 3; }
+        }
+    }
+}
+
+use bumper::{Bumper, BumperParameters, BumperWithAll, BumperWithAllParameters, Left, LeftParameters};
 use four_bar::{Closed, ClosedParameters, Said, SaidParameters, WithAll, WithAllParameters};
 use slides::{Short, ShortParameters, Slotted, SlottedParameters, SlottedWithAll, SlottedWithAllParameters};
 
@@ -124,6 +157,22 @@ fn a_slotted_arm_moves_and_reacts_as_with_all_reactions() {
     let all =
         run(&SlottedWithAll::new(SlottedWithAllParameters::default()).expect("a model"), Integrator::Dop853, 1e-12);
     are_same(&closed, &all, 1e-8);
+}
+
+#[test]
+fn a_block_rubs_and_bounces_as_with_all_reactions() {
+    let all = BumperWithAll::new(BumperWithAllParameters::default()).expect("a model");
+    let left = Left::new(LeftParameters::default()).expect("a model");
+    let closed = Bumper::new(BumperParameters::default()).expect("a model");
+    let all = run(&all, Integrator::Dop853, 1e-12);
+    for other in [run(&left, Integrator::Dop853, 1e-12), run(&closed, Integrator::Dop853, 1e-12)] {
+        assert!(
+            all.statistics.events > 4 && other.statistics.events == all.statistics.events,
+            "{:?}",
+            other.statistics
+        );
+        are_same(&other, &all, 1e-7);
+    }
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn with(pool: &mut Pool, effort: Id, multiplier: Symbol, value: Id) -> Id {
 /// 1 / D of a row.
 fn inverse(pool: &mut Pool, reaction: &Reaction, pivot: Id, entry: Id) -> Id {
     if reaction.switched.is_some() {
-        friction::reciprocal(pool, pivot, entry)
+        friction::reciprocal(pool, pivot, reaction.slip.mobility.unwrap_or(entry))
     } else {
         kept(pool, &reaction.slip, pivot)
     }

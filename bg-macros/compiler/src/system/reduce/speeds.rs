@@ -98,15 +98,22 @@ fn put(equations: &mut StateEquations, choice: &Choice) -> bool {
 }
 
 /// Gives the rows that are left their mobilities, by all momenta: the pivot of a row that is alone is its own entry of the matrix, and
-/// tells nothing of how near to a singular pose the mechanism is. False where a row acts on something else.
+/// tells nothing of how near to a singular pose the mechanism is. False where a row of a joint acts on something else.
 fn keep_mobilities(equations: &mut StateEquations, choice: &Choice) -> bool {
-    let StateEquations { pool, reactions, .. } = equations;
-    for row in (0..choice.rigid).filter(|&row| !choice.is_solved(row)) {
-        let Some(loads) = &choice.loads[row] else { return false };
-        let slip = &mut reactions[row].slip;
+    let StateEquations { pool, states, reactions, .. } = equations;
+    for (row, reaction) in reactions.iter_mut().enumerate().filter(|(row, _)| !choice.is_solved(*row)) {
+        let loads = if row < choice.rigid {
+            choice.loads[row].clone()
+        } else {
+            // Dry friction and stops act on their guards, too.
+            let by = |&state: &usize| (state, partial(pool, &[states[state].rate], reaction.multiplier)[0]);
+            Some(choice.velocities.keys().map(by).collect())
+        };
+        let Some(loads) = loads else { return false };
+        let slip = &mut reaction.slip;
         let parts: Vec<Id> = loads
             .iter()
-            .map(|(&state, &load)| {
+            .map(|(&state, &load): (&usize, &Id)| {
                 let slope = partial(pool, &[slip.flow], Symbol::state(state))[0];
                 pool.mul(slope, load)
             })
