@@ -47,13 +47,11 @@ impl Emission<'_> {
                 let (name, index) = (self.symbol_name(symbol), Literal::u32_unsuffixed(index));
                 Some(quote!(let #name = parameters[#index];))
             }
-            Symbol::Kept(index) => {
-                let (name, index) = (self.symbol_name(symbol), Literal::u32_unsuffixed(index));
-                Some(quote!(let #name = S::from_f64(kept[#index]);))
-            }
-            Symbol::Side(index) => {
-                let (name, index) = (self.symbol_name(symbol), Literal::u32_unsuffixed(index));
-                Some(quote!(let #name = S::from_f64(sides[#index]);))
+            Symbol::Kept(index) | Symbol::Side(index) => {
+                let array = if matches!(symbol, Symbol::Kept(_)) { "kept" } else { "sides" };
+                let (name, array, index) =
+                    (self.symbol_name(symbol), format_ident!("{array}"), Literal::u32_unsuffixed(index));
+                Some(quote!(let #name = S::from_f64(#array[#index]);))
             }
             _ => None,
         })

@@ -47,7 +47,7 @@ fn split(equations: &StateEquations, reactions: &[Reaction], moves: &Moves) -> (
     let moved = |row: usize| moves.iter().filter(move |(_, by)| !pool.is_zero(by[row])).map(|(state, _)| *state);
     let mut seen = BTreeSet::new();
     let (mut tree, mut closing) = (Vec::new(), Vec::new());
-    for rows in of_joints(reactions) {
+    for rows in of_joints(reactions, 0..reactions.len()) {
         let states: BTreeSet<usize> = rows.iter().flat_map(|&row| moved(row)).collect();
         let is_new = |state: &&usize| node(**state).is_none_or(|node| !seen.contains(&node));
         let is_new_to_tree = states.iter().filter(is_new).count() >= rows.len();
@@ -58,11 +58,11 @@ fn split(equations: &StateEquations, reactions: &[Reaction], moves: &Moves) -> (
     (tree, closing)
 }
 
-/// The rows of each joint, in the order of the joints' first rows.
-fn of_joints(reactions: &[Reaction]) -> Vec<Vec<usize>> {
+/// These rows by their joints, in the order of the joints' first rows.
+pub(super) fn of_joints(reactions: &[Reaction], rows: impl Iterator<Item = usize>) -> Vec<Vec<usize>> {
     let mut joints: Vec<Vec<usize>> = Vec::new();
-    for (row, reaction) in reactions.iter().enumerate() {
-        match joints.iter_mut().find(|rows| reactions[rows[0]].slip.joint == reaction.slip.joint) {
+    for row in rows {
+        match joints.iter_mut().find(|rows| reactions[rows[0]].slip.joint == reactions[row].slip.joint) {
             Some(rows) => rows.push(row),
             None => joints.push(vec![row]),
         }

@@ -14,9 +14,9 @@
 
 use std::collections::BTreeMap;
 
-use super::joined::{Choice, Images, Row};
+use super::joined::{Choice, Images, Row, applied};
 use super::report::Fate;
-use super::{angle, is_constant, speeds};
+use super::{angle, closing, is_constant, speeds};
 use crate::expr::{Bounds, Function, Id, Pool, Symbol, bounds, derivative, partial, same_polynomial, substitute};
 use crate::graph::Parameter;
 use crate::system::equations::{FallibleLaw, Kind, StateEquations};
@@ -70,15 +70,8 @@ struct Conformal {
 impl Choice {
     /// The rows that close loops and are left, solved where they can be; for the links `asked` without a proof.
     pub(super) fn close_loops(&mut self, equations: &mut StateEquations, asked: &[String]) {
-        let mut joints: Vec<Vec<usize>> = Vec::new();
-        for row in (0..self.rigid).filter(|&row| !self.is_solved(row)) {
-            let joint = |row: usize| &equations.reactions[row].slip.joint;
-            match joints.iter_mut().find(|rows| joint(rows[0]) == joint(row)) {
-                Some(rows) => rows.push(row),
-                None => joints.push(vec![row]),
-            }
-        }
-        for numbers in joints {
+        let left: Vec<usize> = (0..self.rigid).filter(|&row| !self.is_solved(row)).collect();
+        for numbers in closing::of_joints(&equations.reactions, left.into_iter()) {
             let rows: Option<Vec<Row>> = numbers.iter().map(|&row| self.closing(equations, row)).collect();
             let Some(rows) = rows else { continue };
             let links = self.links(equations);
@@ -157,9 +150,7 @@ impl Choice {
             return false;
         }
         let pool = &mut equations.pool;
-        let [c, s] = link.symbols(pool);
-        let (first, second) = (pool.mul(b, c), pool.mul(a, s));
-        let slope = pool.sub(first, second);
+        let slope = link.slope(pool, [a, b]);
         let pivot = self.root(equations, number, link, (Affine { by: [a, b], rest }, length), (slope, length));
         let pool = &mut equations.pool;
         let flow = without(pool, row.flow, &[link.momentum]);
@@ -235,7 +226,7 @@ impl Choice {
         let side = pool.symbol(Symbol::numbered(Symbol::Side, sides.len()));
         sides.push(start);
         let parts = [by[0], by[1], rest].map(|id| pool.div(id, length));
-        let parts = substitute(pool, &parts, &|symbol| self.given.get(&symbol.as_state()?).copied());
+        let parts = applied(pool, &parts, &self.given);
         let (a, b, sine) = (parts[0], parts[1], parts[2]);
         let square = pool.powi(sine, 2);
         let radicand = pool.linear(1.0, &[(square, -1.0)]);
@@ -248,7 +239,7 @@ impl Choice {
         let places = [place(b, a, 1.0), place(a, b, -1.0)];
         self.given.extend(link.places.into_iter().zip(places));
         let symbol = Symbol::numbered(Symbol::Unsolved, self.roots.len());
-        let size = substitute(pool, &[size], &|symbol| self.given.get(&symbol.as_state()?).copied())[0];
+        let size = applied(pool, &[size], &self.given)[0];
         let value = pool.mul(size, cosine);
         self.roots.push(Root { joint, symbol, slope, value });
         pool.symbol(symbol)
@@ -257,7 +248,7 @@ impl Choice {
     /// The orientation of the last link of a pin, from that of the other one: v = -B^T (A u + e) / |B|^2.
     fn give(&mut self, pool: &mut Pool, link: &Link, (last, of_last): (&Link, &Conformal), of: (&Conformal, [Id; 2])) {
         let (of_link, rests) = of;
-        let rests = substitute(pool, &rests, &|symbol| self.given.get(&symbol.as_state()?).copied());
+        let rests = applied(pool, &rests, &self.given);
         let places = link.places.map(|place| self.given[&place]);
         let vector = [0, 1].map(|row| {
             let own = dot(pool, of_link.rows[row], places);
@@ -275,7 +266,6 @@ impl Choice {
     fn settle(&mut self, equations: &mut StateEquations, number: usize, link: &Link, momentum: Id) {
         let joint = equations.reactions[number].slip.joint.clone();
         self.rows.push((number, link.momentum));
-        self.closed.push(link.track);
         self.add(equations, number, Images::from([(link.momentum, momentum)]));
         let states = [link.momentum].into_iter().chain(link.places);
         self.fates.extend(states.map(|state| (state, Fate::Closed(joint.clone()))));
@@ -314,6 +304,13 @@ impl Link {
         self.places.map(|place| pool.symbol(Symbol::state(place)))
     }
 
+    /// The slope by the link's angle of what has these parts of its cosine and its sine.
+    fn slope(&self, pool: &mut Pool, [a, b]: [Id; 2]) -> Id {
+        let [c, s] = self.symbols(pool);
+        let (first, second) = (pool.mul(b, c), pool.mul(a, s));
+        pool.sub(first, second)
+    }
+
     /// The gap of a row, where it is affine in the link's cosine and sine, and the flow is its rate by the link's speed.
     fn affine(&self, pool: &mut Pool, row: &Row) -> Option<Affine> {
         let slope = *row.slopes.get(&self.momentum)?;
@@ -323,9 +320,7 @@ impl Link {
             return None;
         }
         let rest = without(pool, row.gap, &self.places);
-        let [c, s] = self.symbols(pool);
-        let (first, second) = (pool.mul(by[1], c), pool.mul(by[0], s));
-        let turned = pool.sub(first, second);
+        let turned = self.slope(pool, by);
         let expected = pool.mul(self.factor, turned);
         same_polynomial(pool, slope, expected).then_some(Affine { by, rest })
     }

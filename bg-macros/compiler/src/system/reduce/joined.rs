@@ -34,9 +34,7 @@ pub(super) struct Choice {
     pub velocities: BTreeMap<usize, Id>,
     /// The cosines and sines of the angles that stay, and of those that loops give.
     pub circles: Circles,
-    /// The tracks of the orientations that loops give.
-    pub closed: Vec<usize>,
-    /// The states of these, over those that stay: put in last.
+    /// The orientations that loops give, over the states that stay: put in last.
     pub given: Images,
     /// The roots by which loops are closed.
     pub roots: Vec<Root>,
@@ -63,7 +61,6 @@ impl Choice {
             loads,
             velocities,
             circles: Circles::default(),
-            closed: Vec::new(),
             given: Images::new(),
             roots: Vec::new(),
             turned: Vec::new(),
@@ -292,7 +289,7 @@ fn solved(pool: &mut Pool, of: Id, state: usize, slope: Id) -> Id {
     pool.div(rest, slope)
 }
 
-fn applied(pool: &mut Pool, ids: &[Id], images: &Images) -> Vec<Id> {
+pub(super) fn applied(pool: &mut Pool, ids: &[Id], images: &Images) -> Vec<Id> {
     substitute(pool, ids, &|symbol| symbol.as_state().and_then(|state| images.get(&state).copied()))
 }
 

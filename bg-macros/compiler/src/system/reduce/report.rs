@@ -2,6 +2,8 @@
 //!
 //! In: what each reduction did. Out: a line a state, and the size of the model after each reduction.
 
+use std::collections::BTreeSet;
+
 use crate::expr::Id;
 use crate::system::equations::{State, StateEquations};
 
@@ -111,7 +113,7 @@ pub struct Report {
     /// Why all joints have kept their reactions, where they have.
     pub kept: Option<Kept>,
     /// The orientations that loops give.
-    pub closed: Vec<String>,
+    pub closed: BTreeSet<String>,
     /// For each state still there its index in `fates`.
     left: Vec<usize>,
 }
@@ -121,7 +123,7 @@ impl Report {
         let fates: Vec<(State, Fate)> =
             equations.states.iter().map(|state| (state.clone(), Fate::Integrated)).collect();
         let left = (0..fates.len()).collect();
-        Self { fates, counts: Vec::new(), kept: None, closed: Vec::new(), left }
+        Self { fates, counts: Vec::new(), kept: None, closed: BTreeSet::new(), left }
     }
 
     /// Notes the size of the model.

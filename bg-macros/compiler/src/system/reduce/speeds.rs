@@ -15,7 +15,7 @@ use super::joined::Choice;
 use super::report::{Kept, Report};
 use super::{Operations, Wanted, closing, friction, projected};
 use crate::expr::{Id, Symbol, partial, same_polynomial, substitute};
-use crate::system::equations::{Kind, StateEquations};
+use crate::system::equations::{Kind, Origin, StateEquations};
 
 /// The rates of a step, those of DOP853.
 const RATES: usize = 12;
@@ -37,18 +37,15 @@ pub(super) fn choose(
         return Err(Kept::Baumgarte);
     }
     let is_asked = !wanted.links.is_empty();
-    let closed = attempt(equations, Some(&wanted.links));
-    let closes = closed.as_ref().is_ok_and(|(_, choice)| !choice.closed.is_empty());
-    let attempts = match (closes, is_asked) {
-        (false, false) => vec![attempt(equations, None)],
-        (true, false) => vec![attempt(equations, None), closed],
-        (_, true) => vec![closed],
-    };
+    let closed = chosen(equations, Some(&wanted.links)).filter(|(_, choice)| !choice.roots.is_empty());
+    let closes = closed.is_some();
+    // What the scene asks for, else with loops and without them.
+    let without = if closes && is_asked { None } else { chosen(equations, None) };
     let mut reason = Kept::NoPivot;
     let mut found: Vec<(usize, StateEquations, Choice)> = Vec::new();
-    for attempt in attempts {
-        match attempt {
-            Ok((changed, choice)) => found.push((cost(&changed, &choice.kept(&changed), operations), changed, choice)),
+    for (mut changed, choice) in without.into_iter().chain(closed) {
+        match put(&mut changed, &choice) {
+            Ok(()) => found.push((cost(&changed, &choice.kept(&changed), operations), changed, choice)),
             Err(kept) => reason = kept,
         }
     }
@@ -60,26 +57,30 @@ pub(super) fn choose(
     for (&state, fate) in &choice.fates {
         report.say(state, fate.clone());
     }
-    report.closed = choice.closed.iter().map(|&track| equations.tracks[track].clone()).collect();
+    let track = |state: &usize| match equations.states[*state].origin {
+        Origin::Orientation(track, ..) => Some(equations.tracks[track].clone()),
+        _ => None,
+    };
+    report.closed = choice.given.keys().filter_map(track).collect();
     *equations = changed;
     super::live::keep_states(equations, report, &choice.kept(equations));
     Ok(())
 }
 
-/// The equations without the momenta that rigid joints determine; with `links` without loops that are closed in closed form, too.
-fn attempt(equations: &StateEquations, links: Option<&[String]>) -> Result<(StateEquations, Choice), Kept> {
+/// What can be taken out of the equations, which are a copy; with `links` loops are closed in closed form.
+fn chosen(equations: &StateEquations, links: Option<&[String]>) -> Option<(StateEquations, Choice)> {
     let mut changed = equations.clone();
-    let choice = Choice::of(&mut changed, links).ok_or(Kept::NoPivot)?;
-    check(&mut changed, &choice)?;
-    if put(&mut changed, &choice) { Ok((changed, choice)) } else { Err(Kept::Load) }
+    let choice = Choice::of(&mut changed, links)?;
+    Some((changed, choice))
 }
 
-/// Puts what is chosen into the equations; false where the rows act on what cannot be projected.
-fn put(equations: &mut StateEquations, choice: &Choice) -> bool {
+/// Puts what is chosen into the equations, where the mechanism can do without the reactions of the chosen rows.
+fn put(equations: &mut StateEquations, choice: &Choice) -> Result<(), Kept> {
+    check(equations, choice)?;
     if closing::is_any(equations) && !keep_mobilities(equations, choice) {
-        return false;
+        return Err(Kept::Load);
     }
-    let Some(values) = projected::equations(equations, choice) else { return false };
+    let Some(values) = projected::equations(equations, choice) else { return Err(Kept::Load) };
     equations.replace(&|symbol| match symbol {
         Symbol::Multiplier(_) => values.get(&symbol).copied(),
         _ => symbol.as_state().and_then(|state| choice.images.get(&state).copied()),
@@ -94,7 +95,7 @@ fn put(equations: &mut StateEquations, choice: &Choice) -> bool {
     if !choice.roots.is_empty() {
         choice.put_roots(equations);
     }
-    true
+    Ok(())
 }
 
 /// Gives the rows that are left their mobilities, by all momenta: the pivot of a row that is alone is its own entry of the matrix, and
