@@ -19,6 +19,7 @@ use crate::system::jacobian::{self, Jacobian};
 use crate::system::projection;
 use crate::system::reduce::{self, Report, expectation};
 use crate::system::second_order::{self, SecondOrder};
+use crate::system::sizes::{self, Sizes};
 
 /// A graph's results as far as its state equations.
 #[derive(Debug)]
@@ -50,6 +51,8 @@ pub struct Compiled {
     pub jacobian: Jacobian,
     /// The states of second order.
     pub second_order: SecondOrder,
+    /// How large the states of storages are beside the energy.
+    pub sizes: Sizes,
     /// How I - c J is factored and solved.
     pub elimination: Elimination,
     /// What every generated function evaluates, in order.
@@ -151,7 +154,8 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     equations.close();
     let mut second_order = second_order::differentiate(&equations);
     let elimination = elimination::plan(equations.states.len(), jacobian.unknowns.len(), &jacobian.places());
-    let programs = program::programs(&mut equations, &mut jacobian, &mut second_order);
+    let mut sizes = sizes::differentiate(&equations);
+    let programs = program::programs(&mut equations, &mut jacobian, &mut second_order, &mut sizes);
     Ok(Compiled {
         source,
         is_scene,
@@ -161,6 +165,7 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
         equations,
         jacobian,
         second_order,
+        sizes,
         elimination,
         programs,
     })

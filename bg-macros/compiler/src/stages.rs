@@ -19,6 +19,7 @@ use crate::source::syntax;
 use crate::system::equations::StateEquations;
 use crate::system::jacobian::Jacobian;
 use crate::system::second_order::SecondOrder;
+use crate::system::sizes::Sizes;
 
 /// One stage of one graph.
 #[derive(Clone, Debug)]
@@ -26,7 +27,7 @@ pub struct Stage {
     /// The graph's name.
     pub graph: String,
     /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `program`, where it pays
-    /// `pairs`, `reversed`, `jacobian`, `second` and `elimination`.
+    /// `pairs`, `reversed`, `jacobian`, `second`, `sizes` and `elimination`.
     pub name: &'static str,
     /// The stage's result.
     pub text: String,
@@ -51,6 +52,7 @@ fn of_model(model: &Compiled) -> Vec<Stage> {
         equations,
         jacobian,
         second_order,
+        sizes,
         elimination,
         programs,
     } = model;
@@ -75,6 +77,7 @@ fn of_model(model: &Compiled) -> Vec<Stage> {
     );
     push("jacobian", jacobian_text(equations, jacobian));
     push("second", second_text(equations, second_order));
+    push("sizes", sizes_text(equations, sizes));
     push("elimination", elimination_text(equations, elimination));
     stages
 }
@@ -176,6 +179,17 @@ fn second_text(equations: &StateEquations, second: &SecondOrder) -> String {
     let mut out = format!("{} states\n", second.states.len());
     for (index, &derivative) in second.states.clone().zip(&second.derivatives) {
         let _ = writeln!(out, "    {}'' = {}", equations.states[index].name, equations.shown(&second.pool, derivative));
+    }
+    out
+}
+
+/// The second derivatives of the stored energy.
+fn sizes_text(equations: &StateEquations, sizes: &Sizes) -> String {
+    let mut out = String::new();
+    for (state, &curvature) in equations.states.iter().zip(&sizes.curvatures) {
+        if !sizes.pool.is_zero(curvature) {
+            let _ = writeln!(out, "d2 stored / d {0}2 = {1}", state.name, equations.shown(&sizes.pool, curvature));
+        }
     }
     out
 }

@@ -385,7 +385,7 @@ fn about_run<'py>(py: Python<'py>, run: &Trajectory) -> PyResult<Bound<'py, PyDi
     let statistics = &run.statistics;
     info.set_item("methods", PyList::new(py, run.methods.iter().map(|change| (change.t, change.method)))?)?;
     info.set_item("rtol", run.request.rtol)?;
-    info.set_item("atol", run.request.atol())?;
+    info.set_item("atol", run.request.atol)?;
     info.set_item("steps", statistics.steps)?;
     info.set_item("rejected", statistics.rejected)?;
     info.set_item("rate_evaluations", statistics.rate_evaluations)?;

@@ -8,6 +8,7 @@ use core::ops::Range;
 
 use nalgebra::SVector;
 
+use crate::model::description::StateInfo;
 use crate::model::holding::{Held, Stops};
 use crate::model::linear::{Field, Sparsity};
 use crate::model::scalar::Scalar;
@@ -152,6 +153,16 @@ pub trait Impacts<S: Scalar, const N: usize, const G: usize> {
     fn impact(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]);
 }
 
+/// A system that knows what its storages store.
+pub trait Storages<S: Scalar, const N: usize, const G: usize> {
+    /// What each state is.
+    fn states(&self) -> &'static [StateInfo];
+
+    /// The stored energy E at time `t` (s) and state `x`, J, as far as it is known; writes d2E/dx2 by each momentum and displacement,
+    /// in J per the state's unit squared, into `curvatures`, and 0 for other states.
+    fn energy(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], curvatures: &mut SVector<S, N>) -> S;
+}
+
 /// A model that knows its reverse sweeps: how a weighted sum of what a function gives depends on all that the function reads, at the cost of
 /// a few evaluations of it. What depends on the parameters only is a table of constants, by which each sweep adds its derivatives to
 /// `by_constants`: in the weights' unit times the result's, per the constant's. Branches are given.
@@ -256,6 +267,15 @@ impl<S: Scalar, const N: usize, const G: usize> Impacts<S, N, G> for Absent {
         match *self {}
     }
     fn impact(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut [S]) {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize, const G: usize> Storages<S, N, G> for Absent {
+    fn states(&self) -> &'static [StateInfo] {
+        match *self {}
+    }
+    fn energy(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut SVector<S, N>) -> S {
         match *self {}
     }
 }

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use nalgebra::SVector;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::{Absent, Impacts, Joints, Linearised, Reversed, SecondOrder, Series};
+use crate::model::capability::{Absent, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
 use crate::model::description::Description;
 use crate::model::holding::Redundancy;
 use crate::model::origin::Origin;
@@ -117,6 +117,12 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// What joints hold; nothing by default.
     #[inline]
     fn joints(&self) -> Option<&impl Joints<S, N, G>> {
+        None::<&Absent>
+    }
+
+    /// What its storages store, from which an error norm knows how large states are; by default nothing is known.
+    #[inline]
+    fn storages(&self) -> Option<&impl Storages<S, N, G>> {
         None::<&Absent>
     }
 

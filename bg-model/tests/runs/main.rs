@@ -12,6 +12,7 @@ mod problems;
 #[path = "../random/mod.rs"]
 mod random;
 mod recording;
+mod sizes;
 mod run;
 mod stopping;
 mod switching;

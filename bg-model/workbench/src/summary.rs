@@ -64,8 +64,8 @@ pub struct Summary {
     pub fixed_step_s: Option<f64>,
     /// Relative tolerance.
     pub rtol: f64,
-    /// Absolute tolerance, SI units.
-    pub atol: f64,
+    /// Absolute tolerance, SI units; none where the sizes of the states give it.
+    pub atol: Option<f64>,
     /// Why the run stopped before its end, if it did.
     pub failure: Option<String>,
     /// Which rigid joints hold what others hold already.
@@ -94,6 +94,9 @@ pub struct Summary {
     pub steps_below_rounding: u64,
     /// Whether these are so many that larger tolerances would serve as well.
     pub is_at_rounding: bool,
+    /// The states whose errors were never controlled.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub uncontrolled: Vec<&'static str>,
     /// Switchings of the stroke.
     pub events: u64,
     /// Time on the wall clock, s.
@@ -142,7 +145,7 @@ impl Summary {
             integrators: integrators(method, &run.methods),
             fixed_step_s: method.has_fixed_step().then_some(fixed_step),
             rtol,
-            atol: run.request.atol(),
+            atol: run.request.atol,
             failure,
             redundant: run.redundant.iter().map(ToString::to_string).collect(),
             impulse_energy_j: (run.impulse_energy != 0.0).then_some(run.impulse_energy),
@@ -156,6 +159,7 @@ impl Summary {
             pivoted_factorisations: statistics.pivoted_factorisations,
             steps_below_rounding: statistics.rounded,
             is_at_rounding: statistics.is_at_rounding(),
+            uncontrolled: run.uncontrolled.clone(),
             events: statistics.events,
             wall_time_s: wall,
             times_real_time: (reached - from) / wall,
@@ -196,7 +200,11 @@ impl Summary {
         lines.push(match self.fixed_step_s {
             Some(step) => ("fixed step", format!("{step:e} s")),
             None => {
-                ("tolerances", format!("relative {}, absolute {} (SI)", tolerance(self.rtol), tolerance(self.atol)))
+                let absolute = self.atol.map_or_else(
+                    || "absolute by the sizes of the states".to_owned(),
+                    |atol| format!("absolute {} (SI)", tolerance(atol)),
+                );
+                ("tolerances", format!("relative {}, {absolute}", tolerance(self.rtol)))
             }
         });
         lines.push(("states", self.states.to_string()));
@@ -213,6 +221,12 @@ impl Summary {
                 "in {share:.0} % of the steps the tolerances are below rounding: larger ones give as good a result"
             );
             lines.push(("limit of rounding", text));
+        }
+        if !self.uncontrolled.is_empty() {
+            let help = if self.atol.is_some() { "leave out --atol" } else { "take a smaller --rtol" };
+            let states = self.uncontrolled.join(", ");
+            let text = format!("{states}: smaller than the absolute tolerance all the time; {help}");
+            lines.push(("errors not controlled", text));
         }
         lines.push(("rate evaluations", self.rate_evaluations.to_string()));
         if self.series_orders > 0 {

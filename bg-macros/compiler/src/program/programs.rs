@@ -11,7 +11,7 @@ use super::tape::{Tape, tape};
 use super::{Counts, Program, Request, Routine, schedule};
 use crate::expr::{Id, Pool};
 use crate::system::equations::Iteration;
-use crate::system::{Jacobian, SecondOrder, StateEquations};
+use crate::system::{Jacobian, SecondOrder, Sizes, StateEquations};
 
 /// Longer rates are not inlined into an integrator's step: they would only fill the cache.
 const INLINED: usize = 400;
@@ -34,6 +34,8 @@ pub struct Programs {
     pub holding: Option<Program<1>>,
     /// What impacts are calculated from, with a constant table of its own.
     pub impacts: Option<Program<1>>,
+    /// The stored energy and its second derivatives, with a constant table of its own.
+    pub sizes: Program<1>,
     /// Functions of parameters and unknowns, from which the start is made.
     pub starting: Starting,
     /// The scalars of what is asked of values, in the order of the requirements: in `new`, in `start`. None where nothing is asked.
@@ -99,12 +101,19 @@ pub struct Starting {
 }
 
 /// Schedules all functions of a model. The pools gain nodes of parameters and numbers.
-pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_order: &mut SecondOrder) -> Programs {
+pub fn programs(
+    equations: &mut StateEquations,
+    jacobian: &mut Jacobian,
+    second_order: &mut SecondOrder,
+    sizes: &mut Sizes,
+) -> Programs {
     let running = running(equations);
     let reversed = reversed(&running, equations.states.len());
     let (jacobian, damping) = derivatives(jacobian, &second_order.states);
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
     let (holding, impacts) = (holding(equations), impacts(equations));
+    let measured: Vec<Id> = [sizes.energy].iter().chain(&sizes.curvatures).copied().collect();
+    let sizes = alone(&mut sizes.pool, "sizes", &measured);
     let starting = starting(equations);
     let fallible = roots(&equations.fallible, |law| law.value);
     let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
@@ -119,6 +128,7 @@ pub fn programs(equations: &mut StateEquations, jacobian: &mut Jacobian, second_
         second_order,
         holding,
         impacts,
+        sizes,
         starting,
         required,
         not_finite,

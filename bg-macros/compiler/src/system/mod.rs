@@ -8,9 +8,11 @@ pub mod projection;
 pub mod reduce;
 pub mod requirements;
 pub mod second_order;
+pub mod sizes;
 mod value;
 
 pub use equations::StateEquations;
 pub use jacobian::Jacobian;
 pub use second_order::SecondOrder;
+pub use sizes::Sizes;
 pub use value::Value;

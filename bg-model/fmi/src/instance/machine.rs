@@ -90,7 +90,7 @@ impl<const N: usize, const G: usize> Run<N, G> {
 }
 
 fn settings<const N: usize>(rtol: f64) -> Settings<N> {
-    Settings { tolerances: Tolerances::new(rtol, rtol / Request::RTOL_OVER_ATOL), ..Settings::default() }
+    Settings { tolerances: Tolerances::relative(rtol), ..Settings::default() }
 }
 
 impl<Mo, const N: usize, const G: usize, const M: usize> Machine for Standing<Mo, N, G, M>

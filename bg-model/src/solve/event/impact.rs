@@ -167,7 +167,7 @@ where
     M: Method<N>,
 {
     let start = stepper.start;
-    let off = SVector::from_fn(|i, _| start.x[i] + stepper.scale.allowed(i, start.x[i], 0.0));
+    let off = SVector::from_fn(|i, _| start.x[i] + stepper.scale.allowed(i, start.x[i]));
     let displaced = stepper.guards(start.t, &off);
     core::array::from_fn(|k| (displaced[k] - value[k]).abs())
 }

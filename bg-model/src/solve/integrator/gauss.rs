@@ -9,8 +9,10 @@
 use nalgebra::SVector;
 
 use super::collocation::{Collocation, GAUSS6};
-use super::{Flow, Method, Point, Scale, StepControl, Tolerances};
+use super::{Flow, Method, Point, Scale, StepControl};
 
+/// What corrections of a fixed step are measured by in place of the relative tolerance: such a step has none.
+const OF_FIXED: f64 = 1e-8;
 /// A disagreement of this part of a state shows that a step's equations were not solved.
 const LOST: f64 = 1e-3;
 
@@ -20,8 +22,6 @@ const LOST: f64 = 1e-3;
 pub struct Gauss6<const N: usize> {
     pub(super) core: Collocation<N, 3, 1>,
     control: StepControl,
-    /// What corrections of a fixed step are measured by: it has no tolerances.
-    own: Scale<N>,
 }
 
 impl<const N: usize> Gauss6<N> {
@@ -38,8 +38,7 @@ impl<const N: usize> Gauss6<N> {
     }
 
     fn with(control: StepControl) -> Self {
-        let own = Scale::from(&Tolerances::new(1e-8, 1e-10));
-        Self { core: Collocation::new(&GAUSS6, true), control, own }
+        Self { core: Collocation::new(&GAUSS6, true), control }
     }
 
     /// Whether the quadrature disagrees with the polynomial, by a thousandth of the state and more than the tolerances: where
@@ -48,7 +47,7 @@ impl<const N: usize> Gauss6<N> {
         let mut polynomial = SVector::zeros();
         self.core.dense(start, 1.0, &mut polynomial);
         let size = |i: usize| if end[i].abs() > start.x[i].abs() { end[i].abs() } else { start.x[i].abs() };
-        (0..N).any(|i| (end[i] - polynomial[i]).abs() > scale.allowed(i, start.x[i], 0.0) + LOST * size(i))
+        (0..N).any(|i| (end[i] - polynomial[i]).abs() > scale.allowed(i, start.x[i]) + LOST * size(i))
     }
 }
 
@@ -69,7 +68,14 @@ impl<const N: usize> Method<N> for Gauss6<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        let scale = if let StepControl::Fixed { .. } = self.control { &self.own } else { scale };
+        let own;
+        let scale = if let StepControl::Fixed { .. } = self.control {
+            let absolute = scale.absolute * (OF_FIXED / scale.relative);
+            own = Scale { relative: OF_FIXED, absolute, ..*scale };
+            &own
+        } else {
+            scale
+        };
         let error = match self.core.solve(flow, start, h, scale) {
             Ok(()) => {
                 *end = SVector::from_fn(|i, _| start.x[i] + self.core.quadrature(i, h));

@@ -210,7 +210,7 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         &mut self,
         side: &Side<'_, Sys, V, G>,
         begin: &Begin<'_, Lanes<V>, N>,
-        scale: &Scale<N>,
+        scale: &Scale<N, Lanes<V>>,
         end: &mut SVector<Lanes<V>, N>,
     ) -> Lanes<V>
     where

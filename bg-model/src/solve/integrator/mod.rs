@@ -56,8 +56,8 @@ pub use rosenbrock::{Rodas5p, Ros2};
 #[cfg(feature = "std")]
 pub(crate) use steps::{Begin, Rates};
 pub use taylor::Taylor;
-pub(crate) use tolerances::rounding;
 pub use tolerances::{Absolute, Scale, Tolerances};
+pub(crate) use tolerances::{displaced, rounding, smaller};
 pub(crate) use vectors::{Arch, rate_in};
 
 /// A smooth flow: a system with its switches frozen. Only the rate has to be written; capabilities are those of a system

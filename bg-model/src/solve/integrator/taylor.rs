@@ -169,7 +169,7 @@ impl<const N: usize> Vectorised<N> for Taylor<N> {
             let from = start.x.data.0[0][i];
             let to = self.sum.add(i, from, change[i]);
             end.data.0[0][i] = to;
-            weights[i] = 1.0 / scale.allowed(i, from, to);
+            weights[i] = 1.0 / scale.allowed_between(i, from, to);
         }
         // A coefficient that is no number leaves none at the end, so a step of numbers costs no more than this look.
         if !is_finite(end) && self.series.iter().any(|coefficients| !is_finite(coefficients)) {
@@ -245,7 +245,7 @@ impl<const N: usize> Method<N> for Taylor<N> {
             return self.other.largest_error(start, scale, end);
         }
         let last = &self.series[self.order()];
-        index_of_largest::<N>(|i| last[i].abs() / scale.allowed(i, start.x[i], end[i]))
+        index_of_largest::<N>(|i| last[i].abs() / scale.allowed_between(i, start.x[i], end[i]))
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {

@@ -8,7 +8,7 @@ use super::{Flow, Point};
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::fraction;
 
-/// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`.
+/// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`, with the value at the start of the step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerances<const N: usize> {
     /// The part that grows with the state; from [`Tolerances::SMALLEST_RELATIVE`].
@@ -20,6 +20,10 @@ pub struct Tolerances<const N: usize> {
 /// An absolute tolerance, positive.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Absolute<const N: usize> {
+    /// A tenth of the relative tolerance of the largest value that each state has had so far, or a thousandth of it of the value at
+    /// which the state would count beside the energy stored so far, where that is more: the same steps in any units and at any
+    /// size of the machine. A driver of runs finds these sizes; a step by itself takes them to be zero.
+    OfSizes,
     /// The same for all states, each in its own unit.
     Scalar(f64),
     /// One for each state, in its unit.
@@ -30,7 +34,13 @@ impl<const N: usize> Tolerances<N> {
     /// The smallest relative tolerance that makes sense in `f64`: ten times the rounding unit, as in Hairer's programs.
     pub const SMALLEST_RELATIVE: f64 = 10.0 * f64::EPSILON;
 
-    /// The same absolute tolerance for all states.
+    /// The absolute tolerances follow the sizes of the states.
+    #[must_use]
+    pub const fn relative(relative: f64) -> Self {
+        Self { relative, absolute: Absolute::OfSizes }
+    }
+
+    /// The same absolute tolerance for all states, each in its own unit.
     #[must_use]
     pub const fn new(relative: f64, absolute: f64) -> Self {
         Self { relative, absolute: Absolute::Scalar(absolute) }
@@ -38,50 +48,75 @@ impl<const N: usize> Tolerances<N> {
 }
 
 impl<const N: usize> Default for Tolerances<N> {
-    /// 1e-8 relative and a tenth of it absolute, which serves best on the hacksaw (`docs/integrators.md`).
+    /// 1e-8 relative, the absolute ones follow the sizes of the states.
     fn default() -> Self {
-        Self::new(1e-8, 1e-9)
+        Self::relative(1e-8)
     }
 }
 
 /// Tolerances, one for each state: what errors are divided by.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scale<const N: usize> {
+pub struct Scale<const N: usize, S = f64> {
     /// The relative tolerance.
     pub relative: f64,
     /// The absolute tolerance of every state.
-    pub absolute: SVector<f64, N>,
+    pub absolute: SVector<S, N>,
+    /// The largest allowed error of a state in parts of its size, where sizes are known: else also in its unit.
+    pub coarsest: f64,
 }
 
 impl<const N: usize> From<&Tolerances<N>> for Scale<N> {
     fn from(tolerances: &Tolerances<N>) -> Self {
         let absolute = match &tolerances.absolute {
+            Absolute::OfSizes => SVector::repeat(f64::MIN_POSITIVE),
             Absolute::Scalar(absolute) => SVector::repeat(*absolute),
             Absolute::PerState(absolute) => *absolute,
         };
-        Self { relative: tolerances.relative, absolute }
+        let coarsest = match &tolerances.absolute {
+            Absolute::OfSizes => tolerances.relative,
+            Absolute::Scalar(_) | Absolute::PerState(_) => tolerances.relative.max(absolute.amax()),
+        };
+        Self { relative: tolerances.relative, absolute, coarsest }
+    }
+}
+
+impl<const N: usize, S: Scalar> Scale<N, S> {
+    /// The allowed error of state `i` where it has this value.
+    #[inline(always)]
+    #[must_use]
+    pub fn allowed(&self, i: usize, value: S) -> S {
+        self.absolute.data.0[0][i] + value.abs().times(self.relative)
+    }
+
+    /// The same in a step between two values: by the larger one, but not by an end that has grown out of all proportion. Of a step far
+    /// beyond what is stable an explicit method's error estimate is small beside where it leads.
+    #[inline(always)]
+    #[must_use]
+    pub fn allowed_between(&self, i: usize, from: S, to: S) -> S {
+        const GROWTH: f64 = 1e6;
+        let (at_start, at_end) = (self.allowed(i, from), self.allowed(i, to));
+        at_start.larger(smaller(at_end, at_start.times(GROWTH)))
     }
 }
 
 impl<const N: usize> Scale<N> {
-    /// The allowed error of state `i` between the values `a` and `b`.
-    #[inline(always)]
-    #[must_use]
-    pub fn allowed<S: Scalar>(&self, i: usize, a: S, b: S) -> S {
-        a.alike(self.absolute.data.0[0][i]) + a.abs().larger(b.abs()).times(self.relative)
-    }
-
     /// The state at `start` whose rate is the largest part of its allowed error.
     pub(crate) fn fastest(&self, start: &Point<N>) -> usize {
-        index_of_largest::<N>(|i| start.rate[i].abs() / self.allowed(i, start.x[i], 0.0))
+        index_of_largest::<N>(|i| start.rate[i].abs() / self.allowed(i, start.x[i]))
     }
 
     /// The largest `|v_i|` divided by the allowed error at state `x`.
     #[must_use]
     #[inline(never)]
     pub fn norm(&self, v: &SVector<f64, N>, x: &SVector<f64, N>) -> f64 {
-        largest::<f64, N>(&core::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i], 0.0)))
+        largest::<f64, N>(&core::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i])))
     }
+}
+
+/// The smaller number; `b` where it is none.
+#[inline(always)]
+pub(crate) fn smaller<S: Scalar>(a: S, b: S) -> S {
+    -((-a).larger(-b))
 }
 
 /// The largest of some numbers that are not negative; a NaN is passed over, it shows in the state itself.
@@ -111,17 +146,26 @@ pub(super) fn largest<S: Scalar, const N: usize>(of: &[S; N]) -> S {
 
 /// The largest change of each rate at `start` where every state is rounded up or down, in some patterns: what rounding may add to the
 /// rates. Not negative. Takes four rates.
-#[inline(never)]
 pub(crate) fn rounding<const N: usize>(flow: &impl Flow<N>, start: &Point<N>) -> SVector<f64, N> {
+    displaced(flow, start, &(start.x * f64::EPSILON))
+}
+
+/// The same where every state is displaced up or down by this much.
+#[inline(never)]
+pub(crate) fn displaced<const N: usize>(
+    flow: &impl Flow<N>,
+    start: &Point<N>,
+    by: &SVector<f64, N>,
+) -> SVector<f64, N> {
     const PATTERNS: usize = 4;
     // Up or down without a pattern that states of one kind might share: the multiples of the golden ratio lie evenly.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let mut largest = SVector::zeros();
     for pattern in 0..PATTERNS {
         let sign = |i: usize| if fraction(GOLDEN * (PATTERNS * i + pattern) as f64) < 0.5 { 1.0 } else { -1.0 };
-        let rounded = SVector::from_fn(|i, _| start.x[i] * (1.0 + sign(i) * f64::EPSILON));
+        let there = SVector::from_fn(|i, _| start.x[i] + sign(i) * by[i]);
         let mut rate = SVector::zeros();
-        flow.rate(start.t, &rounded, &mut rate);
+        flow.rate(start.t, &there, &mut rate);
         largest = (rate - start.rate).abs().sup(&largest);
     }
     largest
@@ -137,11 +181,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_allowed_error_takes_the_larger_end() {
+    fn the_allowed_error_is_that_of_the_value() {
         let scale =
             Scale::from(&Tolerances::<2> { relative: 0.1, absolute: Absolute::PerState(SVector::from([1.0, 2.0])) });
-        assert_eq!(scale.allowed(0, -30.0, 20.0), 4.0);
-        assert_eq!(scale.allowed(1, 0.0, -20.0), 4.0);
+        assert_eq!(scale.allowed(0, -30.0), 4.0);
+        assert_eq!(scale.allowed_between(1, 0.0, -20.0), 4.0);
+        assert_eq!(scale.allowed_between(0, 10.0, 1e60), 2e6);
         assert_eq!(scale.norm(&SVector::from([4.0, 1.0]), &SVector::from([10.0, 20.0])), 2.0);
     }
 }

@@ -107,7 +107,7 @@ impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
         self
     }
 
-    /// The relative tolerance of each step; the absolute one is a tenth of it unless it is set.
+    /// The relative tolerance of each step; the absolute ones follow the sizes of the states unless one is set.
     pub fn rtol(mut self, relative: f64) -> Self {
         self.request.rtol = relative;
         self
@@ -335,6 +335,7 @@ impl<const N: usize, const G: usize> Made<N, G> {
             recording: recorder.recording,
             ended: finish.ended,
             statistics: finish.statistics,
+            uncontrolled: states.iter().zip(finish.uncontrolled).filter(|(_, is)| *is).map(|(of, _)| of.name).collect(),
             methods,
             wall,
             redundant: model.redundant(),

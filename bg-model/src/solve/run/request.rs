@@ -15,7 +15,8 @@ pub struct Request {
     pub t_end: f64,
     /// Relative tolerance of each step.
     pub rtol: f64,
-    /// Absolute tolerance of each step, in each state's SI unit; without one, `rtol` over [`Request::RTOL_OVER_ATOL`].
+    /// Absolute tolerance of each step, in each state's SI unit; without one, by the sizes of the states
+    /// ([`Absolute::OfSizes`](crate::integrator::Absolute::OfSizes)).
     pub atol: Option<f64>,
     /// The instants of the samples.
     pub samples: Samples,
@@ -42,13 +43,10 @@ impl Default for Request {
 }
 
 impl Request {
-    /// The rtol over the atol that goes with it. A smaller atol costs steps and gives no smaller an error for the same time.
-    pub const RTOL_OVER_ATOL: f64 = 10.0;
-
-    /// The absolute tolerance, in each state's SI unit.
+    /// The tolerances of each step.
     #[must_use]
-    pub fn atol(&self) -> f64 {
-        self.atol.unwrap_or(self.rtol / Self::RTOL_OVER_ATOL)
+    pub fn tolerances<const N: usize>(&self) -> Tolerances<N> {
+        self.atol.map_or(Tolerances::relative(self.rtol), |atol| Tolerances::new(self.rtol, atol))
     }
 
     /// The same for the driver, of a run from `t0` (s) on.
@@ -61,8 +59,7 @@ impl Request {
             Samples::At(instants) => Samples::At(instants.iter().copied().filter(|t| *t >= t0).collect()),
             samples => samples.clone(),
         };
-        let tolerances = Tolerances::new(self.rtol, self.atol());
-        Settings { tolerances, samples, step_limit: self.step_limit, ..Settings::default() }
+        Settings { tolerances: self.tolerances(), samples, step_limit: self.step_limit, ..Settings::default() }
     }
 
     /// Whether the samples can be listed before the run: their instants take 80 MB at most.

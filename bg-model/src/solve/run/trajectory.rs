@@ -24,6 +24,8 @@ pub struct Trajectory {
     pub ended: Ended,
     /// Steps, evaluations, factorisations, events.
     pub statistics: Statistics,
+    /// The states whose errors were never controlled: smaller than their absolute tolerance all the time, and no rounding.
+    pub uncontrolled: Vec<&'static str>,
     /// The methods that made the steps, from when (s) on; the first from the start.
     pub methods: Vec<Change>,
     /// Time on the wall clock; zero in WebAssembly, which has none.
@@ -102,6 +104,7 @@ impl Trajectory {
         let changes = more.methods.iter().enumerate().filter(is_new).map(|(_, change)| *change);
         self.methods.extend(changes);
         self.statistics.add(&more.statistics);
+        self.uncontrolled.retain(|state| more.uncontrolled.contains(state));
         self.wall += more.wall;
         self.last = more.last;
         self.ended = more.ended;

@@ -11,7 +11,7 @@ use crate::model::assembly::AssemblyError;
 use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;
-use crate::solve::integrator::Point;
+use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
 /// As many directions as the steps have slopes.
@@ -151,6 +151,10 @@ where
                 slopes.iter_mut().zip(of_output).for_each(|(columns, slope)| columns[output].push(slope));
             }
         }
+    }
+
+    fn measured(&mut self, scale: &Scale<N>) {
+        self.steps.measure(scale);
     }
 
     fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {

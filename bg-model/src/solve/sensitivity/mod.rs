@@ -269,7 +269,7 @@ impl Following<'_> {
         Li: Model<Gradient, N, G, M>,
     {
         let start = model.start()?;
-        let scale = Scale::<N>::from(&self.request.settings(0.0).tolerances);
+        let scale = Scale::<N>::from(&self.request.tolerances());
         let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
         let follower = |directions: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
             let systems = directions.chunks(WIDTH).map(system).collect::<Result<Vec<_>, _>>()?;
@@ -299,6 +299,10 @@ struct Followers<O>(Vec<O>);
 impl<O: Observer<N, G>, const N: usize, const G: usize> Observer<N, G> for Followers<O> {
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
         self.0.iter_mut().for_each(|each| each.sample(t, x, negative));
+    }
+
+    fn measured(&mut self, scale: &Scale<N>) {
+        self.0.iter_mut().for_each(|each| each.measured(scale));
     }
 
     fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {

@@ -43,6 +43,9 @@ pub(super) trait Steps<const N: usize, const G: usize> {
     /// Has come to the state `x`, as far as the slopes of this part are concerned.
     fn set(&mut self, part: usize, x: &Sloped<N>);
 
+    /// What is allowed of a state from here on.
+    fn measure(&mut self, scale: &Scale<N>);
+
     /// The state `x` with the slopes of this part where it has come to.
     fn now(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N>;
 
@@ -126,6 +129,10 @@ where
             slopes.as_mut()[part * WIDTH..][..WIDTH].copy_from_slice(&x.slopes());
             *now = GradientIn::new(x.value, slopes);
         }
+    }
+
+    fn measure(&mut self, scale: &Scale<N>) {
+        self.work.scale = scale.clone();
     }
 
     fn now(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N> {

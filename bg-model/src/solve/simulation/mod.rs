@@ -14,6 +14,7 @@ mod rounding;
 mod run;
 mod sampling;
 mod settings;
+mod sizes;
 mod step_size;
 
 use alloc::boxed::Box;

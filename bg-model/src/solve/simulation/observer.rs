@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::solve::integrator::Point;
+use crate::solve::integrator::{Point, Scale};
 use crate::solve::statistics::Statistics;
 
 /// What happens at one instant: switches change their branches, something hits a stop.
@@ -29,6 +29,9 @@ pub trait Observer<const N: usize, const G: usize> {
     /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there. At the instant of an impact it is
     /// the state before it; at the start of a run the state after it.
     fn sample(&mut self, _t: f64, _x: &SVector<f64, N>, _negative: &[bool; G]) {}
+
+    /// What errors are measured by from here on: told at the start, and before a step whose end has outgrown the sizes of the states.
+    fn measured(&mut self, _scale: &Scale<N>) {}
 
     /// A step was accepted, from `start` to `end` in the branches `negative`: told before the samples in it and before what happens
     /// at its end. The rates at both ends are those of these branches.
@@ -61,6 +64,11 @@ where
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
         self.0.sample(t, x, negative);
         self.1.sample(t, x, negative);
+    }
+
+    fn measured(&mut self, scale: &Scale<N>) {
+        self.0.measured(scale);
+        self.1.measured(scale);
     }
 
     fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {

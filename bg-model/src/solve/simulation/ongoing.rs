@@ -12,6 +12,7 @@ use super::observer::Observer;
 use super::rounding::RoundingMonitor;
 use super::run::Run;
 use super::settings::{self, Settings, Span};
+use super::sizes::SizeMonitor;
 use super::step_size::StepSizeController;
 use crate::model::system::System;
 use crate::solve::event::{EventMonitor, Never};
@@ -49,6 +50,8 @@ pub struct Ongoing<const N: usize, const G: usize> {
     negative: [bool; G],
     monitor: EventMonitor<G>,
     rounding: Option<RoundingMonitor>,
+    /// None before the first piece.
+    sizes: Option<SizeMonitor<N>>,
     /// None where the start has to be looked at.
     controller: Option<StepSizeController>,
     /// The size of the next step, s, where it is known.
@@ -66,6 +69,7 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
             negative: [false; G],
             monitor: EventMonitor::new(),
             rounding: None,
+            sizes: None,
             controller: None,
             step: None,
             statistics,
@@ -133,6 +137,10 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         let stepper = Stepper::new(system, method, Scale::from(&settings.tolerances), self.start);
         let mut run = Run::new(stepper, Never, control, span, settings);
         run.stepper.statistics = self.statistics;
+        if let Some(sizes) = self.sizes.take() {
+            run.sizes = sizes;
+            run.sizes.go_on(&settings.tolerances, &mut run.stepper.scale);
+        }
         let outcome = settings::check(system, control, &self.start.x, span, settings)
             .and_then(|()| settings::check_series(system, needs_series))
             .map_err(Cause::from)
@@ -149,7 +157,8 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
                 run.controller.go_on(span);
                 run.advance_to_end(observer)
             });
-        let Run { stepper, controller, monitor, rounding, .. } = run;
+        let Run { stepper, controller, monitor, rounding, sizes, .. } = run;
+        self.sizes = Some(sizes);
         (self.start, self.negative, self.monitor, self.rounding) = (stepper.start, stepper.negative, monitor, rounding);
         self.statistics = stepper.statistics;
         match outcome {
@@ -160,7 +169,8 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
             }
             Err(cause) => {
                 let (Point { t, x, .. }, ended) = (self.start, Ended::ByFailure);
-                let last = Finish { t, x, negative: self.negative, ended, statistics: self.statistics };
+                let Self { negative, statistics, .. } = *self;
+                let last = Finish { t, x, negative, ended, uncontrolled: [false; N], statistics };
                 Err(Failure { cause, last: Box::new(last) })
             }
         }

@@ -4,6 +4,7 @@
 //! rates times the step. Where forces are differences of nearly equal states (stiff joints), rounding of the states changes the
 //! rates so much that the estimate exceeds a tight tolerance: the steps become shorter, and the result no better.
 
+use super::sizes::SizeMonitor;
 use crate::model::system::System;
 use crate::solve::integrator::{Method, StepControl, rounding};
 use crate::solve::stepper::Stepper;
@@ -29,15 +30,18 @@ impl RoundingMonitor {
     }
 
     /// Counts an accepted step before it is taken over.
-    pub fn follow<Sys, M, const N: usize, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
-    where
+    pub fn follow<Sys, M, const N: usize, const G: usize>(
+        &mut self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        sizes: &SizeMonitor<N>,
+    ) where
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
         if stepper.statistics.steps.is_multiple_of(WAIT) {
             self.is_above = is_exposed(stepper.method) && {
-                let h = stepper.h;
-                let (_, flow, start, _, scale) = stepper.split();
+                let (scale, h) = (sizes.without_noise(&stepper.scale), stepper.h);
+                let (_, flow, start, ..) = stepper.split();
                 scale.norm(&(rounding(&flow, start) * (ESTIMATE * h)), &start.x) > 1.0
             };
         }
@@ -51,6 +55,6 @@ pub(super) fn may_matter(relative: f64) -> bool {
 }
 
 /// An implicit method damps what rounding does, and Taylor series take no differences of rates.
-fn is_exposed<const N: usize>(method: &impl Method<N>) -> bool {
+pub(super) fn is_exposed<const N: usize>(method: &impl Method<N>) -> bool {
     matches!(method.control(), StepControl::Stabilised { .. }) && !method.needs_series()
 }

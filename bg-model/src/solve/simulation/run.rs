@@ -7,6 +7,7 @@ use super::observer::{Observer, Switching};
 use super::rounding::RoundingMonitor;
 use super::sampling::Sampling;
 use super::settings::{Settings, Span};
+use super::sizes::SizeMonitor;
 use super::step_size::{self, StepSizeController};
 #[cfg(feature = "std")]
 use crate::model::reactions::LoopsInLanes;
@@ -44,6 +45,8 @@ pub(crate) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
     loops: Option<LoopMonitor>,
     /// Of impacts on stops, where there are any.
     collision: Option<Collision<f64>>,
+    /// Of the sizes of the states, by which errors are measured.
+    pub sizes: SizeMonitor<N>,
     /// Of the error estimates, where the tolerances may be below it.
     pub rounding: Option<RoundingMonitor>,
 }
@@ -85,16 +88,20 @@ where
             limit: settings.step_limit,
             loops,
             collision,
+            sizes: SizeMonitor::new(&settings.tolerances, span.t0),
             rounding: RoundingMonitor::new(settings.tolerances.relative),
         }
     }
 
     /// Finds the first step, the branches at the start and the condition's side.
     pub fn begin(&mut self, control: StepControl, settings: &Settings<N>) -> Result<(), Cause> {
+        self.sizes.start(&mut self.stepper);
         let clear = self.monitor.begin_by_sign(&mut self.stepper, self.collision.as_mut());
         self.stepper.evaluate_start();
         self.check_start()?;
         let longest = self.span.length().min(settings.largest_step);
+        self.sizes.begin(&mut self.stepper);
+        self.sizes.look_ahead(&mut self.stepper, longest);
         if let (Some(order), None) = (control.order(), settings.first_step) {
             let (_, flow, start, _, scale) = self.stepper.split();
             let first = step_size::first_step(&flow, start, scale, order, longest);
@@ -133,6 +140,7 @@ where
 
     /// Makes steps until the run ends; gives why it does.
     pub fn advance_to_end(&mut self, observer: &mut impl Observer<N, G>) -> Result<Ended, Cause> {
+        observer.measured(&self.stepper.scale);
         self.sample(observer, self.span.t0);
         loop {
             if let Some(ended) = self.advance(observer)? {
@@ -146,6 +154,12 @@ where
     pub fn advance(&mut self, observer: &mut impl Observer<N, G>) -> Result<Option<Ended>, Cause> {
         if self.stepper.start.t >= self.span.t_end {
             return Ok(Some(Ended::AtEnd));
+        }
+        if self.sizes.is_at_rest(self.stepper.system) {
+            let t = self.stepper.start.t;
+            let longest = self.next_break(t).min(self.span.t_end) - t;
+            self.sizes.look_ahead(&mut self.stepper, longest);
+            observer.measured(&self.stepper.scale);
         }
         self.try_steps()?;
         match self.monitor.inspect(&mut self.stepper) {
@@ -220,6 +234,7 @@ where
             if error <= 1.0 {
                 error = f64::NAN;
             }
+            self.sizes.guess(&self.stepper.end.x, &mut self.stepper.scale);
             self.stepper.statistics.rejected += 1;
             self.controller.reject(h, error);
             if !self.controller.is_adaptive() {
@@ -283,7 +298,10 @@ where
         self.check_joints()?;
         self.faulty = None;
         if let Some(rounding) = &mut self.rounding {
-            rounding.follow(&mut self.stepper);
+            rounding.follow(&mut self.stepper, &self.sizes);
+        }
+        if self.sizes.follow(&mut self.stepper) {
+            observer.measured(&self.stepper.scale);
         }
         self.stepper.statistics.record(self.stepper.h);
         self.sampling.next_step();
@@ -398,7 +416,9 @@ where
     }
 
     pub fn finish(self, ended: Ended) -> Finish<N, G> {
+        let is_adaptive = self.controller.is_adaptive();
+        let uncontrolled = if is_adaptive { self.sizes.uncontrolled(&self.stepper.scale) } else { [false; N] };
         let Stepper { start, negative, statistics, .. } = self.stepper;
-        Finish { t: start.t, x: start.x, negative, ended, statistics }
+        Finish { t: start.t, x: start.x, negative, ended, uncontrolled, statistics }
     }
 }

@@ -12,7 +12,7 @@ use nalgebra::SVector;
 
 use super::settings::{Settings, Span};
 use crate::model::scalar::Scalar;
-use crate::solve::integrator::{Flow, Point, Scale, StepControl};
+use crate::solve::integrator::{Flow, Point, Scale, StepControl, smaller};
 
 /// The part of the step that would just satisfy the tolerances.
 const SAFETY: f64 = 0.9;
@@ -312,12 +312,6 @@ pub(super) fn within<S: Scalar>(next: S, t: S, length: f64, largest: f64) -> S {
 #[inline(always)]
 pub(super) fn noted<S: Scalar>(logarithm: S) -> S {
     logarithm.larger(logarithm.alike(LEAST))
-}
-
-/// The smaller number; `b` where it is none.
-#[inline(always)]
-pub(super) fn smaller<S: Scalar>(a: S, b: S) -> S {
-    -((-a).larger(-b))
 }
 
 /// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.

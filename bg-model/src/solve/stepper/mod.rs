@@ -105,9 +105,8 @@ where
     /// The same where one projection has been made, with this norm of what it has changed.
     pub fn settle_further(&mut self, mut moved: f64) {
         const MORE: usize = 3;
-        let allowed = self.scale.relative.max(self.scale.absolute.amax());
         for _ in 0..MORE {
-            if moved * allowed <= SETTLED {
+            if moved * self.scale.coarsest <= SETTLED {
                 return;
             }
             moved = self.project();
@@ -133,6 +132,14 @@ where
             x
         });
         self.scale.norm(&(otherwise - projected), &projected)
+    }
+
+    /// The rate at time `t` (s) and state `x` in the branches of the step.
+    pub fn rate(&mut self, t: f64, x: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut rate = SVector::zeros();
+        self.statistics.rate_evaluations += 1;
+        self.system.rate(t, x, &self.negative, &mut rate);
+        rate
     }
 
     /// Evaluates the rate at the end of the step.
@@ -173,12 +180,15 @@ where
     }
 
     /// The input or element that gives a number that is not finite at the start of the last attempt or on the way to its end, or for
-    /// `at_least` (s), as far as the system can tell: the way is that of the rate at the start.
+    /// `at_least` (s), as far as the system can tell: the way is that of the rate at the start. Of a step that rounding has ended the way
+    /// is followed further, since a stage may have been anywhere near it.
     pub fn origin(&self, at_least: f64) -> Option<Origin> {
         const PARTS: u32 = 16;
+        const FURTHER: [f64; 7] = [8.0, 64.0, 512.0, 4096.0, 32_768.0, 262_144.0, 2_097_152.0];
         let Point { t, x, rate } = self.start;
         let way = self.h.max(at_least);
-        let ahead = (1..=PARTS).map(|part| way * f64::from(part) / f64::from(PARTS));
+        let inside = (1..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
+        let ahead = inside.chain(FURTHER).map(|part| way * part);
         let on_the_way = ahead.map(|ahead| (t + ahead, x + rate * ahead));
         let mut points = core::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
         points.find_map(|(t, x)| is_finite(&x).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())

@@ -167,7 +167,7 @@ pub struct IntegrationArguments {
     #[arg(long, value_name = "NUMBER", default_value = "1e-8", value_parser = real, allow_negative_numbers = true)]
     pub rtol: f64,
 
-    /// Absolute tolerance of each step, in SI units [default: 0.1 of --rtol]
+    /// Absolute tolerance of each step, in SI units [default: by the sizes that states have had]
     #[arg(long, value_name = "NUMBER", value_parser = real, allow_negative_numbers = true)]
     pub atol: Option<f64>,
 
@@ -375,9 +375,9 @@ pub struct PrecisionArguments {
     )]
     pub rtol: Vec<f64>,
 
-    /// Absolute tolerances, in SI units, over the relative ones
-    #[arg(long, value_name = "NUMBER", default_value_t = 1.0 / Request::RTOL_OVER_ATOL, value_parser = real)]
-    pub atol_ratio: f64,
+    /// Absolute tolerances, in SI units, over the relative ones [default: by the sizes of the states]
+    #[arg(long, value_name = "NUMBER", value_parser = real)]
+    pub atol_ratio: Option<f64>,
 
     /// Steps of integrators with a fixed step, s
     #[arg(long, value_name = "SECONDS", value_delimiter = ',', value_parser = real, default_values = ["2e-4", "1e-4", "5e-5", "2e-5"])]

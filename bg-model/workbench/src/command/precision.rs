@@ -45,7 +45,7 @@ pub fn measure_all<Me: Scenes>(program: &Program<Me>, arguments: &PrecisionArgum
 }
 
 fn check(arguments: &PrecisionArguments) -> Result<(), InputError> {
-    let ratios = vec![arguments.atol_ratio];
+    let ratios: Vec<f64> = arguments.atol_ratio.into_iter().collect();
     let numbers = [("--rtol", &arguments.rtol), ("--atol-ratio", &ratios), ("--fixed-step", &arguments.fixed_step)];
     for (name, values) in numbers {
         if let Some(&value) = values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
@@ -60,6 +60,6 @@ fn settings(arguments: &PrecisionArguments, method: Integrator) -> Vec<Setting> 
     if method.has_fixed_step() {
         return arguments.fixed_step.iter().copied().map(Setting::Step).collect();
     }
-    let tolerance = |rtol| Setting::Tolerance { rtol, atol: rtol * arguments.atol_ratio };
+    let tolerance = |rtol| Setting::Tolerance { rtol, atol: arguments.atol_ratio.map(|ratio| rtol * ratio) };
     arguments.rtol.iter().copied().map(tolerance).collect()
 }

@@ -24,8 +24,8 @@ pub enum Setting {
     Tolerance {
         /// Relative.
         rtol: f64,
-        /// Absolute, in each state's SI unit.
-        atol: f64,
+        /// Absolute, in each state's SI unit; none where the sizes of the states give it.
+        atol: Option<f64>,
     },
     /// The step, s, of a fixed-step method.
     Step(f64),
@@ -40,7 +40,7 @@ pub struct Entry {
     pub integrator: String,
     /// Relative tolerance.
     pub rtol: Option<f64>,
-    /// Absolute tolerance, SI.
+    /// Absolute tolerance, SI; none where the sizes of the states give it.
     pub atol: Option<f64>,
     /// The step of a fixed-step method, s.
     pub fixed_step_s: Option<f64>,
@@ -142,7 +142,7 @@ pub fn measure<Me: Scenes>(
     let outputs = scene.description.outputs;
     let errors = if failure.is_none() { Some(Errors::between(&run, reference, outputs)?) } else { None };
     let (rtol, atol, step) = match setting {
-        Setting::Tolerance { rtol, atol } => (Some(rtol), Some(atol), None),
+        Setting::Tolerance { rtol, atol } => (Some(rtol), atol, None),
         Setting::Step(step) => (None, None, Some(step)),
     };
     Ok(Entry {
@@ -167,7 +167,7 @@ fn request(method: Integrator, setting: Setting, reference: &Recording) -> Reque
     let plain = Request::default();
     // Each kind of method takes one of them.
     let (rtol, atol, fixed_step) = match setting {
-        Setting::Tolerance { rtol, atol } => (rtol, Some(atol), plain.fixed_step),
+        Setting::Tolerance { rtol, atol } => (rtol, atol, plain.fixed_step),
         Setting::Step(step) => (plain.rtol, None, step),
     };
     let t_end = reference.times.last().copied().unwrap_or(0.0);

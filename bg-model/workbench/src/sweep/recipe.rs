@@ -15,6 +15,8 @@ use crate::running::Begin;
 
 /// The entry that may differ: the plan as it was written, for people.
 const PLAN: &str = "plan";
+/// What stands for an absolute tolerance where the sizes of the states give it.
+pub(super) const OF_SIZES: &str = "by the sizes of the states";
 
 /// The recipe of a sweep by `plan`.
 #[must_use]
@@ -38,7 +40,7 @@ pub fn of<Me, P: Parameters>(program: &Program<Me>, plan: &Plan<'_, P>) -> Table
         ("step", Value::Float(integration.step)),
         ("method", Value::String(integration.method.name().to_owned())),
         ("rtol", Value::Float(request.rtol)),
-        ("atol", Value::Float(request.atol())),
+        ("atol", request.atol.map_or_else(|| Value::String(OF_SIZES.to_owned()), Value::Float)),
         ("fixed_step", Value::Float(request.fixed_step)),
         ("step_limit", whole(usize::try_from(request.step_limit).unwrap_or(usize::MAX))),
         ("runs", whole(design.runs)),

@@ -14,6 +14,7 @@ use super::design::Design;
 use super::lanes::Asked;
 use super::parquet::{Column, Table, Values};
 use super::plan::Plan;
+use super::recipe::OF_SIZES;
 use super::wanted::Wanted;
 use crate::Program;
 use crate::machine::Making;
@@ -74,7 +75,7 @@ impl<'a> Job<'a> {
             ("scene", scene.name.clone()),
             ("method", plan.integration.method.name().to_owned()),
             ("rtol", format!("{:?}", plan.request.rtol)),
-            ("atol", format!("{:?}", plan.request.atol())),
+            ("atol", plan.request.atol.map_or_else(|| OF_SIZES.to_owned(), |atol| format!("{atol:?}"))),
             ("parameters", serde_json::Value::from(all.collect::<Vec<_>>()).to_string()),
             ("sweep", recipe.to_owned()),
         ];

@@ -26,8 +26,8 @@ impl Emission<'_> {
     /// The implementations of all capabilities that the model has.
     pub(super) fn capabilities(&self) -> TokenStream {
         let (linear, second_order, series, joints) = (self.linear(), self.second_order(), self.series(), self.joints());
-        let impacts = self.impacts();
-        quote! { #linear #second_order #series #joints #impacts }
+        let (impacts, storages) = (self.impacts(), self.storages());
+        quote! { #linear #second_order #series #joints #impacts #storages }
     }
 
     /// The functions that hand them over.
@@ -41,7 +41,8 @@ impl Emission<'_> {
         let series = accessor("series", &quote!(Series<S, #n, #g>), &self.series_where_known());
         let joints = holding.as_ref().map(|_| accessor("joints", &quote!(Joints<S, #n, #g>), &itself));
         let impacts = impacts.as_ref().map(|_| accessor("impacts", &quote!(Impacts<S, #n, #g>), &itself));
-        quote! { #linearised #second_order #series #joints #impacts }
+        let storages = accessor("storages", &quote!(Storages<S, #n, #g>), &itself);
+        quote! { #linearised #second_order #series #joints #impacts #storages }
     }
 
     /// The model as its series: none is known where an input changes with time.
@@ -52,6 +53,27 @@ impl Emission<'_> {
         }
         let inputs = inputs.iter().map(|input| identifier(&input.name.text));
         quote!((#(self.inputs.#inputs.is_constant())&&*).then_some(self))
+    }
+
+    /// The stored energy with its second derivatives.
+    fn storages(&self) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
+        let [routine] = &self.model.programs.sizes.routines;
+        let (body, results) = self.running(routine, &format_ident!("size_constants"));
+        let (energy, curvatures) = results.split_first().expect("the energy comes first");
+        quote! {
+            impl<S: Scalar> ::bg_model::capability::Storages<S, #n, #g> for Model<S> {
+                fn states(&self) -> &'static [::bg_model::description::StateInfo] {
+                    DESCRIPTION.states
+                }
+                #[cold]
+                fn energy(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], curvatures: &mut SVector<S, #n>) -> S {
+                    #body
+                    curvatures.data.0 = [[#(#curvatures),*]];
+                    #energy
+                }
+            }
+        }
     }
 
     /// The states of second order and their second derivatives.

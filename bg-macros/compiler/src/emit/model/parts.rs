@@ -20,12 +20,13 @@ impl Emission<'_> {
         let functions = running.routines().into_iter().filter(|routine| !std::ptr::eq(*routine, &running.loops));
         let sweeps = programs.reversed.iter().flat_map(Reversed::sweeps).map(|sweep| &sweep.routine);
         let second_order = programs.second_order.iter().flat_map(SecondOrderPrograms::routines);
-        let tables: [(&str, Vec<&Routine>); 6] = [
+        let tables: [(&str, Vec<&Routine>); 7] = [
             ("constants", functions.chain(sweeps).collect()),
             ("slope_constants", programs.jacobian.routines.iter().collect()),
             ("damping_constants", programs.damping.iter().flat_map(|program| &program.routines).collect()),
             ("second_constants", second_order.collect()),
             ("holding_constants", programs.holding.iter().flat_map(|program| &program.routines).collect()),
+            ("size_constants", programs.sizes.routines.iter().collect()),
             ("impact_constants", programs.impacts.iter().flat_map(|program| &program.routines).collect()),
         ];
         let long = tables.iter().flat_map(|(constants, routines)| {

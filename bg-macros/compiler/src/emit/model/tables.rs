@@ -44,7 +44,7 @@ impl Emission<'_> {
     }
 
     fn constant_tables(&self) -> Vec<Table<'_>> {
-        let Programs { running, jacobian, damping, second_order, holding, impacts, .. } = &self.model.programs;
+        let Programs { running, jacobian, damping, second_order, holding, impacts, sizes, .. } = &self.model.programs;
         let table = |prefix, doc, constants, paired| Table { prefix, doc, constants, paired };
         let of_rates = " What depends on parameters only.";
         let of_jacobian = " What depends on parameters only, of the Jacobian.";
@@ -59,6 +59,7 @@ impl Emission<'_> {
         tables.extend(holding.as_ref().map(|program| table("holding_constant", of_holding, &program.constants, None)));
         let of_impacts = " What depends on parameters only, of impacts.";
         tables.extend(impacts.as_ref().map(|program| table("impact_constant", of_impacts, &program.constants, None)));
+        tables.push(table("size_constant", " What depends on parameters only, of sizes.", &sizes.constants, None));
         tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, paired_forces, .. }| {
             table("second_constant", of_forces, constants, paired_forces.as_ref())
         }));

@@ -75,6 +75,8 @@ pub struct StateEquations {
     pub outputs: Vec<Output>,
     /// Energy in all storages, J.
     pub stored: Id,
+    /// Energy in each storage whose state the model knows, J.
+    pub energies: Vec<Id>,
     /// Power of all sources, W.
     pub supplied: Id,
     /// Power of all resistors, W.

@@ -76,6 +76,7 @@ impl StateEquations {
         for (law, value) in self.fallible.iter_mut().zip(after) {
             law.value = value;
         }
+        self.energies = substitute_switched(&mut pool, &self.energies, replace, branch);
         // What is held and shown comes after, so that it has no influence on the order of the rates' nodes.
         self.solution.replace(&mut pool, replace, branch);
         self.holding.replace(&mut pool, replace, branch);

@@ -104,7 +104,8 @@ impl<'a> Signals<'a> {
         self.solve_dependents();
         let bonds = (0..self.graph.bonds.len()).map(BondId);
         let bonds = bonds.map(|bond| [self.effort(bond), self.flow(bond)].map(|value| Some(value.0))).collect();
-        let stored = self.stored_energy();
+        let energies = self.energies();
+        let stored = self.pool.sum(&energies);
         let (supplied, dissipated) = (self.supplied_power(), self.dissipated_power());
         if !self.faults.is_empty() {
             return Err(self.faults);
@@ -135,6 +136,7 @@ impl<'a> Signals<'a> {
             switches: self.switches,
             outputs,
             stored,
+            energies,
             supplied,
             dissipated,
             projections,

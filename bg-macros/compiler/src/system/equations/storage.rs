@@ -113,9 +113,14 @@ impl Signals<'_> {
 
     /// The energy in all storages.
     pub(super) fn stored_energy(&mut self) -> Id {
-        let storages = self.elements(|kind| matches!(kind, ElementKind::I | ElementKind::C));
-        let energies: Vec<Id> = storages.into_iter().map(|node| self.energy_of(node)).collect();
+        let energies = self.energies();
         self.pool.sum(&energies)
+    }
+
+    /// The energy in each storage.
+    pub(super) fn energies(&mut self) -> Vec<Id> {
+        let storages = self.elements(|kind| matches!(kind, ElementKind::I | ElementKind::C));
+        storages.into_iter().map(|node| self.energy_of(node)).collect()
     }
 
     /// The energy stored in one C or I.

@@ -93,6 +93,7 @@ fn forget(equations: &mut StateEquations, known: &Known) {
             *quantity = unknown;
         }
     }
+    equations.energies.retain(|&energy| known.has(pool, energy));
     equations.fallible.retain(|law| known.has(pool, law.value));
     equations.iterations.retain(|iteration| iteration.residuals.iter().all(|&residual| known.has(pool, residual)));
     equations.shown.prune(pool, known);

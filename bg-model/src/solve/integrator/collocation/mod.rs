@@ -212,7 +212,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     }
 
     fn scaled_error(&self, i: usize, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> f64 {
-        self.error.data.0[0][i].abs() / scale.allowed(i, start.x.data.0[0][i], end.data.0[0][i])
+        self.error.data.0[0][i].abs() / scale.allowed_between(i, start.x.data.0[0][i], end.data.0[0][i])
     }
 
     /// Takes note of the outcome of an attempt, its error norm.

@@ -157,7 +157,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         }
         let mut sizes = [0.0; N];
         for i in 0..N {
-            let allowed = scale.allowed(i, start.x.data.0[0][i], 0.0);
+            let allowed = scale.allowed(i, start.x.data.0[0][i]);
             let mut size = 0.0;
             for j in 0..S {
                 let mut correction = tableau.real.right[j] * real[i];

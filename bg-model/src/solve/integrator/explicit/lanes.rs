@@ -47,7 +47,7 @@ impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
         &mut self,
         rates: &impl Rates<Lanes<V>, N>,
         begin: &Begin<'_, Lanes<V>, N>,
-        scale: &Scale<N>,
+        scale: &Scale<N, Lanes<V>>,
         end: &mut SVector<Lanes<V>, N>,
     ) -> Lanes<V> {
         norm::<T, _>(begin.h, self.stages.step(rates, begin, scale, &mut self.sum, end))

@@ -27,7 +27,7 @@ pub use dop853::DormandPrince;
 use super::compensated::CompensatedSum;
 use super::dense::{FROM_ENDS, Polynomial, write_sum};
 use super::steps::{Begin, OfFlow};
-use super::tolerances::{index_of_largest, largest};
+use super::tolerances::{index_of_largest, largest, smaller};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
 use crate::model::scalar::Scalar;
@@ -117,7 +117,7 @@ impl<T: Tableau, const N: usize> Default for Explicit<T, N> {
 impl<T: Tableau, const N: usize> Explicit<T, N> {
     /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
     fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
-        core::array::from_fn(|i| (self.stages.combine(row, i) / scale.allowed(i, start.x[i], end[i])).abs())
+        core::array::from_fn(|i| (self.stages.combine(row, i) / scale.allowed_between(i, start.x[i], end[i])).abs())
     }
 }
 
@@ -132,6 +132,9 @@ fn norm<T: Tableau, S: Scalar>(h: S, [first, second]: [S; 2]) -> S {
 /// beside it (`dop853.f`). Both vanish exactly at a state of rest.
 #[inline(always)]
 pub(crate) fn both<S: Scalar>(scale: S, first: S, second: S) -> S {
+    // Of numbers so large that their squares are finite: a step with a larger error is as wrong.
+    let most = scale.alike(1e150);
+    let (first, second) = (smaller(first, most), smaller(second, most));
     let both = first * first + second.times(0.01) * second;
     // The quotient is zero where both are; no root of another number is as small.
     scale * first * first / both.alike(f64::MIN_POSITIVE).larger(both.sqrt())
@@ -193,7 +196,7 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
             let mut other = SVector::from_fn(|i, _| end[i] - h * difference(i));
             project(&mut other);
             largest::<f64, N>(&core::array::from_fn(|i| {
-                (reached[i] - other[i]).abs() / scale.allowed(i, start.x[i], end[i])
+                (reached[i] - other[i]).abs() / scale.allowed_between(i, start.x[i], end[i])
             }))
         };
         let first = left(&|i| self.stages.combine(T::ERROR, i));

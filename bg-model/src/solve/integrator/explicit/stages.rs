@@ -100,7 +100,7 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
         &mut self,
         rates: &impl Rates<S, N>,
         from: &Begin<'_, S, N>,
-        scale: &Scale<N>,
+        scale: &Scale<N, S>,
         sum: &mut CompensatedSum<S, N>,
         end: &mut SVector<S, N>,
     ) -> [S; 2] {
@@ -114,7 +114,7 @@ impl<T: Tableau, S: Scalar, const N: usize> Stages<T, S, N> {
             let change = from.h * slope;
             let to = if T::IS_COMPENSATED { sum.add(i, start[i], change) } else { start[i] + change };
             end.data.0[0][i] = to;
-            let allowed = scale.allowed(i, start[i], to);
+            let allowed = scale.allowed_between(i, start[i], to);
             first[i] = (self.combine(T::ERROR, i) / allowed).abs();
             if !T::SECOND.is_empty() {
                 second[i] = ((slope - self.combine(T::SECOND, i)) / allowed).abs();

@@ -64,7 +64,7 @@ impl<const N: usize> Jacobian<N> {
         let mut rate = SVector::zeros();
         for column in 0..N {
             let change = h * start.rate[column];
-            let reach = change.abs().max(scale.allowed(column, start.x[column], 0.0)).copysign(change);
+            let reach = change.abs().max(scale.allowed(column, start.x[column])).copysign(change);
             // The law may have no value on one side.
             for by in [reach, -reach] {
                 let is_faulty = |k: &usize, entry: f64| sparsity.place(*k, N).1 == column && !entry.is_finite();

@@ -83,7 +83,7 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
         &mut self,
         forces: &impl Forces<S, N>,
         from: &Begin<'_, S, N>,
-        scale: &Scale<N>,
+        scale: &Scale<N, S>,
         end: &mut SVector<S, N>,
     ) -> [S; N] {
         let second = &forces.second();
@@ -93,13 +93,13 @@ impl<S: Scalar, const N: usize> Stages<S, N> {
         let (start, reached) = (&from.x.data.0[0], &end.data.0[0]);
         let mut errors = [h.alike(0.0); N];
         for i in 0..second.start {
-            errors[i] = part(h * self.combine(FIRST[ERROR], i), scale.allowed(i, start[i], reached[i]));
+            errors[i] = part(h * self.combine(FIRST[ERROR], i), scale.allowed_between(i, start[i], reached[i]));
         }
         for i in second.clone() {
-            errors[i] = part(h * (h * self.combine(SECOND[ERROR], i)), scale.allowed(i, start[i], reached[i]));
+            errors[i] = part(h * (h * self.combine(SECOND[ERROR], i)), scale.allowed_between(i, start[i], reached[i]));
         }
         for i in second.end..N {
-            errors[i] = part(h * self.combine(FIRST[ERROR], i), scale.allowed(i, start[i], reached[i]));
+            errors[i] = part(h * self.combine(FIRST[ERROR], i), scale.allowed_between(i, start[i], reached[i]));
         }
         errors
     }

@@ -100,7 +100,7 @@ fn step<const N: usize>(
         end[i] = start[i] + h * stages.combine(KennedyCarpenter::B, i);
         stages.k[DIFFERENCE].data.0[0][i] = stages.combine(KennedyCarpenter::ERROR, i);
         stages.k[DIFFERENCE + 1].data.0[0][i] = AT_START * stages.combine(KennedyCarpenter::START, i);
-        stages.k[ALLOWED].data.0[0][i] = scale.allowed(i, start[i], end[i]);
+        stages.k[ALLOWED].data.0[0][i] = scale.allowed_between(i, start[i], end[i]);
     }
     if let [difference, at_start] = &mut stages.k[DIFFERENCE..ALLOWED] {
         block.reduce([difference, at_start]);

@@ -92,7 +92,9 @@ impl<const S: usize, const N: usize> Stages<S, N> {
     pub fn errors(&self, tableau: &Tableau<S>, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
         let mut error = SVector::<f64, N>::zeros();
         add(&mut error, &tableau.e, &self.u, 1.0);
-        core::array::from_fn(|n| error.data.0[0][n].abs() / scale.allowed(n, start.x.data.0[0][n], end.data.0[0][n]))
+        core::array::from_fn(|n| {
+            error.data.0[0][n].abs() / scale.allowed_between(n, start.x.data.0[0][n], end.data.0[0][n])
+        })
     }
 
     /// The norm of the error estimate.

@@ -203,7 +203,7 @@ impl<'a, Mo, Re, Li, const N: usize, const M: usize> Back<'a, Mo, Re, Li, N, M> 
         let (mut first, mut second) = (0.0_f64, 0.0_f64);
         for i in 0..N {
             let (from, to) = (start.data.0[0][i], x.data.0[0][i]);
-            let allowed = self.scale.allowed(i, from, to);
+            let allowed = self.scale.allowed_between(i, from, to);
             let other = (to - from) / h - combine(DormandPrince::SECOND, rates, i);
             first = first.max((combine(DormandPrince::ERROR, rates, i) / allowed).abs());
             second = second.max((other / allowed).abs());

@@ -8,7 +8,7 @@
 use nalgebra::SVector;
 
 use super::super::SensitivityError;
-use crate::solve::integrator::Point;
+use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
 /// Is handed a sample: its time, s, its state and branches. Gives what counts of it: the derivatives of the objective by the outputs there.
@@ -59,6 +59,8 @@ pub(super) struct Record<'a, const N: usize, const G: usize> {
     pub branches: Vec<[bool; G]>,
     pub events: Vec<Happened<N, G>>,
     pub samples: Vec<Sample<N>>,
+    /// What errors are measured by, at the end of the run.
+    pub scale: Option<Scale<N>>,
     pub error: Option<SensitivityError>,
 }
 
@@ -75,6 +77,7 @@ impl<'a, const N: usize, const G: usize> Record<'a, N, G> {
             branches: Vec::new(),
             events: Vec::new(),
             samples: Vec::new(),
+            scale: None,
             error: None,
         }
     }
@@ -94,6 +97,10 @@ impl<const N: usize, const G: usize> Observer<N, G> for Record<'_, N, G> {
             let branches = self.number(negative);
             self.samples.push(Sample { steps: self.steps.len(), t, x: *x, branches, weights });
         }
+    }
+
+    fn measured(&mut self, scale: &Scale<N>) {
+        self.scale = Some(scale.clone());
     }
 
     fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {

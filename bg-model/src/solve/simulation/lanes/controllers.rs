@@ -7,10 +7,9 @@
 
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::solve::integrator::smaller;
 use crate::solve::simulation::settings::Span;
-use crate::solve::simulation::step_size::{
-    Kept, STRETCH, bounded, least, noted, shortening, smaller, stabilised, within,
-};
+use crate::solve::simulation::step_size::{Kept, STRETCH, bounded, least, noted, shortening, stabilised, within};
 use crate::solve::statistics::Statistics;
 
 /// What the controllers of all runs have in common.

@@ -41,6 +41,10 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     led: u8,
     /// A bit for each run whose plain steps are judged here: of its guards nothing is known but what they are at the start.
     plain: u8,
+    /// What errors are allowed, and the magnitudes and the step (s) from which on runs have outgrown their sizes.
+    scale: Scale<N, Lanes<V>>,
+    limit: States<V, N>,
+    longest: Lanes<V>,
     /// Joints that close loops, if they are looked at here.
     loops: Option<LoopsInLanes<V>>,
     /// A bit for each run that is known not to start in the neighbourhood of a singular pose, and for the ends of the last attempts.
@@ -64,9 +68,11 @@ pub(super) struct Tried {
 }
 
 impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
-    /// Nobody yet; steps by `method`.
-    pub fn new(method: AnyInLanes<V, N>, control: Control) -> Self {
+    /// Nobody yet; steps by `method` with the tolerances of this scale.
+    pub fn new(method: AnyInLanes<V, N>, control: Control, scale: &Scale<N>) -> Self {
         let zero = Lanes::from_f64(0.0);
+        let Scale { relative, coarsest, .. } = *scale;
+        let absolute = scale.absolute.map(Lanes::from_f64);
         let none = [SVector::from([zero; N]); 2];
         Self {
             t: zero,
@@ -81,6 +87,9 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             controllers: Controllers::new(control),
             led: 0,
             plain: 0,
+            scale: Scale { relative, absolute, coarsest },
+            limit: SVector::repeat(Lanes::from_f64(f64::INFINITY)),
+            longest: Lanes::from_f64(f64::INFINITY),
             loops: None,
             whole: [0; 2],
             reach: zero,
@@ -178,6 +187,13 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         self.set_compensation(lane, compensation);
     }
 
+    /// What errors are allowed in a run, and from which magnitudes and step (s) on it has outgrown its sizes.
+    pub fn measure(&mut self, lane: usize, scale: &Scale<N>, (limit, longest): &(SVector<f64, N>, f64)) {
+        put(lane, &mut self.scale.absolute, &scale.absolute);
+        put(lane, &mut self.limit, limit);
+        *self.longest.0.at_mut(lane) = *longest;
+    }
+
     /// The start of a run's step at time `t` (s).
     pub fn start(&self, lane: usize, t: f64) -> Point<N> {
         let [x, rate] = self.start.each_ref().map(|states| at(lane, states));
@@ -234,11 +250,11 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
 
     /// Tries the steps. Those of plain runs are judged: accepted where nothing happens in them, rejected where they err too much, both far from
     /// singular poses.
-    pub fn attempt<Sys>(&mut self, system: &Sys, scale: &Scale<N>, moved: f64) -> Tried
+    pub fn attempt<Sys>(&mut self, system: &Sys, moved: f64) -> Tried
     where
         Sys: System<Lanes<V>, N, G>,
     {
-        V::vectorized(Attempt { group: self, system, scale, moved })
+        V::vectorized(Attempt { group: self, system, moved })
     }
 
     /// The steps at the places of `accepted` are made.
@@ -286,7 +302,6 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Plan<'_, V, N,
 struct Attempt<'a, V: Vector, Sys, const N: usize, const G: usize> {
     group: &'a mut Group<V, N, G>,
     system: &'a Sys,
-    scale: &'a Scale<N>,
     moved: f64,
 }
 
@@ -298,9 +313,9 @@ where
 
     #[inline(always)]
     fn call(self) -> Tried {
-        let Self { group, system, scale, moved } = self;
-        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, method, .. } =
-            group;
+        let Self { group, system, moved } = self;
+        let Group { t, h, t_end, start: [x, rate], end: [end, end_rate], reached, negative, readings, .. } = group;
+        let Group { method, scale, limit, longest, .. } = group;
         let (t, h, t_end) = (*t, *h, *t_end);
         let side = Side { system, negative };
         let norm = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
@@ -325,7 +340,9 @@ where
         let [one, infinity] = [1.0, f64::INFINITY].map(|number| h.alike(number));
         let is_large = V::bits(V::below(one.0, errors.0));
         let is_number = V::bits(V::below(errors.0, infinity.0));
-        let mut accepted = *led & *plain & is_number & !is_large & fine & clear & !controllers.is_due(t_end);
+        let keeps_size = !(outgrown(end, limit) | V::bits(V::below(longest.0, h.0)));
+        let is_plain = fine & clear & keeps_size & !controllers.is_due(t_end);
+        let mut accepted = *led & *plain & is_number & !is_large & is_plain;
         let mut refused = *led & *plain & is_number & is_large;
         if let (Some(loops), Some(joints)) = (loops, system.joints()) {
             // The ends of steps that may be accepted, then those of steps that err too much before they were projected.
@@ -356,13 +373,28 @@ fn finite<V: Vector, const N: usize>(of: &States<V, N>) -> u8 {
     V::bits(V::below(sum.abs().0, sum.alike(1.0).0))
 }
 
+/// A bit for each run with a state of a larger magnitude than its limit.
+#[inline(always)]
+fn outgrown<V: Vector, const N: usize>(of: &States<V, N>, limit: &States<V, N>) -> u8 {
+    let mut outgrown = 0;
+    for i in 0..N {
+        outgrown |= V::bits(V::below(limit.data.0[0][i].0, of.data.0[0][i].abs().0));
+    }
+    outgrown
+}
+
 /// A bit for each run none of whose states is further from the one before than `most` of what is allowed there.
 #[inline(always)]
-fn near<V: Vector, const N: usize>(before: &States<V, N>, after: &States<V, N>, scale: &Scale<N>, most: f64) -> u8 {
+fn near<V: Vector, const N: usize>(
+    before: &States<V, N>,
+    after: &States<V, N>,
+    scale: &Scale<N, Lanes<V>>,
+    most: f64,
+) -> u8 {
     let mut near = u8::MAX;
     for i in 0..N {
         let (from, to) = (before.data.0[0][i], after.data.0[0][i]);
-        let allowed = scale.allowed(i, to, to.alike(0.0)).times(most);
+        let allowed = scale.allowed(i, to).times(most);
         near &= V::bits(V::below((to - from).abs().0, allowed.0));
     }
     near

@@ -112,7 +112,8 @@ where
         let stepper = Stepper::new(model, method, Scale::from(&settings.tolerances), Point::at(span.t0, start));
         let mut run = Run::new(stepper, Never, control, span, settings);
         let is_fine = settings::check(model, control, &start, span, settings).is_ok();
-        if !is_fine || run.begin(control, settings).is_err() {
+        // What is at rest looks ahead before each step, by itself.
+        if !is_fine || run.begin(control, settings).is_err() || run.sizes.is_at_rest(model) {
             return Err((number, observer));
         }
         run.sample(&mut observer, span.t0);
@@ -234,6 +235,11 @@ where
         }
         self.run.stepper.statistics.guard_evaluations += Self::GUARDS;
         self.run.faulty = None;
+        self.run.stepper.end = Point { t, x: group.end(place), rate: group.rate(place) };
+        self.run.stepper.h = h;
+        if self.run.sizes.follow(&mut self.run.stepper) {
+            measure(group, place, &self.run);
+        }
         self.run.stepper.statistics.record(h);
         self.run.stepper.start.t = t;
         self.run.stepper.method.advance();
@@ -337,7 +343,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
 {
     let scale = Scale::from(&settings.tolerances);
     let control = Control { span, largest: settings.largest_step, order: method.order() };
-    let mut group = Box::new(Group::<V, N, G>::new(method, control));
+    let mut group = Box::new(Group::<V, N, G>::new(method, control, &scale));
     let mut lanes: Vec<Option<Lane<'a, Mo, O, N, G>>> = (0..V::LANES).map(|_| None).collect();
     let mut system: Option<Li> = None;
     loop {
@@ -347,9 +353,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             while slot.is_none() {
                 let Some(job) = jobs.next() else { break };
                 match Lane::new(job, span, settings) {
-                    Ok(lane) if lane.is_at_end() => {
-                        done(lane.number, lane.observer, Some(lane.run.finish(Ended::AtEnd)))
-                    }
+                    Ok(lane) if lane.is_at_end() => done(lane.number, lane.observer, Some(finish(lane.run))),
                     Ok(lane) => *slot = Some(lane),
                     Err((number, observer)) => done(number, observer, None),
                 }
@@ -373,7 +377,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
             system = Some(model);
         }
         let Some(model) = &system else { return };
-        let finished = round(&mut group, &mut lanes, model, &scale);
+        let finished = round(&mut group, &mut lanes, model);
         for (place, slot) in lanes.iter_mut().enumerate() {
             let ended = finished & 1 << place != 0;
             let is_at_end = slot.as_ref().is_some_and(Lane::is_at_end);
@@ -386,9 +390,17 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
                 lane.take_start(&mut group, place);
             }
             let Lane { number, run, observer, .. } = lane;
-            done(number, observer, is_at_end.then(|| run.finish(Ended::AtEnd)));
+            done(number, observer, is_at_end.then(|| finish(run)));
         }
     }
+}
+
+/// Where a run has come to at its end. The largest values of its states are not known.
+fn finish<Mo, const N: usize, const G: usize>(run: Run<'_, Mo, AnyMethod<N>, Never, N, G>) -> Finish<N, G>
+where
+    Mo: System<f64, N, G>,
+{
+    Finish { uncontrolled: [false; N], ..run.finish(Ended::AtEnd) }
 }
 
 /// A step, or an attempt at one, of each run; gives a bit for each run that cannot go on in company.
@@ -396,7 +408,6 @@ fn round<V, Mo, Li, O, const N: usize, const G: usize>(
     group: &mut Group<V, N, G>,
     lanes: &mut [Option<Lane<'_, Mo, O, N, G>>],
     model: &Li,
-    scale: &Scale<N>,
 ) -> u8
 where
     V: Vector,
@@ -441,7 +452,7 @@ where
     if trying == 0 {
         return failed;
     }
-    let Tried { fine, clear, accepted, refused } = group.attempt(model, scale, MOVED);
+    let Tried { fine, clear, accepted, refused } = group.attempt(model, MOVED);
     if group.is_held() {
         for (_, lane) in occupied(lanes).filter(|(place, _)| accepted & 1 << place != 0) {
             lane.method().advanced();
@@ -490,4 +501,17 @@ fn load<V, Mo, O, const N: usize, const G: usize>(
 {
     let (start, negative, guards) = (lane.run.stepper.start, lane.run.stepper.negative, lane.run.monitor.at_start());
     group.load(place, &start, negative, guards, lane.method().compensation());
+    measure(group, place, &lane.run);
+}
+
+/// Takes over what errors are allowed in a run.
+fn measure<V, Mo, const N: usize, const G: usize>(
+    group: &mut Group<V, N, G>,
+    place: usize,
+    run: &Run<'_, Mo, AnyMethod<N>, Never, N, G>,
+) where
+    V: Vector,
+    Mo: System<f64, N, G>,
+{
+    group.measure(place, &run.stepper.scale, &run.sizes.limits());
 }

@@ -1,0 +1,405 @@
+//! How large states have been: what the absolute part of an error norm is measured by, where no other is asked for.
+//!
+//! In: the start of a run and its accepted steps. Out: for each state an error that no longer counts. It is a part of the largest value
+//! of the state so far; or, where that is more, a very small part of the size at which the state would count beside the others, or what
+//! rounding of all states makes of it in a step. All scale with the units and with the size of the machine, so that the steps depend
+//! on neither.
+//!
+//! - A momentum or displacement x counts beside sqrt(2 E / (d2E/dx2)), E the largest energy so far; at the start at least the work of
+//!   the forces there over the machine's length, or over a radian.
+//! - A component of an orientation and an angle count beside 1, a position beside the machine's length.
+//! - An integral and what has no second derivative count beside the way that their rate leads in the time so far where the storages
+//!   are displaced by their sizes.
+//! - In a system that does not know what it stores, states count beside the largest of them.
+//!
+//! Of a first step, and of one from rest, the sizes are those of a way ahead on which the rates change little.
+//!
+//! The sizes are looked at anew where a state has outgrown them, or a step that of rounding: the steps between have one norm.
+
+use nalgebra::SVector;
+
+use super::rounding::is_exposed;
+use crate::model::capability::Storages;
+use crate::model::description::StateKind;
+use crate::model::system::System;
+use crate::solve::integrator::{Absolute, Method, Point, Scale, Tolerances, displaced, rounding};
+use crate::solve::stepper::Stepper;
+
+/// The part of a state's largest value that its absolute tolerance is, over the relative one. A smaller one costs steps where states
+/// pass zero and gives no smaller an error for the same time.
+const OWN: f64 = 0.1;
+/// The same part of its size beside the others.
+const BESIDE: f64 = 1e-9;
+/// The same part of the largest state, in a system that does not know what it stores.
+const AMONG: f64 = 1e-6;
+/// What rounding of the states may change the error of a step, in parts of the step times the change of the rate: the error estimates of
+/// explicit methods are two to four of them, and the next steps may be longer.
+const NOISE: f64 = 64.0;
+/// The part of a size beside the others that orientations, and projections onto what joints hold, leave of rounding: they mix the states
+/// of all bodies, the more so the nearer a pose is to a singular one.
+const MIXED: f64 = 1e-12;
+/// By how much steps grow before rounding is looked at anew.
+const LONGER: f64 = 4.0;
+/// The part of a size beside the others that rounding is at most in methods which damp it, or take no differences of rates.
+const DAMPED: f64 = 1e-13;
+/// By how much a state outgrows its size before the sizes are looked at anew.
+const OUTGROWN: f64 = 2.0;
+/// How far the rates of storages may change, in parts of themselves, on the way from which the sizes of a step from rest are taken.
+const LINEAR: f64 = 0.5;
+/// Below this part of its size beside the others a state is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// How large states have been.
+#[derive(Clone, Copy, Debug)]
+struct Sizes<const N: usize> {
+    /// The largest magnitude of each, in its unit.
+    own: SVector<f64, N>,
+    /// Where each would count beside the others, in its unit.
+    beside: SVector<f64, N>,
+    /// The largest energy, J.
+    energy: f64,
+}
+
+/// Follows the sizes of a run.
+#[derive(Clone, Debug)]
+pub(super) struct SizeMonitor<const N: usize> {
+    relative: f64,
+    /// Whether the absolute tolerances follow the sizes: not where they were given.
+    is_leading: bool,
+    /// The start of the run, s.
+    t0: f64,
+    sizes: Sizes<N>,
+    /// The sizes before the next step, while those of a way ahead stand for its own.
+    before: Option<Sizes<N>>,
+    /// What rounding makes of each state in a step.
+    noise: SVector<f64, N>,
+    /// The magnitude from which on each state has outgrown its size, and the step (s) that outgrows the noise.
+    limit: SVector<f64, N>,
+    longest: f64,
+    /// The largest magnitude of each state at the end of a step.
+    largest: SVector<f64, N>,
+}
+
+impl<const N: usize> SizeMonitor<N> {
+    pub fn new(tolerances: &Tolerances<N>, t0: f64) -> Self {
+        let none = SVector::zeros();
+        Self {
+            relative: tolerances.relative,
+            is_leading: tolerances.absolute == Absolute::OfSizes,
+            t0,
+            sizes: Sizes { own: none, beside: none, energy: 0.0 },
+            before: None,
+            noise: none,
+            limit: none,
+            longest: 0.0,
+            largest: none,
+        }
+    }
+
+    /// Goes on with these tolerances.
+    pub fn go_on(&mut self, tolerances: &Tolerances<N>, scale: &mut Scale<N>) {
+        self.relative = tolerances.relative;
+        self.is_leading = tolerances.absolute == Absolute::OfSizes;
+        self.lead(scale);
+    }
+
+    /// Takes the sizes from the state at the start, whose rate is not known.
+    pub fn start<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        self.largest = stepper.start.x.abs();
+        self.measure(stepper.system, &stepper.start, &stepper.negative);
+        self.lead(&mut stepper.scale);
+    }
+
+    /// The same where the rate is known.
+    pub fn begin<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if !self.is_leading {
+            return;
+        }
+        let (start, negative) = (stepper.start, stepper.negative);
+        self.sizes.energy = larger(self.sizes.energy, self.work(stepper.system, &start));
+        self.measure(stepper.system, &start, &negative);
+        self.lead(&mut stepper.scale);
+    }
+
+    /// Whether nothing has moved so far, so that no size is known.
+    pub fn is_at_rest<Sys, const G: usize>(&self, system: &Sys) -> bool
+    where
+        Sys: System<f64, N, G>,
+    {
+        let knows_energy = system.storages().is_some();
+        self.is_leading && if knows_energy { self.sizes.energy == 0.0 } else { self.sizes.own.amax() == 0.0 }
+    }
+
+    /// Takes the sizes of the next step from a way ahead, at most `longest` (s) long.
+    pub fn look_ahead<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, longest: f64)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if !self.is_leading || stepper.method.control().order().is_none() {
+            return;
+        }
+        if let Some(ahead) = self.way_ahead(stepper, longest) {
+            let (start, negative) = (stepper.start, stepper.negative);
+            self.before = Some(self.sizes);
+            self.measure(stepper.system, &ahead, &negative);
+            self.drift(stepper, &ahead, ahead.t - self.t0);
+            self.listen(stepper, &start, ahead.t - start.t);
+            self.lead(&mut stepper.scale);
+            // The step ends what stands for its sizes.
+            self.limit.fill(-1.0);
+        }
+    }
+
+    /// Takes the sizes of states of which none is known from an attempt that was rejected.
+    pub fn guess(&mut self, end: &SVector<f64, N>, scale: &mut Scale<N>) {
+        for i in 0..N {
+            if self.is_leading && scale.absolute[i] == f64::MIN_POSITIVE {
+                scale.absolute[i] = larger(self.relative * OWN * end[i].abs(), f64::MIN_POSITIVE);
+            }
+        }
+    }
+
+    /// Looks at the end of an accepted step; gives whether the scale has changed.
+    pub fn follow<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>) -> bool
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        self.largest = self.largest.sup(&stepper.end.x.abs());
+        let is_outgrown = self.is_leading && (self.is_outgrown(&stepper.end.x) || stepper.h > self.longest);
+        if is_outgrown {
+            self.renew(stepper);
+        }
+        is_outgrown
+    }
+
+    /// Whether a state has outgrown its size.
+    #[inline(always)]
+    fn is_outgrown(&self, x: &SVector<f64, N>) -> bool {
+        (0..N).fold(false, |is_outgrown, i| is_outgrown | (x.data.0[0][i].abs() > self.limit.data.0[0][i]))
+    }
+
+    /// The magnitudes from which on states have outgrown their sizes, and the step (s) from which on it has outgrown the noise; infinite
+    /// where the scale is given.
+    #[cfg(feature = "std")]
+    pub fn limits(&self) -> (SVector<f64, N>, f64) {
+        if self.is_leading { (self.limit, self.longest) } else { (SVector::repeat(f64::INFINITY), f64::INFINITY) }
+    }
+
+    /// The scale of a run as it would be without noise.
+    pub fn without_noise(&self, scale: &Scale<N>) -> Scale<N> {
+        let size = |i: usize| larger(self.relative * self.size(i), f64::MIN_POSITIVE);
+        if self.is_leading { Scale { absolute: SVector::from_fn(|i, _| size(i)), ..*scale } } else { scale.clone() }
+    }
+
+    /// Takes the sizes at the end of the step.
+    pub fn renew<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        if let Some(before) = self.before.take() {
+            self.sizes = before;
+        }
+        let (end, negative, h) = (stepper.end, stepper.negative, stepper.h);
+        self.measure(stepper.system, &end, &negative);
+        // A fixed step has no tolerances: projections alone are measured.
+        if stepper.method.control().order().is_some() {
+            self.drift(stepper, &end, end.t - self.t0);
+            self.listen(stepper, &end, h);
+        } else {
+            self.noise = self.mixed(stepper.system);
+            self.longest = f64::INFINITY;
+        }
+        self.lead(&mut stepper.scale);
+    }
+
+    /// States whose errors were never controlled, with the tolerances of this scale: above rounding, and below their tolerance all the
+    /// time.
+    pub fn uncontrolled(&self, scale: &Scale<N>) -> [bool; N] {
+        core::array::from_fn(|i| {
+            let rounding = ROUNDING * larger(self.sizes.beside[i], f64::MIN_POSITIVE);
+            self.largest[i] > rounding && self.largest[i] < scale.absolute[i]
+        })
+    }
+
+    /// Raises the sizes to those of a point.
+    fn measure<Sys, const G: usize>(&mut self, system: &Sys, Point { t, x, .. }: &Point<N>, negative: &[bool; G])
+    where
+        Sys: System<f64, N, G>,
+    {
+        let Sizes { own, beside, energy } = &mut self.sizes;
+        *own = own.sup(&x.abs());
+        let Some(storages) = system.storages() else {
+            *beside = beside.sup(&SVector::repeat(own.amax() * AMONG / BESIDE));
+            return;
+        };
+        let mut curvatures = SVector::zeros();
+        *energy = larger(storages.energy(*t, x, negative, &mut curvatures).abs(), *energy);
+        let states = storages.states();
+        let length = length(states.iter().map(|state| state.kind), own);
+        for (i, state) in states.iter().enumerate() {
+            let size = match state.kind {
+                StateKind::Momentum(_) | StateKind::Displacement(_) if curvatures[i] != 0.0 => {
+                    libm::sqrt(2.0 * *energy / curvatures[i].abs())
+                }
+                StateKind::Orientation(..) | StateKind::Angle => 1.0,
+                StateKind::Position(_) => length,
+                StateKind::Momentum(_) | StateKind::Displacement(_) | StateKind::Integral => 0.0,
+            };
+            beside[i] = larger(size, beside[i]);
+        }
+    }
+
+    /// The work of the forces at the start over the machine's length, and of the torques over a radian, J.
+    fn work<Sys, const G: usize>(&self, system: &Sys, start: &Point<N>) -> f64
+    where
+        Sys: System<f64, N, G>,
+    {
+        let Some(storages) = system.storages() else { return 0.0 };
+        let length = length(storages.states().iter().map(|state| state.kind), &self.sizes.own);
+        storages.states().iter().zip(start.rate.iter()).fold(0.0, |work, (state, effort)| {
+            let way = match (state.kind, state.unit) {
+                (StateKind::Momentum(_), "kg*m/s") => length,
+                (StateKind::Momentum(_), "kg*m^2/s") => 1.0,
+                _ => 0.0,
+            };
+            larger(effort.abs() * way, work)
+        })
+    }
+
+    /// A point ahead of a start at rest, so near that the rates on the way to it depend little on it.
+    fn way_ahead<Sys, M, const G: usize>(
+        &self,
+        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        longest: f64,
+    ) -> Option<Point<N>>
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        const TRIES: usize = 100;
+        const SHORTER: [f64; 2] = [1e-6, 0.5];
+        let weights = weights(stepper);
+        let norm = |rate: &SVector<f64, N>| rate.component_mul(&weights).amax();
+        let start = stepper.start;
+        let mut h = longest;
+        for _ in 0..TRIES {
+            let mut rate = |x: &SVector<f64, N>| stepper.rate(start.t + h, x);
+            let alone = rate(&start.x);
+            let there = rate(&(start.x + (start.rate + alone) * (0.5 * h)));
+            let (depends, all) = (norm(&(there - alone)), larger(norm(&alone), norm(&start.rate)));
+            if all == 0.0 {
+                return None;
+            }
+            let x = start.x + (start.rate + there) * (0.5 * h);
+            if depends <= LINEAR * all && x.iter().all(|x| x.is_finite()) {
+                return Some(Point { t: start.t + h, x, rate: there });
+            }
+            let [least, most] = SHORTER;
+            h *= larger(least, (0.9 * LINEAR * all / depends).min(most));
+        }
+        None
+    }
+
+    /// Raises the sizes of what has none by energy to the way of its rate in `elapsed` (s) where storages are displaced by theirs.
+    fn drift<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, point: &Point<N>, elapsed: f64)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let Some(storages) = stepper.system.storages() else { return };
+        let states = storages.states();
+        let is_stored = |i: usize| matches!(states[i].kind, StateKind::Momentum(_) | StateKind::Displacement(_));
+        let drifts = |i: usize| matches!(states[i].kind, StateKind::Position(_) | StateKind::Integral);
+        if !(0..N).any(drifts) {
+            return;
+        }
+        let displaced = SVector::from_fn(|i, _| {
+            let by = if is_stored(i) { self.sizes.beside[i] } else { 0.0 };
+            point.x[i] + if i.count_ones() % 2 == 0 { by } else { -by }
+        });
+        let change = (stepper.rate(point.t, &displaced) - point.rate).abs();
+        for i in (0..N).filter(|&i| drifts(i) && change[i].is_finite()) {
+            self.sizes.beside[i] = larger(change[i] * elapsed, self.sizes.beside[i]);
+        }
+    }
+
+    /// Takes what rounding at a point makes of each state in a step of size `h` (s).
+    fn listen<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, point: &Point<N>, h: f64)
+    where
+        Sys: System<f64, N, G>,
+        M: Method<N>,
+    {
+        let (is_exposed, mixed) = (is_exposed(stepper.method), self.mixed(stepper.system));
+        let (_, flow, ..) = stepper.split();
+        let own = rounding(&flow, point) * (NOISE * h);
+        // What that moves in turn, as a position that follows a momentum.
+        let noise = own.sup(&(displaced(&flow, point, &own) * h));
+        let noise = noise.zip_map(&self.sizes.beside, |noise, beside| {
+            if is_exposed || beside == 0.0 { noise } else { noise.min(DAMPED * beside) }
+        });
+        self.noise = noise.sup(&mixed);
+        self.longest = LONGER * h;
+    }
+
+    /// What orientations and projections leave of rounding.
+    fn mixed<Sys, const G: usize>(&self, system: &Sys) -> SVector<f64, N>
+    where
+        Sys: System<f64, N, G>,
+    {
+        let mixes = |kind: StateKind| matches!(kind, StateKind::Orientation(..) | StateKind::Position(_));
+        let has_bodies = system.storages().is_some_and(|all| all.states().iter().any(|state| mixes(state.kind)));
+        self.sizes.beside * if has_bodies || system.joints().is_some() { MIXED } else { 0.0 }
+    }
+
+    /// The absolute tolerances and limits of these sizes.
+    fn lead(&mut self, scale: &mut Scale<N>) {
+        if !self.is_leading {
+            return;
+        }
+        *scale = self.without_noise(scale);
+        for i in 0..N {
+            scale.absolute[i] = larger(self.noise[i], scale.absolute[i]);
+            self.limit[i] = OUTGROWN / OWN * self.size(i);
+        }
+    }
+
+    /// The size of a state over which its absolute tolerance is the relative one, in its unit.
+    fn size(&self, i: usize) -> f64 {
+        larger(OWN * self.sizes.own[i], BESIDE * self.sizes.beside[i])
+    }
+}
+
+/// The size of the machine: its largest coordinate, m.
+fn length<const N: usize>(kinds: impl Iterator<Item = StateKind>, own: &SVector<f64, N>) -> f64 {
+    let positions = kinds.zip(own.iter()).filter(|(kind, _)| matches!(kind, StateKind::Position(_)));
+    positions.fold(0.0, |length, (_, &own)| larger(own, length))
+}
+
+/// What makes changes of storages comparable: the roots of the second derivatives of the energy. In a system that does not know what
+/// it stores all states are alike.
+fn weights<Sys, M, const N: usize, const G: usize>(stepper: &Stepper<'_, Sys, M, N, G>) -> SVector<f64, N>
+where
+    Sys: System<f64, N, G>,
+    M: Method<N>,
+{
+    let Some(storages) = stepper.system.storages() else { return SVector::repeat(1.0) };
+    let (Point { t, x, .. }, mut curvatures) = (stepper.start, SVector::zeros());
+    storages.energy(t, &x, &stepper.negative, &mut curvatures);
+    curvatures.map(|curvature| if curvature.is_finite() { libm::sqrt(curvature.abs()) } else { 0.0 })
+}
+
+/// The larger number; `b` where `a` is none, or is infinite.
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b && a < f64::INFINITY { a } else { b }
+}
