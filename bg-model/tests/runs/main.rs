@@ -5,6 +5,7 @@ mod drawing;
 mod driver;
 mod events;
 mod messages;
+mod no_number;
 mod origins;
 mod parameters;
 #[path = "../problems/mod.rs"]
@@ -13,6 +14,7 @@ mod problems;
 mod random;
 mod recording;
 mod run;
+mod states;
 mod stopping;
 mod switching;
 mod tables;

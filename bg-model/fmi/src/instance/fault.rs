@@ -1,6 +1,7 @@
 //! What an instance cannot do, in sentences for the log of its host.
 
 use bg_model::parameters::ParameterError;
+use bg_model::simulation::NoNumber;
 use thiserror::Error;
 
 /// What an instance cannot do.
@@ -15,6 +16,12 @@ pub enum Fault {
     /// The model cannot go on from where it is.
     #[error("{0}")]
     Stopped(String),
+    /// The model cannot stand in the state that it was given.
+    #[error("the model cannot stand in this state: {0}; set another one, or restore a saved state")]
+    Misplaced(String),
+    /// An output that cannot be calculated.
+    #[error("output {0}")]
+    NoNumber(#[from] NoNumber),
     /// Something that the interface does not allow now.
     #[error("{what} is not possible in {mode}")]
     Mode {

@@ -12,6 +12,7 @@ mod slopes;
 
 use bg_model::description::Description;
 use bg_model::run::Request;
+use bg_model::simulation::NoNumber;
 use bg_model::statistics::Statistics;
 
 use crate::exported::{Exported, Made};
@@ -210,13 +211,17 @@ impl Instance {
         Ok(())
     }
 
-    /// Sets the continuous states.
+    /// Sets the continuous states. Whether the model can stand in them is looked at where the host completes a step, and at events.
     ///
     /// # Errors
-    /// [`Fault::Mode`], [`Fault::Length`].
+    /// [`Fault::Mode`], [`Fault::Length`], [`Fault::NotFinite`].
     pub fn set_states(&mut self, x: &[f64]) -> Result<(), Fault> {
         self.only("to set the states", &[Mode::Continuous])?;
         same_length("continuous states", x.len(), self.counts.states)?;
+        if let Some(index) = x.iter().position(|value| !value.is_finite()) {
+            let name = self.description().states[index].name.to_owned();
+            return Err(Fault::NotFinite { name, value: x[index] });
+        }
         self.machine()?.set_states(x);
         Ok(())
     }
@@ -255,11 +260,11 @@ impl Instance {
     /// more than the tolerance, and is to be moved back.
     ///
     /// # Errors
-    /// [`Fault::Mode`].
+    /// [`Fault::Mode`], [`Fault::Misplaced`].
     pub fn completed_step(&mut self) -> Result<bool, Fault> {
         self.only("the end of a step", &[Mode::Continuous])?;
         let rtol = self.rtol;
-        Ok(self.machine()?.drift() > rtol)
+        self.machine()?.drifts(rtol)
     }
 
     /// Makes a step of Co-Simulation, from time `t` of length `h` (s). On failure the time is that of the last good state.
@@ -313,9 +318,7 @@ impl Instance {
         if !rates.is_empty() {
             self.machine()?.rates(&mut rates);
         }
-        if !outputs.is_empty() {
-            self.machine()?.outputs(&mut outputs);
-        }
+        let origin = if outputs.is_empty() { None } else { self.machine()?.outputs(&mut outputs) };
         if !guards.is_empty() {
             self.machine()?.guards(&mut guards);
         }
@@ -324,6 +327,11 @@ impl Instance {
                 Kind::Time => self.time()?,
                 Kind::Parameter(index) => self.parameters[index],
                 Kind::Input(index) => self.signals.get(index),
+                Kind::Output(index) if !outputs[index].is_finite() => {
+                    let info = &self.description().outputs[index];
+                    let (name, observes) = (info.name.to_owned(), Some(info.observes));
+                    return Err(NoNumber { name, observes, value: outputs[index], t: self.time()?, origin }.into());
+                }
                 Kind::Output(index) => outputs[index],
                 Kind::State(index) => self.machine()?.states()[index],
                 Kind::Derivative(index) => rates[index],

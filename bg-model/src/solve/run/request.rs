@@ -58,7 +58,6 @@ impl Request {
             Samples::Every(interval) if interval.is_finite() && self.is_countable(t0, *interval) => {
                 Samples::At(sample_times(t0, *interval, self.t_end))
             }
-            Samples::At(instants) => Samples::At(instants.iter().copied().filter(|t| *t >= t0).collect()),
             samples => samples.clone(),
         };
         let tolerances = Tolerances::new(self.rtol, self.atol());

@@ -112,7 +112,7 @@ where
         let stepper = Stepper::new(model, method, Scale::from(&settings.tolerances), Point::at(span.t0, start));
         let mut run = Run::new(stepper, Never, control, span, settings);
         let is_fine = settings::check(model, control, &start, span, settings).is_ok();
-        if !is_fine || run.begin(control, settings).is_err() {
+        if !is_fine || run.begin(control, settings, None).is_err() {
             return Err((number, observer));
         }
         run.sample(&mut observer, span.t0);
