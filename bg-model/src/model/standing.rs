@@ -28,6 +28,8 @@ pub const CLOSE: f64 = 1e-9;
 const DRAWN: f64 = 1e-3;
 /// What is closer than this part is left as it is: a run leaves as much.
 const EXACT: f64 = 1e-13;
+/// The part by which something is left beyond a stop that it is moved onto.
+const TOUCHES: f64 = 8.0 * f64::EPSILON;
 /// How often what is open is closed: Newton's steps.
 const ROUNDS: usize = 6;
 /// The part of a state's size for a difference.
@@ -358,7 +360,9 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
             if !stops.iter().any(|stop| is_beyond(stop.switch)) {
                 return Ok(x);
             }
-            let by = |switch: usize| if is_beyond(switch) { passed(switch) } else { 0.0 };
+            // So that it touches the stop, and rounding does not lift it off.
+            let touches = |switch: usize| TOUCHES * rows.sizes[switch];
+            let by = |switch: usize| if is_beyond(switch) { passed(switch) - touches(switch) } else { 0.0 };
             let struck = collision.displaced(impacts, (self.t, &x), negative, by);
             let mut rates = [SVector::zeros(); 2];
             self.model.rate(self.t, &x, negative, &mut rates[0]);

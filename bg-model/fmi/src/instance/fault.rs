@@ -77,7 +77,7 @@ pub enum Fault {
         /// By what.
         known: String,
     },
-    /// Bytes that are no saved state.
+    /// Something that is no saved state of this model.
     #[error("this is no saved state of this model: {0}")]
     Saved(String),
     /// Something that this unit does not have.

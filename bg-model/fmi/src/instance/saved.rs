@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Fault, Instance, Mode};
+use super::{Fault, Instance, Interface, Mode};
 use crate::description::token;
 use crate::exported::Made;
 
@@ -71,12 +71,22 @@ impl Instance {
     /// [`Fault::Saved`]: it is of another model, or of an instance with the other interface.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Fault> {
         self.check_own(&snapshot.token)?;
+        self.check_mode(snapshot.mode)?;
         self.mode = snapshot.mode;
         self.parameters.clone_from(&snapshot.parameters);
         snapshot.inputs.iter().enumerate().for_each(|(index, &value)| self.signals.set(index, value));
         (self.start, self.rtol) = (snapshot.start, snapshot.rtol);
         self.made = snapshot.made.as_ref().map(Made::twin);
         Ok(())
+    }
+
+    /// Refuses a state of an instance with the other interface.
+    fn check_mode(&self, mode: Mode) -> Result<(), Fault> {
+        let other = match self.interface {
+            Interface::ModelExchange => matches!(mode, Mode::Step),
+            Interface::CoSimulation => matches!(mode, Mode::Event | Mode::Continuous),
+        };
+        if other { Err(Fault::Saved("it is one of the other interface".to_owned())) } else { Ok(()) }
     }
 
     fn check_own(&self, of: &str) -> Result<(), Fault> {
@@ -124,6 +134,7 @@ impl Instance {
         let text: Text = serde_json::from_slice(bytes).map_err(|fault| Fault::Saved(fault.to_string()))?;
         self.check_own(&text.token)?;
         let mode = Mode::ALL.into_iter().find(|mode| mode.name() == text.mode).ok_or_else(|| foreign("its mode"))?;
+        self.check_mode(mode)?;
         let fits = |place: &Place| {
             let has_all = place.x.len() == self.counts.states && place.largest.len() == self.counts.states;
             let fits = |negative: &Vec<bool>| negative.len() == self.counts.guards;

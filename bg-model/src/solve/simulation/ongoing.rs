@@ -151,7 +151,7 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         let outcome = settings::check(system, control, &self.start.x, span, settings)
             .and_then(|()| settings::check_series(system, needs_series))
             .map_err(Cause::from)
-            .and_then(|()| match self.controller.take() {
+            .and_then(|()| match self.controller.take().filter(|known| !known.is_adaptive() || step.is_some()) {
                 None => run.begin(control, settings, self.is_known.then_some(self.negative)),
                 Some(controller) => {
                     (run.stepper.negative, run.controller, run.monitor) =
