@@ -19,8 +19,8 @@ pub enum Fault {
     /// The model cannot stand in the state that it was given.
     #[error("the model cannot stand in this state: {0}; set another one, or restore a saved state")]
     Misplaced(String),
-    /// An output that cannot be calculated.
-    #[error("output {0}")]
+    /// A value that cannot be calculated.
+    #[error(transparent)]
     NoNumber(#[from] NoNumber),
     /// Something that the interface does not allow now.
     #[error("{what} is not possible in {mode}")]

@@ -36,9 +36,10 @@ pub(crate) trait Machine {
     fn knows_branches(&self) -> bool;
     /// Writes dx/dt.
     fn rates(&self, rates: &mut [f64]);
-    /// Writes the outputs; where one is not finite, the input or law that it comes from, as far as that is known.
-    fn outputs(&self, outputs: &mut [f64]) -> Option<Origin>;
+    fn outputs(&self, outputs: &mut [f64]);
     fn guards(&self, guards: &mut [f64]);
+    /// The input or law that something which is not finite comes from, as far as that is known.
+    fn origin(&self) -> Option<Origin>;
     /// Whether the state has drifted off the invariants: whether the projection changes a state by more than the part `rtol` of what is
     /// larger, the state or 1 SI unit.
     ///
@@ -193,12 +194,14 @@ where
         rates.copy_from_slice(dx.as_slice());
     }
 
-    fn outputs(&self, outputs: &mut [f64]) -> Option<Origin> {
+    fn outputs(&self, outputs: &mut [f64]) {
         let mut y = SVector::<f64, M>::zeros();
         self.model.outputs(self.t, &self.x, self.negative(), &mut y);
         outputs.copy_from_slice(y.as_slice());
-        let is_finite = outputs.iter().all(|output| output.is_finite());
-        if is_finite { None } else { self.model.not_finite(self.t, &self.x, self.negative()) }
+    }
+
+    fn origin(&self) -> Option<Origin> {
+        self.model.not_finite(self.t, &self.x, self.negative())
     }
 
     fn guards(&self, guards: &mut [f64]) {

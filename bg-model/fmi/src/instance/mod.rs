@@ -239,21 +239,21 @@ impl Instance {
     /// Reads the derivatives of the continuous states.
     ///
     /// # Errors
-    /// [`Fault::Length`], what keeps the model from its start.
+    /// [`Fault::Length`], [`Fault::NoNumber`], what keeps the model from its start.
     pub fn derivatives(&mut self, dx: &mut [f64]) -> Result<(), Fault> {
         same_length("derivatives", dx.len(), self.counts.states)?;
         self.machine()?.rates(dx);
-        Ok(())
+        self.check_finite(dx, |model, index| (format!("der({})", model.states[index].name), None))
     }
 
     /// Reads the event indicators: the guards of the switches in their present branches.
     ///
     /// # Errors
-    /// [`Fault::Length`], what keeps the model from its start.
+    /// [`Fault::Length`], [`Fault::NoNumber`], what keeps the model from its start.
     pub fn guards(&mut self, guards: &mut [f64]) -> Result<(), Fault> {
         same_length("event indicators", guards.len(), self.counts.guards)?;
         self.machine()?.guards(guards);
-        Ok(())
+        self.check_finite(guards, |model, index| (model.switches[index].name.to_owned(), None))
     }
 
     /// The host has completed a step. Gives whether an event is needed: the state has drifted off its joints and orientations by
@@ -305,7 +305,7 @@ impl Instance {
     /// Reads variables.
     ///
     /// # Errors
-    /// [`Fault::Length`], [`Fault::Reference`], what keeps the model from its start.
+    /// [`Fault::Length`], [`Fault::Reference`], [`Fault::NoNumber`], what keeps the model from its start.
     pub fn get(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
         same_length("values", values.len(), references.len())?;
         let counts = self.counts;
@@ -318,27 +318,39 @@ impl Instance {
         if !rates.is_empty() {
             self.machine()?.rates(&mut rates);
         }
-        let origin = if outputs.is_empty() { None } else { self.machine()?.outputs(&mut outputs) };
+        if !outputs.is_empty() {
+            self.machine()?.outputs(&mut outputs);
+        }
         if !guards.is_empty() {
             self.machine()?.guards(&mut guards);
         }
-        for (value, kind) in values.iter_mut().zip(kinds) {
+        for (value, &kind) in values.iter_mut().zip(&kinds) {
             *value = match kind {
                 Kind::Time => self.time()?,
                 Kind::Parameter(index) => self.parameters[index],
                 Kind::Input(index) => self.signals.get(index),
-                Kind::Output(index) if !outputs[index].is_finite() => {
-                    let info = &self.description().outputs[index];
-                    let (name, observes) = (info.name.to_owned(), Some(info.observes));
-                    return Err(NoNumber { name, observes, value: outputs[index], t: self.time()?, origin }.into());
-                }
                 Kind::Output(index) => outputs[index],
                 Kind::State(index) => self.machine()?.states()[index],
                 Kind::Derivative(index) => rates[index],
                 Kind::Guard(index) => guards[index],
             };
         }
-        Ok(())
+        self.check_finite(values, |model, place| match kinds[place] {
+            Kind::Output(index) => (model.outputs[index].name.to_owned(), Some(model.outputs[index].observes)),
+            _ => (names(model).get(references[place] as usize).cloned().unwrap_or_default(), None),
+        })
+    }
+
+    /// Refuses values of which one is not finite; `named` gives its name, and what it observes.
+    fn check_finite(
+        &mut self,
+        values: &[f64],
+        named: impl Fn(&Description, usize) -> (String, Option<&'static str>),
+    ) -> Result<(), Fault> {
+        let Some(place) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        let (name, observes) = named(self.description(), place);
+        let (t, origin) = (self.time()?, self.machine()?.origin());
+        Err(NoNumber { name, observes, value: values[place], t, origin }.into())
     }
 
     /// Sets variables: parameters before the end of the initialization, inputs at any time.

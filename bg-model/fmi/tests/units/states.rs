@@ -140,7 +140,7 @@ const RUBBED_PARAMETERS: usize = 1;
 fn an_output_that_cannot_be_calculated_is_an_error_with_its_name() {
     let mut instance = begun(&RUBBED, Interface::CoSimulation);
     let fault = instance.get(&[4], &mut [0.0]).unwrap_err().to_string();
-    assert!(fault.starts_with("output `root` = `sqrt(") && fault.contains("` is NaN at t = 0.0 s"), "{fault}");
+    assert!(fault.starts_with("`root` = `sqrt(") && fault.contains("` is NaN at t = 0.0 s"), "{fault}");
     instance.get(&[3], &mut [0.0]).unwrap();
     instance.set(&[2], &[-2.0]).unwrap();
     instance.get(&[4], &mut [0.0]).unwrap();
@@ -180,4 +180,15 @@ fn a_tiny_first_step_does_not_block_the_next() {
         instance.step(0.1, 0.4).unwrap();
         assert!((instance.time().unwrap() - 0.5).abs() < 1e-12);
     }
+}
+
+#[test]
+fn a_derivative_that_cannot_be_calculated_is_one_neither() {
+    let (mut instance, mut x) = exchanging(&PENDULUM);
+    let mut rates = x.clone();
+    instance.derivatives(&mut rates).unwrap();
+    x[index(&instance, "rod.angular.p_z")] = 1e200;
+    instance.set_states(&x).unwrap();
+    let fault = instance.derivatives(&mut rates).unwrap_err();
+    assert!(matches!(&fault, Fault::NoNumber(fault) if fault.name.starts_with("der(")), "{fault}");
 }
