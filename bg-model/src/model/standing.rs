@@ -1,12 +1,12 @@
 //! Whether a model can stand in a state that a run is to start from: one that was saved, edited, or set by a host.
 //!
-//! In: a model, a time, a state, how large its states have been. Out: the state with what rounding leaves closed, or what is
-//! wrong: an orientation that is no rotation, a rigid joint that is open or torn apart, a stop that is passed. Of switches that
-//! remember, whether what is known of them can be.
+//! In: a model, a time, a state, how large its states have been. Out: the state with what rounding leaves closed, or
+//! what is wrong: an orientation that is no rotation, a rigid joint that is open or torn apart, a stop that is passed.
+//! Of switches that remember, whether what is known of them can be.
 //!
-//! What counts as zero is a part of the machine's size: of the sum of what each state, as large as it has been, adds to the
-//! gap, the flow or the place concerned. A machine that is scaled has the same verdicts. Beside that counts what the model's
-//! own start leaves, which its assembly has accepted.
+//! What counts as zero is a part of the machine's size: of the sum of what each state, as large as it has been, adds to
+//! the gap, the flow or the place concerned. A machine that is scaled has the same verdicts. Beside that counts what
+//! the model's own start leaves, which its assembly has accepted.
 
 use alloc::borrow::ToOwned;
 use alloc::string::String;
@@ -24,7 +24,8 @@ use crate::model::system::{Model, branches, branches_by_sign};
 
 /// The part of the machine's size that rounding may leave of what should be zero, where a run starts.
 pub const CLOSE: f64 = 1e-9;
-/// The same of joints that Baumgarte's terms draw together, or whose pose is near a singular one: no projection closes them at once.
+/// The same of joints that Baumgarte's terms draw together, or whose pose is near a singular one: no projection closes
+/// them at once.
 const DRAWN: f64 = 1e-3;
 /// What is closer than this part is left as it is: a run leaves as much.
 const EXACT: f64 = 1e-13;
@@ -117,8 +118,8 @@ struct Rows {
 }
 
 impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
-    /// `model` at time `t` (s), the states of which have been as large as `largest`; of what should be zero `part` of its size
-    /// may be left.
+    /// `model` at time `t` (s), the states of which have been as large as `largest`; of what should be zero `part` of
+    /// its size may be left.
     pub fn new<const G: usize, const M: usize>(model: &'a Mo, t: f64, largest: &SVector<f64, N>, part: f64) -> Self
     where
         Mo: Model<f64, N, G, M>,
@@ -149,8 +150,8 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         Self { model, t, sizes, start, part }
     }
 
-    /// The state `x` with what rounding has left of gaps, flows and places of stops closed; the same bits where that is nothing.
-    /// Where they are known `negative` are the branches of the switches.
+    /// The state `x` with what rounding has left of gaps, flows and places of stops closed; the same bits where that is
+    /// nothing. Where they are known `negative` are the branches of the switches.
     ///
     /// # Errors
     /// [`Misplaced`].
@@ -173,8 +174,8 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         Ok(x)
     }
 
-    /// The branches `negative` without those that cannot be here: something rests on a stop or sticks in dry friction only where it is
-    /// and does not move. Where one cannot be the signs of the guards decide.
+    /// The branches `negative` without those that cannot be here: something rests on a stop or sticks in dry friction
+    /// only where it is and does not move. Where one cannot be the signs of the guards decide.
     pub fn possible<const G: usize, const M: usize>(&self, x: &SVector<f64, N>, mut negative: [bool; G]) -> [bool; G]
     where
         Mo: Model<f64, N, G, M>,
@@ -225,8 +226,8 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         Ok(x)
     }
 
-    /// The products of an orientation's columns and rows that keep their values in any motion: their rates vanish at the start,
-    /// whatever the momenta. Components that are no states are constants, or follow from others.
+    /// The products of an orientation's columns and rows that keep their values in any motion: their rates vanish at
+    /// the start, whatever the momenta. Components that are no states are constants, or follow from others.
     fn kept<const G: usize, const M: usize>(&self, entries: &Entries) -> Vec<Vec<(usize, usize)>>
     where
         Mo: Model<f64, N, G, M>,
@@ -268,61 +269,23 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         Mo: Model<f64, N, G, M>,
         J: Joints<f64, N, G>,
     {
-        let held = joints.held();
-        let count = held.rigid.len();
-        if count == 0 {
+        let rigid = joints.held().rigid;
+        if rigid.is_empty() {
             return Ok(x);
         }
-        // Flows, then gaps, of the rigid motions.
-        let read = |t: f64, x: &SVector<f64, N>, negative: &[bool; G]| {
-            let mut hold = Hold::new(held);
-            hold.read(joints, t, x, negative);
-            let now = hold.now();
-            now.flows[..count].iter().chain(now.gaps).copied().collect::<Vec<f64>>()
-        };
-        let of = |x: &SVector<f64, N>| read(self.t, x, negative);
-        let rows = self.rows(&x, of);
-        let at_start = self.start.map(|start| read(0.0, &start, &branches(self.model, 0.0, &start)));
-        let size = |row: usize| {
-            // Motions of one unit are as large as the largest of them: the machine.
-            let (unit, first) = (held.rigid[row % count].unit, row / count * count);
-            let alike = (first..first + count).filter(|&other| held.rigid[other % count].unit == unit);
-            alike.fold(0.0_f64, |size, other| size.max(rows.sizes[other]))
-        };
-        let left = |row: usize| at_start.as_ref().map_or(0.0, |start| 2.0 * start[row].abs());
-        let own = |row: usize| if row < count { FITTING } else { 0.0 };
-        let allowed: Vec<f64> = (0..2 * count).map(|row| self.part * size(row) + left(row) + own(row)).collect();
-        let exact: Vec<f64> = (0..2 * count).map(|row| EXACT * size(row)).collect();
-        let mut values = rows.values;
+        let of = |x: &SVector<f64, N>| motions(joints, (self.t, x), negative);
+        let Rows { mut values, sizes } = self.rows(&x, of);
+        let at_start = self.start.map(|start| motions(joints, (0.0, &start), &branches(self.model, 0.0, &start)));
+        let limits = Limits::new(rigid, &sizes, at_start.as_deref(), self.part);
         for _ in 0..ROUNDS {
-            if values.iter().zip(&exact).all(|(value, exact)| value.abs() <= *exact) {
+            if limits.excess(&values) <= 1.0 {
                 break;
             }
             let mut closer = x;
             self.model.project(self.t, negative, &mut closer);
             let after = of(&closer);
-            for row in (0..2 * count).filter(|&row| !(values[row].abs() <= allowed[row])) {
-                let (slip, value) = (held.rigid[row % count], values[row]);
-                let is_drawn = after[row].abs() > 0.5 * value.abs();
-                let allowed = if is_drawn { allowed[row].max(DRAWN * size(row)) } else { allowed[row] };
-                if value.abs() <= allowed {
-                    continue;
-                }
-                let slipping = Slipping { slip, speed: value, is_rigid: true };
-                return Err(if row < count {
-                    Misplaced::Torn { slipping, allowed }
-                } else {
-                    Misplaced::Open { slip, size: value, allowed, unit: integrated(slip.unit) }
-                });
-            }
-            let total = |values: &[f64]| {
-                values
-                    .iter()
-                    .zip(&exact)
-                    .map(|(value, exact)| value.abs() / exact.max(f64::MIN_POSITIVE))
-                    .fold(0.0, f64::max)
-            };
-            if !(total(&after) < total(&values)) {
+            limits.check(&values, &after)?;
+            if limits.excess(&after) >= limits.excess(&values) || after.iter().any(|value| value.is_nan()) {
                 break;
             }
             (x, values) = (closer, after);
@@ -352,7 +315,7 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
                 let (by, size) = (passed(stop.switch), rows.sizes[stop.switch]);
                 let left = start.as_ref().map_or(0.0, |start| 2.0 * start[stop.switch].max(0.0));
                 let allowed = self.part * size + left;
-                if !(by <= allowed) {
+                if by.is_nan() || by > allowed {
                     return Err(Misplaced::Beyond { stop: stop.name, by, allowed, unit: integrated(stop.unit) });
                 }
             }
@@ -393,8 +356,8 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         guards
     }
 
-    /// Numbers at a state with their sizes: how much all states together, as large as they have been, add to each, and what is left
-    /// of it without them.
+    /// Numbers at a state with their sizes: how much all states together, as large as they have been, add to each, and
+    /// what is left of it without them.
     fn rows(&self, x: &SVector<f64, N>, of: impl Fn(&SVector<f64, N>) -> Vec<f64>) -> Rows {
         let values = of(x);
         let mut sizes = vec![0.0; values.len()];
@@ -413,6 +376,75 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         }
         sizes.iter_mut().zip(&rest).filter(|(_, rest)| rest.is_finite()).for_each(|(size, rest)| *size += rest.abs());
         Rows { values, sizes }
+    }
+}
+
+/// The flows of the rigid motions at a time (s) and state, then their gaps.
+fn motions<J, const N: usize, const G: usize>(
+    joints: &J,
+    (t, x): (f64, &SVector<f64, N>),
+    negative: &[bool; G],
+) -> Vec<f64>
+where
+    J: Joints<f64, N, G>,
+{
+    let mut hold = Hold::new(joints.held());
+    hold.read(joints, t, x, negative);
+    let now = hold.now();
+    now.flows[..now.gaps.len()].iter().chain(now.gaps).copied().collect()
+}
+
+/// What may be left of flows and gaps of rigid motions.
+struct Limits {
+    rigid: &'static [Slip],
+    /// The size of the machine in the unit of each.
+    sizes: Vec<f64>,
+    allowed: Vec<f64>,
+}
+
+impl Limits {
+    fn new(rigid: &'static [Slip], sizes: &[f64], at_start: Option<&[f64]>, part: f64) -> Self {
+        let count = rigid.len();
+        // Motions of one unit are as large as the largest of them: the machine.
+        let largest = |row: usize| {
+            let (unit, first) = (rigid[row % count].unit, row / count * count);
+            let alike = (first..first + count).filter(|&other| rigid[other % count].unit == unit);
+            alike.fold(0.0_f64, |size, other| size.max(sizes[other]))
+        };
+        let sizes: Vec<f64> = (0..2 * count).map(largest).collect();
+        // What the assembly of the start accepts: a flow, and the gaps that it leaves.
+        let of_start = |row: usize| {
+            let left = at_start.map_or(0.0, |start| 2.0 * start[row].abs());
+            if row < count { left + FITTING } else { left }
+        };
+        let allowed = sizes.iter().enumerate().map(|(row, size)| part * size + of_start(row)).collect();
+        Self { rigid, sizes, allowed }
+    }
+
+    /// The largest of these values over what a run leaves of it; above 1 where a projection has something to close.
+    fn excess(&self, values: &[f64]) -> f64 {
+        let parts = values.iter().zip(&self.sizes).filter(|(value, _)| **value != 0.0);
+        let parts = parts.map(|(value, size)| value.abs() / (EXACT * size).max(f64::MIN_POSITIVE));
+        parts.fold(0.0, |most, part| if part <= most { most } else { part })
+    }
+
+    /// Refuses values that are more than is allowed; `after` are those that a projection leaves of them.
+    fn check(&self, values: &[f64], after: &[f64]) -> Result<(), Misplaced> {
+        let count = self.rigid.len();
+        for (row, (&value, &allowed)) in values.iter().zip(&self.allowed).enumerate() {
+            let is_drawn = after[row].abs() > 0.5 * value.abs();
+            let allowed = if is_drawn { allowed.max(DRAWN * self.sizes[row]) } else { allowed };
+            if value.abs() <= allowed {
+                continue;
+            }
+            let slip = self.rigid[row % count];
+            return Err(if row < count {
+                Misplaced::Torn { slipping: Slipping { slip, speed: value, is_rigid: true }, allowed }
+            } else {
+                Misplaced::Open { slip, size: value, allowed, unit: integrated(slip.unit) }
+            });
+        }
+        Ok(())
     }
 }
 
@@ -444,7 +476,8 @@ fn orientations(states: &'static [StateInfo]) -> Vec<Entries> {
 }
 
 impl Entries {
-    /// The products of two of its columns, or of two of its rows, as far as their components are states: pairs of states.
+    /// The products of two of its columns, or of two of its rows, as far as their components are states: pairs of
+    /// states.
     fn products(&self) -> Vec<Vec<(usize, usize)>> {
         let rows = self.of;
         let columns = core::array::from_fn(|column| rows.map(|row| row[column]));

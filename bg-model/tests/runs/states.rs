@@ -1,4 +1,5 @@
-//! States from which a run starts: refused where the mechanism cannot stand in them, closed where rounding has left something.
+//! States from which a run starts: refused where the mechanism cannot stand in them, closed where rounding has left
+//! something.
 
 use bg_model::bond_graph;
 use bg_model::integrator::Integrator;
@@ -12,7 +13,10 @@ bond_graph! {
         param size: m = 1, above 0;
         gravity [0, -9.81 * size, 0];
         ground { point pivot = [0, 0, 0]; }
-        body rod { mass 2; inertia [0.1 * size * size, 0.1 * size * size, 0.1 * size * size]; point end = [-0.5 * size, 0, 0]; start end at [0, 0, 0]; }
+        body rod {
+            mass 2; inertia [0.1 * size * size, 0.1 * size * size, 0.1 * size * size];
+            point end = [-0.5 * size, 0, 0]; start end at [0, 0, 0];
+        }
         joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
         observe { angle: rad = pin.angle; force: N = norm(pin.force) }
         scene Plane { expect planar; }

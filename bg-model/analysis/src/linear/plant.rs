@@ -49,7 +49,8 @@ pub(super) struct Plant {
 }
 
 impl Plant {
-    /// `mechanism` at time `t` (s). Where its switches are in branches that are not known the signs of their guards decide.
+    /// `mechanism` at time `t` (s). Where its switches are in branches that are not known the signs of their guards
+    /// decide.
     pub fn at<Me: Mechanism>(mechanism: &Me, t: f64, negative: Option<Vec<bool>>) -> Result<Self, ParameterError> {
         let values: Vec<f64> = mechanism.inputs().iter().map(|input| input.value(t)).collect();
         let made = |inputs: &[Input]| Ok(sloped(&Me::make(mechanism.parameters().clone(), inputs)?));

@@ -76,8 +76,8 @@ pub struct StateSpace {
     pub left_out: LeftOut,
 }
 
-/// The linear model of `mechanism` at state `x`, with its inputs held as they are at time `t` (s). Its switches are in the branches
-/// that the signs of their guards call for; [`linearise_at`] knows what sticks or rests.
+/// The linear model of `mechanism` at state `x`, with its inputs held as they are at time `t` (s). Its switches are in
+/// the branches that the signs of their guards call for; [`linearise_at`] knows what sticks or rests.
 ///
 /// # Errors
 /// [`LinearError::NotFinite`], [`LinearError::BadRate`] name a rate without a derivative or a value.

@@ -16,8 +16,8 @@ use bg_model::system::Model;
 use super::Fault;
 use super::saved::Place;
 
-/// The part of the machine's size by which a host's steps may have left joints, orientations and stops: it may have located an event
-/// no better.
+/// The part of the machine's size by which a host's steps may have left joints, orientations and stops: it may have
+/// located an event no better.
 const DRIFT: f64 = 1e-3;
 
 /// A model at a time, in a state, its switches in branches.
@@ -26,11 +26,13 @@ pub(crate) trait Machine {
     fn time(&self) -> f64;
     fn set_time(&mut self, t: f64);
     fn states(&self) -> &[f64];
-    /// Stands in another state; none of it but that its numbers are finite is checked before the next event, since a host's steps drift.
+    /// Stands in another state; none of it but that its numbers are finite is checked before the next event, since a
+    /// host's steps drift.
     fn set_states(&mut self, x: &[f64]);
     /// How large each state has been.
     fn largest(&self) -> &[f64];
-    /// Whether each switch is in the branch of its negative guard; none before an event or a step has found the branches.
+    /// Whether each switch is in the branch of its negative guard; none before an event or a step has found the
+    /// branches.
     fn branches(&self) -> &[bool];
     /// Whether the branches are found.
     fn knows_branches(&self) -> bool;
@@ -40,8 +42,8 @@ pub(crate) trait Machine {
     fn guards(&self, guards: &mut [f64]);
     /// The input or law that something which is not finite comes from, as far as that is known.
     fn origin(&self) -> Option<Origin>;
-    /// Whether the state has drifted off the invariants: whether the projection changes a state by more than the part `rtol` of what is
-    /// larger, the state or 1 SI unit.
+    /// Whether the state has drifted off the invariants: whether the projection changes a state by more than the part
+    /// `rtol` of what is larger, the state or 1 SI unit.
     ///
     /// # Errors
     /// It is so far off that no step leads there.
@@ -59,7 +61,8 @@ pub(crate) trait Machine {
     fn next_step(&self) -> Option<f64>;
     /// What the run has cost, where there is one.
     fn statistics(&self) -> Option<Statistics>;
-    /// Stands at another place, where the switches are in these branches; the next step of the run is tried with `step` (s).
+    /// Stands at another place, where the switches are in these branches; the next step of the run is tried with `step`
+    /// (s).
     ///
     /// # Errors
     /// The model cannot stand there.

@@ -211,7 +211,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Sets the continuous states. Whether the model can stand in them is looked at where the host completes a step, and at events.
+    /// Sets the continuous states. Whether the model can stand in them is looked at where the host completes a step,
+    /// and at events.
     ///
     /// # Errors
     /// [`Fault::Mode`], [`Fault::Length`], [`Fault::NotFinite`].

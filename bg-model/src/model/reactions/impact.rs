@@ -148,8 +148,8 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
         self.active.contains(&true)
     }
 
-    /// The state `x` at time `t` (s) with momenta by which in one unit of time everything moves back by as far as the stops are passed,
-    /// `by` of their switches, while the rigid joints hold.
+    /// The state `x` at time `t` (s) with momenta by which in one unit of time everything moves back by as far as the
+    /// stops are passed, `by` of their switches, while the rigid joints hold.
     pub fn displaced<I, const N: usize, const G: usize>(
         &mut self,
         impacts: &I,

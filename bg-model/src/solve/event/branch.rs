@@ -15,9 +15,9 @@ use crate::solve::stepper::Stepper;
 const PROBES: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
 impl<const G: usize> EventMonitor<G> {
-    /// Chooses the branches at the start of the run by the signs of the guards, where stops are reached after the impact; what sticks or
-    /// rests in branches that are `known` stays so. Gives the switches that are not to be looked at any more: those of stops that
-    /// are left again, and those that stay.
+    /// Chooses the branches at the start of the run by the signs of the guards, where stops are reached after the
+    /// impact; what sticks or rests in branches that are `known` stays so. Gives the switches that are not to be looked
+    /// at any more: those of stops that are left again, and those that stay.
     pub fn begin_by_sign<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,

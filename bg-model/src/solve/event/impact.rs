@@ -63,8 +63,8 @@ impl<const G: usize> EventMonitor<G> {
         Struck { switches, rebounds, jumps }
     }
 
-    /// Lets the state at the start of the run jump where stops are reached, or where something rests on those that are `held`. Gives
-    /// the switches of those that are left again.
+    /// Lets the state at the start of the run jump where stops are reached, or where something rests on those that are
+    /// `held`. Gives the switches of those that are left again.
     pub(super) fn strike_at_begin<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,

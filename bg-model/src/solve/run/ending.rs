@@ -40,8 +40,8 @@ impl Index<&str> for Sample<'_> {
 
 /// What may end a run.
 pub trait Ending {
-    /// Integrates as [`integrate`](crate::simulation::integrate) does, from a state in the branches of its switches where they are
-    /// known, and ends where this says so.
+    /// Integrates as [`integrate`](crate::simulation::integrate) does, from a state in the branches of its switches
+    /// where they are known, and ends where this says so.
     ///
     /// # Errors
     /// As [`integrate`](crate::simulation::integrate).

@@ -145,8 +145,9 @@ impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
     }
 
     /// Starts from `state` at its time, not from the model's own start. The parameters may be others than those that led to
-    /// it: what stays are the states (momenta, not velocities), and what sticks or rests as far as it can. The state is checked as
-    /// a start is: joints closed, orientations rotations, no stop passed; what rounding leaves of that is closed.
+    /// it: what stays are the states (momenta, not velocities), and what sticks or rests as far as it can. The state is
+    /// checked as a start is: joints closed, orientations rotations, no stop passed; what rounding leaves of that is
+    /// closed.
     pub fn from(mut self, state: &State) -> Self {
         self.start = Some(state.clone());
         self
@@ -383,7 +384,7 @@ impl<Mo, const N: usize, const G: usize> Last<'_, Mo, N, G> {
         for _ in 0..ROUNDS {
             let mut closer = x;
             model.project(*t, negative, &mut closer);
-            let moves = |index: usize| !((closer[index] - x[index]).abs() <= EXACT * largest[index]);
+            let moves = |index: usize| (closer[index] - x[index]).abs() > EXACT * largest[index];
             if !(0..N).any(moves) || closer.iter().any(|value| !value.is_finite()) {
                 break;
             }

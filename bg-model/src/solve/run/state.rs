@@ -1,7 +1,7 @@
 //! A state by name: where a run has come to and another can start from.
 //!
-//! In: the states of a model at some time, the branches of its switches where they are known. Out: the same as JSON, and back for
-//! a model of the same states.
+//! In: the states of a model at some time, the branches of its switches where they are known. Out: the same as JSON,
+//! and back for a model of the same states.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
@@ -24,11 +24,11 @@ pub struct State {
     pub t: f64,
     /// Name and value of each state, in the order of the model's description, SI units.
     pub states: Vec<(String, f64)>,
-    /// The largest absolute value that each of them has had in the runs that led here: what rounding may have left of it is a part
-    /// of that.
+    /// The largest absolute value that each of them has had in the runs that led here: what rounding may have left of
+    /// it is a part of that.
     pub largest: Vec<f64>,
-    /// Name and branch of each switch, in the order of the model's description: whether it is that of the negative guard, such as
-    /// sliding, or being clear of a stop. None where they are not known: a run finds them.
+    /// Name and branch of each switch, in the order of the model's description: whether it is that of the negative
+    /// guard, such as sliding, or being clear of a stop. None where they are not known: a run finds them.
     pub branches: Option<Vec<(String, bool)>>,
 }
 
@@ -94,8 +94,8 @@ impl State {
     /// The format of the files: 2 since branches are saved.
     pub const FORMAT: u32 = 2;
 
-    /// The states `x` of a model at `t` (s), which have been as large as `largest`, and the branches of its switches where they are
-    /// known.
+    /// The states `x` of a model at `t` (s), which have been as large as `largest`, and the branches of its switches
+    /// where they are known.
     pub(super) fn new(of: &Description, t: f64, x: &[f64], largest: &[f64], negative: Option<&[bool]>) -> Self {
         let states = of.states.iter().zip(x).map(|(state, value)| (state.name.to_owned(), *value)).collect();
         let named = |negative: &[bool]| {
@@ -119,8 +119,8 @@ impl State {
         self.states.iter().find(|(own, _)| own == name).map(|(_, value)| *value)
     }
 
-    /// Changes the value of the state called `name`, SI unit; gives whether there is one. The branches of switches are not known any
-    /// more then: a run that starts from here finds them.
+    /// Changes the value of the state called `name`, SI unit; gives whether there is one. The branches of switches are
+    /// not known any more then: a run that starts from here finds them.
     pub fn set(&mut self, name: &str, value: f64) -> bool {
         let Some(index) = self.states.iter().position(|(own, _)| own == name) else { return false };
         self.states[index].1 = value;

@@ -115,9 +115,9 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         &self.statistics
     }
 
-    /// The system has changed, as where an input has jumped: the rate is found anew, and the branches are whose guards have got
-    /// another sign; what sticks or rests stays so as long as it can. The next step is tried with `step` (s), where that is given,
-    /// else with the size that it was to have.
+    /// The system has changed, as where an input has jumped: the rate is found anew, and the branches are whose guards
+    /// have got another sign; what sticks or rests stays so as long as it can. The next step is tried with `step` (s),
+    /// where that is given, else with the size that it was to have.
     pub fn renew(&mut self, step: Option<f64>) {
         self.controller = None;
         self.step = step.or(self.step);

@@ -130,8 +130,8 @@ impl Recording {
     }
 }
 
-/// An observer that records a model's samples and the times of its events. Allocates at each sample. Where a value is not finite the run
-/// ends, and [`Recorder::fault`] says which.
+/// An observer that records a model's samples and the times of its events. Allocates at each sample. Where a value is
+/// not finite the run ends, and [`Recorder::fault`] says which.
 #[derive(Clone, Debug)]
 pub struct Recorder<'a, Mo, const N: usize, const G: usize, const M: usize> {
     model: &'a Mo,

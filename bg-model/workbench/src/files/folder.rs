@@ -7,8 +7,8 @@
 //! grow; `files`, the names of those that it has put into the folder. Only when all files are written are those of the
 //! earlier run removed and the new ones renamed into place, in this order. A program that is killed before leaves the earlier
 //! run's files, one that is killed then leaves a part of one run's, and a file is never cut. Only names on the list are
-//! removed; the list is there before the first of the files. Where no run has put anything into the folder its subfolder goes
-//! with the run, and so does the folder if the run has made it.
+//! removed; the list is there before the first of the files. Where no run has put anything into the folder its
+//! subfolder goes with the run, and so does the folder if the run has made it.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
