@@ -5,7 +5,7 @@ use bg_model::input::Input;
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::Parameters;
-use bg_model::run::{LaneError, Request, Simulation, Trajectory, in_lanes};
+use bg_model::run::{LaneError, Request, RunError, Simulation, Trajectory, in_lanes};
 use bg_model::simulation::Samples;
 use bg_model::statistics::Statistics;
 
@@ -266,6 +266,17 @@ fn a_run_whose_output_is_no_number_ends_alone() {
     assert!(
         runs.iter().all(|run| run.columns.iter().all(|column| column.values.iter().all(|value| value.is_finite())))
     );
+    // It ends where it does by itself, and not with its neighbours.
+    let values: Vec<Vec<f64>> = (1..=11).map(|k| vec![0.02 * f64::from(k), 50.0]).collect();
+    let reached = |run: Result<Trajectory, LaneError>| match run {
+        Err(LaneError::Run(RunError::Stopped(stopped))) => stopped.trajectory,
+        run => run.unwrap(),
+    };
+    let request = request(2.0, 1e-6);
+    for (run, values) in in_lanes(&model, &request, &values).into_iter().zip(&values) {
+        let (run, alone) = (reached(run), reached(single(&model, &request, values)));
+        assert_eq!((&run.times, run.statistics, &run.last), (&alone.times, alone.statistics, &alone.last));
+    }
 }
 
 #[test]

@@ -339,12 +339,29 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         Ok(x)
     }
 
-    /// The guards in some branches.
+    /// The guards in some branches; to those of stops, which are places in their first branches, belongs the size of the machine.
     fn guards<const G: usize, const M: usize>(&self, x: &SVector<f64, N>, negative: &[bool; G]) -> Rows
     where
         Mo: Model<f64, N, G, M>,
     {
-        self.rows(x, |x| self.guards_at(x, negative).as_slice().to_vec())
+        let mut rows = self.rows(x, |x| self.guards_at(x, negative).as_slice().to_vec());
+        let stops = self.model.impacts().map_or(&[][..], |impacts| impacts.stops().stops);
+        let own = rows.sizes.clone();
+        for stop in stops {
+            let alike = stops.iter().filter(|other| other.unit == stop.unit).map(|other| own[other.switch]);
+            rows.sizes[stop.switch] = alike.fold(self.extent(&integrated(stop.unit)), f64::max);
+        }
+        rows
+    }
+
+    /// The largest of the states that say where something is in this unit; of angles 1 rad at least.
+    fn extent<const G: usize, const M: usize>(&self, unit: &str) -> f64
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        let states = self.model.description().states.iter().zip(&self.sizes);
+        let alike = states.filter(|(state, _)| is_of_pose(state) && state.unit == unit).map(|(_, &size)| size);
+        alike.fold(if unit == "rad" { 1.0 } else { 0.0 }, f64::max)
     }
 
     fn guards_at<const G: usize, const M: usize>(&self, x: &SVector<f64, N>, negative: &[bool; G]) -> SVector<f64, G>

@@ -26,6 +26,16 @@ bond_graph! {
         stop floor on fall { at least level; start height; restitution give; }
         observe { y: m = floor.place; v: m/s = fall.flow; floor.effort; energy: J = stored_energy }
     }
+    /// A ball that falls on one that lies on the floor.
+    graph Pair {
+        param height: m = 0.4;
+        1 low, high: translation; I lower = 1; I upper = 1; Se pull_low = -9.81; Se pull_high = -9.81;
+        0 between: translation; 1 apart: translation;
+        pull_low -> low -> lower; pull_high -> high -> upper; high -> between -> low; between -> apart;
+        stop floor on low { at least 0; start 0; restitution 0.5; }
+        stop gap on apart { at least 0; start height; restitution 1; }
+        observe { v: m/s = low.flow; u: m/s = high.flow; load: N = floor.effort }
+    }
     /// A block on a rigid guide that rests against an end, pressed by a spring.
     graph Guided {
         ground { point O = [0, 0, 0]; }
@@ -101,11 +111,10 @@ fn what_slides_in_a_state_that_was_changed_is_found() {
 
 #[test]
 fn what_rests_on_a_stop_goes_on_with_its_load() {
-    for parameters in [
-        BallParameters { give: 0.0, ..BallParameters::default() },
-        // Thrown up from the floor: neither its place nor its speed are of any size any more.
-        BallParameters { give: 0.0, speed: 2.0, height: 0.0, ..BallParameters::default() },
-    ] {
+    let fallen = BallParameters { give: 0.0, ..BallParameters::default() };
+    // Thrown up from the floor: in the end neither its place nor its speed are of any size.
+    let thrown = |speed| BallParameters { speed, height: 0.0, ..fallen.clone() };
+    for parameters in [0.7, 1.1, 1.3, 1.7, 1.9, 2.3, 2.9, 3.1].map(thrown).into_iter().chain([fallen.clone()]) {
         let model = ball(parameters);
         let run = Simulation::new(&model).every(0.1).until(2.0).run().unwrap();
         assert!((run["floor.effort"].last().unwrap().abs() - 9.81).abs() < 1e-12);
@@ -118,6 +127,21 @@ fn what_rests_on_a_stop_goes_on_with_its_load() {
     let on = Simulation::new(&model).from(&run.last).every(0.1).until(5.0).run().unwrap();
     assert!(on["end.effort"].iter().all(|load| (load.abs() - 7.0).abs() < 1e-9), "{:?}", &on["end.effort"]);
     assert!((on["x"].last().unwrap() - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn what_rests_takes_part_in_an_impact_at_the_start() {
+    let model = Pair::make(PairParameters::default(), &[]).unwrap();
+    let resting = Simulation::new(&model).every(0.1).until(0.2).run().unwrap().last;
+    for place in [0.0, -1e-12, 1e-12] {
+        let mut state = resting.clone();
+        assert!(state.set("floor.way.q", place) && state.set("gap.way.q", 0.0) && state.set("upper.p", -3.0));
+        state.branches.clone_from(&resting.branches);
+        let run = Simulation::new(&model).from(&state).every(0.01).until(0.3).run().unwrap();
+        // The floor bears the lower one, which does not move, and the upper one bounces off as from a wall.
+        let (v, u) = (run["v"][0], run["u"][0]);
+        assert!(v.abs() < 1e-12 && (u - 3.0).abs() < 1e-12, "{place}: {v} {u}");
+    }
 }
 
 #[test]
