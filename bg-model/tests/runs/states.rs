@@ -72,21 +72,17 @@ fn an_orientation_that_is_none_is_refused() {
         Plane::make(PlaneParameters { size: 1.0 }, &[]).unwrap(),
         Tumbling::make(TumblingParameters::default(), &[]).unwrap(),
     );
-    let all: [(&str, &dyn Fn(&str, f64) -> f64); 3] = [
-        ("zeros", &|name, value| if is_orientation(name) { 0.0 } else { value }),
-        ("longer", &|name, value| if is_orientation(name) { 1.025 * value } else { value }),
-        ("a little longer", &|name, value| if is_orientation(name) { (1.0 + 1e-8) * value } else { value }),
-    ];
-    for (what, change) in all {
-        for fault in [
+    // Zeros, clearly too long, a little too long.
+    for factor in [0.0, 1.025, 1.0 + 1e-8] {
+        let change = |name: &str, value: f64| if is_orientation(name) { factor * value } else { value };
+        let faults = [
             fault(&whole, &changed(&whole, change)),
             fault(&plane, &changed(&plane, change)),
             fault(&free, &changed(&free, change)),
-        ] {
-            assert!(
-                matches!(&fault, Misplaced::NoRotation { name, .. } if name == "rod.orientation"),
-                "{what}: {fault}"
-            );
+        ];
+        for fault in faults {
+            let is_named = matches!(&fault, Misplaced::NoRotation { name, .. } if name == "rod.orientation");
+            assert!(is_named, "{factor}: {fault}");
         }
     }
     let mirrored = |name: &str, value: f64| if is_orientation(name) && name.ends_with('3') { -value } else { value };
