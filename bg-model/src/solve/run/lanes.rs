@@ -19,7 +19,7 @@ use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::scalar::slopes::Slopes;
 use crate::model::system::Model;
 use crate::solve::integrator::{AnyInLanes, AnyMethod, Change, Method};
-use crate::solve::simulation::{Recorder, Span, lanes};
+use crate::solve::simulation::{Span, lanes};
 
 /// A run that was not made, or not to its end.
 #[derive(Debug, Error)]
@@ -127,8 +127,6 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
         let method = method.name();
         let wall = clock.elapsed() / u32::try_from(self.values.len().max(1)).unwrap_or(u32::MAX);
         let results = finished.into_iter().zip(self.values).map(|(finished, values)| {
-            // One with a value that cannot be calculated ends there, and not with the others.
-            let finished = finished.filter(|(recorder, _): &(Recorder<'_, Mo, N, G, M>, _)| recorder.fault.is_none());
             let Some((recorder, finish)) = finished else { return self.alone(values) };
             let first = Change { t: 0.0, method, reason: Reason::First };
             let made = Made { finish, cause: None, methods: vec![first], wall };
