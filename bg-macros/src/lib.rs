@@ -970,7 +970,8 @@ use proc_macro::TokenStream;
 ///
 /// A loop that is not linear, such as a diode or a turbulent valve in series with a resistor, is left to Newton's iteration, from zero on,
 /// each time that a rate is evaluated. Its last step is part of the equations, so Jacobians, Taylor series and events are exact. Of
-/// several solutions it is the one that this finds. Where it finds none, the run ends with an error that names the loop.
+/// several solutions it is the one that this finds. Where it finds none, the run ends with an error that names the
+/// loop, also where only an output depends on it: what cannot be calculated is no row of a run.
 ///
 /// - A loop that is not linear and depends on the reaction of a rigid joint is BG0501, with its members.
 /// - A loop that leaves its variables open, such as a closed ring of junctions, is BG0508.
@@ -1018,7 +1019,8 @@ use proc_macro::TokenStream;
 ///   what is not linear in the efforts, such as `norm(pin.force)`, does not.
 /// - **Energy**: an impact takes (1 - e^2) of the energy that the speed v has there. `integral(NAME.power)` and `integral(dissipated_power)`
 ///   jump by it, so that stored = supplied - dissipated holds over a run; so does the small energy of a rebound that counts as none.
-/// - The start must be between the ends, to 1e-9 m or rad (BG0704).
+/// - The start must be between the ends, to 1e-9 m or rad (BG0704); a state that a run goes on from must be so to 1e-9
+///   of the size of the machine, and what is beyond by less is moved onto the end.
 /// - Not there: friction by the impulse of a stop, `extended::integrate`.
 ///
 /// Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter 8; C. Glocker, Set-Valued Force Laws

@@ -105,7 +105,7 @@ mod solve;
 
 pub use model::{
     assembly, capability, description, drawing, holding, input, linear, mechanism, parameters, requirement, scalar,
-    series, system,
+    series, standing, system,
 };
 #[cfg(feature = "std")]
 pub use solve::{extended, run, sensitivity};

@@ -5,7 +5,7 @@ use bg_model::input::Input;
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::Parameters;
-use bg_model::run::{LaneError, Request, Simulation, Trajectory, in_lanes};
+use bg_model::run::{LaneError, Request, RunError, Simulation, Trajectory, in_lanes};
 use bg_model::simulation::Samples;
 use bg_model::statistics::Statistics;
 
@@ -17,6 +17,12 @@ bond_graph! {
         R saw(v) = if v < 0 { cut * v - drop } else { 0.4 * v + drop };
         shaker -> slide -> block; slide -> spring; slide -> saw;
         observe { x: m = spring.q; v: m/s = slide.flow; force: N = saw.effort; lost: J = integral(dissipated_power) }
+    }
+    /// An output that has no value while the spring is pressed by more than the limit.
+    graph Rooted {
+        param limit: m = 0.05; param stiffness: N/m = 50;
+        1 slide: translation; I block = 2; C spring = stiffness start 0.1; slide -> block; slide -> spring;
+        observe { x: m = spring.q; root: 1 = sqrt((spring.q + limit) / limit) }
     }
     /// A double pendulum on springs, its second joint much stiffer.
     graph Arms {
@@ -128,7 +134,9 @@ fn told<E: ToString>(run: &Result<Trajectory, E>) -> Result<Told, String> {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     let run = run.as_ref().map_err(ToString::to_string)?;
     let columns = run.columns.iter().flat_map(|column| bits(&column.values));
-    let last: Vec<f64> = run.last.states.iter().map(|(_, value)| *value).collect();
+    let branches = run.last.negative().unwrap_or_default();
+    let branches = branches.into_iter().map(|negative| if negative { 1.0 } else { 0.0 });
+    let last: Vec<f64> = run.last.values().into_iter().chain(run.last.largest.clone()).chain(branches).collect();
     let samples = bits(&run.times).into_iter().chain(columns).collect();
     Ok(([samples, bits(&run.events), bits(&last)], run.statistics))
 }
@@ -248,6 +256,27 @@ fn a_run_fails_alone() {
     let none = Request { samples: Samples::Every(1.0), ..request(0.0, 1e-6) };
     let (runs, failed) = compared(&model, &none, &[("mass", [-1.0, 2.0])]);
     assert!(failed > 3 && runs.len() > 3, "{failed} of {}", failed + runs.len());
+}
+
+#[test]
+fn a_run_whose_output_is_no_number_ends_alone() {
+    let model = Rooted::new(RootedParameters::default()).unwrap();
+    let (runs, failed) = compared(&model, &request(2.0, 1e-6), &[("limit", [0.05, 0.2])]);
+    assert!(failed > 3 && runs.len() > 3, "{failed} of {}", failed + runs.len());
+    assert!(
+        runs.iter().all(|run| run.columns.iter().all(|column| column.values.iter().all(|value| value.is_finite())))
+    );
+    // It ends where it does by itself, and not with its neighbours.
+    let values: Vec<Vec<f64>> = (1..=11).map(|k| vec![0.02 * f64::from(k), 50.0]).collect();
+    let reached = |run: Result<Trajectory, LaneError>| match run {
+        Err(LaneError::Run(RunError::Stopped(stopped))) => stopped.trajectory,
+        run => run.unwrap(),
+    };
+    let request = request(2.0, 1e-6);
+    for (run, values) in in_lanes(&model, &request, &values).into_iter().zip(&values) {
+        let (run, alone) = (reached(run), reached(single(&model, &request, values)));
+        assert_eq!((&run.times, run.statistics, &run.last), (&alone.times, alone.statistics, &alone.last));
+    }
 }
 
 #[test]

@@ -93,6 +93,8 @@ pub struct HeldNow<'a, S> {
 pub struct Stop {
     /// Its name.
     pub name: &'static str,
+    /// The unit of the flow towards it.
+    pub unit: &'static str,
     /// Its switch, negative while something is clear of it. The guard then is how far its end is passed.
     pub switch: usize,
 }

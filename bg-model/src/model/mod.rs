@@ -17,5 +17,6 @@ pub(crate) mod reactions;
 pub mod requirement;
 pub mod scalar;
 pub mod series;
+pub mod standing;
 pub mod system;
 pub(crate) mod vectorised;

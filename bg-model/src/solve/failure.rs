@@ -12,6 +12,7 @@ use thiserror::Error;
 use crate::model::holding::{Redundancy, Slipping};
 pub use crate::model::origin::Origin;
 use crate::solve::finish::Finish;
+use crate::solve::simulation::NoNumber;
 
 /// A run that stopped before its end.
 #[derive(Clone, PartialEq, Error)]
@@ -135,6 +136,9 @@ pub enum Cause {
         /// When, s.
         t: f64,
     },
+    /// What was to be recorded could not be calculated.
+    #[error(transparent)]
+    NoNumber(#[from] NoNumber),
     /// The run was not started.
     #[error(transparent)]
     BadInput(#[from] BadInput),

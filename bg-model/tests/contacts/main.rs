@@ -5,3 +5,4 @@ mod friction;
 mod impacts;
 #[path = "../random/mod.rs"]
 mod random;
+mod states;

@@ -5,6 +5,7 @@ mod drawing;
 mod driver;
 mod events;
 mod messages;
+mod no_number;
 mod origins;
 mod parameters;
 #[path = "../problems/mod.rs"]
@@ -12,8 +13,9 @@ mod problems;
 #[path = "../random/mod.rs"]
 mod random;
 mod recording;
-mod sizes;
 mod run;
+mod sizes;
+mod states;
 mod stopping;
 mod switching;
 mod tables;

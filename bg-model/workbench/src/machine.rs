@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 
-use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium, linearise};
+use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium, linearise_at};
 use bg_model::description::Description;
 use bg_model::input::Input;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor, Scenes};
@@ -40,11 +40,11 @@ pub trait Machine {
     /// There is none.
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Equilibrium, LinearError>;
 
-    /// The linear model at `t` (s) and the state `x`.
+    /// The linear model in `state`, one of this model, in the branches of its switches that are known there.
     ///
     /// # Errors
     /// There is none.
-    fn linearised(&self, t: f64, x: &[f64]) -> Result<StateSpace, LinearError>;
+    fn linearised(&self, state: &State) -> Result<StateSpace, LinearError>;
 
     /// What pictures show at `t` (s) and the state `x`: a value for each result of the drawing.
     fn shown(&self, t: f64, x: &[f64]) -> Vec<f64>;
@@ -71,8 +71,8 @@ impl<Me: Mechanism> Machine for Me {
         equilibrium(self, t, guess)
     }
 
-    fn linearised(&self, t: f64, x: &[f64]) -> Result<StateSpace, LinearError> {
-        linearise(self, t, x)
+    fn linearised(&self, state: &State) -> Result<StateSpace, LinearError> {
+        linearise_at(self, state)
     }
 
     fn shown(&self, t: f64, x: &[f64]) -> Vec<f64> {

@@ -6,7 +6,7 @@ use bg_model::run::{Request, RunError, State, Stopped, Trajectory};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::linear::LinearError;
+use crate::linear::{Equilibrium, LinearError};
 use crate::machine::Machine;
 
 /// A run, and why it stopped before its end, if it did.
@@ -51,22 +51,24 @@ impl Begin {
         let state = match self {
             Self::Model => None,
             Self::At(state) => Some(state.clone()),
-            Self::Equilibrium => Some(at_rest(machine)?),
+            Self::Equilibrium => Some(at_rest(machine)?.0),
         };
         machine.start(state.as_ref())?;
         Ok(state)
     }
 }
 
-/// The equilibrium near the start, with the inputs as at t = 0.
-fn at_rest(machine: &dyn Machine) -> Result<State, BeginError> {
+/// The equilibrium near the start, with the inputs as at t = 0, and how it was found.
+///
+/// # Errors
+/// The mechanism cannot be assembled or has no equilibrium.
+pub fn at_rest(machine: &dyn Machine) -> Result<(State, Equilibrium), BeginError> {
     let mut state = machine.start(None)?;
-    let guess: Vec<f64> = state.states.iter().map(|(_, value)| *value).collect();
-    let rest = machine.equilibrium(0.0, &guess)?;
-    for ((_, value), at_rest) in state.states.iter_mut().zip(rest.x) {
-        *value = at_rest;
+    let rest = machine.equilibrium(0.0, &state.values())?;
+    for ((_, value), at_rest) in state.states.iter_mut().zip(&rest.x) {
+        *value = *at_rest;
     }
-    Ok(state)
+    Ok((state, rest))
 }
 
 /// Makes the run from the state `from`, or from the model's own start, and tells `told` the time reached, s, after each step. One that

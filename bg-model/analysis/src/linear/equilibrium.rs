@@ -62,7 +62,7 @@ impl Equilibrium {
 /// [`LinearError::NoEquilibrium`] names what still changes; [`LinearError::NotFinite`] and [`LinearError::BadRate`] a
 /// rate that has no derivative or no value on the way.
 pub fn equilibrium<Me: Mechanism>(mechanism: &Me, t: f64, guess: &[f64]) -> Result<Equilibrium, LinearError> {
-    found(&Plant::at(mechanism, t)?, t, &DVector::from_column_slice(guess))
+    found(&Plant::at(mechanism, t, None)?, t, &DVector::from_column_slice(guess))
 }
 
 fn found(plant: &Plant, t: f64, guess: &DVector<f64>) -> Result<Equilibrium, LinearError> {

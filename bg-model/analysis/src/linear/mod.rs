@@ -7,7 +7,7 @@
 //! | to | see |
 //! |---|---|
 //! | find the equilibrium near a state | [`equilibrium`] |
-//! | linearise at a state | [`linearise`], which gives a [`StateSpace`] |
+//! | linearise at a state | [`linearise`], or [`linearise_at`] a state of a run; both give a [`StateSpace`] |
 //! | look at modes | [`StateSpace::modes`], [`StateSpace::table`] |
 //! | get frequency responses | [`StateSpace::responses`], [`logarithmic`], [`responses_csv`], [`responses_json`] |
 //! | write files | [`StateSpace::json`], [`StateSpace::npz`] |
@@ -50,5 +50,5 @@ pub use error::LinearError;
 pub use manifold::LeftOut;
 pub use modes::{Mode, Part};
 pub use response::{Response, logarithmic};
-pub use state_space::{Named, PointState, StateSpace, linearise};
+pub use state_space::{Named, PointState, StateSpace, linearise, linearise_at};
 pub use text::{responses_csv, responses_json};

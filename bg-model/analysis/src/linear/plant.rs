@@ -41,26 +41,29 @@ pub(super) struct Plant {
     /// Its tables.
     pub description: &'static Description,
     t: f64,
+    /// The branches of the switches, where they are known.
+    negative: Option<Vec<bool>>,
     model: Box<dyn Sloped>,
     /// The same with a tangent of one unit a second for each input in turn.
     growing: Vec<Box<dyn Sloped>>,
 }
 
 impl Plant {
-    /// `mechanism` at time `t` (s).
-    pub fn at<Me: Mechanism>(mechanism: &Me, t: f64) -> Result<Self, ParameterError> {
+    /// `mechanism` at time `t` (s). Where its switches are in branches that are not known the signs of their guards
+    /// decide.
+    pub fn at<Me: Mechanism>(mechanism: &Me, t: f64, negative: Option<Vec<bool>>) -> Result<Self, ParameterError> {
         let values: Vec<f64> = mechanism.inputs().iter().map(|input| input.value(t)).collect();
         let made = |inputs: &[Input]| Ok(sloped(&Me::make(mechanism.parameters().clone(), inputs)?));
         let growing = (0..values.len()).map(|index| made(&held(&values, Some(index))));
         let growing = growing.collect::<Result<_, ParameterError>>()?;
-        Ok(Self { description: Me::describe(), t, model: made(&held(&values, None))?, growing })
+        Ok(Self { description: Me::describe(), t, negative, model: made(&held(&values, None))?, growing })
     }
 
     /// Rates, outputs and derivatives at state `x`.
     pub fn derivatives(&self, x: &DVector<f64>) -> Derivatives {
         let time = Gradient::from_f64(self.t);
         let at = along(x, &[]);
-        let negative = self.model.branches(self.t, &at);
+        let negative = self.branches(&*self.model, &at);
         let here = self.model.look(time, &at, &negative);
         let states = x.len();
         let mut found = Derivatives {
@@ -85,7 +88,7 @@ impl Plant {
     pub fn by_inputs(&self, x: &DVector<f64>) -> ByInputs {
         let x = along(x, &[]);
         let by_time = |model: &dyn Sloped| {
-            let negative = model.branches(self.t, &x);
+            let negative = self.branches(model, &x);
             let look = model.look(Gradient::new(self.t, [1.0; WIDTH]), &x, &negative);
             (slopes(&look.rates, 0), slopes(&look.outputs, 0))
         };
@@ -95,6 +98,10 @@ impl Plant {
             rates: DMatrix::from_fn(rates.len(), grown.len(), |row, k| grown[k].0[row] - rates[row]),
             outputs: DMatrix::from_fn(outputs.len(), grown.len(), |row, k| grown[k].1[row] - outputs[row]),
         }
+    }
+
+    fn branches(&self, model: &dyn Sloped, x: &[Gradient]) -> Vec<bool> {
+        self.negative.clone().unwrap_or_else(|| model.branches(self.t, x))
     }
 
     /// The state that a finite move leads to.

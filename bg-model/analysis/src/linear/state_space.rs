@@ -11,6 +11,7 @@
 use bg_model::description::Description;
 use bg_model::mechanism::Mechanism;
 use bg_model::nalgebra::{DMatrix, DVector};
+use bg_model::run::State;
 use serde::{Serialize, Serializer};
 
 use super::error::LinearError;
@@ -75,12 +76,22 @@ pub struct StateSpace {
     pub left_out: LeftOut,
 }
 
-/// The linear model of `mechanism` at state `x`, with its inputs held as they are at time `t` (s).
+/// The linear model of `mechanism` at state `x`, with its inputs held as they are at time `t` (s). Its switches are in
+/// the branches that the signs of their guards call for; [`linearise_at`] knows what sticks or rests.
 ///
 /// # Errors
 /// [`LinearError::NotFinite`], [`LinearError::BadRate`] name a rate without a derivative or a value.
 pub fn linearise<Me: Mechanism>(mechanism: &Me, t: f64, x: &[f64]) -> Result<StateSpace, LinearError> {
-    linearised(&Plant::at(mechanism, t)?, t, &DVector::from_column_slice(x))
+    linearised(&Plant::at(mechanism, t, None)?, t, &DVector::from_column_slice(x))
+}
+
+/// The linear model of `mechanism` in a state of a run, in the branches of the switches that are known there.
+///
+/// # Errors
+/// As [`linearise`].
+pub fn linearise_at<Me: Mechanism>(mechanism: &Me, state: &State) -> Result<StateSpace, LinearError> {
+    let plant = Plant::at(mechanism, state.t, state.negative())?;
+    linearised(&plant, state.t, &DVector::from_vec(state.values()))
 }
 
 fn linearised(plant: &Plant, t: f64, x: &DVector<f64>) -> Result<StateSpace, LinearError> {

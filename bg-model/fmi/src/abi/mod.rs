@@ -28,6 +28,8 @@ use crate::instance::{Fault, Instance, Interface};
 pub type Status = c_int;
 /// All well.
 const OK: Status = 0;
+/// Something cannot be calculated where the instance stands: a host may try a smaller step.
+const DISCARD: Status = 2;
 /// The call failed, the instance can be reset or restored.
 const ERROR: Status = 3;
 /// The instance is lost.
@@ -66,7 +68,7 @@ impl Logger {
     }
 
     fn say(&self, status: Status, message: &str) {
-        if !self.is_on && status < ERROR {
+        if !self.is_on && status < DISCARD {
             return;
         }
         let text = |text: &str| CString::new(text.replace('\0', " ")).unwrap_or_default();
@@ -108,8 +110,9 @@ impl Handle {
         match catch_unwind(AssertUnwindSafe(|| then(instance))) {
             Ok(Ok(())) => OK,
             Ok(Err(fault)) => {
-                handle.logger.say(ERROR, &fault.to_string());
-                ERROR
+                let status = if matches!(fault, Fault::NoNumber(_)) { DISCARD } else { ERROR };
+                handle.logger.say(status, &fault.to_string());
+                status
             }
             Err(panic) => {
                 handle.is_lost = true;

@@ -45,6 +45,9 @@ unsafe fn release(place: *mut *mut c_void) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetFMUState(instance: *mut c_void, place: *mut *mut c_void) -> Status {
     let save = |own: &mut Instance| {
+        if place.is_null() {
+            return Err(Fault::Saved("there is no place for it".to_owned()));
+        }
         // SAFETY: null, or null or a saved state there, as the standard says.
         unsafe { keep(place, own.save()) };
         Ok(())
@@ -58,8 +61,7 @@ pub unsafe extern "C" fn fmi3GetFMUState(instance: *mut c_void, place: *mut *mut
 pub unsafe extern "C" fn fmi3SetFMUState(instance: *mut c_void, saved: *mut c_void) -> Status {
     let restore = |own: &mut Instance| {
         // SAFETY: a saved state, as the standard says.
-        own.restore(unsafe { snapshot(saved) }?);
-        Ok(())
+        own.restore(unsafe { snapshot(saved) }?)
     };
     // SAFETY: an instance, as `Handle::call` says.
     unsafe { Handle::call(instance, restore) }
@@ -118,6 +120,9 @@ pub unsafe extern "C" fn fmi3DeserializeFMUState(
     place: *mut *mut c_void,
 ) -> Status {
     let deserialize = |own: &mut Instance| {
+        if place.is_null() {
+            return Err(Fault::Saved("there is no place for it".to_owned()));
+        }
         // SAFETY: bytes of this size; null, or null or a saved state at `place`, as the standard says.
         unsafe { keep(place, own.deserialize(slice(bytes, size))?) };
         Ok(())

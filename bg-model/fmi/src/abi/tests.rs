@@ -9,6 +9,7 @@ use bg_model::parameters::ParameterError;
 use super::lifecycle::{
     fmi3EnterInitializationMode, fmi3ExitInitializationMode, fmi3FreeInstance, fmi3GetVersion, fmi3Reset,
 };
+use super::saved::{fmi3DeserializeFMUState, fmi3FreeFMUState, fmi3GetFMUState};
 use super::values::fmi3GetFloat64;
 use super::*;
 use crate::exported::{Described, Made, sealed};
@@ -72,6 +73,26 @@ fn a_panic_ends_the_instance_and_not_the_host() {
     };
     assert_eq!(codes, [OK, FATAL, FATAL]);
     assert_eq!(LOG.take(), [(FATAL, "the model is lost: no number of 0".to_owned())]);
+}
+
+#[test]
+fn a_state_without_a_place_is_an_error() {
+    let own = instance(&description::token(&Panics));
+    // SAFETY: an instance that is used by nobody else, and then no more.
+    let codes = unsafe {
+        let mut place = null_mut();
+        let codes = [
+            fmi3GetFMUState(own, null_mut()),
+            fmi3GetFMUState(own, &raw mut place),
+            fmi3DeserializeFMUState(own, c"{}".as_ptr().cast(), 2, null_mut()),
+            fmi3FreeFMUState(own, &raw mut place),
+        ];
+        fmi3FreeInstance(own);
+        codes
+    };
+    assert_eq!(codes, [ERROR, OK, ERROR, OK]);
+    let told = (ERROR, "this is no saved state of this model: there is no place for it".to_owned());
+    assert_eq!(LOG.take(), [told.clone(), told]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What an instance cannot do, in sentences for the log of its host.
 
 use bg_model::parameters::ParameterError;
+use bg_model::simulation::NoNumber;
 use thiserror::Error;
 
 /// What an instance cannot do.
@@ -15,6 +16,12 @@ pub enum Fault {
     /// The model cannot go on from where it is.
     #[error("{0}")]
     Stopped(String),
+    /// The model cannot stand in the state that it was given.
+    #[error("the model cannot stand in this state: {0}; set another one, or restore a saved state")]
+    Misplaced(String),
+    /// A value that cannot be calculated.
+    #[error(transparent)]
+    NoNumber(#[from] NoNumber),
     /// Something that the interface does not allow now.
     #[error("{what} is not possible in {mode}")]
     Mode {
@@ -70,7 +77,7 @@ pub enum Fault {
         /// By what.
         known: String,
     },
-    /// Bytes that are no saved state.
+    /// Something that is no saved state of this model.
     #[error("this is no saved state of this model: {0}")]
     Saved(String),
     /// Something that this unit does not have.

@@ -12,6 +12,7 @@ mod slopes;
 
 use bg_model::description::Description;
 use bg_model::run::Request;
+use bg_model::simulation::NoNumber;
 use bg_model::statistics::Statistics;
 
 use crate::exported::{Exported, Made};
@@ -210,13 +211,18 @@ impl Instance {
         Ok(())
     }
 
-    /// Sets the continuous states.
+    /// Sets the continuous states. Whether the model can stand in them is looked at where the host completes a step,
+    /// and at events.
     ///
     /// # Errors
-    /// [`Fault::Mode`], [`Fault::Length`].
+    /// [`Fault::Mode`], [`Fault::Length`], [`Fault::NotFinite`].
     pub fn set_states(&mut self, x: &[f64]) -> Result<(), Fault> {
         self.only("to set the states", &[Mode::Continuous])?;
         same_length("continuous states", x.len(), self.counts.states)?;
+        if let Some(index) = x.iter().position(|value| !value.is_finite()) {
+            let name = self.description().states[index].name.to_owned();
+            return Err(Fault::NotFinite { name, value: x[index] });
+        }
         self.machine()?.set_states(x);
         Ok(())
     }
@@ -234,32 +240,32 @@ impl Instance {
     /// Reads the derivatives of the continuous states.
     ///
     /// # Errors
-    /// [`Fault::Length`], what keeps the model from its start.
+    /// [`Fault::Length`], [`Fault::NoNumber`], what keeps the model from its start.
     pub fn derivatives(&mut self, dx: &mut [f64]) -> Result<(), Fault> {
         same_length("derivatives", dx.len(), self.counts.states)?;
         self.machine()?.rates(dx);
-        Ok(())
+        self.check_finite(dx, |model, index| (format!("der({})", model.states[index].name), None))
     }
 
     /// Reads the event indicators: the guards of the switches in their present branches.
     ///
     /// # Errors
-    /// [`Fault::Length`], what keeps the model from its start.
+    /// [`Fault::Length`], [`Fault::NoNumber`], what keeps the model from its start.
     pub fn guards(&mut self, guards: &mut [f64]) -> Result<(), Fault> {
         same_length("event indicators", guards.len(), self.counts.guards)?;
         self.machine()?.guards(guards);
-        Ok(())
+        self.check_finite(guards, |model, index| (model.switches[index].name.to_owned(), None))
     }
 
     /// The host has completed a step. Gives whether an event is needed: the state has drifted off its joints and orientations by
     /// more than the tolerance, and is to be moved back.
     ///
     /// # Errors
-    /// [`Fault::Mode`].
+    /// [`Fault::Mode`], [`Fault::Misplaced`].
     pub fn completed_step(&mut self) -> Result<bool, Fault> {
         self.only("the end of a step", &[Mode::Continuous])?;
         let rtol = self.rtol;
-        Ok(self.machine()?.drift() > rtol)
+        self.machine()?.drifts(rtol)
     }
 
     /// Makes a step of Co-Simulation, from time `t` of length `h` (s). On failure the time is that of the last good state.
@@ -300,7 +306,7 @@ impl Instance {
     /// Reads variables.
     ///
     /// # Errors
-    /// [`Fault::Length`], [`Fault::Reference`], what keeps the model from its start.
+    /// [`Fault::Length`], [`Fault::Reference`], [`Fault::NoNumber`], what keeps the model from its start.
     pub fn get(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
         same_length("values", values.len(), references.len())?;
         let counts = self.counts;
@@ -319,7 +325,7 @@ impl Instance {
         if !guards.is_empty() {
             self.machine()?.guards(&mut guards);
         }
-        for (value, kind) in values.iter_mut().zip(kinds) {
+        for (value, &kind) in values.iter_mut().zip(&kinds) {
             *value = match kind {
                 Kind::Time => self.time()?,
                 Kind::Parameter(index) => self.parameters[index],
@@ -330,7 +336,22 @@ impl Instance {
                 Kind::Guard(index) => guards[index],
             };
         }
-        Ok(())
+        self.check_finite(values, |model, place| match kinds[place] {
+            Kind::Output(index) => (model.outputs[index].name.to_owned(), Some(model.outputs[index].observes)),
+            _ => (names(model).get(references[place] as usize).cloned().unwrap_or_default(), None),
+        })
+    }
+
+    /// Refuses values of which one is not finite; `named` gives its name, and what it observes.
+    fn check_finite(
+        &mut self,
+        values: &[f64],
+        named: impl Fn(&Description, usize) -> (String, Option<&'static str>),
+    ) -> Result<(), Fault> {
+        let Some(place) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        let (name, observes) = named(self.description(), place);
+        let (t, origin) = (self.time()?, self.machine()?.origin());
+        Err(NoNumber { name, observes, value: values[place], t, origin }.into())
     }
 
     /// Sets variables: parameters before the end of the initialization, inputs at any time.

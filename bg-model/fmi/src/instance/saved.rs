@@ -1,16 +1,19 @@
 //! A saved state of an instance: a copy in memory, from which it goes on with the same steps, and the same as bytes.
 //!
 //! In: an instance. Out: a copy; bytes, and a copy of them again. What the method of a run keeps from step to step is not among
-//! the bytes: an instance that is restored from them finds its rate and its branches anew, with the same step size.
+//! the bytes: an instance that is restored from them finds its rate anew, in the same branches and with the same step
+//! size.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Fault, Instance, Mode};
+use super::{Fault, Instance, Interface, Mode};
 use crate::description::token;
 use crate::exported::Made;
 
 /// A saved state.
 pub struct Snapshot {
+    /// The model's instantiation token.
+    token: String,
     mode: Mode,
     parameters: Vec<f64>,
     inputs: Vec<f64>,
@@ -32,13 +35,20 @@ struct Text {
     place: Option<Place>,
 }
 
+/// Where a model stands.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Place {
-    t: f64,
-    x: Vec<f64>,
-    negative: Vec<bool>,
-    step: Option<f64>,
+pub(crate) struct Place {
+    /// Time, s.
+    pub t: f64,
+    /// The states.
+    pub x: Vec<f64>,
+    /// How large each of them has been.
+    pub largest: Vec<f64>,
+    /// The branches of the switches, where they have been found.
+    pub negative: Option<Vec<bool>>,
+    /// The size of the next step, s, where it is known.
+    pub step: Option<f64>,
 }
 
 impl Instance {
@@ -46,6 +56,7 @@ impl Instance {
     #[must_use]
     pub fn save(&self) -> Snapshot {
         Snapshot {
+            token: token(self.model.described()),
             mode: self.mode,
             parameters: self.parameters.clone(),
             inputs: self.signals.values(),
@@ -55,13 +66,36 @@ impl Instance {
         }
     }
 
-    /// Stands where `snapshot`, one of this instance, was taken.
-    pub fn restore(&mut self, snapshot: &Snapshot) {
+    /// Stands where `snapshot` was taken.
+    ///
+    /// # Errors
+    /// [`Fault::Saved`]: it is of another model, or of an instance with the other interface.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Fault> {
+        self.check_own(&snapshot.token)?;
+        self.check_mode(snapshot.mode)?;
         self.mode = snapshot.mode;
         self.parameters.clone_from(&snapshot.parameters);
         snapshot.inputs.iter().enumerate().for_each(|(index, &value)| self.signals.set(index, value));
         (self.start, self.rtol) = (snapshot.start, snapshot.rtol);
         self.made = snapshot.made.as_ref().map(Made::twin);
+        Ok(())
+    }
+
+    /// Refuses a state of an instance with the other interface.
+    fn check_mode(&self, mode: Mode) -> Result<(), Fault> {
+        let other = match self.interface {
+            Interface::ModelExchange => matches!(mode, Mode::Step),
+            Interface::CoSimulation => matches!(mode, Mode::Event | Mode::Continuous),
+        };
+        if other { Err(Fault::Saved("it is one of the other interface".to_owned())) } else { Ok(()) }
+    }
+
+    fn check_own(&self, of: &str) -> Result<(), Fault> {
+        if of == token(self.model.described()) {
+            Ok(())
+        } else {
+            Err(Fault::Saved("it is one of another model".to_owned()))
+        }
     }
 
     /// The bytes of a saved state.
@@ -69,10 +103,12 @@ impl Instance {
     /// # Errors
     /// [`Fault::Saved`]: a state is not finite.
     pub fn serialize(&self, snapshot: &Snapshot) -> Result<Vec<u8>, Fault> {
+        self.check_own(&snapshot.token)?;
         let place = snapshot.made.as_ref().map(|made| Place {
             t: made.machine.time(),
             x: made.machine.states().to_vec(),
-            negative: made.machine.branches().to_vec(),
+            largest: made.machine.largest().to_vec(),
+            negative: made.machine.knows_branches().then(|| made.machine.branches().to_vec()),
             step: made.machine.next_step().filter(|step| step.is_finite()),
         });
         if place.as_ref().is_some_and(|place| !place.x.iter().all(|value| value.is_finite())) {
@@ -97,12 +133,13 @@ impl Instance {
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Snapshot, Fault> {
         let foreign = |what: &str| Fault::Saved(what.to_owned());
         let text: Text = serde_json::from_slice(bytes).map_err(|fault| Fault::Saved(fault.to_string()))?;
-        if text.token != token(self.model.described()) {
-            return Err(foreign("it is one of another model"));
-        }
+        self.check_own(&text.token)?;
         let mode = Mode::ALL.into_iter().find(|mode| mode.name() == text.mode).ok_or_else(|| foreign("its mode"))?;
+        self.check_mode(mode)?;
         let fits = |place: &Place| {
-            place.x.len() == self.counts.states && place.negative.len() == self.counts.guards && place.t.is_finite()
+            let has_all = place.x.len() == self.counts.states && place.largest.len() == self.counts.states;
+            let fits = |negative: &Vec<bool>| negative.len() == self.counts.guards;
+            has_all && place.negative.as_ref().is_none_or(fits) && place.t.is_finite()
         };
         let is_whole = text.parameters.len() == self.counts.parameters && text.inputs.len() == self.counts.inputs;
         if !is_whole || !text.place.as_ref().is_none_or(fits) {
@@ -112,11 +149,11 @@ impl Instance {
             None => None,
             Some(place) => {
                 let mut made = self.model.make(&text.parameters, &self.signals, text.start)?;
-                made.machine.place(place.t, &place.x, &place.negative, place.step);
+                made.machine.place(&place)?;
                 Some(made)
             }
         };
-        let Text { parameters, inputs, start, rtol, .. } = text;
-        Ok(Snapshot { mode, parameters, inputs, start, rtol, made })
+        let Text { token, parameters, inputs, start, rtol, .. } = text;
+        Ok(Snapshot { token, mode, parameters, inputs, start, rtol, made })
     }
 }

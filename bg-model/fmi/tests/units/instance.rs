@@ -344,12 +344,12 @@ fn a_saved_state_goes_on_with_the_same_bits_and_its_bytes_nearly_so() {
         [0, 1, 2].map(|output| get(instance, &BALL, Kind::Output(output)))
     };
     let first = on(&mut instance);
-    instance.restore(&saved);
+    instance.restore(&saved).unwrap();
     assert_eq!(on(&mut instance).map(f64::to_bits), first.map(f64::to_bits));
 
     let mut other = Instance::new(&BALL, Interface::CoSimulation);
     let read = other.deserialize(&bytes).unwrap();
-    other.restore(&read);
+    other.restore(&read).unwrap();
     let again = on(&mut other);
     assert!(first.iter().zip(again).all(|(a, b)| (a - b).abs() < 1e-8), "{first:?} {again:?}");
     assert!(Instance::new(&SHAKER, Interface::CoSimulation).deserialize(&bytes).is_err());

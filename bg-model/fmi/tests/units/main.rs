@@ -4,4 +4,5 @@ mod hosts;
 mod instance;
 #[path = "../../examples/machines/mod.rs"]
 mod machines;
+mod states;
 mod terminals;

@@ -148,6 +148,36 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
         self.active.contains(&true)
     }
 
+    /// The state `x` at time `t` (s) with momenta by which in one unit of time everything moves back by as far as the
+    /// stops are passed, `by` of their switches, while the rigid joints hold.
+    pub fn displaced<I, const N: usize, const G: usize>(
+        &mut self,
+        impacts: &I,
+        (t, x): (S, &SVector<S, N>),
+        negative: &[bool; G],
+        by: impl Fn(usize) -> f64,
+    ) -> SVector<S, N>
+    where
+        I: Impacts<S, N, G>,
+    {
+        impacts.impact(t, x, negative, &mut self.after);
+        self.target.copy_from_slice(&self.after[..self.table.rows()]);
+        for (k, stop) in self.table.stops.iter().enumerate() {
+            let passed = by(stop.switch);
+            self.active[k] = passed > 0.0;
+            let row = self.table.rigid + k;
+            self.target[row] = self.target[row] - S::from_f64(passed);
+        }
+        self.find();
+        let mut moved = *x;
+        for (row, &part) in self.part.iter().enumerate() {
+            for (&state, &by) in self.table.moved.iter().zip(self.moves(&self.after, row)) {
+                moved[state] = moved[state] - by * part;
+            }
+        }
+        moved
+    }
+
     /// The switches of the stops that nothing leaves, in whose order they are looked at where several bear a load.
     pub fn resting(&self) -> impl Iterator<Item = (usize, usize)> {
         let rests = |&(k, _): &(usize, &Stop)| self.outcome[k] == After::Rests;

@@ -43,17 +43,17 @@ pub struct Started<S, const N: usize> {
 
 /// The numbers of [`Joints::hold`].
 #[derive(Debug)]
-struct Hold<S> {
+pub(crate) struct Hold<S> {
     held: Held,
     entries: Vec<S>,
 }
 
 impl<S: Scalar> Hold<S> {
-    fn new(held: Held) -> Self {
+    pub fn new(held: Held) -> Self {
         Self { held, entries: vec![S::from_f64(0.0); held.entries()] }
     }
 
-    fn read<J, const N: usize, const G: usize>(
+    pub fn read<J, const N: usize, const G: usize>(
         &mut self,
         joints: &J,
         t: S,
@@ -63,6 +63,11 @@ impl<S: Scalar> Hold<S> {
         J: Joints<S, N, G>,
     {
         joints.hold(t, x, negative, &mut self.entries);
+    }
+
+    /// The numbers by what they are.
+    pub fn now(&self) -> HeldNow<'_, S> {
+        self.held.read(&self.entries)
     }
 
     /// The flows of rigid motions, then of compliant ones.

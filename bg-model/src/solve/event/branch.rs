@@ -15,12 +15,14 @@ use crate::solve::stepper::Stepper;
 const PROBES: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
 impl<const G: usize> EventMonitor<G> {
-    /// Chooses the branches at the start of the run by the signs of the guards, where stops are reached after the impact. Gives
-    /// the switches of stops that are left again.
+    /// Chooses the branches at the start of the run by the signs of the guards, where stops are reached after the
+    /// impact; what sticks or rests in branches that are `known` stays so. Gives the switches that are not to be looked
+    /// at any more: those of stops that are left again, and those that stay.
     pub fn begin_by_sign<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
         collision: Option<&mut Collision<f64>>,
+        known: Option<[bool; G]>,
     ) -> [bool; G]
     where
         Sys: System<f64, N, G>,
@@ -29,15 +31,17 @@ impl<const G: usize> EventMonitor<G> {
         if G == 0 {
             return [false; G];
         }
-        let clear = self.strike_at_begin(stepper, collision);
-        let start = stepper.start;
         let first = stepper.system.first_branches();
-        (stepper.negative, self.start.value) = branches_by_sign(first, |negative| {
+        let known = known.unwrap_or(first);
+        let held: [bool; G] = core::array::from_fn(|k| first[k] && !known[k]);
+        let clear = self.strike_at_begin(stepper, collision, held);
+        let start = stepper.start;
+        (stepper.negative, self.start.value) = branches_by_sign(known, |negative| {
             stepper.negative = *negative;
             stepper.guards(start.t, &start.x)
         });
         stepper.negative = core::array::from_fn(|k| stepper.negative[k] || clear[k]);
-        clear
+        core::array::from_fn(|k| clear[k] || held[k])
     }
 
     /// Decides the branches of the guards that are exactly zero at the start of the run, by steps that are small

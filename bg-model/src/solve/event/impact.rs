@@ -63,11 +63,13 @@ impl<const G: usize> EventMonitor<G> {
         Struck { switches, rebounds, jumps }
     }
 
-    /// Lets the state at the start of the run jump where stops are reached. Gives the switches of those that are left again.
+    /// Lets the state at the start of the run jump where stops are reached, or where something rests on those that are
+    /// `held`. Gives the switches of those that are left again.
     pub(super) fn strike_at_begin<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
         collision: Option<&mut Collision<f64>>,
+        held: [bool; G],
     ) -> [bool; G]
     where
         Sys: System<f64, N, G>,
@@ -79,7 +81,7 @@ impl<const G: usize> EventMonitor<G> {
         stepper.negative = stepper.system.first_branches();
         let start = stepper.start;
         let beyond = stepper.guards(start.t, &start.x);
-        self.collide(stepper, collision, |k| beyond[k] >= 0.0, &mut [false; G]);
+        self.collide(stepper, collision, |k| beyond[k] >= 0.0 || held[k], &mut [false; G]);
         collision.outcomes().for_each(|(k, after)| clear[k] = after == After::Clear);
         clear
     }

@@ -9,10 +9,11 @@ use nalgebra::SVector;
 
 use crate::model::description::OutputInfo;
 use crate::model::system::Model;
+use crate::solve::event::{Located, Never};
 use crate::solve::failure::Failure;
 use crate::solve::finish::Finish;
 use crate::solve::integrator::Method;
-use crate::solve::simulation::{Observer, Settings, Span, integrate, integrate_until};
+use crate::solve::simulation::{Observer, Settings, Span, make};
 
 /// A model at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -39,15 +40,16 @@ impl Index<&str> for Sample<'_> {
 
 /// What may end a run.
 pub trait Ending {
-    /// Integrates as [`integrate`] does, and ends where this says so.
+    /// Integrates as [`integrate`](crate::simulation::integrate) does, from a state in the branches of its switches
+    /// where they are known, and ends where this says so.
     ///
     /// # Errors
-    /// As [`integrate`].
+    /// As [`integrate`](crate::simulation::integrate).
     fn integrate<Mo, Me, O, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,
         method: &mut Me,
-        start: &SVector<f64, N>,
+        start: (&SVector<f64, N>, Option<[bool; G]>),
         span: Span,
         settings: &Settings<N>,
         observer: &mut O,
@@ -67,7 +69,7 @@ impl Ending for Unconditional {
         self,
         model: &Mo,
         method: &mut Me,
-        start: &SVector<f64, N>,
+        start: (&SVector<f64, N>, Option<[bool; G]>),
         span: Span,
         settings: &Settings<N>,
         observer: &mut O,
@@ -77,7 +79,7 @@ impl Ending for Unconditional {
         Me: Method<N>,
         O: Observer<N, G>,
     {
-        integrate(model, method, start, span, settings, observer)
+        make(model, method, start, span, settings, Never, observer)
     }
 }
 
@@ -90,7 +92,7 @@ impl<F: FnMut(&Sample<'_>) -> f64> Ending for When<F> {
         mut self,
         model: &Mo,
         method: &mut Me,
-        start: &SVector<f64, N>,
+        start: (&SVector<f64, N>, Option<[bool; G]>),
         span: Span,
         settings: &Settings<N>,
         observer: &mut O,
@@ -106,6 +108,6 @@ impl<F: FnMut(&Sample<'_>) -> f64> Ending for When<F> {
             model.outputs(t, x, negative, &mut outputs);
             (self.0)(&Sample { t, outputs: outputs.as_slice(), infos })
         };
-        integrate_until(model, method, start, span, settings, condition, observer)
+        make(model, method, start, span, settings, Located::new(condition), observer)
     }
 }

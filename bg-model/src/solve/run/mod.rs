@@ -18,6 +18,7 @@ use std::time::Duration;
 
 use clock::Clock;
 use nalgebra::SVector;
+use state::Vectors;
 
 pub use ending::{Ending, Sample, Unconditional, When};
 pub use instants::sample_times;
@@ -29,11 +30,11 @@ pub use trajectory::{Stopped, Trajectory};
 use thiserror::Error;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::description::Description;
 use crate::model::mechanism::{Mechanism, ModelVisitor};
+use crate::model::standing::{CLOSE, Standing};
 use crate::model::system::Model;
 use crate::solve::failure::Cause;
-use crate::solve::finish::Finish;
+use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason};
 use crate::solve::simulation::{Observer, Part, Recorder, Samples, Span, Switching};
 use crate::solve::statistics::Statistics;
@@ -125,7 +126,7 @@ impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
         self
     }
 
-    /// Samples at these instants only, s, ascending.
+    /// Samples at these instants only, s, ascending, not before the start nor after the end.
     pub fn at(mut self, instants: &[f64]) -> Self {
         self.request.samples = Samples::At(instants.to_vec());
         self
@@ -144,7 +145,9 @@ impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
     }
 
     /// Starts from `state` at its time, not from the model's own start. The parameters may be others than those that led to
-    /// it: what stays are the states (momenta, not velocities).
+    /// it: what stays are the states (momenta, not velocities), and what sticks or rests as far as it can. The state is
+    /// checked as a start is: joints closed, orientations rotations, no stop passed; what rounding leaves of that is
+    /// closed.
     pub fn from(mut self, state: &State) -> Self {
         self.start = Some(state.clone());
         self
@@ -159,11 +162,9 @@ impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
     /// The state that it starts from.
     ///
     /// # Errors
-    /// The start cannot be assembled, the state is not one of this mechanism.
+    /// The start cannot be assembled, the state is not one of this mechanism, or the mechanism cannot stand in it.
     pub fn start(&self) -> Result<State, RunError> {
-        let x = self.model.visit(Start { start: self.start.as_ref() })?;
-        let Description { name, states, .. } = Me::describe();
-        Ok(State::new(name, states, x.0, &x.1))
+        self.model.visit(Start { start: self.start.as_ref() })
     }
 
     /// Makes the run.
@@ -197,30 +198,35 @@ struct Start<'a> {
 }
 
 impl Start<'_> {
-    fn vector<Mo, const N: usize, const G: usize, const M: usize>(
+    fn vectors<Mo, const N: usize, const G: usize, const M: usize>(
         &self,
         model: &Mo,
-    ) -> Result<(f64, SVector<f64, N>), RunError>
+    ) -> Result<(f64, Vectors<N, G>), RunError>
     where
         Mo: Model<f64, N, G, M>,
     {
-        let Description { name, states, .. } = model.description();
-        match self.start {
-            Some(state) => Ok((state.t, state.vector(name, states)?)),
-            None => Ok((0.0, model.start()?)),
-        }
+        let Some(state) = self.start else {
+            let x = model.start()?;
+            return Ok((0.0, Vectors { x, largest: x.abs(), negative: None }));
+        };
+        let Vectors { x, largest, negative } = state.vectors::<N, G>(model.description())?;
+        let standing = Standing::new(model, state.t, &largest, CLOSE);
+        let negative = negative.map(|negative| standing.possible(&x, negative));
+        let x = standing.closed(&x, negative.as_ref()).map_err(StateError::from)?;
+        Ok((state.t, Vectors { x, largest, negative }))
     }
 }
 
 impl ModelVisitor<f64> for Start<'_> {
-    type Output = Result<(f64, Vec<f64>), RunError>;
+    type Output = Result<State, RunError>;
 
     fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
     where
         Mo: Model<f64, N, G, M>,
     {
-        let (t, x) = self.vector(model)?;
-        Ok((t, x.as_slice().to_vec()))
+        let (t, Vectors { x, largest, negative }) = self.vectors(model)?;
+        let negative = negative.as_ref().map(<[bool; G]>::as_slice);
+        Ok(State::new(model.description(), t, x.as_slice(), largest.as_slice(), negative))
     }
 }
 
@@ -268,13 +274,15 @@ impl<E: Ending> Integration<'_, E> {
     {
         let Self { request, start, each_step, ending } = self;
         let clock = Clock::started();
-        let (t0, start) = Start { start: start.as_ref() }.vector(model)?;
+        let (t0, Vectors { x, largest, negative }) = Start { start: start.as_ref() }.vectors(model)?;
         let mut method: AnyMethod<N> = request.method.method(request.fixed_step);
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
         let mut observer = observer(model, &request.parts, each_step, another);
+        observer.0.largest = largest;
         let span = Span { t0, t_end: request.t_end };
-        let (finish, cause) = match ending.integrate(model, &mut method, &start, span, &settings, &mut observer) {
+        let outcome = ending.integrate(model, &mut method, (&x, negative), span, &settings, &mut observer);
+        let (finish, cause) = match outcome {
             Ok(finish) => (finish, None),
             Err(failure) => (*failure.last, Some(failure.cause)),
         };
@@ -324,29 +332,68 @@ impl<const N: usize, const G: usize> Made<N, G> {
         Mo: Model<f64, N, G, M>,
     {
         let Self { finish, cause, methods, wall } = self;
-        let Description { name, states, .. } = model.description();
         let starts_at_zero = methods.first().is_some_and(|first| first.t == 0.0);
         // The end of a run that was stopped is none of the instants that were listed before it.
         let is_sampled = recorder.recording.times.last().is_some_and(|&t| t >= finish.t);
         if matches!(request.samples, Samples::Every(_)) && cause.is_none() && !is_sampled {
             recorder.sample(finish.t, &finish.x, &finish.negative);
         }
+        // What could not be calculated was so before anything else failed.
+        let fault = recorder.fault.map(Cause::from);
+        let (cause, ended) = match fault.or(cause) {
+            None => (None, finish.ended),
+            cause => (cause, Ended::ByFailure),
+        };
+        let states = model.description().states.iter().zip(finish.uncontrolled);
+        let uncontrolled = states.filter(|(_, is)| *is).map(|(of, _)| of.name).collect();
         let trajectory = Trajectory {
             recording: recorder.recording,
-            ended: finish.ended,
+            ended,
             statistics: finish.statistics,
-            uncontrolled: states.iter().zip(finish.uncontrolled).filter(|(_, is)| *is).map(|(of, _)| of.name).collect(),
+            uncontrolled,
             methods,
             wall,
             redundant: model.redundant(),
             impulse_energy: if starts_at_zero { model.impulse_energy().unwrap_or(0.0) } else { 0.0 },
-            last: State::new(name, states, finish.t, finish.x.as_slice()),
+            last: Last { model, finish: &finish, largest: recorder.largest }.state(),
             request,
         };
         match cause {
             None => Ok(trajectory),
             Some(cause) => Err(RunError::Stopped(Box::new(Stopped { cause, trajectory }))),
         }
+    }
+}
+
+/// Where a run has come to.
+struct Last<'a, Mo, const N: usize, const G: usize> {
+    model: &'a Mo,
+    finish: &'a Finish<N, G>,
+    largest: SVector<f64, N>,
+}
+
+impl<Mo, const N: usize, const G: usize> Last<'_, Mo, N, G> {
+    /// The same by name. What coarse steps have left of gaps is closed: another run could not start there.
+    fn state<const M: usize>(&self) -> State
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        /// The part of a state that a projection may move it by, to be left as it is.
+        const EXACT: f64 = 1e-12;
+        const ROUNDS: usize = 4;
+        let Self { model, finish: Finish { t, x, negative, .. }, .. } = self;
+        let largest = self.largest.sup(&x.abs());
+        let mut x = *x;
+        for _ in 0..ROUNDS {
+            let mut closer = x;
+            model.project(*t, negative, &mut closer);
+            let moves = |index: usize| (closer[index] - x[index]).abs() > EXACT * largest[index];
+            if !(0..N).any(moves) || closer.iter().any(|value| !value.is_finite()) {
+                break;
+            }
+            x = closer;
+        }
+        State::new(model.description(), *t, x.as_slice(), largest.as_slice(), Some(negative))
     }
 }
 

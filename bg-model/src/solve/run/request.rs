@@ -56,7 +56,6 @@ impl Request {
             Samples::Every(interval) if interval.is_finite() && self.is_countable(t0, *interval) => {
                 Samples::At(sample_times(t0, *interval, self.t_end))
             }
-            Samples::At(instants) => Samples::At(instants.iter().copied().filter(|t| *t >= t0).collect()),
             samples => samples.clone(),
         };
         Settings { tolerances: self.tolerances(), samples, step_limit: self.step_limit, ..Settings::default() }

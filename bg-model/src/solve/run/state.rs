@@ -1,17 +1,21 @@
 //! A state by name: where a run has come to and another can start from.
 //!
-//! In: the states of a model at some time. Out: the same as JSON, and back for a model of the same states.
+//! In: the states of a model at some time, the branches of its switches where they are known. Out: the same as JSON,
+//! and back for a model of the same states.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::model::description::StateInfo;
+use crate::model::description::Description;
+use crate::model::standing::Misplaced;
 
 /// The states of a model at some time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct State {
+    /// The format of a state file: [`State::FORMAT`].
+    pub format: u32,
     /// The model's name.
     pub model: String,
     /// The version of the compiler that made the model.
@@ -20,6 +24,12 @@ pub struct State {
     pub t: f64,
     /// Name and value of each state, in the order of the model's description, SI units.
     pub states: Vec<(String, f64)>,
+    /// The largest absolute value that each of them has had in the runs that led here: what rounding may have left of
+    /// it is a part of that.
+    pub largest: Vec<f64>,
+    /// Name and branch of each switch, in the order of the model's description: whether it is that of the negative
+    /// guard, such as sliding, or being clear of a stop. None where they are not known: a run finds them.
+    pub branches: Option<Vec<(String, bool)>>,
 }
 
 /// A state that a model cannot start from.
@@ -44,6 +54,24 @@ pub enum StateError {
     /// The model has a state that is missing, or the other way round.
     #[error("the states do not fit: `{0}` is in one and not in the other, or in another place; the model has changed")]
     OtherStates(String),
+    /// It was saved in another format.
+    #[error(
+        "this state was saved in format {found}, which does not say what sticks or rests; this version reads format {expected}: \
+         make the run that led to it anew",
+        expected = State::FORMAT
+    )]
+    OtherFormat {
+        /// The state's.
+        found: u64,
+    },
+    /// The model has a switch that is missing, or the other way round.
+    #[error(
+        "the switches do not fit: `{0}` is in one and not in the other, or in another place; the model has changed"
+    )]
+    OtherSwitches(String),
+    /// The model cannot stand there.
+    #[error("a run cannot start from this state: {0}; correct the state, or make the run that led to it anew")]
+    Misplaced(#[from] Misplaced),
     /// A number that cannot be.
     #[error("`{name}` is {value}, not a finite number")]
     NotFinite {
@@ -63,10 +91,26 @@ debug_is_display!(StateError);
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 impl State {
-    /// The states `x` of `model` at `t` (s).
-    pub(super) fn new(model: &str, states: &[StateInfo], t: f64, x: &[f64]) -> Self {
-        let states = states.iter().zip(x).map(|(state, value)| (state.name.to_owned(), *value)).collect();
-        Self { model: model.to_owned(), version: VERSION.to_owned(), t, states }
+    /// The format of the files: 2 since branches are saved.
+    pub const FORMAT: u32 = 2;
+
+    /// The states `x` of a model at `t` (s), which have been as large as `largest`, and the branches of its switches
+    /// where they are known.
+    pub(super) fn new(of: &Description, t: f64, x: &[f64], largest: &[f64], negative: Option<&[bool]>) -> Self {
+        let states = of.states.iter().zip(x).map(|(state, value)| (state.name.to_owned(), *value)).collect();
+        let named = |negative: &[bool]| {
+            of.switches.iter().map(|switch| switch.name.to_owned()).zip(negative.iter().copied()).collect()
+        };
+        let (model, version) = (of.name.to_owned(), VERSION.to_owned());
+        Self {
+            format: Self::FORMAT,
+            model,
+            version,
+            t,
+            states,
+            largest: largest.to_vec(),
+            branches: negative.map(named),
+        }
     }
 
     /// The value of the state called `name`, in its SI unit.
@@ -75,10 +119,25 @@ impl State {
         self.states.iter().find(|(own, _)| own == name).map(|(_, value)| *value)
     }
 
-    /// Changes the value of the state called `name`, SI unit; gives whether there is one.
+    /// Changes the value of the state called `name`, SI unit; gives whether there is one. The branches of switches are
+    /// not known any more then: a run that starts from here finds them.
     pub fn set(&mut self, name: &str, value: f64) -> bool {
-        let state = self.states.iter_mut().find(|(own, _)| own == name);
-        state.map(|(_, own)| *own = value).is_some()
+        let Some(index) = self.states.iter().position(|(own, _)| own == name) else { return false };
+        self.states[index].1 = value;
+        self.branches = None;
+        true
+    }
+
+    /// The values of the states, in the order of the model's description.
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        self.states.iter().map(|(_, value)| *value).collect()
+    }
+
+    /// The branches of the switches where they are known, in the order of the model's description.
+    #[must_use]
+    pub fn negative(&self) -> Option<Vec<bool>> {
+        self.branches.as_ref().map(|branches| branches.iter().map(|(_, negative)| *negative).collect())
     }
 
     /// The text of a state file: JSON, every number in the shortest form that reads back to the same bits.
@@ -94,17 +153,22 @@ impl State {
     /// Reads the text of a state file.
     ///
     /// # Errors
-    /// [`StateError::NoState`].
+    /// [`StateError::NoState`], [`StateError::OtherFormat`].
     pub fn from_json(text: &str) -> Result<Self, StateError> {
-        serde_json::from_str(text).map_err(|fault| StateError::NoState(fault.to_string()))
+        let no_state = |fault: serde_json::Error| StateError::NoState(fault.to_string());
+        let head: Head = serde_json::from_str(text).map_err(no_state)?;
+        if head.format != u64::from(Self::FORMAT) {
+            return Err(StateError::OtherFormat { found: head.format });
+        }
+        serde_json::from_str(text).map_err(no_state)
     }
 
-    /// The state vector for `model`, which has these states.
-    pub(super) fn vector<const N: usize>(
+    /// The state vector for a model, how large each state has been, and the branches where they are known.
+    pub(super) fn vectors<const N: usize, const G: usize>(
         &self,
-        model: &str,
-        states: &[StateInfo],
-    ) -> Result<SVector<f64, N>, StateError> {
+        of: &Description,
+    ) -> Result<Vectors<N, G>, StateError> {
+        let Description { name: model, states, switches, .. } = *of;
         if self.model != model {
             return Err(StateError::OtherModel { expected: model.to_owned(), found: self.model.clone() });
         }
@@ -116,8 +180,18 @@ impl State {
         if let Some(index) = (0..self.states.len().max(states.len())).find(|&index| own(index) != theirs(index)) {
             return Err(StateError::OtherStates(theirs(index).or(own(index)).unwrap_or_default().to_owned()));
         }
+        if let Some(branches) = &self.branches {
+            let own = |index: usize| branches.get(index).map(|(name, _)| name.as_str());
+            let theirs = |index: usize| switches.get(index).map(|switch| switch.name);
+            if let Some(index) = (0..branches.len().max(switches.len())).find(|&index| own(index) != theirs(index)) {
+                return Err(StateError::OtherSwitches(theirs(index).or(own(index)).unwrap_or_default().to_owned()));
+            }
+        }
         self.check_finite()?;
-        Ok(SVector::from_fn(|index, _| self.states[index].1))
+        let x = SVector::from_fn(|index, _| self.states[index].1);
+        let largest = SVector::from_fn(|index, _| self.largest.get(index).map_or(x[index], |value| *value).abs());
+        let negative = self.branches.as_ref().map(|branches| std::array::from_fn(|index| branches[index].1));
+        Ok(Vectors { x, largest, negative })
     }
 
     fn check_finite(&self) -> Result<(), StateError> {
@@ -128,4 +202,29 @@ impl State {
             None => Ok(()),
         }
     }
+}
+
+/// A state without the names.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vectors<const N: usize, const G: usize> {
+    pub x: SVector<f64, N>,
+    /// How large each state has been.
+    pub largest: SVector<f64, N>,
+    /// The branches of the switches, where they are known.
+    pub negative: Option<[bool; G]>,
+}
+
+/// What says how the rest of a state file is to be read.
+#[derive(Deserialize)]
+struct Head {
+    /// 1 is that of files without it.
+    #[serde(default = "first_format")]
+    format: u64,
+    /// Which every state file has.
+    #[serde(rename = "model")]
+    _model: String,
+}
+
+const fn first_format() -> u64 {
+    1
 }

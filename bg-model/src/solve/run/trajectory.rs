@@ -12,7 +12,7 @@ use crate::model::mechanism::Mechanism;
 use crate::solve::failure::Cause;
 use crate::solve::finish::Ended;
 use crate::solve::integrator::Change;
-use crate::solve::simulation::Recording;
+use crate::solve::simulation::{Recording, Samples};
 use crate::solve::statistics::Statistics;
 
 /// A run: its samples (it can be used as its [`Recording`]) and what it took.
@@ -73,12 +73,16 @@ impl Index<&str> for Trajectory {
 
 impl Trajectory {
     /// Goes on to `t_end` (s) from where the run has come to, and appends what is sampled. `model` may have other parameters:
-    /// what stays are the states (momenta, not velocities).
+    /// what stays are the states (momenta, not velocities), and what sticks or rests as far as it can.
     ///
     /// # Errors
     /// As [`Simulation::run`]; what was reached is appended then as well.
     pub fn continue_until<Me: Mechanism>(&mut self, model: &Me, t_end: f64) -> Result<(), RunError> {
-        let request = Request { t_end, ..self.request.clone() };
+        let mut request = Request { t_end, ..self.request.clone() };
+        if let Samples::At(instants) = &mut request.samples {
+            // Those before have been sampled.
+            instants.retain(|instant| *instant >= self.last.t);
+        }
         match Simulation::of(model, request).from(&self.last).run() {
             Ok(more) => self.append(more),
             Err(RunError::Stopped(stopped)) => {

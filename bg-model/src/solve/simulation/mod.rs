@@ -23,7 +23,7 @@ use nalgebra::SVector;
 
 pub use observer::{EachSample, EachStep, Observer, Switching};
 pub use ongoing::Ongoing;
-pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
+pub use recording::{Column, MissingColumn, NoNumber, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 
 use crate::model::system::System;
@@ -55,7 +55,7 @@ where
     M: Method<N>,
     O: Observer<N, G>,
 {
-    make(system, method, start, span, settings, Never, observer)
+    make(system, method, (start, None), span, settings, Never, observer)
 }
 
 /// As [`integrate`], but the run also ends where `condition` passes through zero, in either direction.
@@ -108,14 +108,14 @@ where
     C: FnMut(f64, &SVector<f64, N>, &[bool; G]) -> f64,
     O: Observer<N, G>,
 {
-    make(system, method, start, span, settings, Located::new(condition), observer)
+    make(system, method, (start, None), span, settings, Located::new(condition), observer)
 }
 
-/// Makes a run that `condition` may end.
-fn make<Sys, M, C, O, const N: usize, const G: usize>(
+/// Makes a run that `condition` may end, from a state in the branches of the switches where they are known.
+pub(crate) fn make<Sys, M, C, O, const N: usize, const G: usize>(
     system: &Sys,
     method: &mut M,
-    start: &SVector<f64, N>,
+    (start, negative): (&SVector<f64, N>, Option<[bool; G]>),
     span: Span,
     settings: &Settings<N>,
     condition: C,
@@ -134,7 +134,7 @@ where
     let outcome = settings::check(system, control, start, span, settings)
         .and_then(|()| settings::check_series(system, needs_series))
         .map_err(Cause::from)
-        .and_then(|()| run.begin(control, settings))
+        .and_then(|()| run.begin(control, settings, negative))
         .and_then(|()| run.advance_to_end(observer));
     match outcome {
         Ok(ended) => Ok(run.finish(ended)),

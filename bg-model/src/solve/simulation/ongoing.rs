@@ -48,6 +48,8 @@ use crate::solve::stepper::Stepper;
 pub struct Ongoing<const N: usize, const G: usize> {
     start: Point<N>,
     negative: [bool; G],
+    /// Whether these branches are known.
+    is_known: bool,
     monitor: EventMonitor<G>,
     rounding: Option<RoundingMonitor>,
     /// None before the first piece.
@@ -63,10 +65,21 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
     /// A run from state `x` at time `t` (s).
     #[must_use]
     pub fn at(t: f64, x: SVector<f64, N>) -> Self {
+        Self::with(t, x, None)
+    }
+
+    /// The same in these branches of the switches. A branch that the sign of its guard contradicts is found anew.
+    #[must_use]
+    pub fn standing(t: f64, x: SVector<f64, N>, negative: [bool; G]) -> Self {
+        Self::with(t, x, Some(negative))
+    }
+
+    fn with(t: f64, x: SVector<f64, N>, negative: Option<[bool; G]>) -> Self {
         let (start, statistics) = (Point::at(t, x), Statistics::default());
         Self {
             start,
-            negative: [false; G],
+            negative: negative.unwrap_or([false; G]),
+            is_known: negative.is_some(),
             monitor: EventMonitor::new(),
             rounding: None,
             sizes: None,
@@ -88,7 +101,7 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         &self.start.x
     }
 
-    /// The branches from there on; all positive before the first piece.
+    /// The branches from there on; all positive before the first piece, unless they were given.
     #[must_use]
     pub const fn negative(&self) -> &[bool; G] {
         &self.negative
@@ -106,8 +119,9 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         &self.statistics
     }
 
-    /// The system has changed, as where an input has jumped: branches and rate are found anew, as at the start of a run. The next
-    /// step is tried with `step` (s), where that is given, else with the size that it was to have.
+    /// The system has changed, as where an input has jumped: the rate is found anew, and the branches are whose guards
+    /// have got another sign; what sticks or rests stays so as long as it can. The next step is tried with `step` (s),
+    /// where that is given, else with the size that it was to have.
     pub fn renew(&mut self, step: Option<f64>) {
         self.controller = None;
         self.step = step.or(self.step);
@@ -133,7 +147,9 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         let span = Span { t0: self.start.t, t_end };
         let control = method.control();
         let needs_series = method.needs_series().then(|| method.name());
-        let settings = &Settings { first_step: self.step.or(settings.first_step), ..settings.clone() };
+        // A step that was shortened to nothing says nothing of the next one.
+        let step = self.step.filter(|step| *step > span.resolution());
+        let settings = &Settings { first_step: step.or(settings.first_step), ..settings.clone() };
         let stepper = Stepper::new(system, method, Scale::from(&settings.tolerances), self.start);
         let mut run = Run::new(stepper, Never, control, span, settings);
         run.stepper.statistics = self.statistics;
@@ -144,8 +160,8 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         let outcome = settings::check(system, control, &self.start.x, span, settings)
             .and_then(|()| settings::check_series(system, needs_series))
             .map_err(Cause::from)
-            .and_then(|()| match self.controller.take() {
-                None => run.begin(control, settings),
+            .and_then(|()| match self.controller.take().filter(|known| !known.is_adaptive() || step.is_some()) {
+                None => run.begin(control, settings, self.is_known.then_some(self.negative)),
                 Some(controller) => {
                     (run.stepper.negative, run.controller, run.monitor) =
                         (self.negative, controller, self.monitor.clone());
@@ -164,6 +180,7 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         match outcome {
             Ok(ended) => {
                 self.step = controller.is_adaptive().then(|| controller.step());
+                self.is_known = true;
                 self.controller = Some(controller);
                 Ok(ended)
             }

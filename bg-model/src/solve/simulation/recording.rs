@@ -14,6 +14,7 @@ use thiserror::Error;
 
 use super::Observer;
 use crate::model::description::Description;
+use crate::model::origin::Origin;
 use crate::model::system::{Model, Powers};
 
 /// What is recorded at each sample beside its time.
@@ -129,7 +130,8 @@ impl Recording {
     }
 }
 
-/// An observer that records a model's samples and the times of its events. Allocates at each sample.
+/// An observer that records a model's samples and the times of its events. Allocates at each sample. Where a value is
+/// not finite the run ends, and [`Recorder::fault`] says which.
 #[derive(Clone, Debug)]
 pub struct Recorder<'a, Mo, const N: usize, const G: usize, const M: usize> {
     model: &'a Mo,
@@ -138,6 +140,44 @@ pub struct Recorder<'a, Mo, const N: usize, const G: usize, const M: usize> {
     row: Vec<f64>,
     /// What has been recorded.
     pub recording: Recording,
+    /// The largest absolute value of each state at the samples.
+    pub largest: SVector<f64, N>,
+    /// The first value that could not be calculated: nothing is recorded from there on, and the run ends.
+    pub fault: Option<NoNumber>,
+}
+
+/// A value that is not finite at a sample.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}", self.text())]
+pub struct NoNumber {
+    /// The column.
+    pub name: String,
+    /// What it observes, as written, where it is an output.
+    pub observes: Option<&'static str>,
+    /// Its value.
+    pub value: f64,
+    /// When, s.
+    pub t: f64,
+    /// The input, law or algebraic loop that it comes from, where that is known.
+    pub origin: Option<Origin>,
+}
+
+impl NoNumber {
+    fn text(&self) -> String {
+        let Self { name, observes, value, t, origin } = self;
+        let law = observes.filter(|law| law != name).map_or_else(String::new, |law| format!(" = `{law}`"));
+        let what = format!("`{name}`{law} is {value:?} at t = {t:?} s");
+        match origin {
+            None => format!("{what}: keep what it divides by, or takes a root, power or logarithm of, in range"),
+            Some(origin) => format!(
+                "{what}, since {} `{}` gives {:?} there; {}",
+                origin.kind,
+                origin.name,
+                origin.value,
+                origin.action()
+            ),
+        }
+    }
 }
 
 impl<'a, Mo, const N: usize, const G: usize, const M: usize> Recorder<'a, Mo, N, G, M>
@@ -148,7 +188,8 @@ where
     #[must_use]
     pub fn new(model: &'a Mo, parts: &[Part]) -> Self {
         let columns = parts.iter().flat_map(|part| part.columns(model.description())).collect();
-        Self { model, parts: parts.to_vec(), row: Vec::new(), recording: Recording::new(columns) }
+        let (parts, recording) = (parts.to_vec(), Recording::new(columns));
+        Self { model, parts, row: Vec::new(), recording, largest: SVector::zeros(), fault: None }
     }
 
     /// The model.
@@ -163,15 +204,41 @@ where
     Mo: Model<f64, N, G, M>,
 {
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
-        self.row.clear();
-        for part in &self.parts {
-            part.write(self.model, t, x, negative, &mut self.row);
+        if self.fault.is_some() {
+            return;
         }
-        self.recording.push(t, self.row.iter().copied());
+        self.largest = self.largest.sup(&x.abs());
+        self.row.clear();
+        let mut faulty = None;
+        for part in &self.parts {
+            let first = self.row.len();
+            part.write(self.model, t, x, negative, &mut self.row);
+            let is_calculated = *part != Part::Shown;
+            let place = self.row[first..].iter().position(|value| is_calculated && !value.is_finite());
+            faulty = faulty.or(place.map(|place| (first + place, (*part == Part::Outputs).then_some(place))));
+        }
+        match faulty {
+            None => self.recording.push(t, self.row.iter().copied()),
+            Some((column, output)) => {
+                self.fault = Some(NoNumber {
+                    name: self.recording.columns[column].name.clone(),
+                    observes: output.map(|output| self.model.description().outputs[output].observes),
+                    value: self.row[column],
+                    t,
+                    origin: self.model.not_finite(t, x, negative),
+                });
+            }
+        }
     }
 
     fn event(&mut self, t: f64, _: &SVector<f64, N>, _: usize, _: &[bool; G]) {
-        self.recording.events.push(t);
+        if self.fault.is_none() {
+            self.recording.events.push(t);
+        }
+    }
+
+    fn is_done(&self) -> bool {
+        self.fault.is_some()
     }
 }
 

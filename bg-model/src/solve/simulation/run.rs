@@ -93,10 +93,15 @@ where
         }
     }
 
-    /// Finds the first step, the branches at the start and the condition's side.
-    pub fn begin(&mut self, control: StepControl, settings: &Settings<N>) -> Result<(), Cause> {
+    /// Finds the first step, the branches at the start, from those that are `known` on, and the condition's side.
+    pub fn begin(
+        &mut self,
+        control: StepControl,
+        settings: &Settings<N>,
+        known: Option<[bool; G]>,
+    ) -> Result<(), Cause> {
         self.sizes.start(&mut self.stepper);
-        let clear = self.monitor.begin_by_sign(&mut self.stepper, self.collision.as_mut());
+        let clear = self.monitor.begin_by_sign(&mut self.stepper, self.collision.as_mut(), known);
         self.stepper.evaluate_start();
         self.check_start()?;
         let longest = self.span.length().min(settings.largest_step);

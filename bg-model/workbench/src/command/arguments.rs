@@ -196,7 +196,8 @@ pub struct RunArguments {
     #[arg(long, value_name = "START", value_enum, default_value_t, conflicts_with = "from")]
     pub start: Start,
 
-    /// Start from a state that --save-state wrote, at its time. The parameters may be others: what stays are the states
+    /// Start from a state that --save-state wrote, at its time. The parameters may be others: what stays are the
+    /// states, and what sticks or rests as far as it can
     #[arg(long, value_name = "FILE.json")]
     pub from: Option<PathBuf>,
 

@@ -17,6 +17,7 @@ use crate::linear::{Response, StateSpace, logarithmic, responses_csv};
 use crate::machine::Machine;
 use crate::output::OutputError;
 use crate::parameters::{self, Chosen};
+use crate::running::at_rest;
 use crate::scenes::Scene;
 
 const JSON: &str = "linear.json";
@@ -98,11 +99,11 @@ pub fn linearised(
     integration: impl Fn(f64) -> IntegrationArguments,
 ) -> Result<(StateSpace, String), InputError> {
     let Some(t) = at else {
-        let rest = machine.equilibrium(0.0, &values(&machine.start(None)?))?;
-        return Ok((machine.linearised(0.0, &rest.x)?, rest.sentence()));
+        let (state, rest) = at_rest(machine)?;
+        return Ok((machine.linearised(&state)?, rest.sentence()));
     };
-    let x = values(&state_at(machine, t, &integration(t))?);
-    Ok((machine.linearised(t, &x)?, format!("where the run is at t = {t:?} s")))
+    let state = state_at(machine, t, &integration(t))?;
+    Ok((machine.linearised(&state)?, format!("where the run is at t = {t:?} s")))
 }
 
 /// The state that a run reaches at `t` (s).
@@ -116,10 +117,6 @@ fn state_at(machine: &dyn Machine, t: f64, integration: &IntegrationArguments) -
         None => Ok(outcome.run.last),
         Some(failure) => Err(InputError::NotReached { t, failure }),
     }
-}
-
-fn values(state: &State) -> Vec<f64> {
-    state.states.iter().map(|(_, value)| *value).collect()
 }
 
 /// Writes the files; gives their number, where they are there, and what failed.

@@ -7,7 +7,8 @@
 //! grow; `files`, the names of those that it has put into the folder. Only when all files are written are those of the
 //! earlier run removed and the new ones renamed into place, in this order. A program that is killed before leaves the earlier
 //! run's files, one that is killed then leaves a part of one run's, and a file is never cut. Only names on the list are
-//! removed; the list is there before the first of the files.
+//! removed; the list is there before the first of the files. Where no run has put anything into the folder its
+//! subfolder goes with the run, and so does the folder if the run has made it.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -33,6 +34,8 @@ pub struct RunFolder {
     earlier: BTreeSet<String>,
     /// What this run has written, in order.
     staged: Vec<String>,
+    /// Whether the folder was not there before.
+    is_new: bool,
     /// Locked until it is closed.
     _lock: File,
 }
@@ -62,21 +65,15 @@ impl RunFolder {
         check_is_no_file(folder)?;
         // Before anything is made, so that a folder of other things gets no trace of a run that was refused.
         check_foreign(folder, &listed(folder)?, names)?;
+        let is_new = !folder.exists();
         let own = folder.join(OWN);
-        fs::create_dir_all(&own).map_err(failed(folder))?;
-        let path = own.join(LOCK);
-        let lock = OpenOptions::new().create(true).truncate(false).write(true).open(&path).map_err(failed(&path))?;
-        match lock.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(FileError::Busy(folder.to_owned())),
-            Err(TryLockError::Error(source)) => return Err(FileError::Lock { path, source }),
-        }
+        let lock = locked(folder, &own)?;
         // Now that no other run can change it.
         let earlier = listed(folder)?;
         check_foreign(folder, &earlier, names)?;
         let stage = own.join(STAGE);
         remove_stage(&stage).and_then(|()| fs::create_dir(&stage)).map_err(failed(&stage))?;
-        Ok(Self { folder: folder.to_owned(), earlier, staged: Vec::new(), _lock: lock })
+        Ok(Self { folder: folder.to_owned(), earlier, staged: Vec::new(), is_new, _lock: lock })
     }
 
     /// Writes the file called `name` with what `fill` writes, or writes it anew. It is in the folder from
@@ -145,7 +142,51 @@ impl Drop for RunFolder {
     fn drop(&mut self) {
         // What cannot be removed here is removed by the next run.
         let _ = remove_stage(&self.stage());
+        let own = self.folder.join(OWN);
+        if CAN_TELL && !own.join(LIST).exists() {
+            // While it is locked, so that none is removed that another run has locked.
+            let _ = fs::remove_file(own.join(LOCK)).and_then(|()| fs::remove_dir(&own));
+            if self.is_new {
+                let _ = fs::remove_dir(&self.folder);
+            }
+        }
     }
+}
+
+/// The lock of a folder whose subfolder is `own`; both are made if they are not there.
+fn locked(folder: &Path, own: &Path) -> Result<File, FileError> {
+    let path = own.join(LOCK);
+    loop {
+        fs::create_dir_all(own).map_err(failed(folder))?;
+        let lock = match OpenOptions::new().create(true).truncate(false).write(true).open(&path) {
+            Err(fault) if CAN_TELL && fault.kind() == io::ErrorKind::NotFound => continue,
+            lock => lock.map_err(failed(&path))?,
+        };
+        match lock.try_lock() {
+            // A run that has ended meanwhile may have removed the file.
+            Ok(()) if is_at(&lock, &path) => return Ok(lock),
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(FileError::Busy(folder.to_owned())),
+            Err(TryLockError::Error(source)) => return Err(FileError::Lock { path, source }),
+        }
+    }
+}
+
+/// Whether the system says which file is at a path.
+const CAN_TELL: bool = cfg!(unix);
+
+/// Whether the open `file` is the one at `path`.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |present: fs::Metadata| (present.dev(), present.ino());
+    let (open, there) = (file.metadata().map(identity), fs::metadata(path).map(identity));
+    matches!((open, there), (Ok(open), Ok(there)) if open == there)
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> bool {
+    true
 }
 
 fn failed(path: &Path) -> impl Fn(io::Error) -> FileError {
@@ -256,6 +297,27 @@ mod tests {
         assert!(matches!(claimed.publish(), Err(FileError::Foreign(_))));
         assert_eq!(fs::read_to_string(folder.path().join("c")).unwrap(), "mine");
         assert_eq!(visible(folder.path()), ["a", "b", "c"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_run_that_puts_nothing_into_the_folder_leaves_nothing_of_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        fs::write(path.join("notes"), "mine").unwrap();
+        drop(RunFolder::claim(path, &names(&["a"])).unwrap());
+        assert!(!path.join(OWN).exists() && path.join("notes").exists());
+        let new = path.join("new");
+        let mut claimed = RunFolder::claim(&new, &names(&["a"])).unwrap();
+        claimed.write_text("a", "a").unwrap();
+        drop(claimed);
+        assert!(!new.exists());
+        // One that others have put something into stays what it was.
+        run(path, &["a"]).unwrap();
+        drop(RunFolder::claim(path, &names(&["b"])).unwrap());
+        assert!(path.join(OWN).join(LIST).exists());
+        run(path, &["b"]).unwrap();
+        assert_eq!(visible(path), ["b", "notes"]);
     }
 
     #[test]

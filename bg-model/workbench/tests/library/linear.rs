@@ -9,8 +9,9 @@ use bg_model::input::Input;
 use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::nalgebra::{DMatrix, DVector};
 use bg_model::parameters::Parameters;
+use bg_model::run::Simulation;
 use bg_model::system::Model;
-use bg_workbench::linear::{Equilibrium, StateSpace, equilibrium, linearise};
+use bg_workbench::linear::{Equilibrium, StateSpace, equilibrium, linearise, linearise_at};
 use models::*;
 
 /// The start state.
@@ -302,4 +303,21 @@ fn dual_numbers_give_the_jacobian_that_the_model_knows() {
     assert_eq!(linear.states.len(), 6);
     let known = swing.visit::<f64, _>(Jacobian(x.as_slice()));
     assert!((&linear.a - &known).amax() <= 1e-15 * known.amax(), "{} {known}", linear.a);
+}
+
+#[test]
+fn what_sticks_in_a_run_does_so_in_its_linear_model() {
+    let clutch = model::<Clutch>(&[], &[]);
+    let run = Simulation::new(&clutch).every(1.0).until(4.0).run().unwrap();
+    let linear = linearise_at(&clutch, &run.last).unwrap();
+    let (w, u) = (run["w"].last().unwrap(), run["u"].last().unwrap());
+    near(*w, *u, 1e-12);
+    // Both turn as one: the brake of 1 N m s against 6.1 kg m^2.
+    near(linear.point[0].rate, -w * 1.5 / 6.1, 1e-9);
+    // What slip there is decays by 1/s: nothing slides.
+    near(linear.modes[0].real, -1.0 / 6.1, 1e-12);
+    near(linear.modes[1].real, -1.0, 1e-12);
+    // By the signs of the guards it would.
+    let sliding = linearise(&clutch, 0.0, &start(&clutch)).unwrap();
+    near(sliding.point[0].rate, -10.0, 1e-12);
 }

@@ -63,10 +63,21 @@ fn a_run_goes_on_from_a_saved_state() {
         ("\"Pendulum\"", "\"Other\"", "this is a state of `Other`, not of `Pendulum`"),
         ("rod.position_x", "rod.x", "the states do not fit: `rod.position_x`"),
         ("\"t\": 0.5", "\"t\": null", "this is no saved state: "),
+        ("  \"format\": 2,\n", "", "this state was saved in format 1, which does not say what sticks or rests"),
     ] {
         fs::write(path.join("bad.json"), state.replace(from, to)).unwrap();
         assert!(refused(path, &["run", "--from", "bad.json"]).contains(told), "{told}");
     }
+    let mut turned: serde_json::Value = serde_json::from_str(&state).unwrap();
+    for entry in turned["states"].as_array_mut().unwrap() {
+        if entry[0].as_str().unwrap().contains("orientation") {
+            entry[1] = serde_json::json!(0.0);
+        }
+    }
+    fs::write(path.join("bad.json"), turned.to_string()).unwrap();
+    let line = refused(path, &["run", "--from", "bad.json", "--out", "none"]);
+    assert!(line.contains("the orientation `rod.orientation` is no rotation"), "{line}");
+    assert!(!path.join("none").exists());
     assert!(
         refused(path, &["run", "--from", "absent.json"]).contains("--from absent.json: cannot be read: No such file")
     );

@@ -17,8 +17,9 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let impacts = &self.model.equations.impacts;
         let stops = impacts.stops.iter().map(|stop| {
-            let (name, switch) = (&stop.slip.joint, Literal::u32_unsuffixed(stop.rebound.switch));
-            quote!(::bg_model::holding::Stop { name: #name, switch: #switch })
+            let (name, unit, switch) =
+                (&stop.slip.joint, &stop.slip.unit, Literal::u32_unsuffixed(stop.rebound.switch));
+            quote!(::bg_model::holding::Stop { name: #name, unit: #unit, switch: #switch })
         });
         let states = |of: &[(usize, Vec<Id>)]| -> Vec<Literal> {
             of.iter().map(|(state, _)| Literal::usize_unsuffixed(*state)).collect()

@@ -113,7 +113,7 @@ where
         let mut run = Run::new(stepper, Never, control, span, settings);
         let is_fine = settings::check(model, control, &start, span, settings).is_ok();
         // What is at rest looks ahead before each step, by itself.
-        if !is_fine || run.begin(control, settings).is_err() || run.sizes.is_at_rest(model) {
+        if !is_fine || run.begin(control, settings, None).is_err() || run.sizes.is_at_rest(model) {
             return Err((number, observer));
         }
         run.sample(&mut observer, span.t0);

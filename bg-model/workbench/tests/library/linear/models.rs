@@ -17,6 +17,14 @@ bond_graph! {
             rest: N = push.effort - damper.effort;
         }
     }
+    /// Two shafts and a clutch that comes to stick; the second one has a brake.
+    pub graph Clutch {
+        param drag: N*m*s = 1;
+        1 first, second: rotation; I rotor = 1.5 start 15; I wheel = 4.6; R brake = drag;
+        0 between: rotation; 1 slip: rotation; R rub(w) = 10 holds 12;
+        first -> rotor; first -> between -> second; between -> slip -> rub; second -> wheel; second -> brake;
+        observe { w: rad/s = first.flow; u: rad/s = second.flow; rub.effort }
+    }
     /// A rod that swings about a pin.
     pub graph Rod {
         param angle: rad = 0.5;
