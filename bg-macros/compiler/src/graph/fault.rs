@@ -39,6 +39,7 @@ pub enum GraphFault {
     NotANumber { what: String },
     GuessOutsideStart,
     IntegralOutsideObserve,
+    UnwrappedElsewhere,
     VariableRole { name: String, symbol: &'static str },
     EmptyGraph { name: String },
     Decay,
@@ -81,6 +82,7 @@ impl Explain for GraphFault {
             F::NotANumber { .. } => "BG0329",
             F::GuessOutsideStart => "BG0330",
             F::IntegralOutsideObserve => "BG0331",
+            F::UnwrappedElsewhere => "BG0336",
             F::VariableRole { .. } => "BG0332",
             F::EmptyGraph { .. } => "BG0333",
             F::Reserved { .. } => "BG0334",
@@ -136,6 +138,7 @@ impl Explain for GraphFault {
             F::NotANumber { what } => format!("{what} must be made of numbers only"),
             F::GuessOutsideStart => "`guess` has a meaning only in a start value".to_owned(),
             F::IntegralOutsideObserve => "`integral` has a meaning only in an observed output".to_owned(),
+            F::UnwrappedElsewhere => "`unwrapped` has a meaning only in a `let` and in an observed output".to_owned(),
             F::VariableRole { name, symbol } => format!("the law of {symbol} `{name}` cannot be of that variable"),
             F::EmptyGraph { name } => format!("graph `{name}` has no bond"),
             F::Decay => "the rate of `baumgarte` must be a number above 0, in 1/s".to_owned(),
@@ -200,6 +203,7 @@ impl Explain for GraphFault {
             F::DefaultOutOfRange { .. } => "change the default or the range".to_owned(),
             F::NotANumber { .. } => "write a number".to_owned(),
             F::GuessOutsideStart => "write the value itself".to_owned(),
+            F::UnwrappedElsewhere => "name it, `let turned = unwrapped(..);`, and use that name here".to_owned(),
             F::IntegralOutsideObserve => "observe the integral, or use a C or I for a state".to_owned(),
             F::VariableRole { .. } => {
                 "leave `effort` or `flow` away: a C's law is of its displacement, an I's of its momentum".to_owned()

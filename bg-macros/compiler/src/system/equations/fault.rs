@@ -21,6 +21,7 @@ pub enum EquationFault {
     FrictionOfReaction { name: String, by: String },
     CannotStick { name: String, input: Option<String> },
     CannotStop { name: String },
+    UnknownTurn { name: String },
 }
 
 use crate::graph::ElementKind;
@@ -44,6 +45,7 @@ impl Explain for EquationFault {
             F::FrictionOfReaction { .. } => "BG0515",
             F::CannotStick { .. } => "BG0516",
             F::CannotStop { .. } => "BG0517",
+            F::UnknownTurn { .. } => "BG0518",
         }
     }
 
@@ -119,6 +121,11 @@ impl Explain for EquationFault {
             F::CannotStop { name } => {
                 format!("nothing can hit stop `{name}`: no momentum determines its flow, or an input does")
             }
+            F::UnknownTurn { name } => {
+                format!(
+                    "the angle `{name}` is not known at the start: its sine or cosine depends on more than poses and parameters"
+                )
+            }
         }
     }
 
@@ -171,6 +178,7 @@ impl Explain for EquationFault {
             F::CannotStop { .. } => {
                 "let it act where a mass moves, or give it a stiffness and a damping for the restitution".to_owned()
             }
+            F::UnknownTurn { .. } => "use `atan2(y, x)`, which gives the angle in one turn".to_owned(),
         }
     }
 }

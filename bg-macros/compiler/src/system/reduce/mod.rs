@@ -19,9 +19,10 @@ mod projected;
 mod reaction;
 mod report;
 mod speeds;
+mod turned;
 
 use crate::expr::{Branch, Id, Pool, Symbol};
-use crate::system::equations::StateEquations;
+use crate::system::equations::{Origin, StateEquations};
 
 pub use reaction::solve as solve_reactions;
 pub use report::{Count, Fate, Kept, Report};
@@ -52,7 +53,7 @@ struct Pass {
 type Operations<'a> = dyn FnMut(&mut StateEquations) -> usize + 'a;
 
 /// The reductions in the order in which they find most.
-const PASSES: [Pass; 8] = [
+const PASSES: [Pass; 9] = [
     Pass {
         name: "parameters folded",
         applies: always,
@@ -67,6 +68,11 @@ const PASSES: [Pass; 8] = [
         name: "equal states merged",
         applies: always,
         run: |equations, _, report, _| equal::merge(equations, report),
+    },
+    Pass {
+        name: "turns counted",
+        applies: |equations, _| equations.states.iter().any(|state| matches!(state.origin, Origin::Turn(_))),
+        run: |equations, _, _, _| turned::settle(equations, true),
     },
     Pass {
         name: "states of joints expressed",
@@ -118,6 +124,11 @@ pub fn for_scene(
         report.count(pass.name, equations.states.len(), operations(&mut equations));
     }
     (equations, report)
+}
+
+/// Counts the turns of angles in a literal model, which has no proofs.
+pub fn count_turns(equations: &mut StateEquations) {
+    turned::settle(equations, false);
 }
 
 /// Replaces parameters that no one tunes by their defaults; the others keep their order.
