@@ -258,7 +258,7 @@ use proc_macro::TokenStream;
 /// Each is a state, but only where something reads it: a law, an output. Its rate is the speed, from the angle at the start on. What is read
 /// is the angle of the pose next to that state, so it is as exact as the pose, and an equilibrium or a linear model sees the pose alone. In
 /// a scene in the plane the state is proved to be the angle, and where the scene has `angles;` or another state that differs from it by a
-/// number, it is no state more. The w of `unwrapped` tells where the angle goes in a step: it may be off by what adds up to less than half a
+/// number, it is no state more; one that only outputs read does not count among the states that a scene expects. The w of `unwrapped` tells where the angle goes in a step: it may be off by what adds up to less than half a
 /// turn there. Where an output needs no turns, such as that of a rocker, a direction costs no state.
 ///
 /// ```
@@ -624,7 +624,8 @@ use proc_macro::TokenStream;
 /// - **The ground** is one for all. Points that a part has on it are `ground.front.pivot` outside. Gravity, too, is the
 ///   graph's: one `gravity` for all parts together.
 /// - **Outputs.** The `observe` of a part names what is worth seeing of it. A graph watches `front.length`, or
-///   [all of it](#observe); it may also calculate with these names.
+///   [all of it](#observe); it may also calculate with these names. An output may have the name of something in the part: `observe` then
+///   means the output, any other expression the thing.
 /// - **Without a name**, `part Leg;`, what is inside keeps its names and its parameters are those of the graph: a graph that
 ///   begins with a machine and adds what drives it and what is seen of it.
 ///
@@ -747,7 +748,7 @@ use proc_macro::TokenStream;
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
 /// | `expect integral causality;` | an error (BG0403) where a storage is in [derivative causality](#derivative-causality) |
 /// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |
-/// | `expect states = 29;` | an error (BG0605) unless so many states are integrated, integrals for outputs not counted |
+/// | `expect states = 29;` | an error (BG0605) unless so many states are integrated, integrals and angles for outputs only not counted |
 ///
 /// ```
 /// # use bg_model::bond_graph;

@@ -18,6 +18,8 @@ use super::{
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
 use crate::graph::units::{self, Dimension, Domain};
 use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role, Watch};
+use crate::source::numbers::{Constant, constant};
+use crate::source::walk::each_name;
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -78,11 +80,15 @@ enum Place<'a> {
 struct Resolver {
     graph: BondGraph,
     names: BTreeMap<String, Entity>,
+    /// Where each name is declared first.
+    declared: BTreeMap<String, Span>,
     junctions: BTreeMap<NodeId, usize>,
     /// The 1-junctions.
     ones: BTreeSet<NodeId>,
     domains: Vec<(NodeId, Domain)>,
     observed: Vec<Option<Dimension>>,
+    /// Where each output is.
+    outputs: BTreeMap<String, Span>,
     faults: Vec<Fault>,
 }
 
@@ -114,10 +120,12 @@ impl Resolver {
         Self {
             graph,
             names: BTreeMap::new(),
+            declared: BTreeMap::new(),
             junctions: BTreeMap::new(),
             ones: BTreeSet::new(),
             domains: Vec::new(),
             observed: Vec::new(),
+            outputs: BTreeMap::new(),
             faults: Vec::new(),
         }
     }
@@ -133,9 +141,12 @@ impl Resolver {
     fn name(&mut self, name: &Name, entity: Entity) {
         if name.text == "t" {
             self.fault(name.span, &GraphFault::Reserved { name: name.text.clone() });
-        } else if self.names.insert(name.text.clone(), entity).is_some() {
-            self.fault(name.span, &DeclaredTwice { name: name.text.clone() });
+        } else if let Some(&first) = self.declared.get(&name.text) {
+            self.fault(name.span, &DeclaredTwice::new(&name.text, name.span, first));
+        } else {
+            self.declared.insert(name.text.clone(), name.span);
         }
+        self.names.insert(name.text.clone(), entity);
     }
 
     fn unit(&mut self, unit: &ast::Unit) -> Dimension {
@@ -208,7 +219,8 @@ impl Resolver {
         {
             return value;
         }
-        self.fault(expression.span, &GraphFault::NotANumber { what: "a default or an end of a range".to_owned() });
+        let what = "a default or an end of a range".to_owned();
+        self.fault(expression.span, &GraphFault::NotANumber { what, constant: constant_in(expression) });
         0.0
     }
 
@@ -388,9 +400,10 @@ impl Resolver {
         self.name_turns(first_turn, &name, &value);
         let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
         let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
-        if self.graph.observations.iter().any(|known| known.name == name) {
-            let span = observation.name.as_ref().map_or(observation.value.span, |name| name.span);
-            self.fault(span, &DeclaredTwice { name: name.clone() });
+        let span = observation.name.as_ref().map_or(observation.value.span, |name| name.span);
+        match self.outputs.get(&name) {
+            Some(&first) => self.fault(span, &DeclaredTwice::new(&name, span, first)),
+            None => _ = self.outputs.insert(name.clone(), span),
         }
         self.observed.push(declared);
         self.graph.observations.push(Observation { name, text, value, shape: Shape::Scalar, unit });
@@ -549,6 +562,17 @@ impl Resolver {
             _ => None,
         }
     }
+}
+
+/// The first name of a mathematical constant in an expression.
+fn constant_in(expression: &Expression) -> Option<&'static Constant> {
+    let mut found = None;
+    each_name(&mut expression.clone(), &mut |value| {
+        if let ExpressionKind::Name(name) = &value.kind {
+            found = found.or_else(|| constant(&name.text));
+        }
+    });
+    found
 }
 
 /// Whether an element is an R whose effort follows from its flow.

@@ -7,11 +7,11 @@ use crate::fault::Explain;
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum EquationFault {
     AlgebraicLoop { members: Vec<String>, reactions: Vec<String> },
-    UndeterminedLoop { members: Vec<String> },
+    UndeterminedLoop { members: Vec<String>, why: String },
     DependentStart { kind: ElementKind, name: String, by: Vec<String> },
     DependentOnInput { kind: ElementKind, name: String, input: String },
     DependentJumps { kind: ElementKind, name: String, element: String, condition: String },
-    DependentOpen { members: Vec<String> },
+    DependentOpen { members: Vec<String>, why: String },
     NotLinear { symbol: &'static str, name: String },
     NoEnergy { symbol: &'static str, name: String },
     EnergyOfOtherLaw { symbol: &'static str, name: String },
@@ -56,8 +56,8 @@ impl Explain for EquationFault {
                 reactions.join(", "),
                 members.join(" -> ")
             ),
-            F::UndeterminedLoop { members } => format!(
-                "algebraic loop: {} need each other in a way that leaves their efforts and flows open, or has no solution",
+            F::UndeterminedLoop { members, why } => format!(
+                "algebraic loop: {} need each other in a way that leaves their efforts and flows open, or has no solution: {why}",
                 members.join(", ")
             ),
             F::DependentStart { kind, name, by } => {
@@ -80,8 +80,9 @@ impl Explain for EquationFault {
                      would take an impulse"
                 )
             }
-            F::DependentOpen { members } => {
-                format!("in derivative causality, and what it gives cannot be solved for: {}", members.join(", "))
+            F::DependentOpen { members, why } => {
+                let members = members.join(", ");
+                format!("in derivative causality, and what it gives cannot be solved for: {members}: {why}")
             }
             F::NotLinear { symbol, name } => {
                 format!("the law of {symbol} `{name}` is not linear in its variable, so it would not conserve power")
@@ -148,7 +149,7 @@ impl Explain for EquationFault {
             F::DependentJumps { kind, name, .. } => {
                 format!("let {} sit in front of `{name}`, or write the law without the comparison", between(*kind))
             }
-            F::DependentOpen { members } => format!(
+            F::DependentOpen { members, .. } => format!(
                 "let a C and an R (a compliant coupling) sit in front of {}, or write the laws beside it as functions of the other \
                  variable",
                 members.first().map_or("it", String::as_str)

@@ -22,7 +22,7 @@ mod speeds;
 mod turned;
 
 use crate::expr::{Branch, Id, Pool, Symbol};
-use crate::system::equations::{Origin, StateEquations};
+use crate::system::equations::StateEquations;
 
 pub use reaction::solve as solve_reactions;
 pub use report::{Count, Fate, Kept, Report};
@@ -65,14 +65,14 @@ const PASSES: [Pass; 9] = [
         run: |equations, _, report, _| invariant::fold(equations, report),
     },
     Pass {
+        name: "turns counted",
+        applies: |equations, _| turned::are_open(equations),
+        run: |equations, _, _, _| turned::settle(equations, true),
+    },
+    Pass {
         name: "equal states merged",
         applies: always,
         run: |equations, _, report, _| equal::merge(equations, report),
-    },
-    Pass {
-        name: "turns counted",
-        applies: |equations, _| equations.states.iter().any(|state| matches!(state.origin, Origin::Turn(_))),
-        run: |equations, _, _, _| turned::settle(equations, true),
     },
     Pass {
         name: "states of joints expressed",
@@ -128,7 +128,9 @@ pub fn for_scene(
 
 /// Counts the turns of angles in a literal model, which has no proofs.
 pub fn count_turns(equations: &mut StateEquations) {
-    turned::settle(equations, false);
+    if turned::are_open(equations) {
+        turned::settle(equations, false);
+    }
 }
 
 /// Replaces parameters that no one tunes by their defaults; the others keep their order.
