@@ -128,6 +128,19 @@ fn a_stop_three_turns_away_is_hit_there() {
 }
 
 #[test]
+fn a_joint_that_starts_beyond_its_stop_is_refused() {
+    let refused = |tilt: f64| match Stopped::new(StoppedParameters { tilt }) {
+        Ok(model) => model.start().err().map(|error| error.to_string()),
+        Err(error) => Some(error.to_string()),
+    };
+    let text = refused(-2.0).expect("the least angle is -1");
+    assert!(text.contains("ends") && text.contains("beyond its end"), "{text}");
+    assert_eq!(refused(-0.9), None);
+    // An angle starts in (-pi, pi]: that of 5 rad is -1.28.
+    assert!(refused(5.0).is_some());
+}
+
+#[test]
 fn a_joint_that_turns_and_slides_counts_its_turns() {
     let run = run(&Screw::new(ScrewParameters::default()).expect("a model"), 6.0);
     for angle in ["angle", "turned"] {

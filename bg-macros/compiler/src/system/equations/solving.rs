@@ -71,7 +71,12 @@ impl Signals<'_> {
                 }
                 Err(trouble) => {
                     let fault = self.unsolvable(&group, &equations, &trouble);
-                    self.fault_once(fault);
+                    // Efforts and flows of one ring are one fault, whichever equation it is that each cannot have.
+                    let said = |fault: &Fault| fault.message.rsplit_once(": ").map(|(said, _)| said.to_owned());
+                    let is_said = |known: &Fault| known.code == fault.code && said(known) == said(&fault);
+                    if matches!(trouble, Trouble::Nonlinear) || !self.faults.iter().any(is_said) {
+                        self.fault_once(fault);
+                    }
                 }
             }
         }
