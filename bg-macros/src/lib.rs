@@ -771,7 +771,7 @@ use proc_macro::TokenStream;
 ///
 ///         /// The motion in the plane.
 ///         scene Swing {
-///             observe { angle: rad = pin.angle; force: N = norm(pin.force) }
+///             observe { angle: rad = pin.direction; force: N = norm(pin.force) }
 ///             tune { mass, angle }
 ///             expect planar;
 ///             expect states = 7;
@@ -780,7 +780,7 @@ use proc_macro::TokenStream;
 ///         scene Ideal {
 ///             without { push }
 ///             rigid joints;
-///             observe { angle: rad = pin.angle; pin.force; pin.gap }
+///             observe { angle: rad = pin.direction; pin.force; pin.gap }
 ///             tune { mass, angle }
 ///             expect states = 3;
 ///         }
@@ -823,6 +823,7 @@ use proc_macro::TokenStream;
 /// |---|---|
 /// | parameters folded | nothing: a parameter that is not tuned is its default. A switch whose guard has become a number is decided |
 /// | constant states | that the rates of all of them, and what `project` gives them, vanish or stay while all of them have their start values: the greatest such set, found by dropping what does not hold until nothing does. By induction in time they keep their values. A start value that depends on a `guess` is not taken for constant |
+/// | turns counted | that a sine and a cosine turn with the speed of the state that counts the turns of their [angle](#angles-and-ways): the angle is then this state. Only where a scene reads an angle |
 /// | equal states | that states with the same start value up to sign have the same rate up to sign, while all the equalities hold: classes are split until none splits |
 /// | states of joints expressed | that a rigid joint determines the momentum of a body and its position, or two bodies turn alike by it, or a [loop](#loops-in-closed-form) gives the orientation and the momentum of a link: its row is solved for them, with a pivot that cannot vanish, and no rate needs its reaction. Not done where velocities at the start need not fit, where rows that close loops may hold all that is left, where an output shows a reaction that several joints may share, where the scene says `all reactions;`, or where rates would take more operations: the report then says which |
 /// | reactions solved | nothing: this is where the multipliers of rigid joints are solved for, on what is left |
