@@ -153,7 +153,7 @@ use proc_macro::TokenStream;
 /// - `restitution E` (only a scalar rSe `= 0 at GAP` of no joint) makes it a **stop**, which acts one way only: GAP is how far its
 ///   end is passed, which stays at 0 or below ([stops with a restitution](#stops-with-a-restitution)). E is of parameters, from 0 to
 ///   1 (BG0704), and so is V of `rest below V`. A momentum has to determine the flow, and no input (BG0517).
-/// - `start E` (I, C): momentum or displacement at t = 0, of parameters only; 0 when left out.
+/// - `start E` (I, C): momentum or displacement at t = 0, of parameters and the start pose only; 0 when left out.
 /// - `energy E` (I, C with a law of a variable): the stored energy. For a scalar law that the compiler can integrate it
 ///   may be left out; the energy is then 0 at state 0. A given one is compared with the law: its derivative must be the
 ///   law (BG0504), and it must not jump where a comparison with the state switches the law (BG0506). Where law and
@@ -220,7 +220,7 @@ use proc_macro::TokenStream;
 /// | vectors, matrices | `[a, b, c]`; a matrix is a vector of its three rows. The components of a named vector are `name.x`, `name.y`, `name.z` |
 /// | choice | `if a < b { e } else { f }`, also `<= > >=`, `else if` ([events](#events)) |
 /// | time and energy | `t` in s; `stored_energy` in J; `supplied_power`, `dissipated_power` in W |
-/// | junctions | `NAME.flow` of a 1-junction, `NAME.effort` of a 0-junction |
+/// | junctions | `NAME.flow` of a 1-junction, `NAME.effort` of a 0-junction; `NAME.displacement` of a scalar 1-junction, the integral of its flow since t = 0 ([ways](#angles-and-ways)) |
 /// | elements | `NAME.flow`, `NAME.effort` of its bond (of a two-port's bond in), signs along the half arrow; `NAME.power` into it; `NAME.energy`, `NAME.q` of a C, `NAME.energy`, `NAME.p` of an I |
 ///
 /// Shapes: scalars, vectors of three, 3 x 3 matrices. A scalar times anything, matrix times vector and matrix times
@@ -229,7 +229,8 @@ use proc_macro::TokenStream;
 /// | function | gives | units |
 /// |---|---|---|
 /// | `sin cos tan asin acos exp ln tanh` (a) | the function of a scalar, angles in rad | of a pure number; a pure number |
-/// | `atan2(y, x)` | the angle of (x, y), rad | y and x alike |
+/// | `atan2(y, x)` | the angle of (x, y) in one turn, -pi to pi, rad | y and x alike |
+/// | `unwrapped(y, x, w)` | the angle of (x, y) with its turns, rad, where w is its speed, or nearly; only in a `let` and in `observe` ([angles](#angles-and-ways)) | y and x alike, w in rad/s |
 /// | `sqrt(a)`, `abs(a)` | of a scalar | the root; the same |
 /// | `root(a, l)` | the square root of \|a\| with the sign of a, linear for a small beside l ([below](#the-square-root-at-zero)) | a and l alike; the root |
 /// | `pow(a, b)` | a to the power b | any unit with a whole number b, else pure numbers |
@@ -240,6 +241,47 @@ use proc_macro::TokenStream;
 /// | `rotation_x(a)`, `rotation_y(a)`, `rotation_z(a)` | the rotation matrix about an axis, rad | of a pure number; a pure number |
 /// | `guess(a)` | an unknown of the assembly, pose or velocity, first guessed as a; only in starts | the same |
 /// | `integral(a)` | the time integral of a scalar since t = 0, a state of its own; only in `observe` | times s |
+///
+/// ## Angles and ways
+///
+/// An angle that a word of the language gives **counts turns**: it starts in (-pi, pi] and changes without a jump, so that a law of it, a
+/// table, a switch or a stop acts on the third turn as on the first. What does not is called a **direction**: the same angle in one turn,
+/// from -pi to pi, which jumps.
+///
+/// | with its turns | in one turn | of what |
+/// |---|---|---|
+/// | `PIN.angle` | `PIN.direction` | the free rotation of a revolute or cylindrical joint |
+/// | `BODY.angle` | `BODY.direction` | a body's x axis about the inertial z; where the axis passes through z the angle has no meaning and may gain or lose half a turn |
+/// | `unwrapped(y, x, w)` | `atan2(y, x)` | any, such as an angle of a spherical or universal joint, which have no names of their own |
+/// | `J.displacement` | | the integral of the flow of a scalar 1-junction since t = 0, such as `PIN.spin.displacement` |
+///
+/// Each is a state, but only where something reads it: a law, an output. Its rate is the speed, from the angle at the start on. What is read
+/// is the angle of the pose next to that state, so it is as exact as the pose, and an equilibrium or a linear model sees the pose alone. In
+/// a scene in the plane the state is proved to be the angle, and where the scene has `angles;` or another state that differs from it by a
+/// number, it is no state more; one that only outputs read does not count among the states that a scene expects. The w of `unwrapped` tells where the angle goes in a step: it may be off by what adds up to less than half a
+/// turn there. Where an output needs no turns, such as that of a rocker, a direction costs no state.
+///
+/// ```
+/// # use bg_model::bond_graph;
+/// use bg_model::run::Simulation;
+///
+/// bond_graph! {
+///     /// A flywheel that winds up a torsion spring, a turn and a half to each side.
+///     graph Flywheel {
+///         param stiffness: N*m/rad = 0.1, above 0;
+///         ground { point pivot = [0, 0, 0]; }
+///         body wheel { mass 1; inertia [0.1, 0.1, 0.1]; start spin [0, 0, 10]; }
+///         joint pin: revolute z (ground.pivot -> wheel) { rigid; }
+///         drive spring on pin torque = -stiffness * pin.angle;
+///         observe { angle: rad = pin.angle; direction: rad = pin.direction }
+///     }
+/// }
+/// let model = Flywheel::new(FlywheelParameters::default())?;
+/// let run = Simulation::new(&model).every(0.5).until(6.0).run()?;
+/// // 10 sin(t)
+/// assert!((run["angle"][12] - 10.0 * 6.0_f64.sin()).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// ## The square root at zero
 ///
@@ -321,7 +363,7 @@ use proc_macro::TokenStream;
 /// | `NAME.position`, `.velocity` | of the centre of mass, inertial axes |
 /// | `NAME.orientation`, `.x_axis`, `.y_axis`, `.z_axis` | the rotation matrix, its columns |
 /// | `NAME.angular_velocity` | inertial axes |
-/// | `NAME.angle` | of the body's x axis about the inertial z, -pi to pi |
+/// | `NAME.angle`, `.direction` | of the body's x axis about the inertial z, rad: with its turns, in one turn ([angles](#angles-and-ways)) |
 /// | `NAME.momentum` or `.p`, `.angular_momentum` or `.h` | about the centre of mass, inertial axes |
 /// | `NAME.kinetic_energy`, `.mass`, `.center`, `.tensor` | the last two in the body's axes |
 /// | `NAME.POINT.position`, `.velocity`, `.arm` | of a point or of `origin`; the arm is from the centre of mass, inertial axes |
@@ -360,7 +402,7 @@ use proc_macro::TokenStream;
 /// | `NAME.moment` | on the second body, inertial axes, N\*m; where the joint holds or drives a rotation |
 /// | `NAME.gap` | second end minus first end, inertial axes, m |
 /// | `NAME.x_offset` and its like | the gap in the first body's axes, of held axes of a joint with a slide or with a stiffness for each axis |
-/// | `NAME.angle`, `.speed` | of the free rotation of revolute and cylindrical joints, rad, rad/s |
+/// | `NAME.angle`, `.direction`, `.speed` | of the free rotation of revolute and cylindrical joints, rad, rad/s; the angle with its turns, the direction in one turn ([angles](#angles-and-ways)) |
 /// | `NAME.travel` | of the free translation of prismatic and cylindrical joints, m |
 /// | `NAME.spin`, `NAME.slide` | the 1-junctions of the free axes, to bond to: `gearbox -> pin.spin;` |
 /// | `NAME.slip.flow`, `NAME.twist.flow` | relative velocity, relative angular velocity, inertial axes |
@@ -438,7 +480,8 @@ use proc_macro::TokenStream;
 ///
 /// A **stop** acts where the displacement goes beyond `at most` or `at least`, with a spring and, where `damping` is given, a
 /// damper; the two together never pull. The displacement is the travel of a sliding joint; else it is a state, the angle or way
-/// from `start` (0 when left out) on. With sin p = d / (2 sqrt(k m)) a mass m that hits stiffness k and damping d leaves with
+/// from `start` on. Left out that is the joint's angle at the start, so that ends are values of `pin.angle`, turns and all; 0 for a
+/// junction. With sin p = d / (2 sqrt(k m)) a mass m that hits stiffness k and damping d leaves with
 /// exp(-(pi - 2 p) tan p) of its speed, whatever that is: for 0.8 take sin p = 0.0744, for 0.5 sin p = 0.2553.
 ///
 /// With `restitution e` in the place of stiffness and damping it does not give way: what hits it with a speed v leaves with e v,
@@ -581,7 +624,8 @@ use proc_macro::TokenStream;
 /// - **The ground** is one for all. Points that a part has on it are `ground.front.pivot` outside. Gravity, too, is the
 ///   graph's: one `gravity` for all parts together.
 /// - **Outputs.** The `observe` of a part names what is worth seeing of it. A graph watches `front.length`, or
-///   [all of it](#observe); it may also calculate with these names.
+///   [all of it](#observe); it may also calculate with these names. An output may have the name of something in the part: `observe` then
+///   means the output, any other expression the thing.
 /// - **Without a name**, `part Leg;`, what is inside keeps its names and its parameters are those of the graph: a graph that
 ///   begins with a machine and adds what drives it and what is seen of it.
 ///
@@ -704,7 +748,7 @@ use proc_macro::TokenStream;
 /// | `expect planar;` | an error (BG0604) unless all bodies are proved to stay in planes parallel to x-y |
 /// | `expect integral causality;` | an error (BG0403) where a storage is in [derivative causality](#derivative-causality) |
 /// | `angles;` | orientations that are proved to turn about one axis are integrated as angles: a state less each, for a sine and a cosine in the rate; displacements between them are then recovered |
-/// | `expect states = 29;` | an error (BG0605) unless so many states are integrated, integrals for outputs not counted |
+/// | `expect states = 29;` | an error (BG0605) unless so many states are integrated, integrals and angles for outputs only not counted |
 ///
 /// ```
 /// # use bg_model::bond_graph;
@@ -727,7 +771,7 @@ use proc_macro::TokenStream;
 ///
 ///         /// The motion in the plane.
 ///         scene Swing {
-///             observe { angle: rad = pin.angle; force: N = norm(pin.force) }
+///             observe { angle: rad = pin.direction; force: N = norm(pin.force) }
 ///             tune { mass, angle }
 ///             expect planar;
 ///             expect states = 7;
@@ -736,7 +780,7 @@ use proc_macro::TokenStream;
 ///         scene Ideal {
 ///             without { push }
 ///             rigid joints;
-///             observe { angle: rad = pin.angle; pin.force; pin.gap }
+///             observe { angle: rad = pin.direction; pin.force; pin.gap }
 ///             tune { mass, angle }
 ///             expect states = 3;
 ///         }
@@ -779,6 +823,7 @@ use proc_macro::TokenStream;
 /// |---|---|
 /// | parameters folded | nothing: a parameter that is not tuned is its default. A switch whose guard has become a number is decided |
 /// | constant states | that the rates of all of them, and what `project` gives them, vanish or stay while all of them have their start values: the greatest such set, found by dropping what does not hold until nothing does. By induction in time they keep their values. A start value that depends on a `guess` is not taken for constant |
+/// | turns counted | that a sine and a cosine turn with the speed of the state that counts the turns of their [angle](#angles-and-ways): the angle is then this state. Only where a scene reads an angle |
 /// | equal states | that states with the same start value up to sign have the same rate up to sign, while all the equalities hold: classes are split until none splits |
 /// | states of joints expressed | that a rigid joint determines the momentum of a body and its position, or two bodies turn alike by it, or a [loop](#loops-in-closed-form) gives the orientation and the momentum of a link: its row is solved for them, with a pivot that cannot vanish, and no rate needs its reaction. Not done where velocities at the start need not fit, where rows that close loops may hold all that is left, where an output shows a reaction that several joints may share, where the scene says `all reactions;`, or where rates would take more operations: the report then says which |
 /// | reactions solved | nothing: this is where the multipliers of rigid joints are solved for, on what is left |
@@ -1199,6 +1244,7 @@ use proc_macro::TokenStream;
 /// | BG0333 | a graph without a bond |
 /// | BG0334 | a name that the language reserves: `t`, the time |
 /// | BG0335 | a rate of `baumgarte` that is no number above 0 |
+/// | BG0336 | `unwrapped` outside of a `let` and of `observe` |
 /// | **causality** | |
 /// | BG0401 | causal conflict: two bonds determine one effort or flow |
 /// | BG0402 | causal conflict: none determines it |
@@ -1220,6 +1266,7 @@ use proc_macro::TokenStream;
 /// | BG0515 | friction that depends on a reaction which depends on the friction |
 /// | BG0516 | friction that cannot stick, since no momentum determines its flow |
 /// | BG0517 | a stop with a restitution that nothing can hit, since no momentum determines its flow |
+/// | BG0518 | an `unwrapped` angle that is not known at the start |
 /// | **scenes** | |
 /// | BG0601 | two models of one name, or a model with the name of another one's parameter or input struct |
 /// | BG0602 | no such thing to leave out |

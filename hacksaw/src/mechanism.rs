@@ -212,7 +212,7 @@ bond_graph! {
         scene Rigid {
             rigid joints;
             observe {
-                C4: m = frame.position; frame_angle: rad = frame.angle; guide_angle: rad = guide.angle;
+                C4: m = frame.position; frame_angle: rad = frame.direction; guide_angle: rad = guide.direction;
                 crank_speed: rad/s = pin_o.speed; F34: N = pin_b.force;
                 gap_23: m = norm(pin_a.gap); gap_34: m = norm(pin_b.gap); gap_15: m = norm(pin_c.gap);
             }

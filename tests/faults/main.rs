@@ -81,7 +81,7 @@ const MECHANISM: [(&str, &str); 14] = [
     ("BG0214", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness ▸1e4; restitution 0.5; }"),
 ];
 
-const GRAPH: [(&str, &str); 35] = [
+const GRAPH: [(&str, &str); 36] = [
     ("BG0301", "param mass: ▸kgs = 1;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0302", "param m: kg = 1;\nSe f = 1; 1 j: translation; I ▸m = 2; f -> j -> m;"),
     ("BG0303", "param mass: kg = 1;\nSe f = 1; 1 j: translation; I m = ▸mas; f -> j -> m;"),
@@ -115,6 +115,7 @@ const GRAPH: [(&str, &str); 35] = [
     ("BG0329", "param b: 1 = ▸sqrt(2);\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0330", "Se f = ▸guess(1); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0331", "MSe f = ▸integral(m.power); 1 j: translation; I m = 2; f -> j -> m;"),
+    ("BG0336", "MSe f = ▸unwrapped(m.p, m.p, 0); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
 ];
@@ -126,7 +127,7 @@ const CAUSALITY: [(&str, &str); 4] = [
     ("BG0404", "Sf a = 1; 1 j: translation; R ▸r(effort e) = 2 * e; a -> j -> r;"),
 ];
 
-const EQUATIONS: [(&str, &str); 15] = [
+const EQUATIONS: [(&str, &str); 16] = [
     (
         "BG0501",
         "Se e = 1; 1 j: translation; param g: m/N^3/s = 1; R a = 1; 0 k; R b(effort e) = g * hold.effort * e * e; e -> j -> a; j -> ▸k -> b;
@@ -170,6 +171,7 @@ const EQUATIONS: [(&str, &str); 15] = [
          friction ▸rub on guide { coulomb 0.3; normal guide.force.y; }",
     ),
     ("BG0516", "Sf drum = 1; 1 j: translation; R ▸rub(v) = 2 holds 3; drum -> j -> rub;"),
+    ("BG0518", "param T: s = 1; param F: N = 1; let a: rad = ▸unwrapped(t, T, 1 / T); MSe f = a * F; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0517", "Sf drum = 1; 1 j: translation; drum -> j; stop ▸end on j { at most 2; restitution 0.5; }"),
 ];
 
@@ -182,7 +184,27 @@ const VALUES: [(&str, &str); 4] = [
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 32] = [
+const MORE: [(&str, &str); 43] = [
+    ("BG0102", "1 slide ▸translation; I m = 2; slide -> m;"),
+    ("BG0102", "let stiffness ▸N = 2;\n1 slide: translation; I m = 2; slide -> m;"),
+    ("BG0102", "body rod { mass 1; inertia [1, 1, 1]; point end = [0, 1, 0]; start end at 0▸, 1, 0; }"),
+    ("BG0102", "body rod { mass 1; inertia [1, 1, 1]; start at (0▸, 1, 0); }"),
+    ("BG0102", "1 j: translation; I m = 2; R r = 3 ▸kg; j -> m; j -> r;"),
+    (
+        "BG0207",
+        "ground { point O = [0, 0, 0]; } ▸ground { point P = [1, 0, 0]; }\n\
+         body rod { mass 1; inertia [1, 1, 1]; } joint a: spherical (ground.O -> rod) { rigid; }\n\
+         joint b: spherical (ground.P -> rod) { rigid; }",
+    ),
+    ("BG0301", "param a: ▸deg = 90; Se f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
+    ("BG0303", "body rod { mass 1; inertia [1, 1, 1]; start turned rotation_z(▸pi / 2); }"),
+    (
+        "BG0316",
+        "1 coil: electrical; I L = 1e-3; body rod { mass 1; inertia [1, 1, 1]; }\n\
+         joint ▸pin: revolute z (ground -> rod) { rigid; } coil -> L; coil -> pin.spin;",
+    ),
+    ("BG0316", "1 coil: electrical; I L = 1e-3; 1 ▸shaft: rotation; I J = 1; coil -> L; coil -> shaft -> J;"),
+    ("BG0701", "body ▸rod { sphere radius 1; density 1e-320; }"),
     ("BG0202", "body rod { sphere radius 1; density 1; }\njoint pin: spherical (ground -> ▸rod.end) { stiffness 1; }"),
     ("BG0202", "body rod { sphere radius 1; density 1; point end = [1, 0, 0]; start ▸top at [0, 0, 0]; }"),
     ("BG0203", "1 j: translation; I m = 2; j -> m; friction ▸rub on j { viscous 2; }"),

@@ -42,11 +42,27 @@ impl std::fmt::Display for Fault {
     }
 }
 
-/// Two things of one name, as the stages that declare names find it.
+/// Two things of one name, as the stages that declare names find it, at the second one.
 #[derive(Clone, Debug)]
 pub struct DeclaredTwice {
     /// The name.
     pub name: String,
+    /// Where the first one is, in words: empty where the two stand on one line, or the compiler knows no places.
+    first: String,
+}
+
+impl DeclaredTwice {
+    /// The name declared at `second` is declared at `first`, too.
+    #[must_use]
+    pub fn new(name: &str, second: Span, first: Span) -> Self {
+        let line = first.start().line;
+        let first = match (second.file(), first.file()) {
+            (here, there) if here != there && line > 0 => format!(", first in line {line} of {there}"),
+            _ if line > 0 && line != second.start().line => format!(", first in line {line}"),
+            _ => String::new(),
+        };
+        Self { name: name.to_owned(), first }
+    }
 }
 
 impl Explain for DeclaredTwice {
@@ -55,7 +71,7 @@ impl Explain for DeclaredTwice {
     }
 
     fn message(&self) -> String {
-        format!("`{}` is declared twice", self.name)
+        format!("`{}` is declared twice{}", self.name, self.first)
     }
 
     fn help(&self) -> String {

@@ -174,6 +174,7 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
 /// The equations that the variant's model integrates: those of a scene reduced, with the report of it.
 fn reduced(variant: &Variant, mut equations: StateEquations) -> Staged<(StateEquations, Option<Report>)> {
     let Some(scene) = &variant.scene else {
+        reduce::count_turns(&mut equations);
         reduce::solve_reactions(&mut equations);
         return Ok((equations, None));
     };

@@ -87,7 +87,7 @@ pub struct StateInfo {
     pub kind: StateKind,
     /// Its causality: `integral`. A storage in derivative causality has no state; its stroke is in the bonds.
     pub causality: &'static str,
-    /// The element that stores it, or the junction that it follows; empty for an integral.
+    /// The element that stores it, or the junction that it follows; empty for an integral and for an angle that counts turns.
     pub element: &'static str,
 }
 
@@ -104,12 +104,14 @@ pub enum StateKind {
     Orientation(usize, usize),
     /// The angle of a body that turns about one axis, rad.
     Angle,
+    /// The displacement of a scalar 1-junction, or the angle of a joint or body, rad, with its turns: where a law or an output reads it.
+    Way,
     /// The integral that an output asks for.
     Integral,
 }
 
 impl StateKind {
-    /// What stores it, as tables show it: `I`, `C`, `position`, `orientation`, `angle` or `integral`.
+    /// What stores it, as tables show it: `I`, `C`, `position`, `orientation`, `angle`, `way` or `integral`.
     #[must_use]
     pub const fn storage(self) -> &'static str {
         match self {
@@ -118,6 +120,7 @@ impl StateKind {
             Self::Position(_) => "position",
             Self::Orientation(..) => "orientation",
             Self::Angle => "angle",
+            Self::Way => "way",
             Self::Integral => "integral",
         }
     }

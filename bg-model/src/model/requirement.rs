@@ -40,6 +40,9 @@ impl Requirement {
     /// What is wrong with the value.
     fn said_of(&self, value: f64) -> String {
         match self.unit {
+            Some(unit) if value > 0.0 => {
+                format!(" is {}, too near 0 to calculate with", format!("{value:e} {unit}").trim_end())
+            }
             Some(unit) => format!(" is {}; it {}", format!("{value} {unit}").trim_end(), self.wanted),
             None => format!(" {}", self.wanted),
         }
@@ -51,8 +54,13 @@ impl Requirement {
         if names.is_empty() { String::new() } else { format!("; it depends on {}", names.join(", ")) }
     }
 
+    /// Whether a value is allowed; what is no number is not, nor is one so near 0 that it has no reciprocal.
     fn holds(&self, value: f64) -> bool {
-        value > 0.0 || value == 0.0 && !self.is_strict
+        if self.is_strict && self.unit.is_some() {
+            value >= f64::MIN_POSITIVE
+        } else {
+            value > 0.0 || value == 0.0 && !self.is_strict
+        }
     }
 }
 
@@ -93,6 +101,15 @@ mod tests {
         assert!(require(&ALL, &[0.0, 1.0, 1.0]).is_err());
         assert!(require(&ALL, &[1.0, -1e-300, 1.0]).is_err());
         assert!(require(&ALL, &[f64::NAN, 1.0, 1.0]).is_err());
+    }
+
+    #[test]
+    fn what_has_no_reciprocal_is_too_near_zero() {
+        assert!(require(&ALL, &[1e-307, 1e-320, 1e-320]).is_ok());
+        assert_eq!(
+            require(&ALL, &[1e-320, 1.0, 1.0]).unwrap_err().to_string(),
+            "the mass of body `rod` is 1e-320 kg, too near 0 to calculate with; it depends on `length`, `density`"
+        );
     }
 
     #[test]

@@ -22,7 +22,7 @@ mod pins {
             joint shoulder: revolute z (ground.O -> upper) { rigid; }
             joint elbow: revolute z (upper.tip -> lower) { rigid; }
             drive motor on shoulder torque = 2;
-            observe { upper.angle; lower.angle; shoulder.force; elbow.force; shoulder.moment; elbow.moment }
+            observe { upper.direction; lower.direction; shoulder.force; elbow.force; shoulder.moment; elbow.moment }
             scenes only;
             scene BySpeeds { expect planar; expect independent speeds; expect states = 6; }
             scene WithAll { all reactions; expect planar; expect states = 14; }
@@ -47,7 +47,7 @@ mod slide {
             joint way: prismatic x (ground.O -> slider) { rigid; }
             drive motor on main torque = 5;
             observe {
-                crank.angle; rod.angle; slider.position; main.force; pin.force; wrist.force; way.force; way.moment; main.moment
+                crank.direction; rod.direction; slider.position; main.force; pin.force; wrist.force; way.force; way.moment; main.moment
             }
             scenes only;
             scene BySpeeds { expect planar; expect independent speeds; }

@@ -33,7 +33,7 @@ mod four_bar {
             joint b: revolute z (coupler.B -> rocker.B) { rigid; }
             drive motor on o torque = torque - 0.02 * o.speed;
             observe {
-                crank.angle; coupler.angle; rocker.angle; rocker.position; o.force; a.force; b.force; q.force;
+                crank.direction; coupler.direction; rocker.direction; rocker.position; o.force; a.force; b.force; q.force;
                 energy: J = stored_energy - integral(supplied_power - dissipated_power);
             }
             scenes only;
@@ -60,7 +60,7 @@ mod slides {
             joint small_end: revolute z (link.high -> piston) { rigid; }
             joint bore: prismatic x (ground.O -> piston) { rigid; }
             drive starter on main torque = torque;
-            observe { crank.angle; link.angle; piston.position.x }
+            observe { crank.direction; link.direction; piston.position.x }
             scenes only;
             scene Short { dependent link; expect states = 3; }
         }
@@ -75,7 +75,7 @@ mod slides {
             joint a: revolute z (crank.A -> block) { rigid; }
             joint slot: prismatic x (arm -> block) { rigid; }
             drive motor on o torque = 5;
-            observe { crank.angle; arm.angle; block.position; o.force; q.force; a.force; slot.force; slot.moment }
+            observe { crank.direction; arm.direction; block.position; o.force; q.force; a.force; slot.force; slot.moment }
             scenes only;
             scene Slotted { dependent arm; expect planar; expect states = 3; }
             scene SlottedWithAll { all reactions; expect planar; }
@@ -104,7 +104,7 @@ mod bumper {
             friction rub on bore { coulomb 0.5; static 0.8; }
             stop end on bore { at least 0.25; restitution 0.6; }
             observe {
-                crank.angle; link.angle; block.position.x; main.force; small_end.force; bore.force; end.effort;
+                crank.direction; link.direction; block.position.x; main.force; small_end.force; bore.force; end.effort;
                 energy: J = stored_energy; lost: J = integral(dissipated_power);
             }
             scenes only;
@@ -145,7 +145,7 @@ fn a_four_bar_moves_and_reacts_as_with_all_reactions_above_and_below() {
         let all = WithAll::new(WithAllParameters { side, ..WithAllParameters::default() }).expect("a model");
         let closed = run(&closed, Integrator::Dop853, 1e-12);
         are_same(&closed, &run(&all, Integrator::Dop853, 1e-12), 1e-8);
-        assert!(closed["coupler.angle"].iter().all(|angle| angle * side > -0.5), "it stays on its side");
+        assert!(closed["coupler.direction"].iter().all(|angle| angle * side > -0.5), "it stays on its side");
         let energy = &closed["energy"];
         assert!(energy.iter().all(|value| (value - energy[0]).abs() < 1e-8));
     }

@@ -1,6 +1,7 @@
-//! What mechanisms do at rigid joints and in loops, how they start, and orifices at rest.
+//! What mechanisms do at rigid joints and in loops, how they start and turn, and orifices at rest.
 
 mod all_reactions;
+mod angles;
 mod bricard;
 mod closed_loops;
 mod immobile;

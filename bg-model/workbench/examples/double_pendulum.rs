@@ -50,8 +50,8 @@ bond_graph! {
         joint elbow: revolute z (upper.bottom -> lower.top) { stiffness stiffness; tilt stiffness tilt_stiffness; }
 
         observe {
-            upper_angle: rad = shoulder.angle;
-            elbow_angle: rad = elbow.angle;
+            upper_angle: rad = shoulder.direction;
+            elbow_angle: rad = elbow.direction;
             upper_position: m = upper.position;
             lower_position: m = lower.position;
             upper_velocity: m/s = upper.velocity;
@@ -66,7 +66,7 @@ bond_graph! {
 
         /// The angles of the rods, in the plane.
         scene RodAngles {
-            observe { upper_angle: rad = shoulder.angle; elbow_angle: rad = elbow.angle; }
+            observe { upper_angle: rad = shoulder.direction; elbow_angle: rad = elbow.direction; }
             tune { upper_angle, lower_angle, stiffness, gravity }
             expect planar;
             expect states = 14;
@@ -75,8 +75,8 @@ bond_graph! {
         scene RigidPendulum {
             rigid joints;
             observe {
-                upper_angle: rad = shoulder.angle;
-                elbow_angle: rad = elbow.angle;
+                upper_angle: rad = shoulder.direction;
+                elbow_angle: rad = elbow.direction;
                 shoulder_gap: m = shoulder.gap;
                 elbow_gap: m = elbow.gap;
                 upper_position: m = upper.position;

@@ -64,9 +64,9 @@ bond_graph! {
         drive motor on pin_o torque = torque;
 
         observe {
-            angle: rad = crank.angle;
+            angle: rad = crank.direction;
             speed: rad/s = pin_o.speed;
-            rod_angle: rad = rod.angle;
+            rod_angle: rad = rod.direction;
             slider_x: m = slider.position.x;
             slider_y: m = slider.position.y;
             travel: m = slide.travel;
@@ -84,9 +84,9 @@ bond_graph! {
         scene RigidSliderCrank {
             rigid joints;
             observe {
-                angle: rad = crank.angle;
+                angle: rad = crank.direction;
                 speed: rad/s = pin_o.speed;
-                rod_angle: rad = rod.angle;
+                rod_angle: rad = rod.direction;
                 slider_x: m = slider.position.x;
                 slider_y: m = slider.position.y;
                 gap_o: m = norm(pin_o.gap);

@@ -90,14 +90,14 @@ fn operations(costs: &[(&str, Counts)]) -> impl Iterator<Item = TokenStream> {
     })
 }
 
-/// The name of the element or junction that a state belongs to; none of an integral.
+/// The name of the element or junction that a state belongs to; none of an integral or of an angle that counts turns.
 pub(super) fn element_of(graph: &BondGraph, origin: Origin) -> &str {
     let node = match origin {
-        Origin::Momentum(node, _) | Origin::Displacement(node, _) => node,
+        Origin::Momentum(node, _) | Origin::Displacement(node, _) | Origin::Way(node) => node,
         Origin::Position(track, _) | Origin::Orientation(track, ..) | Origin::Angle(track) => {
             graph.tracks[track].junction
         }
-        Origin::Integral(_) => return "",
+        Origin::Turn(_) | Origin::Integral(_) => return "",
     };
     &graph.node(node).name.text
 }
@@ -109,6 +109,7 @@ fn state_kind(origin: Origin) -> TokenStream {
         Origin::Position(_, axis) => quote!(Position(#axis)),
         Origin::Orientation(_, row, column) => quote!(Orientation(#row, #column)),
         Origin::Angle(_) => quote!(Angle),
+        Origin::Turn(_) | Origin::Way(_) => quote!(Way),
         Origin::Integral(_) => quote!(Integral),
     };
     quote!(::bg_model::description::StateKind::#kind)

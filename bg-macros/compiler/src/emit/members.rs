@@ -27,7 +27,7 @@ pub(super) const POINT: [Member; 3] = [
     ("arm", Vector, "From the centre of mass to the point, inertial axes. Unit: m."),
 ];
 
-const BODY: [Member; 16] = [
+const BODY: [Member; 17] = [
     ("position", Vector, "Place of the centre of mass, inertial axes. Unit: m."),
     ("velocity", Vector, "Velocity of the centre of mass, inertial axes. Unit: m/s."),
     ("orientation", Matrix, "Rotation matrix, body to inertial."),
@@ -35,7 +35,8 @@ const BODY: [Member; 16] = [
     ("y_axis", Vector, "The body's y axis, inertial axes."),
     ("z_axis", Vector, "The body's z axis, inertial axes."),
     ("angular_velocity", Vector, "Angular velocity, inertial axes. Unit: rad/s."),
-    ("angle", Scalar, "Angle of the body's x axis about the inertial z, -pi to pi. Unit: rad."),
+    ("angle", Scalar, "Angle of the body's x axis about the inertial z, with its turns. Unit: rad."),
+    ("direction", Scalar, "The same in one turn, -pi to pi. Unit: rad."),
     ("momentum", Vector, "Momentum, inertial axes. Unit: kg*m/s."),
     ("angular_momentum", Vector, "Angular momentum about the centre of mass, inertial axes. Unit: kg*m^2/s."),
     ("p", Vector, "Momentum, inertial axes. Unit: kg*m/s."),
@@ -65,7 +66,10 @@ pub(super) fn of(item: &Item) -> Vec<Member> {
         Item::Drive(_) => vec![("power", Scalar, "Minus the power that it gives. Unit: W.")],
         Item::Friction(_) => vec![EFFORT, POWER],
         Item::Stop(_) => vec![EFFORT],
-        Item::Junction(junction) if junction.kind == JunctionKind::One => vec![FLOW],
+        Item::Junction(junction) if junction.kind == JunctionKind::One => {
+            let way = ("displacement", Scalar, "Integral of its flow since the start.");
+            [FLOW].into_iter().chain((junction.cardinality == 1).then_some(way)).collect()
+        }
         Item::Junction(_) => vec![EFFORT],
         Item::Element(element) => of_element(element.kind),
         _ => Vec::new(),
@@ -79,7 +83,8 @@ fn of_joint(joint: &Joint) -> Vec<Member> {
     }
     members.push(GAP);
     if joint.kind.spin().is_some() {
-        members.push(("angle", Scalar, "Angle of the free rotation. Unit: rad."));
+        members.push(("angle", Scalar, "Angle of the free rotation, with its turns. Unit: rad."));
+        members.push(("direction", Scalar, "The same in one turn, -pi to pi. Unit: rad."));
         members.push(("speed", Scalar, "Speed of the free rotation. Unit: rad/s."));
     }
     if joint.kind.slide().is_some() {

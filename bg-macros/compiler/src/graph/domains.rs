@@ -4,6 +4,8 @@
 //! Method: bonds at one junction form a class; a class gets its effort unit from a junction's domain, a source, a law's
 //! parameter or, through a two-port, from its neighbour class, until nothing changes.
 
+use std::collections::BTreeSet;
+
 use super::typing::{Quantity, Shape, Typed, Types, is_junction};
 use super::{BondGraph, BondId, Element, GraphFault, Law, Node, NodeId};
 use crate::fault::Fault;
@@ -13,6 +15,8 @@ use crate::source::ast::{ElementKind, Role, TrackKind};
 /// Gives every bond its units and checks every law. `declared` are the junctions that name their domain.
 pub fn assign(graph: &mut BondGraph, declared: &[(NodeId, Domain)], faults: &mut Vec<Fault>) {
     let classes = classes(graph);
+    // Classes of two units: their laws are compared with neither.
+    let mut torn = BTreeSet::new();
     let mut efforts: Vec<Option<Dimension>> = vec![None; graph.bonds.len()];
     let mut named: Vec<Option<NodeId>> = vec![None; graph.bonds.len()];
     for &(node, domain) in declared {
@@ -21,15 +25,18 @@ pub fn assign(graph: &mut BondGraph, declared: &[(NodeId, Domain)], faults: &mut
         match (efforts[class], named[class]) {
             (Some(known), Some(first)) if known != effort => {
                 let [name, first] = [node, first].map(|node| &graph.node(node).name);
-                let what = format!("bonds join `{}` to `{}`", first.text, name.text);
-                faults.push(Fault::new(name.span, &GraphFault::Units { what, left: known, right: effort }));
+                torn.insert(class);
+                let (from, to) = (first.text.clone(), name.text.clone());
+                let left = Domain::of_effort(known).unwrap_or(domain);
+                faults.push(Fault::new(name.span, &GraphFault::Domains { from, to, left, right: domain }));
             }
             _ => (efforts[class], named[class]) = (Some(effort), Some(node)),
         }
     }
     let efforts = anchored(graph, &classes, efforts);
     report_unknown(graph, &classes, efforts.clone(), faults);
-    check(graph, &efforts, faults);
+    let is_torn = |node: &Node| node.bonds.iter().any(|bond| torn.contains(&classes[bond.0]));
+    check(graph, &efforts, &is_torn, faults);
     for (bond, effort) in graph.bonds.iter_mut().zip(&efforts) {
         bond.effort = effort.unwrap_or(Dimension::NONE);
     }
@@ -161,8 +168,13 @@ fn modulus_unit(types: &Types<'_>, element: &Element) -> Quantity {
     }
 }
 
-/// Every law against its bonds' units and shapes; laws of C get their form.
-fn check(graph: &mut BondGraph, efforts: &[Option<Dimension>], faults: &mut Vec<Fault>) {
+/// Every law against its bonds' units and shapes, but of what is torn; laws of C get their form.
+fn check(
+    graph: &mut BondGraph,
+    efforts: &[Option<Dimension>],
+    is_torn: &dyn Fn(&Node) -> bool,
+    faults: &mut Vec<Fault>,
+) {
     let mut forms = Vec::new();
     {
         let graph: &BondGraph = graph;
@@ -183,7 +195,7 @@ fn check(graph: &mut BondGraph, efforts: &[Option<Dimension>], faults: &mut Vec<
                     .push(Fault::new(definition.value.span, &GraphFault::Units { what, left: declared, right: found }));
             }
         }
-        for (index, node) in graph.nodes.iter().enumerate() {
+        for (index, node) in graph.nodes.iter().enumerate().filter(|(_, node)| !is_torn(node)) {
             if let Some(element) = graph.element(NodeId(index)) {
                 let mut checker = LawCheck { graph, types: &types, node, element, faults };
                 if let Some(form) = checker.check() {

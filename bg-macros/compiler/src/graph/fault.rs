@@ -2,7 +2,8 @@
 
 use super::Shape;
 use crate::fault::Explain;
-use crate::graph::units::Dimension;
+use crate::graph::units::{Dimension, Domain};
+use crate::source::numbers::{Constant, constant};
 
 /// A fault of the resolution.
 #[derive(Clone, Debug)]
@@ -24,6 +25,7 @@ pub enum GraphFault {
     VectorLength { found: usize },
     NoComponent { found: Shape },
     Units { what: String, left: Dimension, right: Dimension },
+    Domains { from: String, to: String, left: Domain, right: Domain },
     NotDimensionless { what: String, found: Dimension },
     NoRoot { found: Dimension },
     UnknownUnits { from: String, to: String, declaration: Option<String> },
@@ -36,9 +38,10 @@ pub enum GraphFault {
     NotStorage { name: String, clause: &'static str },
     RangeEmpty { name: String },
     DefaultOutOfRange { name: String },
-    NotANumber { what: String },
+    NotANumber { what: String, constant: Option<&'static Constant> },
     GuessOutsideStart,
     IntegralOutsideObserve,
+    UnwrappedElsewhere,
     VariableRole { name: String, symbol: &'static str },
     EmptyGraph { name: String },
     Decay,
@@ -65,7 +68,7 @@ impl Explain for GraphFault {
             F::Shapes { .. } => "BG0313",
             F::ShapeOf { .. } | F::VectorLength { .. } => "BG0314",
             F::NoComponent { .. } => "BG0315",
-            F::Units { .. } => "BG0316",
+            F::Units { .. } | F::Domains { .. } => "BG0316",
             F::NotDimensionless { .. } => "BG0317",
             F::NoRoot { .. } => "BG0318",
             F::UnknownUnits { .. } => "BG0319",
@@ -81,6 +84,7 @@ impl Explain for GraphFault {
             F::NotANumber { .. } => "BG0329",
             F::GuessOutsideStart => "BG0330",
             F::IntegralOutsideObserve => "BG0331",
+            F::UnwrappedElsewhere => "BG0336",
             F::VariableRole { .. } => "BG0332",
             F::EmptyGraph { .. } => "BG0333",
             F::Reserved { .. } => "BG0334",
@@ -112,6 +116,10 @@ impl Explain for GraphFault {
             F::VectorLength { found } => format!("a vector has three components; this one has {found}"),
             F::NoComponent { found } => format!("a {found} has no component x, y or z"),
             F::Units { what, left, right } => format!("{what}: the units {left} and {right} disagree"),
+            F::Domains { from, to, left, right } => format!(
+                "bonds join `{from}` to `{to}` without a two-port: {} is not {}, the units {} and {} disagree",
+                left.name, right.name, left.effort, right.effort
+            ),
             F::NotDimensionless { what, found } => format!("{what} must be a pure number; this has unit {found}"),
             F::NoRoot { found } => format!("the square root of a quantity in {found} has no unit"),
             F::UnknownUnits { from, to, .. } => {
@@ -133,9 +141,10 @@ impl Explain for GraphFault {
             F::NotStorage { name, clause } => format!("`{name}` cannot have the clause `{clause}`"),
             F::RangeEmpty { name } => format!("no value of `{name}` is allowed by its range"),
             F::DefaultOutOfRange { name } => format!("the default of `{name}` is outside its range"),
-            F::NotANumber { what } => format!("{what} must be made of numbers only"),
+            F::NotANumber { what, .. } => format!("{what} must be made of numbers only"),
             F::GuessOutsideStart => "`guess` has a meaning only in a start value".to_owned(),
             F::IntegralOutsideObserve => "`integral` has a meaning only in an observed output".to_owned(),
+            F::UnwrappedElsewhere => "`unwrapped` has a meaning only in a `let` and in an observed output".to_owned(),
             F::VariableRole { name, symbol } => format!("the law of {symbol} `{name}` cannot be of that variable"),
             F::EmptyGraph { name } => format!("graph `{name}` has no bond"),
             F::Decay => "the rate of `baumgarte` must be a number above 0, in 1/s".to_owned(),
@@ -145,10 +154,14 @@ impl Explain for GraphFault {
     fn help(&self) -> String {
         match self {
             F::Reserved { .. } => "give it another name".to_owned(),
-            F::UnknownName { near: Some(near), .. } | F::UnknownFunction { near: Some(near), .. } => {
+            F::UnknownName { name, near: Some(near) } if constant(name).is_none() => format!("did you mean `{near}`?"),
+            F::UnknownFunction { near: Some(near), .. } => {
                 format!("did you mean `{near}`?")
             }
-            F::UnknownName { name, .. } => format!("declare `{name}`"),
+            F::UnknownName { name, .. } => match constant(name) {
+                Some(constant) => constant.written(),
+                None => format!("declare `{name}`"),
+            },
             F::UnknownFunction { .. } => {
                 format!("use one of {}", super::Builtin::names().collect::<Vec<_>>().join(" "))
             }
@@ -179,6 +192,15 @@ impl Explain for GraphFault {
             F::VectorLength { .. } => "write `[x, y, z]`, with 0 for a component that is not there".to_owned(),
             F::NoComponent { .. } => "take components of vectors only".to_owned(),
             F::Units { .. } => "change one of the two so that they agree".to_owned(),
+            F::Domains { from, to, left, right } => {
+                let (effort, flow) = (left.effort_dimension(), Dimension::WATT.per(right.effort_dimension()));
+                let ratio = flow.per(Dimension::WATT.per(effort));
+                format!(
+                    "put a GY between them, effort of the one by flow of the other, `GY g = E; {from} -> g -> {to};` with E in {}, \
+                     or a TF, flow by flow, with E in {ratio}",
+                    effort.per(flow)
+                )
+            }
             F::NotDimensionless { .. } => "divide by a reference quantity of the same unit".to_owned(),
             F::NoRoot { .. } => "take the root of a square".to_owned(),
             F::UnknownUnits { declaration: Some(declaration), .. } => {
@@ -198,8 +220,10 @@ impl Explain for GraphFault {
             F::NotStorage { clause, .. } => format!("remove `{clause}`"),
             F::RangeEmpty { .. } => "swap or widen the ends".to_owned(),
             F::DefaultOutOfRange { .. } => "change the default or the range".to_owned(),
+            F::NotANumber { constant: Some(constant), .. } => constant.written(),
             F::NotANumber { .. } => "write a number".to_owned(),
             F::GuessOutsideStart => "write the value itself".to_owned(),
+            F::UnwrappedElsewhere => "name it, `let turned = unwrapped(..);`, and use that name here".to_owned(),
             F::IntegralOutsideObserve => "observe the integral, or use a C or I for a state".to_owned(),
             F::VariableRole { .. } => {
                 "leave `effort` or `flow` away: a C's law is of its displacement, an I's of its momentum".to_owned()

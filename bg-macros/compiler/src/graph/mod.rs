@@ -59,6 +59,10 @@ pub struct BondGraph {
     pub observations: Vec<Observation>,
     /// The guesses in start expressions, each one unknown of the assembly.
     pub guesses: Vec<Term>,
+    /// The angles that count turns; each one state where something reads it.
+    pub turns: Vec<Turn>,
+    /// The scalar 1-junctions whose displacement something reads, each one state.
+    pub ways: Vec<NodeId>,
     /// Time integrals that outputs ask for, each one state.
     pub integrals: Vec<Integral>,
     /// What the mechanism looks like.
@@ -319,6 +323,19 @@ pub struct Observation {
     pub unit: String,
 }
 
+/// An angle that counts turns.
+#[derive(Clone, Debug)]
+pub struct Turn {
+    /// The name of its state: that of the `let` or output in which it stands.
+    pub name: String,
+    /// The angle in one turn, `atan2` of its sine and its cosine.
+    pub direction: Term,
+    /// How fast it turns, or nearly.
+    pub speed: Term,
+    /// Whether something reads it.
+    pub is_read: bool,
+}
+
 /// A time integral.
 #[derive(Clone, Debug)]
 pub struct Integral {
@@ -328,6 +345,13 @@ pub struct Integral {
     pub value: Term,
     /// The integrand's dimension.
     pub dimension: Dimension,
+}
+
+impl Turn {
+    /// Its expressions.
+    pub fn terms(&self) -> [&Term; 2] {
+        [&self.direction, &self.speed]
+    }
 }
 
 impl BondGraph {
@@ -372,19 +396,27 @@ impl BondGraph {
 
     /// Hands every part of every expression to `each`.
     pub fn each_term<'g>(&'g self, each: &mut dyn FnMut(&'g Term)) {
-        self.lets.iter().for_each(|definition| definition.value.visit(each));
+        let lets = self.lets.iter().map(|definition| &definition.value);
+        lets.chain(self.turns.iter().flat_map(Turn::terms)).for_each(|term| term.visit(each));
+        self.each_root(&mut |root| root.visit(each));
+    }
+
+    /// Hands every expression that is no `let` and no angle to `each`: what a model evaluates, with what these name.
+    pub fn each_root<'g>(&'g self, each: &mut dyn FnMut(&'g Term)) {
         for node in &self.nodes {
             let NodeKind::Element(element) = &node.kind else { continue };
             let clauses = [&element.frame, &element.displacement, &element.start, &element.energy, &element.sticking];
-            element.law.term().visit(each);
+            each(element.law.term());
             let of_stop = [&element.restitution, &element.rest];
-            clauses.into_iter().chain(of_stop).flatten().for_each(|term| term.visit(each));
+            clauses.into_iter().chain(of_stop).flatten().for_each(&mut *each);
         }
-        self.tracks.iter().filter_map(|track| track.start.as_ref()).for_each(|term| term.visit(each));
-        self.closes.iter().for_each(|close| close.gap.visit(each));
-        self.observations.iter().for_each(|observation| observation.value.visit(each));
-        self.guesses.iter().for_each(|guess| guess.visit(each));
-        self.integrals.iter().for_each(|integral| integral.value.visit(each));
+        self.tracks.iter().filter_map(|track| track.start.as_ref()).for_each(&mut *each);
+        self.closes.iter().for_each(|close| each(&close.gap));
+        self.observations.iter().for_each(|observation| each(&observation.value));
+        self.guesses.iter().for_each(&mut *each);
+        self.integrals.iter().for_each(|integral| each(&integral.value));
+        let clauses = self.lets.iter().filter(|definition| definition.clause.is_some());
+        clauses.for_each(|definition| each(&definition.value));
     }
 
     /// +1 where the bond's half arrow points into the node, -1 where it points out.

@@ -75,8 +75,10 @@ pub enum Reference {
     Power(NodeId),
     /// The energy stored in a C or I, J.
     Energy(NodeId),
-    /// The displacement of a C.
+    /// The displacement of a C, or of a scalar 1-junction.
     Displacement(NodeId),
+    /// An angle that counts turns.
+    Turn(usize),
     /// The momentum of an I.
     Momentum(NodeId),
     /// The energy of all storage elements, J.
@@ -156,7 +158,7 @@ impl Builtin {
 
     /// All names, for near misses.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        NAMES.iter().map(|(name, ..)| *name).chain(["guess", "integral"])
+        NAMES.iter().map(|(name, ..)| *name).chain(["guess", "integral", "unwrapped"])
     }
 
     /// The function's name.

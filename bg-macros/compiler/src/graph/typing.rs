@@ -138,6 +138,7 @@ impl<'a> Types<'a> {
                 TrackKind::Position => (Shape::Vector, Quantity::Known(Dimension::METRE)),
                 TrackKind::Orientation => (Shape::Matrix, Quantity::Known(Dimension::NONE)),
             },
+            Reference::Turn(_) => known(Dimension::NONE),
             Reference::Flow(node) => self.of_node(node, |_, flow| flow),
             Reference::Effort(node) => self.of_node(node, |effort, _| effort),
             Reference::Displacement(node) => self.of_node(node, |_, flow| flow.times(Dimension::SECOND)),

@@ -5,6 +5,7 @@
 
 use crate::fault::{Explain, Fault, near_miss};
 use crate::source::ast;
+use crate::source::numbers::coherent;
 
 /// Number of SI base quantities: kg, m, s, A, K, mol, cd.
 const BASES: usize = 7;
@@ -154,6 +155,9 @@ impl Explain for UnitFault {
     }
     fn help(&self) -> String {
         let Self::Unknown { symbol } = self;
+        if let Some(help) = coherent(symbol) {
+            return help;
+        }
         let symbols = || BASE_SYMBOLS.into_iter().chain(DERIVED.iter().map(|(symbol, _)| *symbol));
         match near_miss(symbol, symbols()) {
             Some(near) => format!("write `{near}`"),

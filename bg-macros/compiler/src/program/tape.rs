@@ -118,6 +118,7 @@ fn leaf(symbol: Symbol, solution: &Solution) -> Option<(u32, u32)> {
         | Symbol::Storage(_)
         | Symbol::Flow(_)
         | Symbol::Kept(_)
+        | Symbol::Turned(_)
         | Symbol::Unsolved(_)
         | Symbol::Rate(_)
         | Symbol::Weight(_) => None,

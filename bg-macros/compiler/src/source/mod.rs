@@ -8,6 +8,7 @@ pub mod clause;
 pub mod drawing;
 pub mod mechanism;
 pub mod names;
+pub mod numbers;
 pub mod part;
 pub mod print;
 mod print_part;

@@ -69,7 +69,8 @@ fn close_gaps(equations: &mut StateEquations, momenta: Vec<(usize, Id)>) {
     let is_momentum = |&(state, _): &(usize, Id)| equations.states[state].origin.kind() == Kind::Momentum;
     let seeds = momenta.into_iter().filter(is_momentum).map(|(state, by)| (Symbol::state(state), by));
     let seeds: BTreeMap<Symbol, Id> = seeds.collect();
-    let is_of_pose = |kind| matches!(kind, Kind::Position | Kind::Orientation | Kind::Angle | Kind::Displacement);
+    let is_of_pose =
+        |kind| matches!(kind, Kind::Position | Kind::Orientation | Kind::Angle | Kind::Displacement | Kind::Way);
     let states = &equations.states;
     let pose: Vec<usize> = (0..states.len()).filter(|&state| is_of_pose(states[state].origin.kind())).collect();
     let rates: Vec<Id> = pose.iter().map(|&state| states[state].rate).collect();

@@ -89,7 +89,7 @@ fn is_of_second_order(equations: &StateEquations, index: usize) -> bool {
         Node::Number(_) | Node::Sum { .. } | Node::Product(_) | Node::Call(..) => true,
     };
     let is_momentum = |symbol: Symbol| matches!(symbol, Symbol::State(index) if kind(index) == Kind::Momentum);
-    matches!(state.origin.kind(), Kind::Position | Kind::Orientation | Kind::Displacement)
+    matches!(state.origin.kind(), Kind::Position | Kind::Orientation | Kind::Displacement | Kind::Way)
         && pool.reachable(&[state.rate]).iter().all(is_kinematic)
         && pool.symbols(&[state.rate]).into_iter().any(is_momentum)
 }

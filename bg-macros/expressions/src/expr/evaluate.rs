@@ -46,7 +46,7 @@ impl Environment<'_> {
             Symbol::Rate(index) => self.rates[index as usize],
             Symbol::Found(index) => self.found[index as usize],
             Symbol::Weight(index) => self.weights[index as usize],
-            Symbol::Kept(_) => 1.0,
+            Symbol::Kept(_) | Symbol::Turned(_) => 1.0,
             Symbol::Side(index) => self.sides.get(index as usize).copied().unwrap_or(1.0),
             Symbol::Law(_) | Symbol::Flow(_) | Symbol::Multiplier(_) | Symbol::Unsolved(_) => {
                 panic!("no value of {symbol:?}")

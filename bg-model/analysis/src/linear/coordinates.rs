@@ -100,7 +100,7 @@ fn itself(description: &Description, index: usize) -> Column {
     let state = &description.states[index];
     let role = match state.kind {
         StateKind::Momentum(_) => Role::Momentum,
-        StateKind::Displacement(_) | StateKind::Integral => Role::Store,
+        StateKind::Displacement(_) | StateKind::Way | StateKind::Integral => Role::Store,
         StateKind::Position(_) => Role::Place,
         StateKind::Orientation(..) | StateKind::Angle => Role::Turn,
     };

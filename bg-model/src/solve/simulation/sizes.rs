@@ -252,7 +252,7 @@ impl<const N: usize> SizeMonitor<N> {
                 StateKind::Momentum(_) | StateKind::Displacement(_) if curvatures[i] != 0.0 => {
                     libm::sqrt(2.0 * *energy / curvatures[i].abs())
                 }
-                StateKind::Orientation(..) | StateKind::Angle => 1.0,
+                StateKind::Orientation(..) | StateKind::Angle | StateKind::Way => 1.0,
                 StateKind::Position(_) => length,
                 StateKind::Momentum(_) | StateKind::Displacement(_) | StateKind::Integral => 0.0,
             };

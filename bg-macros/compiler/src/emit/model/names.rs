@@ -145,7 +145,7 @@ impl Emission<'_> {
                 let row = self.model.equations.solution.row(symbol).expect("a reaction that is solved for");
                 entry("reactions", u32::try_from(row).expect("fewer than 2^32 reactions"))
             }
-            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Unsolved(_) => {
+            Symbol::Law(_) | Symbol::Storage(_) | Symbol::Flow(_) | Symbol::Turned(_) | Symbol::Unsolved(_) => {
                 unreachable!("a model's equations contain no {symbol:?}")
             }
             Symbol::Found(index) => entry("found", index),

@@ -145,7 +145,7 @@ impl Emission<'_> {
         let (rigid, compliant) = (slips(&holding.rigid), slips(&holding.compliant));
         let moved = holding.moves.iter().map(|(state, _)| Literal::usize_unsuffixed(*state));
         let closing = closing(&holding.rigid);
-        let pose = self.states_of(&[Kind::Position, Kind::Orientation, Kind::Angle, Kind::Displacement]);
+        let pose = self.states_of(&[Kind::Position, Kind::Orientation, Kind::Angle, Kind::Displacement, Kind::Way]);
         let turning = self.states_of(&[Kind::Orientation, Kind::Angle]);
         let (kept, is_driven) = (self.kept(), self.is_driven());
         let (body, entries) = self.running(routine, &format_ident!("holding_constants"));

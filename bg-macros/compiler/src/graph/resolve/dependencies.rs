@@ -2,6 +2,8 @@
 //!
 //! In: terms with references. Out: faults of circles, modulation and start values; shapes and units of outputs.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::Span;
 
 use super::Resolver;
@@ -66,7 +68,7 @@ impl Resolver {
                 faults.push(Fault::new(element.law.term().span, &fault));
             }
             if let Some(start) = &element.start {
-                faults.extend(self.start_depends(start, &node.name.text));
+                faults.extend(self.start_depends(start, &node.name.text, &is_of_start));
             }
             for (clause, term) in [("restitution", &element.restitution), ("rest below", &element.rest)] {
                 let by = term.as_ref().and_then(|term| Some((term, self.first_of_run(term)?)));
@@ -78,7 +80,7 @@ impl Resolver {
         }
         for track in &self.graph.tracks {
             if let Some(start) = &track.start {
-                faults.extend(self.start_depends(start, &track.name.text));
+                faults.extend(self.start_depends(start, &track.name.text, &is_constant));
             }
         }
         self.faults.extend(faults);
@@ -110,8 +112,8 @@ impl Resolver {
         self.faults.extend(faults);
     }
 
-    fn start_depends(&self, start: &Term, name: &str) -> Option<Fault> {
-        let by = self.first_of_run(start)?;
+    fn start_depends(&self, start: &Term, name: &str, is_known: &dyn Fn(Reference) -> bool) -> Option<Fault> {
+        let by = self.depends(start).into_iter().find(|reference| !is_known(*reference))?;
         let what = format!("the start value of `{name}`");
         Some(Fault::new(start.span, &GraphFault::NotConstant { what, by: self.describe(by) }))
     }
@@ -133,6 +135,7 @@ impl Resolver {
         let mut found = Vec::new();
         term.references(&mut found);
         let mut seen = vec![false; self.graph.lets.len()];
+        let mut turned = vec![false; self.graph.turns.len()];
         let mut next = 0;
         while next < found.len() {
             if let Reference::Let(index) = found[next]
@@ -141,9 +144,31 @@ impl Resolver {
             {
                 self.graph.lets[index].value.references(&mut found);
             }
+            if let Reference::Turn(index) = found[next]
+                && !std::mem::replace(&mut turned[index], true)
+            {
+                self.graph.turns[index].terms().into_iter().for_each(|term| term.references(&mut found));
+            }
             next += 1;
         }
         found
+    }
+
+    /// Marks the angles and the junctions whose turns and displacements something reads: only these become states.
+    pub(super) fn mark_what_is_read(&mut self) {
+        let mut found = Vec::new();
+        self.graph.each_root(&mut |term| found.extend(self.deep_references(term, &|_| true)));
+        let mut ways = BTreeSet::new();
+        for reference in found {
+            match reference {
+                Reference::Turn(index) => self.graph.turns[index].is_read = true,
+                Reference::Displacement(node) if matches!(self.graph.node(node).kind, NodeKind::One) => {
+                    ways.insert(node);
+                }
+                _ => {}
+            }
+        }
+        self.graph.ways = ways.into_iter().collect();
     }
 
     fn describe(&self, reference: Reference) -> String {
@@ -160,6 +185,7 @@ impl Resolver {
             Reference::Power(id) => format!("the power of `{}`", node(id)),
             Reference::Energy(id) => format!("the energy of `{}`", node(id)),
             Reference::Displacement(id) => format!("the displacement of `{}`", node(id)),
+            Reference::Turn(index) => format!("the angle `{}`", self.graph.turns[index].name),
             Reference::Momentum(id) => format!("the momentum of `{}`", node(id)),
             Reference::StoredEnergy => "the stored energy".to_owned(),
             Reference::SuppliedPower => "the supplied power".to_owned(),
@@ -187,6 +213,20 @@ impl Resolver {
                 (None, _) => "1".to_owned(),
             };
             observed.push((shape, unit));
+        }
+        for turn in &self.graph.turns {
+            types.of(&turn.direction, None, &mut faults);
+            let (shape, quantity) = types.of(&turn.speed, None, &mut faults);
+            let (what, span) = ("the speed of an angle".to_owned(), turn.speed.span);
+            if shape != Shape::Scalar {
+                faults.push(Fault::new(span, &GraphFault::ShapeOf { what, expected: Shape::Scalar, found: shape }));
+            } else if let Quantity::Known(found) = quantity
+                && found != Dimension::NONE.per(Dimension::SECOND)
+            {
+                let what = "the speed of an angle has the first and should have the second".to_owned();
+                let (left, right) = (found, Dimension::NONE.per(Dimension::SECOND));
+                faults.push(Fault::new(span, &GraphFault::Units { what, left, right }));
+            }
         }
         let known = |quantity| if let Quantity::Known(dimension) = quantity { dimension } else { Dimension::NONE };
         let closed: Vec<_> = self.graph.closes.iter().map(|close| types.of(&close.gap, None, &mut faults)).collect();
@@ -224,6 +264,11 @@ fn place_of(term: &Term, reference: Reference) -> Option<Span> {
 /// Parameters and numbers.
 fn is_constant(reference: Reference) -> bool {
     matches!(reference, Reference::Parameter(_) | Reference::Let(_) | Reference::Variable)
+}
+
+/// What the start of a storage may depend on: parameters, and the start pose.
+fn is_of_start(reference: Reference) -> bool {
+    is_constant(reference) || matches!(reference, Reference::Track(_))
 }
 
 /// What a source may follow: parameters, inputs, time.

@@ -5,7 +5,7 @@
 mod connect;
 mod dependencies;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
@@ -13,11 +13,13 @@ use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::typing::Shape;
 use super::{
     BondGraph, Close, Drawing, Element, GraphFault, Held, Input, Integral, JointId, Law, Let, Node, NodeId, NodeKind,
-    Observation, Parameter, Storage, Track, domains,
+    Observation, Parameter, Storage, Track, Turn, domains,
 };
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
 use crate::graph::units::{self, Dimension, Domain};
 use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role, Watch};
+use crate::source::numbers::{Constant, constant};
+use crate::source::walk::each_name;
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -55,6 +57,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
         resolver.faults.push(Fault::new(source.name.span, &GraphFault::EmptyGraph { name }));
     }
     resolver.let_circles();
+    resolver.mark_what_is_read();
     resolver.checked()?;
     domains::assign(&mut resolver.graph, &resolver.domains, &mut resolver.faults);
     resolver.clauses();
@@ -68,6 +71,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Place<'a> {
     Plain,
+    Let,
     Law(Option<&'a str>),
     Start,
     Observed,
@@ -76,9 +80,15 @@ enum Place<'a> {
 struct Resolver {
     graph: BondGraph,
     names: BTreeMap<String, Entity>,
+    /// Where each name is declared first.
+    declared: BTreeMap<String, Span>,
     junctions: BTreeMap<NodeId, usize>,
+    /// The 1-junctions.
+    ones: BTreeSet<NodeId>,
     domains: Vec<(NodeId, Domain)>,
     observed: Vec<Option<Dimension>>,
+    /// Where each output is.
+    outputs: BTreeMap<String, Span>,
     faults: Vec<Fault>,
 }
 
@@ -102,15 +112,20 @@ impl Resolver {
             expects_integral: false,
             observations: Vec::new(),
             guesses: Vec::new(),
+            turns: Vec::new(),
+            ways: Vec::new(),
             integrals: Vec::new(),
             drawing: Drawing::default(),
         };
         Self {
             graph,
             names: BTreeMap::new(),
+            declared: BTreeMap::new(),
             junctions: BTreeMap::new(),
+            ones: BTreeSet::new(),
             domains: Vec::new(),
             observed: Vec::new(),
+            outputs: BTreeMap::new(),
             faults: Vec::new(),
         }
     }
@@ -126,9 +141,12 @@ impl Resolver {
     fn name(&mut self, name: &Name, entity: Entity) {
         if name.text == "t" {
             self.fault(name.span, &GraphFault::Reserved { name: name.text.clone() });
-        } else if self.names.insert(name.text.clone(), entity).is_some() {
-            self.fault(name.span, &DeclaredTwice { name: name.text.clone() });
+        } else if let Some(&first) = self.declared.get(&name.text) {
+            self.fault(name.span, &DeclaredTwice::new(&name.text, name.span, first));
+        } else {
+            self.declared.insert(name.text.clone(), name.span);
         }
+        self.names.insert(name.text.clone(), entity);
     }
 
     fn unit(&mut self, unit: &ast::Unit) -> Dimension {
@@ -201,7 +219,8 @@ impl Resolver {
         {
             return value;
         }
-        self.fault(expression.span, &GraphFault::NotANumber { what: "a default or an end of a range".to_owned() });
+        let what = "a default or an end of a range".to_owned();
+        self.fault(expression.span, &GraphFault::NotANumber { what, constant: constant_in(expression) });
         0.0
     }
 
@@ -219,6 +238,9 @@ impl Resolver {
     fn junction(&mut self, junction: &ast::Junction, id: NodeId) {
         self.name(&junction.name, Entity::Node(id));
         self.junctions.insert(id, junction.cardinality);
+        if junction.kind == JunctionKind::One {
+            self.ones.insert(id);
+        }
         if let Some(word) = &junction.domain {
             match Domain::named(&word.text) {
                 Some(domain) => self.domains.push((id, domain)),
@@ -237,7 +259,9 @@ impl Resolver {
         for item in &source.items {
             match item {
                 Item::Let(definition) => {
-                    let value = self.term(&definition.value, Place::Plain);
+                    let first_turn = self.graph.turns.len();
+                    let value = self.term(&definition.value, Place::Let);
+                    self.name_turns(first_turn, &definition.name.text, &value);
                     let dimension = definition.unit.as_ref().map(|unit| self.unit(unit));
                     let unit = definition.unit.as_ref().map(ToString::to_string);
                     let (name, clause) = (definition.name.clone(), definition.clause.clone());
@@ -365,6 +389,7 @@ impl Resolver {
 
     fn observe(&mut self, observation: &ast::Observation) {
         let first = self.graph.integrals.len();
+        let first_turn = self.graph.turns.len();
         let value = self.term(&observation.value, Place::Observed);
         let text = observation.value.to_string();
         let name = observation.name.as_ref().map_or_else(|| text.clone(), |name| name.text.clone());
@@ -372,14 +397,24 @@ impl Resolver {
         for (k, integral) in self.graph.integrals[first..].iter_mut().enumerate() {
             integral.name = if alone { name.clone() } else { format!("{name}.integral_{}", k + 1) };
         }
+        self.name_turns(first_turn, &name, &value);
         let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
         let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
-        if self.graph.observations.iter().any(|known| known.name == name) {
-            let span = observation.name.as_ref().map_or(observation.value.span, |name| name.span);
-            self.fault(span, &DeclaredTwice { name: name.clone() });
+        let span = observation.name.as_ref().map_or(observation.value.span, |name| name.span);
+        match self.outputs.get(&name) {
+            Some(&first) => self.fault(span, &DeclaredTwice::new(&name, span, first)),
+            None => _ = self.outputs.insert(name.clone(), span),
         }
         self.observed.push(declared);
         self.graph.observations.push(Observation { name, text, value, shape: Shape::Scalar, unit });
+    }
+
+    /// Names the angles from `first` on that count turns after what they stand in.
+    fn name_turns(&mut self, first: usize, name: &str, value: &Term) {
+        let alone = matches!(value.kind, TermKind::Reference(Reference::Turn(_)));
+        for (k, turn) in self.graph.turns[first..].iter_mut().enumerate() {
+            turn.name = if alone { name.to_owned() } else { format!("{name}.turn_{}", k + 1) };
+        }
     }
 
     fn term(&mut self, expression: &Expression, place: Place<'_>) -> Term {
@@ -414,9 +449,12 @@ impl Resolver {
     fn call(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
         let span = function.span;
         let mut terms: Vec<Term> = arguments.iter().map(|argument| self.term(argument, place)).collect();
-        let special = matches!(function.text.as_str(), "guess" | "integral");
         let builtin = Builtin::named(&function.text);
-        let expected = if special { Some(1) } else { builtin.map(|(_, count)| count) };
+        let expected = match function.text.as_str() {
+            "guess" | "integral" => Some(1),
+            "unwrapped" => Some(3),
+            _ => builtin.map(|(_, count)| count),
+        };
         match expected {
             None => {
                 let near = near_miss(&function.text, Builtin::names()).map(str::to_owned);
@@ -433,7 +471,7 @@ impl Resolver {
         }
         let kind = match (function.text.as_str(), builtin) {
             ("guess", _) => {
-                if place != Place::Start && place != Place::Plain {
+                if !matches!(place, Place::Start | Place::Plain | Place::Let) {
                     self.fault(span, &GraphFault::GuessOutsideStart);
                 }
                 self.graph.guesses.push(terms.remove(0));
@@ -446,6 +484,15 @@ impl Resolver {
                 let (value, name) = (terms.remove(0), String::new());
                 self.graph.integrals.push(Integral { name, value, dimension: Dimension::NONE });
                 TermKind::Integral(self.graph.integrals.len() - 1)
+            }
+            ("unwrapped", _) => {
+                if !matches!(place, Place::Let | Place::Observed) {
+                    self.fault(span, &GraphFault::UnwrappedElsewhere);
+                }
+                let speed = terms.remove(2);
+                let direction = Term { kind: TermKind::Call(Builtin::Atan2, terms), span };
+                self.graph.turns.push(Turn { name: String::new(), direction, speed, is_read: false });
+                TermKind::Reference(Reference::Turn(self.graph.turns.len() - 1))
             }
             (_, Some((builtin, _))) => TermKind::Call(builtin, terms),
             (_, None) => TermKind::Number(0.0),
@@ -499,6 +546,7 @@ impl Resolver {
         if let Some(cardinality) = self.junctions.get(&node) {
             debug_assert!(*cardinality > 0, "the parser gives 1 or 3");
             return match property {
+                "displacement" if *cardinality == 1 && self.ones.contains(&node) => Some(Reference::Displacement(node)),
                 "flow" => Some(Reference::Flow(node)),
                 "effort" => Some(Reference::Effort(node)),
                 _ => None,
@@ -514,6 +562,17 @@ impl Resolver {
             _ => None,
         }
     }
+}
+
+/// The first name of a mathematical constant in an expression.
+fn constant_in(expression: &Expression) -> Option<&'static Constant> {
+    let mut found = None;
+    each_name(&mut expression.clone(), &mut |value| {
+        if let ExpressionKind::Name(name) = &value.kind {
+            found = found.or_else(|| constant(&name.text));
+        }
+    });
+    found
 }
 
 /// Whether an element is an R whose effort follows from its flow.

@@ -33,7 +33,8 @@ impl Expansion<'_> {
                  let {name}.momentum = {name}.linear.p; let {name}.angular_momentum = {name}.angular.p;
                  let {name}.p = {name}.linear.p; let {name}.h = {name}.angular.p;
                  let {name}.kinetic_energy: J = {name}.linear.energy + {name}.angular.energy;
-                 let {name}.angle: rad = atan2({name}.x_axis.y, {name}.x_axis.x);"
+                 let {name}.direction: rad = atan2({name}.x_axis.y, {name}.x_axis.x);
+                 let {name}.angle: rad = unwrapped({name}.x_axis.y, {name}.x_axis.x, {name}.angular_velocity.z);"
             ),
         );
         for (axis, unit) in Axis::ALL.into_iter().zip(["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"]) {

@@ -79,12 +79,16 @@ impl Explain for MechanismFault {
                 let known: Vec<String> = known.iter().map(|point| format!("`{point}`")).collect();
                 format!("use {}, or add `point {point} = [x, y, z];` to it", known.join(", "))
             }
+            F::MissingClause { word: "joint", clause, .. } => {
+                format!("add `{clause} ...;`, or `rigid;` for a joint that does not give way")
+            }
             F::MissingClause { clause, .. } => format!("add `{clause} ...;`"),
             F::SuperfluousClause { clause, .. } => format!("remove `{clause}`"),
             F::NoMass { .. } => {
                 "add a solid such as `cuboid [x, y, z];` with its `density`, or `mass` and `inertia`".to_owned()
             }
             F::MassTwice { .. } => "remove the solids, or `mass`, `center` and `inertia`".to_owned(),
+            F::Twice { word: "ground" } => "put the points of both into one `ground`".to_owned(),
             F::Twice { word } => format!("remove one `{word}`"),
             F::UnknownTarget { .. } => "name a joint, a body, or a body's point".to_owned(),
             F::WrongDrive { takes, .. } => format!("write `{takes} = ...`"),

@@ -285,7 +285,7 @@ impl Expansion<'_> {
         }
     }
 
-    /// Names for the free motion: angle and speed about, travel along the free axis.
+    /// Names for the free motion: angle, direction and speed about, travel along the free axis.
     fn motion(&mut self, joint: &Joint, a: &End, b: &End) {
         let (name, span) = (&joint.name.text, joint.name.span);
         let (turns, carries, a, b) = (&b.body, &a.body, &a.axes, &b.axes);
@@ -294,8 +294,10 @@ impl Expansion<'_> {
             self.text(
                 span,
                 &format!(
-                    "let {name}.angle: rad = atan2(dot(cross({a}.{across}_axis, {b}.{across}_axis), {a}.{along}_axis), \
-                     dot({a}.{across}_axis, {b}.{across}_axis));
+                    "let {name}.sine: 1 = dot(cross({a}.{across}_axis, {b}.{across}_axis), {a}.{along}_axis);
+                     let {name}.cosine: 1 = dot({a}.{across}_axis, {b}.{across}_axis);
+                     let {name}.direction: rad = atan2({name}.sine, {name}.cosine);
+                     let {name}.angle: rad = unwrapped({name}.sine, {name}.cosine, {name}.speed);
                      let {name}.speed: rad/s = dot({a}.{along}_axis, {turns}.angular_velocity - {carries}.angular_velocity);"
                 ),
             );

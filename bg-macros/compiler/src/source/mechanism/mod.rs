@@ -15,7 +15,7 @@ mod orifice;
 mod part;
 mod stop;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use proc_macro2::{Group, Span, TokenStream, TokenTree};
 
@@ -70,7 +70,9 @@ struct Expansion<'a> {
     drawing: Drawing<Expression>,
     bodies: BTreeMap<&'a str, &'a Body>,
     joints: BTreeMap<&'a str, &'a Joint>,
+    /// The first ground; the points of all.
     ground: Option<&'a Ground>,
+    ground_points: Vec<Point>,
     has_gravity: bool,
     faults: Vec<Fault>,
 }
@@ -84,16 +86,18 @@ impl<'a> Expansion<'a> {
             bodies: BTreeMap::new(),
             joints: BTreeMap::new(),
             ground: None,
+            ground_points: Vec::new(),
             has_gravity: false,
             faults: Vec::new(),
         };
-        let mut names: BTreeSet<&str> = BTreeSet::new();
+        let mut names: BTreeMap<&str, Span> = BTreeMap::new();
         let [mut has_impulse, mut has_baumgarte] = [false; 2];
         for item in &source.items {
-            if let Some(name) = part_name(item)
-                && !names.insert(&name.text)
-            {
-                expansion.fault(name.span, &DeclaredTwice { name: name.text.clone() });
+            if let Some(name) = part_name(item) {
+                match names.get(name.text.as_str()) {
+                    Some(&first) => expansion.fault(name.span, &DeclaredTwice::new(&name.text, name.span, first)),
+                    None => _ = names.insert(&name.text, name.span),
+                }
             }
             match item {
                 Item::Body(body) => {
@@ -103,7 +107,9 @@ impl<'a> Expansion<'a> {
                     expansion.joints.insert(&joint.name.text, joint);
                 }
                 Item::Ground(ground) => {
-                    let twice = expansion.ground.replace(ground).is_some();
+                    let twice = expansion.ground.is_some();
+                    expansion.ground.get_or_insert(ground);
+                    expansion.ground_points.extend(ground.points.iter().cloned());
                     expansion.only_once(twice, ground.span, GROUND);
                 }
                 Item::Gravity(gravity) => {
@@ -174,7 +180,7 @@ impl<'a> Expansion<'a> {
              let ground.angular_velocity: rad/s = [0, 0, 0];
              let ground.x_axis: 1 = [1, 0, 0]; let ground.y_axis: 1 = [0, 1, 0]; let ground.z_axis: 1 = [0, 0, 1];",
         );
-        for point in self.ground.map_or(&[][..], |ground| &ground.points[..]) {
+        for point in &self.ground_points.clone() {
             let name = &point.name.text;
             let clause = Clause::new(format!("point `{name}` of the ground"), 3);
             self.bind(&format!("ground.{name}.position"), "m", &point.place, clause);
@@ -233,7 +239,7 @@ impl<'a> Expansion<'a> {
     fn end(&mut self, name: &Name) -> Option<End> {
         let (body, point) = self.on_body(&name.text);
         let points = if body == GROUND {
-            self.ground.map_or(&[][..], |ground| &ground.points[..])
+            &self.ground_points[..]
         } else if let Some(definition) = self.bodies.get(body) {
             &definition.points[..]
         } else {

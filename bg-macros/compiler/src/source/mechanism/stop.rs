@@ -2,8 +2,8 @@
 //!
 //! In: `ast::Stop`. Out: at the junction of the axis that it acts on a C, slack between the ends, and an R that damps
 //! beyond them as long as the two together do not pull; with a restitution a residual sink for each end, which acts one way
-//! only. The displacement of a sliding axis is the joint's travel; another one is a state, the integral of the flow since the
-//! start.
+//! only. The displacement of a sliding axis is the joint's travel; another one is a state, the integral of the flow, from the
+//! joint's angle at the start on.
 
 use super::axis::FreeAxis;
 use super::{Expansion, MechanismFault};
@@ -39,8 +39,7 @@ impl Expansion<'_> {
             beyond(stop, "q", &|end| format!("0.5 * {name}.stiffness * (q - {name}.{end}) * (q - {name}.{end})"));
         let at = match axis.travel() {
             Some(travel) => format!("at {travel}"),
-            None if stop.start.is_some() => format!("start {name}.start"),
-            None => String::new(),
+            None => start_of(stop, axis),
         };
         self.text(span, &format!("C {name}.spring(q) = {law} {at} energy {energy};"));
         self.text(stop.target.span, &format!("{} -> {name}.spring;", axis.junction));
@@ -54,7 +53,7 @@ impl Expansion<'_> {
         self.stop_clause(stop, "rest", axis.units.flow, stop.rest.as_ref(), Allowed::NotNegative);
         self.stop_clause(stop, "start", axis.units.displacement, stop.start.as_ref(), Allowed::Any);
         let place = axis.travel().unwrap_or_else(|| {
-            let start = if stop.start.is_some() { format!("start {name}.start") } else { String::new() };
+            let start = start_of(stop, axis);
             self.text(span, &format!("C {name}.way(q) = 0 * q {start} energy 0 * q * q;"));
             self.text(stop.target.span, &format!("{} -> {name}.way;", axis.junction));
             format!("{name}.way.q")
@@ -145,6 +144,15 @@ impl FreeAxis {
     /// The displacement that the poses of a joint determine; an angle starts again after a turn.
     fn travel(&self) -> Option<String> {
         self.joint.as_ref().filter(|_| self.slides()).map(|joint| format!("{joint}.travel"))
+    }
+}
+
+/// Where the displacement of an axis begins that does not slide: at the angle of its joint, unless the stop gives it.
+fn start_of(stop: &Stop, axis: &FreeAxis) -> String {
+    match (&stop.start, &axis.joint) {
+        (Some(_), _) => format!("start {}.start", stop.name.text),
+        (None, Some(joint)) => format!("start {joint}.direction"),
+        (None, None) => String::new(),
     }
 }
 

@@ -7,7 +7,7 @@ use proc_macro2::Span;
 use super::PartFault;
 use super::flat::Flat;
 use super::level::Level;
-use crate::fault::{DeclaredTwice, Fault, Faults};
+use crate::fault::{Fault, Faults};
 use crate::source::ast::{Element, ElementKind, Expression, ExpressionKind, Graph, Item, Name, Part};
 use crate::source::drawing::Drawing;
 
@@ -38,15 +38,6 @@ pub(super) fn open(level: &Level, of: &str) -> Faults {
         Fault::new(name.span, &PartFault::Unused { of: of.to_owned(), word, name: name.text.clone() })
     };
     unused.map(fault).collect()
-}
-
-/// No output of a part has the name of something in it: both would have one path.
-pub(super) fn outputs(level: &mut Level) {
-    for name in level.flat.outputs.iter().filter_map(|output| output.name.as_ref()) {
-        if level.names.has(&name.text) {
-            level.faults.push(Fault::new(name.span, &DeclaredTwice { name: name.text.clone() }));
-        }
-    }
 }
 
 /// A part as a graph of its own, with a source at each of its ports.

@@ -129,7 +129,6 @@ impl<'f> Level<'f> {
         let unused = check::open(&self, of);
         if is_part {
             self.faults.extend(unused);
-            check::outputs(&mut self);
         } else {
             self.flat.unused = unused;
         }

@@ -112,8 +112,16 @@ impl Names {
             self.used.insert(name.text.clone());
             self.check(&name.text, value.span, faults);
             let path = Name::new(self.path(&name.text), value.span);
-            value.kind = self.observed(&path.text).unwrap_or(ExpressionKind::Name(path));
+            // Of an output and a thing of one name an expression means the thing, as in a graph.
+            let observed = if self.is_of_thing(&path.text) { None } else { self.observed(&path.text) };
+            value.kind = observed.unwrap_or(ExpressionKind::Name(path));
         });
+    }
+
+    /// Whether a name is that of something declared, or of what this has.
+    fn is_of_thing(&self, name: &str) -> bool {
+        self.has(name)
+            || name.rsplit_once('.').is_some_and(|(whole, _)| self.has(whole) && self.outputs.contains_key(whole))
     }
 
     /// The output of a part inside that has this name.

@@ -336,9 +336,14 @@ fn a_part_that_no_graph_uses_is_looked_at_by_itself() {
 }
 
 #[test]
-fn an_output_of_a_part_is_not_called_like_something_in_it() {
-    let found = faults("part A { param k: 1 = 1; let a = k; observe { k = 2 * a; a.x = a } }");
-    assert_eq!(found, "1:47 BG0302 `k` is declared twice, in part `A` | give one of them another name");
+fn an_output_of_a_part_may_have_the_name_of_something_in_it() {
+    let text = "part A { param k: 1 = 1; let a = k; observe { k = 2 * a } }
+        graph G { part x: A; let y = x.k; 1 j: translation; I m = 2; j -> m; observe { x.k; z = y } scene S { observe { all of x } } }";
+    assert_eq!(faults(text), "");
+    let items = flat(text);
+    assert!(items.contains(&"let y = x.k;".to_owned()), "an expression means the thing: {items:#?}");
+    let observed = items.iter().filter(|item| item.contains("x.k = 2 * x.a")).count();
+    assert_eq!(observed, 2, "`observe` means the output: {items:#?}");
 }
 
 #[test]

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::fault::{Fault, Faults};
 use crate::source::ast::{Name, Words};
+use crate::source::numbers::without_unit;
 
 /// The proof that a fault has been noted.
 #[derive(Debug)]
@@ -373,8 +374,30 @@ impl Cursor<'_> {
             self.note(self.last_span(), &SyntaxFault::MissingSemicolon { last: text });
             return;
         }
+        if let Some(fault) = self.bare_vector().or_else(|| self.unit_of_number()) {
+            self.note(self.span(), &fault);
+            self.skip_statement();
+            return;
+        }
         self.unexpected(&if expected.is_empty() { "`;`".to_owned() } else { format!("{expected} or `;`") });
         self.skip_statement();
+    }
+
+    /// The fault of a `,` where a value has ended and no list goes on.
+    pub fn bare_vector(&self) -> Option<SyntaxFault> {
+        let is_value = self.at.checked_sub(1).and_then(|last| self.tokens.get(last)).is_some_and(|token| {
+            matches!(token.kind, TokenKind::Literal(_))
+                || matches!(&token.kind, TokenKind::Group(group) if group.delimiter() == Delimiter::Parenthesis)
+        });
+        (is_value && self.is(",")).then_some(SyntaxFault::BareVector)
+    }
+
+    /// The fault of a unit after a number.
+    fn unit_of_number(&self) -> Option<SyntaxFault> {
+        let last = self.at.checked_sub(1).and_then(|last| self.tokens.get(last))?;
+        let (number, word) = (last.kind.number()?, self.word()?.to_owned());
+        let help = without_unit(&number, &word)?;
+        Some(SyntaxFault::UnitOfNumber { number, word, help })
     }
 
     /// Whether a statement of this block begins here.

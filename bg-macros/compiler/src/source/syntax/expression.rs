@@ -189,6 +189,9 @@ impl Cursor<'_> {
         let form = if delimiter == Delimiter::Brace { "`{ ... }`" } else { "`( ... )`" };
         let mut inner = self.group(delimiter, form, &GROUP)?;
         let value = inner.value()?;
+        if let Some(fault) = inner.bare_vector() {
+            return Err(inner.note(inner.span(), &fault));
+        }
         inner.finish(expected)?;
         Ok(value)
     }

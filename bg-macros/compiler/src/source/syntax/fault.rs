@@ -27,6 +27,17 @@ pub enum SyntaxFault {
         /// What could stand there; the likeliest first.
         expected: String,
     },
+    /// The components of a vector without its brackets.
+    BareVector,
+    /// A word after a number, as if numbers had units.
+    UnitOfNumber {
+        /// The number.
+        number: String,
+        /// The word.
+        word: String,
+        /// What to write.
+        help: String,
+    },
     /// A statement without its `;`.
     MissingSemicolon {
         /// The statement's last token.
@@ -137,7 +148,7 @@ impl Explain for SyntaxFault {
     fn code(&self) -> &'static str {
         match self {
             Self::UnknownStatement { .. } => "BG0101",
-            Self::Unexpected { .. } => "BG0102",
+            Self::Unexpected { .. } | Self::BareVector | Self::UnitOfNumber { .. } => "BG0102",
             Self::MissingSemicolon { .. } => "BG0103",
             Self::Power { .. } => "BG0104",
             Self::NotAUnit { .. } => "BG0105",
@@ -165,6 +176,12 @@ impl Explain for SyntaxFault {
         match self {
             Self::UnknownStatement { place, word, .. } => format!("`{word}` begins no statement of {place}"),
             Self::Unexpected { found, expected } => format!("found {found}, expected {expected}"),
+            Self::BareVector => {
+                "found `,` after a value, expected `;`, or brackets about the components of a vector".into()
+            }
+            Self::UnitOfNumber { number, word, .. } => {
+                format!("found `{word}` after `{number}`, expected a number alone")
+            }
             Self::MissingSemicolon { last } => format!("the statement that ends with {last} has no `;`"),
             Self::Power { operator, .. } => format!("found `{operator}`, which is no operator of an expression"),
             Self::NotAUnit { found } => format!("found {found} in a unit, expected symbols such as in `kg*m^2/s`"),
@@ -205,6 +222,8 @@ impl Explain for SyntaxFault {
                 suggested(word, known)
             }
             Self::Unexpected { found, expected } => likeliest(found, expected),
+            Self::BareVector => "write a vector in brackets, such as `[0, 1, 0]`".into(),
+            Self::UnitOfNumber { help, .. } => help.clone(),
             Self::MissingSemicolon { last } => format!("write `;` after {last}"),
             Self::Power { base, exponent, .. } => format!("write `pow({base}, {exponent})`"),
             Self::NotAUnit { .. } => "write unit symbols joined by `*` and `/`, with whole powers, or `1`".into(),

@@ -234,6 +234,9 @@ fn binding(cursor: &mut Cursor) -> Parsed<Let> {
     cursor.advance();
     let name = cursor.declared("the value")?;
     let unit = if cursor.eat(":").is_some() { Some(cursor.unit()?) } else { None };
+    if unit.is_none() && cursor.word().is_some() && !cursor.starts_statement() {
+        return Err(cursor.unexpected("`:` and a unit, or `=`"));
+    }
     cursor.expect("=")?;
     let value = cursor.expression()?;
     cursor.end_statement(OPERATOR);
@@ -268,6 +271,12 @@ fn junctions(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
         let name = cursor.declared_junction("the junction")?;
         let cardinality = cursor.cardinality()?;
         let domain = if cursor.eat(":").is_some() { Some(cursor.name("the domain")?) } else { None };
+        if domain.is_none()
+            && !cursor.starts_statement()
+            && let Some(word) = cursor.word()
+        {
+            return Err(cursor.unexpected(&format!("`: {word}`")));
+        }
         items.push(Item::Junction(Junction { kind, name, cardinality, domain }));
         if cursor.eat(",").is_none() {
             break;

@@ -194,7 +194,9 @@ impl Signals<'_> {
         // A reaction, or what an iteration finds: their rates of change are not known here.
         if symbols.iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_) | Symbol::Unsolved(_))) {
             let members = self.names(&[node]);
-            return Some(self.fault_of(node, &EquationFault::DependentOpen { members }));
+            let why =
+                "its state depends on a reaction or on a loop that is not linear, whose rates are not known".to_owned();
+            return Some(self.fault_of(node, &EquationFault::DependentOpen { members, why }));
         }
         let start = element.start.as_ref()?;
         let by = self.determining(state);

@@ -7,11 +7,11 @@ use crate::fault::Explain;
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum EquationFault {
     AlgebraicLoop { members: Vec<String>, reactions: Vec<String> },
-    UndeterminedLoop { members: Vec<String> },
+    UndeterminedLoop { members: Vec<String>, why: String },
     DependentStart { kind: ElementKind, name: String, by: Vec<String> },
     DependentOnInput { kind: ElementKind, name: String, input: String },
     DependentJumps { kind: ElementKind, name: String, element: String, condition: String },
-    DependentOpen { members: Vec<String> },
+    DependentOpen { members: Vec<String>, why: String },
     NotLinear { symbol: &'static str, name: String },
     NoEnergy { symbol: &'static str, name: String },
     EnergyOfOtherLaw { symbol: &'static str, name: String },
@@ -21,6 +21,7 @@ pub enum EquationFault {
     FrictionOfReaction { name: String, by: String },
     CannotStick { name: String, input: Option<String> },
     CannotStop { name: String },
+    UnknownTurn { name: String },
 }
 
 use crate::graph::ElementKind;
@@ -44,6 +45,7 @@ impl Explain for EquationFault {
             F::FrictionOfReaction { .. } => "BG0515",
             F::CannotStick { .. } => "BG0516",
             F::CannotStop { .. } => "BG0517",
+            F::UnknownTurn { .. } => "BG0518",
         }
     }
 
@@ -54,8 +56,8 @@ impl Explain for EquationFault {
                 reactions.join(", "),
                 members.join(" -> ")
             ),
-            F::UndeterminedLoop { members } => format!(
-                "algebraic loop: {} need each other in a way that leaves their efforts and flows open, or has no solution",
+            F::UndeterminedLoop { members, why } => format!(
+                "algebraic loop: {} need each other in a way that leaves their efforts and flows open, or has no solution: {why}",
                 members.join(", ")
             ),
             F::DependentStart { kind, name, by } => {
@@ -78,8 +80,9 @@ impl Explain for EquationFault {
                      would take an impulse"
                 )
             }
-            F::DependentOpen { members } => {
-                format!("in derivative causality, and what it gives cannot be solved for: {}", members.join(", "))
+            F::DependentOpen { members, why } => {
+                let members = members.join(", ");
+                format!("in derivative causality, and what it gives cannot be solved for: {members}: {why}")
             }
             F::NotLinear { symbol, name } => {
                 format!("the law of {symbol} `{name}` is not linear in its variable, so it would not conserve power")
@@ -119,6 +122,11 @@ impl Explain for EquationFault {
             F::CannotStop { name } => {
                 format!("nothing can hit stop `{name}`: no momentum determines its flow, or an input does")
             }
+            F::UnknownTurn { name } => {
+                format!(
+                    "the angle `{name}` is not known at the start: its sine or cosine depends on more than poses and parameters"
+                )
+            }
         }
     }
 
@@ -141,7 +149,7 @@ impl Explain for EquationFault {
             F::DependentJumps { kind, name, .. } => {
                 format!("let {} sit in front of `{name}`, or write the law without the comparison", between(*kind))
             }
-            F::DependentOpen { members } => format!(
+            F::DependentOpen { members, .. } => format!(
                 "let a C and an R (a compliant coupling) sit in front of {}, or write the laws beside it as functions of the other \
                  variable",
                 members.first().map_or("it", String::as_str)
@@ -171,6 +179,7 @@ impl Explain for EquationFault {
             F::CannotStop { .. } => {
                 "let it act where a mass moves, or give it a stiffness and a damping for the restitution".to_owned()
             }
+            F::UnknownTurn { .. } => "use `atan2(y, x)`, which gives the angle in one turn".to_owned(),
         }
     }
 }

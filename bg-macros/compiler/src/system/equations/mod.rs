@@ -33,6 +33,7 @@ mod terms;
 mod tests;
 mod text;
 mod unknowns;
+mod ways;
 
 use std::collections::BTreeSet;
 
@@ -251,6 +252,7 @@ fn symbol_name(symbol: Symbol, states: &[State], parameters: &[Parameter], input
         Symbol::Multiplier(index) => format!("multiplier_{index}"),
         Symbol::Kept(index) => format!("kept_{index}"),
         Symbol::Side(index) => format!("side_{index}"),
+        Symbol::Turned(index) => format!("turned_{index}"),
         Symbol::Unsolved(index) => format!("unsolved_{index}"),
         Symbol::Found(index) => format!("found_{index}"),
         Symbol::Slope(index) => format!("{}'", inputs[index as usize].name.text),

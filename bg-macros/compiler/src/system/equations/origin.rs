@@ -17,6 +17,10 @@ pub enum Origin {
     Orientation(usize, usize, usize),
     /// The angle of an orientation that turns about one axis; the track's index.
     Angle(usize),
+    /// The angle that counts turns; its index in the graph.
+    Turn(usize),
+    /// The displacement of a scalar 1-junction.
+    Way(NodeId),
     /// The integral that an output asks for; its index.
     Integral(usize),
 }
@@ -30,6 +34,7 @@ pub enum Kind {
     Position,
     Orientation,
     Angle,
+    Way,
     Integral,
 }
 
@@ -43,6 +48,7 @@ impl Origin {
             Self::Position(..) => Kind::Position,
             Self::Orientation(..) => Kind::Orientation,
             Self::Angle(_) => Kind::Angle,
+            Self::Turn(_) | Self::Way(_) => Kind::Way,
             Self::Integral(_) => Kind::Integral,
         }
     }
@@ -68,6 +74,7 @@ impl Kind {
             Self::Position => "position",
             Self::Orientation => "orientation",
             Self::Angle => "angle",
+            Self::Way => "way",
             Self::Integral => "integral",
         }
     }

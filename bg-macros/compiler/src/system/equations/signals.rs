@@ -33,6 +33,10 @@ pub(super) struct Signals<'a> {
     /// First state and shape of every storage, in their order.
     pub(super) layout: Vec<(Storage, usize, Shape)>,
     pub(super) first_integral: usize,
+    /// The states of angles that count turns, by their number.
+    pub(super) turns: BTreeMap<usize, usize>,
+    /// The states of displacements of junctions.
+    pub(super) ways: BTreeMap<NodeId, usize>,
     /// First multiplier of every residual sink, of every storage that what it gives keeps in step, and of dry friction.
     pub(super) reactions: BTreeMap<NodeId, u32>,
     /// The storages in derivative causality.
@@ -65,6 +69,8 @@ impl<'a> Signals<'a> {
             states: Vec::new(),
             layout: Vec::new(),
             first_integral: 0,
+            turns: BTreeMap::new(),
+            ways: BTreeMap::new(),
             reactions: BTreeMap::new(),
             dependent: BTreeMap::new(),
             unknowns: Unknowns::default(),
@@ -115,7 +121,8 @@ impl<'a> Signals<'a> {
         self.starts();
         let (guesses, speeds, gaps) = (self.guesses(), self.speeds(), self.gaps());
         let holding = Holding { compliant: self.compliant_slips(&speeds), ..Holding::default() };
-        let projections = self.projections();
+        let mut projections = self.projections();
+        projections.extend(self.turn_projections());
         let reactions = self.reactions();
         let texts = text::equations(&self);
         if !self.faults.is_empty() {
@@ -204,6 +211,7 @@ impl<'a> Signals<'a> {
             let bond = self.graph.node(node).bonds[0];
             multipliers += u32::try_from(self.graph.bond(bond).cardinality).expect("1 or 3");
         }
+        self.lay_out_ways();
         self.first_integral = self.states.len();
         let zero = self.pool.zero();
         for (index, integral) in self.graph.integrals.iter().enumerate() {

@@ -43,7 +43,8 @@ enum Form {
 /// Why a group has no solution.
 enum Trouble {
     Nonlinear,
-    Singular,
+    /// The equations that say nothing of the unknowns that are left; each is that of the unknown at its place.
+    Singular(Vec<usize>),
 }
 
 impl Signals<'_> {
@@ -70,7 +71,12 @@ impl Signals<'_> {
                 }
                 Err(trouble) => {
                     let fault = self.unsolvable(&group, &equations, &trouble);
-                    self.fault_once(fault);
+                    // Efforts and flows of one ring are one fault, whichever equation it is that each cannot have.
+                    let said = |fault: &Fault| fault.message.rsplit_once(": ").map(|(said, _)| said.to_owned());
+                    let is_said = |known: &Fault| known.code == fault.code && said(known) == said(&fault);
+                    if matches!(trouble, Trouble::Nonlinear) || !self.faults.iter().any(is_said) {
+                        self.fault_once(fault);
+                    }
                 }
             }
         }
@@ -108,7 +114,7 @@ impl Signals<'_> {
         let Form::Linear(system) = self.form(group, equations) else { return Err(Trouble::Nonlinear) };
         let parameters = &self.graph.parameters;
         let is_proved = |pool: &Pool, id: Id| !signs(pool, id, &|symbol| range(parameters, symbol)).zero;
-        let solution = solve_linear(&mut self.pool, system, &is_proved).map_err(|_| Trouble::Singular)?;
+        let solution = solve_linear(&mut self.pool, system, &is_proved).map_err(Trouble::Singular)?;
         for pivot in solution.doubtful {
             self.doubt(group, pivot);
         }
@@ -182,7 +188,11 @@ impl Signals<'_> {
             let of: BTreeSet<NodeId> =
                 unknowns().filter_map(|of| if let Unknown::Given(node) = of { Some(node) } else { None }).collect();
             let members = self.names(&of.into_iter().collect::<Vec<_>>());
-            return self.fault_of(node, &EquationFault::DependentOpen { members });
+            let why = match trouble {
+                Trouble::Nonlinear => "its equations are not linear".to_owned(),
+                Trouble::Singular(rows) => self.said_twice(group, rows),
+            };
+            return self.fault_of(node, &EquationFault::DependentOpen { members, why });
         }
         let circle =
             unknowns().find_map(|of| if let Unknown::Variable(_, _, circle) = of { Some(circle) } else { None });
@@ -194,12 +204,35 @@ impl Signals<'_> {
         };
         let fault = match trouble {
             Trouble::Nonlinear => EquationFault::AlgebraicLoop { members, reactions: self.reactions_in(equations) },
-            Trouble::Singular => EquationFault::UndeterminedLoop { members },
+            Trouble::Singular(rows) => EquationFault::UndeterminedLoop { members, why: self.said_twice(group, rows) },
         };
         match first {
             Some(circle) => Fault::new(circle.span, &fault),
             None => self.fault_of(self.members(group)[0], &fault),
         }
+    }
+
+    /// Which equations of a group say nothing of what is open.
+    fn said_twice(&self, group: &[u32], rows: &[usize]) -> String {
+        let mut of: Vec<String> = Vec::new();
+        for &row in rows {
+            let text = match self.unknowns.all[group[row] as usize] {
+                Unknown::Variable(role, bond, _) => {
+                    let ends = self.graph.bond(bond);
+                    let [from, to] = [ends.from, ends.to].map(|node| &self.graph.node(node).name.text);
+                    format!("the {role} of `{from} -> {to}`")
+                }
+                Unknown::State(node) => format!("the state of `{}`", self.graph.node(node).name.text),
+                Unknown::Given(node) => format!("what `{}` gives", self.graph.node(node).name.text),
+            };
+            if !of.contains(&text) {
+                of.push(text);
+            }
+        }
+        let more = of.len().saturating_sub(LISTED);
+        of.truncate(LISTED);
+        let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+        format!("the equation of {}{more} follows from the others or contradicts them", of.join(", "))
     }
 
     /// The names of what gives the reactions in these equations.

@@ -73,6 +73,7 @@ impl Signals<'_> {
                 self.states[first + k].rate = id;
             }
         }
+        self.way_rates();
     }
 
     /// A position moves with the flow, an orientation turns with it: R' = [w x] R.
@@ -107,6 +108,18 @@ impl Signals<'_> {
             };
             for k in 0..components {
                 self.states[first + k].start = start.0[k.min(start.0.len() - 1)];
+            }
+        }
+        self.starts_by_pose();
+        self.way_starts();
+    }
+
+    /// The start of a storage may depend on the start pose.
+    fn starts_by_pose(&mut self) {
+        for index in 0..self.states.len() {
+            let start = self.states[index].start;
+            if self.pool.symbols(&[start]).into_iter().any(|symbol| symbol.as_state().is_some()) {
+                self.states[index].start = self.at_start(&[start])[0];
             }
         }
     }

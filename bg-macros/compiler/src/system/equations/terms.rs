@@ -82,6 +82,10 @@ impl Signals<'_> {
             }
             Reference::Power(node) => Value::scalar(self.power_into(node)),
             Reference::Energy(node) => Value::scalar(self.energy_of(node)),
+            Reference::Displacement(node) if matches!(self.graph.node(node).kind, NodeKind::One) => {
+                Value::scalar(self.way(node))
+            }
+            Reference::Turn(index) => Value::scalar(self.turn(index)),
             Reference::Displacement(node) | Reference::Momentum(node) => self.element_state(node),
             Reference::StoredEnergy => Value::scalar(self.stored_energy()),
             Reference::SuppliedPower => Value::scalar(self.supplied_power()),

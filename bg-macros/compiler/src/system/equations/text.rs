@@ -29,6 +29,11 @@ pub(super) fn equations(signals: &Signals<'_>) -> Vec<String> {
         lines.push(format!("{} = {}", variable(signals, Role::Flow, bond), given(signals, receives, bond, Role::Flow)));
     }
     lines.extend(signals.layout.iter().map(|&(storage, ..)| rate(signals, storage)));
+    for (index, state) in
+        signals.turns.values().chain(signals.ways.values()).map(|&index| (index, &signals.states[index]))
+    {
+        lines.push(format!("d({})/dt = {}", state.name, shown(signals, &[signals.states[index].rate])));
+    }
     lines.extend(loops(signals));
     lines.extend(states(signals));
     lines

@@ -3,7 +3,7 @@
 //! In: equations. Out: the same with such states calculated from the others.
 //! Method: rates are expanded to monomials; Gaussian elimination finds a combination of other rates that may be a
 //! state's; that the difference vanishes identically is then proved on the expanded polynomials. Candidates are the
-//! displacements and integrals; combined are positions, orientations, displacements and integrals.
+//! displacements, ways and integrals; combined are positions, orientations, displacements, ways and integrals.
 
 use std::collections::BTreeMap;
 
@@ -51,7 +51,7 @@ fn is_fixed(equations: &StateEquations, id: Id) -> bool {
 /// Which states are proved combinations of others that are not recovered themselves.
 fn combinations(equations: &mut StateEquations) -> BTreeMap<usize, Combination> {
     let kind = |state: usize| equations.states[state].origin.kind();
-    let is_candidate = |kind: Kind| matches!(kind, Kind::Displacement | Kind::Integral);
+    let is_candidate = |kind: Kind| matches!(kind, Kind::Displacement | Kind::Way | Kind::Integral);
     let mut recovered = BTreeMap::new();
     if !equations.states.iter().any(|state| is_candidate(state.origin.kind())) {
         return recovered;

@@ -28,6 +28,7 @@ pub(super) fn integrate(equations: &mut StateEquations, report: &mut Report) {
     let mut images: BTreeMap<usize, Id> = BTreeMap::new();
     let mut kept = vec![true; equations.states.len()];
     for Turn { track, cosine, sine, start, rate } in turns {
+        let start = counted(equations, cosine, sine).unwrap_or(start);
         let angle = equations.pool.symbol(Symbol::state(cosine));
         images.insert(cosine, equations.pool.call(Function::Cos, &[angle]));
         images.insert(sine, equations.pool.call(Function::Sin, &[angle]));
@@ -81,6 +82,17 @@ fn proved(equations: &mut StateEquations, track: usize, cosine: usize, sine: usi
     let turned = pool.mul(rate, sine_symbol);
     let expected = pool.neg(turned);
     same_polynomial(pool, cosine_rate, expected).then_some(Turn { track, cosine, sine, start, rate })
+}
+
+/// Where an angle that counts turns starts from the same cosine and sine: so that its state is this angle and no other.
+fn counted(equations: &mut StateEquations, cosine: usize, sine: usize) -> Option<Id> {
+    let [x, y] = [cosine, sine].map(|state| equations.states[state].start);
+    let pool = &mut equations.pool;
+    let turned = pool.neg(y);
+    let [forward, backward] = [y, turned].map(|y| pool.call(Function::Atan2, &[y, x]));
+    let mut counting = equations.states.iter().filter(|state| matches!(state.origin, Origin::Turn(_)));
+    let found = counting.find_map(|state| [forward, backward].into_iter().position(|start| start == state.start))?;
+    Some(if found == 0 { forward } else { equations.pool.neg(backward) })
 }
 
 /// The angle whose cosine and sine are the start values: 0 for 1 and 0, u for cos u and sin u, -u for cos u and -sin u.

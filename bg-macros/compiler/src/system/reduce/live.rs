@@ -73,14 +73,14 @@ fn live(equations: &StateEquations, roots: &[Id]) -> (Vec<bool>, Vec<bool>) {
     (states, switches)
 }
 
-/// Integrals that no rate and no guard depends on.
+/// Integrals, and angles and ways, that no rate and no guard depends on.
 fn quadratures(equations: &StateEquations) -> Vec<usize> {
     let rates = equations.states.iter().map(|state| state.rate);
     let guards = equations.switches.iter().map(|switch| switch.guard);
     let used = equations.pool.symbols(&rates.chain(guards).collect::<Vec<_>>());
     let is_used = |state: usize| used.contains(&Symbol::state(state));
     (0..equations.states.len())
-        .filter(|&state| equations.states[state].origin.kind() == Kind::Integral && !is_used(state))
+        .filter(|&state| matches!(equations.states[state].origin.kind(), Kind::Integral | Kind::Way) && !is_used(state))
         .collect()
 }
 

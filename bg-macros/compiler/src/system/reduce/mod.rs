@@ -19,6 +19,7 @@ mod projected;
 mod reaction;
 mod report;
 mod speeds;
+mod turned;
 
 use crate::expr::{Branch, Id, Pool, Symbol};
 use crate::system::equations::StateEquations;
@@ -52,7 +53,7 @@ struct Pass {
 type Operations<'a> = dyn FnMut(&mut StateEquations) -> usize + 'a;
 
 /// The reductions in the order in which they find most.
-const PASSES: [Pass; 8] = [
+const PASSES: [Pass; 9] = [
     Pass {
         name: "parameters folded",
         applies: always,
@@ -62,6 +63,11 @@ const PASSES: [Pass; 8] = [
         name: "constant states folded",
         applies: always,
         run: |equations, _, report, _| invariant::fold(equations, report),
+    },
+    Pass {
+        name: "turns counted",
+        applies: |equations, _| turned::are_open(equations),
+        run: |equations, _, _, _| turned::settle(equations, true),
     },
     Pass {
         name: "equal states merged",
@@ -118,6 +124,13 @@ pub fn for_scene(
         report.count(pass.name, equations.states.len(), operations(&mut equations));
     }
     (equations, report)
+}
+
+/// Counts the turns of angles in a literal model, which has no proofs.
+pub fn count_turns(equations: &mut StateEquations) {
+    if turned::are_open(equations) {
+        turned::settle(equations, false);
+    }
 }
 
 /// Replaces parameters that no one tunes by their defaults; the others keep their order.

@@ -144,7 +144,7 @@ mod tests {
     fn a_rigid_pendulum_has_the_reactions_of_the_textbook() {
         let graph = format!(
             "{BOB} joint pivot: revolute z (ground.O -> bob.top) {{ rigid; }}
-             observe {{ angle: rad = pivot.angle; w: rad/s = pivot.speed; f: N = pivot.force; gap: m = pivot.gap; }}"
+             observe {{ angle: rad = pivot.direction; w: rad/s = pivot.speed; f: N = pivot.force; gap: m = pivot.gap; }}"
         );
         let scene = scene(&graph, "all reactions;");
         assert_eq!(scene.reduced.states.len(), 7, "{}", scene.report);

@@ -33,12 +33,18 @@ impl Explain for RequirementFault<'_> {
     fn message(&self) -> String {
         let Requirement { subject, wanted, unit, .. } = self.requirement;
         match unit {
+            Some(unit) if self.value > 0.0 => {
+                format!("{subject} is {}, too near 0 to calculate with", format!("{:e} {unit}", self.value).trim_end())
+            }
             Some(unit) => format!("{subject} is {}; it {wanted}", format!("{} {unit}", self.value).trim_end()),
             None => format!("{subject} {wanted}"),
         }
     }
 
     fn help(&self) -> String {
+        if self.value > 0.0 && self.requirement.unit.is_some() {
+            return "give a larger value".to_owned();
+        }
         self.requirement.help.to_owned()
     }
 }

@@ -158,9 +158,13 @@ impl Requirements {
 }
 
 impl Requirement {
-    /// Whether a value of the scalar is allowed; what is no number is not.
+    /// Whether a value of the scalar is allowed; what is no number is not, nor is one so near 0 that it has no reciprocal.
     fn holds(&self, value: f64) -> bool {
-        value > 0.0 || value == 0.0 && !self.is_strict
+        if self.is_strict && self.unit.is_some() {
+            value >= f64::MIN_POSITIVE
+        } else {
+            value > 0.0 || value == 0.0 && !self.is_strict
+        }
     }
 }
 

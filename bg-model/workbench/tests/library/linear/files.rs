@@ -19,8 +19,9 @@ fn the_table_shows_modes_and_what_is_left_out() {
     assert_eq!(lines[1], "mode      real 1/s  imaginary rad/s  frequency Hz   damping  shape");
     let slow = "           4.9522       0.78816   0.00000  rod 100 %: position_x 1 m, rotation_z 3.33 rad";
     assert!(lines[2].starts_with("   1  ") && lines[2].ends_with(slow), "{text}");
-    assert_eq!(lines.len(), 6, "{text}");
+    assert_eq!(lines.len(), 7, "{text}");
     assert_eq!(lines[5], "rod.orientation: 1 rotation for its 2 entries");
+    assert_eq!(lines[6], "rod.angle: follows from the others");
 }
 
 #[test]

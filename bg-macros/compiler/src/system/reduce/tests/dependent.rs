@@ -11,7 +11,7 @@ fn geared(joint: &str) -> String {
              start turned rotation_z(0.7); }}
          joint pin: revolute z (ground.O -> bob.top) {{ {joint} }}
          TF gear = n; 1 motor: rotation; I wheel = rotor; pin.spin -> gear -> motor -> wheel;
-         observe {{ angle: rad = pin.angle; f: N = pin.force; tooth: N*m = wheel.effort; stored: J = stored_energy }}"
+         observe {{ angle: rad = pin.direction; f: N = pin.force; tooth: N*m = wheel.effort; stored: J = stored_energy }}"
     )
 }
 

@@ -13,7 +13,7 @@ const SLIDER_CRANK: &str = "param rod: m = 0.5, above 0; gravity [0, -9.81, 0]; 
     joint b: revolute z (link.B -> block) { rigid; }
     joint slide: prismatic x (ground.Q -> block) { rigid; }
     drive motor on o torque = 2 - 0.1 * o.speed;
-    observe { x: m = block.position; link: rad = link.angle; e: J = stored_energy; }";
+    observe { x: m = block.position; link: rad = link.direction; e: J = stored_energy; }";
 
 /// The slide's block in front of the crank, or behind it.
 fn slider_crank(is_in_front: bool) -> String {
@@ -43,7 +43,7 @@ fn four_bar(crank: f64, is_above: bool, tilt: f64) -> String {
         joint q: revolute z (ground.Q -> rocker.Q) {{ rigid; }}
         joint b: revolute z (link.B -> rocker.B) {{ rigid; }}
         drive motor on o torque = torque - 0.5 * o.speed;
-        observe {{ link: rad = link.angle; rocker: rad = rocker.angle; x: m = link.position; e: J = stored_energy; }}"
+        observe {{ link: rad = link.direction; rocker: rad = rocker.direction; x: m = link.position; e: J = stored_energy; }}"
     )
 }
 
