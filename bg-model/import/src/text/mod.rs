@@ -11,9 +11,9 @@ use std::fmt::Write;
 use nalgebra::Vector3;
 
 use crate::Options;
-use crate::names::{Names, type_name};
+use crate::names::{Names, shown, type_name};
 use crate::number::{inverse_rotation, is_identity, matrix, number, rotation, vector};
-use crate::robot::{Inertia, Joint, Kind, Link, Loop, Pose, Robot};
+use crate::robot::{Coupling, Inertia, Joint, Kind, Law, Link, Loop, Pose, Robot, Spring};
 use frames::{Frames, frames};
 
 /// Columns of a comment.
@@ -31,15 +31,40 @@ const COMPLIANCE: [(&str, &str, &str); 4] = [
 #[must_use]
 pub fn write(robot: &Robot, file: &str, options: Options) -> String {
     let mut names = Names::default();
-    let bodies: Vec<String> = robot
-        .links
-        .iter()
-        .enumerate()
-        .map(|(k, link)| if k == 0 { "ground".to_owned() } else { names.take(&link.name, "body") })
-        .collect();
+    let body = |(k, link): (usize, &Link)| {
+        if k == 0 { "ground".to_owned() } else { names.take(&link.name, "body", &["place", "turned", "drag", "brake"]) }
+    };
+    let bodies: Vec<String> = robot.links.iter().enumerate().map(body).collect();
     let joints: Vec<JointNames> = robot.joints.iter().map(|joint| JointNames::new(joint, &mut names)).collect();
-    let loops: Vec<String> = robot.loops.iter().map(|closed| names.take(&closed.name, "loop")).collect();
-    let writer = Writer { robot, options, bodies, joints, loops };
+    let loops: Vec<String> = robot.loops.iter().map(|closed| names.take(&closed.name, "loop", &[])).collect();
+    let lift = |(k, link): (usize, &Link)| {
+        link.lifts.iter().map(|_| names.take(&format!("{}_lifted", bodies[k]), "mass", &[])).collect()
+    };
+    let lifts = robot.links.iter().enumerate().map(lift).collect();
+    let mut points = vec![Vec::new(); robot.links.len()];
+    for (k, joint) in robot.joints.iter().enumerate().filter(|(_, joint)| joint.kind != Kind::Free) {
+        points[joint.parent].push((k, true));
+        points[joint.child].push((k, false));
+    }
+    let mut writer = Writer {
+        robot,
+        options,
+        bodies,
+        joints,
+        loops,
+        lifts,
+        points,
+        starts: vec![Start::default()],
+        leaders: Vec::new(),
+    };
+    writer.leaders = vec![None; robot.joints.len()];
+    for (k, coupling) in robot.couplings.iter().enumerate() {
+        writer.leaders[coupling.follower] = Some(k);
+    }
+    for (joint, names) in robot.joints.iter().zip(&writer.joints) {
+        let start = writer.start(joint, names);
+        writer.starts.push(start);
+    }
     writer.file(file)
 }
 
@@ -55,12 +80,20 @@ struct JointNames {
 
 impl JointNames {
     fn new(joint: &Joint, names: &mut Names) -> Self {
-        let name = names.take(&joint.name, "joint");
-        let of = |names: &mut Names, what: &str| names.take(&format!("{name}_{what}"), "of_joint");
-        let start = of(names, "start");
-        let effort = of(names, if joint.kind == Kind::Prismatic { "force" } else { "torque" });
-        Self { joint: name, start, effort }
+        let effort = if joint.kind == Kind::Prismatic { "force" } else { "torque" };
+        let made =
+            ["start", effort, "bearing", "friction", "spring", "rotor", "stop", "motor", "follows", "ratio", "tie"];
+        let made = if joint.is_scalar() { &made[..] } else { &["bearing", "twist", "moment"] };
+        let name = names.take(&joint.name, "joint", made);
+        Self { start: format!("{name}_start"), effort: format!("{name}_{effort}"), joint: name }
     }
+}
+
+/// Where a body starts: the terms of its origin's place, the factors of its orientation; none for zero and one.
+#[derive(Default)]
+struct Start {
+    place: Vec<String>,
+    turned: Vec<String>,
 }
 
 struct Writer<'r> {
@@ -68,10 +101,18 @@ struct Writer<'r> {
     options: Options,
     /// For each link.
     bodies: Vec<String>,
-    /// For each joint.
+    /// For each joint; the k-th one carries link k + 1.
     joints: Vec<JointNames>,
     /// For each loop.
     loops: Vec<String>,
+    /// For each link those of its masses without a weight.
+    lifts: Vec<Vec<String>>,
+    /// For each link the joints that have a point of it, and whether it is their parent.
+    points: Vec<Vec<(usize, bool)>>,
+    /// For each link.
+    starts: Vec<Start>,
+    /// For each joint the coupling by which it follows.
+    leaders: Vec<Option<usize>>,
 }
 
 impl Writer<'_> {
@@ -79,17 +120,19 @@ impl Writer<'_> {
         let graph = type_name(&self.robot.name);
         let mut sections = vec![self.parameters(), self.inputs(), self.surroundings()];
         for (k, joint) in self.robot.joints.iter().enumerate() {
-            sections.push(self.body(joint, &self.joints[k]) + &self.joint(joint, &self.joints[k]));
+            sections.push(self.body(joint) + &self.joint(joint, &self.joints[k]));
         }
+        sections.extend(self.robot.couplings.iter().map(|coupling| self.coupling(coupling)));
         sections.extend(self.robot.loops.iter().zip(&self.loops).map(|(closed, name)| self.closed(closed, name)));
         sections.push(self.observed());
         sections.push(self.scene(&graph));
         let body: Vec<String> =
             sections.iter().filter(|section| !section.is_empty()).map(|section| indented(&indented(section))).collect();
         format!(
-            "{}\nuse bg_model::bond_graph;\n\nbond_graph! {{\n    /// The robot `{}` of `{file}`.\n    pub graph {graph} {{\n{}    }}\n}}\n",
+            "{}\nuse bg_model::bond_graph;\n\nbond_graph! {{\n    /// The robot `{}` of `{}`.\n    pub graph {graph} {{\n{}    }}\n}}\n",
             self.head(file),
-            self.robot.name,
+            shown(&self.robot.name),
+            shown(file),
             body.join("\n")
         )
     }
@@ -103,7 +146,7 @@ impl Writer<'_> {
             let merged: Vec<String> = link.merged.iter().map(|name| format!("`{name}`")).collect();
             comment(&mut text, "", &format!("In `{body}`: {}.", merged.join(", ")));
         }
-        for note in &self.robot.notes {
+        for note in self.robot.notes.iter().chain(&self.robot.remarks) {
             comment(&mut text, "- ", note);
         }
         text
@@ -114,10 +157,12 @@ impl Writer<'_> {
         for (joint, names) in self.scalar() {
             let (what, unit) = coordinate(joint);
             let (name, start) = (&names.joint, number(joint.start));
-            line(&mut text, &format!("/// {what} of `{name}` at the start."));
-            line(&mut text, &format!("param {}: {unit} = {start};", names.start));
+            if self.coupling_of(joint).is_none() {
+                line(&mut text, &format!("/// {what} of `{name}` at the start."));
+                line(&mut text, &format!("param {}: {unit} = {start};", names.start));
+            }
         }
-        let has_welds = self.robot.loops.iter().any(|closed| closed.holds_rotation);
+        let has_welds = self.robot.loops.iter().any(|closed| closed.kind != Kind::Spherical);
         let used = [
             (self.options.compliant, "joint", "joints", true),
             (!self.robot.loops.is_empty(), "loop", "joints that close loops", has_welds),
@@ -162,14 +207,12 @@ impl Writer<'_> {
                 line(&mut text, &format!("point {name} = {}{turned};", vector(&pose.place, 1e-3)));
             }
         };
-        for (joint, names) in self.robot.joints.iter().zip(&self.joints).filter(|(joint, _)| joint.kind != Kind::Free) {
-            let frames = frames(joint);
-            if joint.parent == link {
-                point(&names.joint, &frames.in_parent);
-            }
-            if joint.child == link {
-                point(&names.joint, &frames.in_child);
-            }
+        for &(k, is_parent) in &self.points[link] {
+            let frames = frames(&self.robot.joints[k]);
+            point(&self.joints[k].joint, if is_parent { &frames.in_parent } else { &frames.in_child });
+        }
+        for (name, (_, place)) in self.lifts[link].iter().zip(&self.robot.links[link].lifts) {
+            point(name, &Pose::at(*place));
         }
         for (closed, name) in self.robot.loops.iter().zip(&self.loops) {
             closed.ends.iter().filter(|end| end.0 == link).for_each(|end| point(name, &end.1));
@@ -178,9 +221,9 @@ impl Writer<'_> {
     }
 
     /// The body that a joint carries, with its start.
-    fn body(&self, joint: &Joint, names: &JointNames) -> String {
+    fn body(&self, joint: &Joint) -> String {
         let (link, name) = (&self.robot.links[joint.child], &self.bodies[joint.child]);
-        let (place, turned) = self.start(joint, names);
+        let Start { place, turned } = &self.starts[joint.child];
         let mut inner = masses(link);
         inner += &self.points(joint.child);
         let (has_place, has_turned) = (!place.is_empty(), !turned.is_empty());
@@ -198,11 +241,18 @@ impl Writer<'_> {
             line(&mut text, &format!("let {name}_place: m = {};", place.join(" + ").replace("+ -", "- ")));
         }
         line(&mut text, &format!("body {name} {{\n{}}}", indented(&inner)));
+        if self.robot.gravity != Vector3::zeros() {
+            for (lift, (mass, place)) in self.lifts[joint.child].iter().zip(&link.lifts) {
+                let at = self.end(joint.child, lift, &Pose::at(*place));
+                let up = vector(&(-self.robot.gravity * *mass), 0.0);
+                line(&mut text, &format!("drive {lift} on {at} force = {up};"));
+            }
+        }
         text
     }
 
-    /// Where a body starts: the terms of its origin's place, the factors of its orientation; none for zero and one.
-    fn start(&self, joint: &Joint, names: &JointNames) -> (Vec<String>, Vec<String>) {
+    /// Where the body of a joint starts; its parent's start is known.
+    fn start(&self, joint: &Joint, names: &JointNames) -> Start {
         let Frames { letter, reversed, in_parent, in_child } = frames(joint);
         let start = if reversed { format!("-{}", names.start) } else { names.start.clone() };
         let parent = self.turned(joint.parent);
@@ -229,23 +279,17 @@ impl Writer<'_> {
                 format!("-{}_turned * {}", self.bodies[joint.child], vector(&in_child.place, 1e-3))
             });
         }
-        (place, turned)
+        Start { place, turned }
     }
 
     /// The name of a link's orientation at the start; none where it is not turned.
     fn turned(&self, link: usize) -> Option<String> {
-        let has = |k: usize| !self.start(&self.robot.joints[k], &self.joints[k]).1.is_empty();
-        self.carrier(link).filter(|&k| has(k)).map(|_| format!("{}_turned", self.bodies[link]))
+        (!self.starts[link].turned.is_empty()).then(|| format!("{}_turned", self.bodies[link]))
     }
 
     /// The name of a link's place at the start; none where it is the ground's origin.
     fn placed(&self, link: usize) -> Option<String> {
-        let has = |k: usize| !self.start(&self.robot.joints[k], &self.joints[k]).0.is_empty();
-        self.carrier(link).filter(|&k| has(k)).map(|_| format!("{}_place", self.bodies[link]))
-    }
-
-    fn carrier(&self, link: usize) -> Option<usize> {
-        self.robot.joints.iter().position(|joint| joint.child == link)
+        (!self.starts[link].place.is_empty()).then(|| format!("{}_place", self.bodies[link]))
     }
 
     /// A joint with what acts on it.
@@ -253,7 +297,7 @@ impl Writer<'_> {
         let name = &names.joint;
         let Frames { letter, reversed, in_parent, in_child } = frames(joint);
         let kind = match joint.kind {
-            Kind::Free => return String::new(),
+            Kind::Free => return self.drag(joint),
             Kind::Fixed => "fixed".to_owned(),
             Kind::Revolute => format!("revolute {letter}"),
             Kind::Prismatic => format!("prismatic {letter}"),
@@ -269,60 +313,125 @@ impl Writer<'_> {
         line(&mut text, &format!("joint {name}: {kind} ({first} -> {second}) {{ {clauses} }}"));
         if joint.is_scalar() {
             self.actors(&mut text, joint, names);
+        } else if !joint.damping.is_zero() {
+            text += &self.ball_bearing(joint, name);
         }
         text
+    }
+
+    /// What brakes a spherical joint: a resistance to the relative angular velocity.
+    fn ball_bearing(&self, joint: &Joint, name: &str) -> String {
+        let (child, damping) = (&self.bodies[joint.child], number(joint.damping.0[0]));
+        if joint.parent == 0 {
+            return format!("R {name}_bearing = {damping}; {child}.rotation -> {name}_bearing;\n");
+        }
+        let parent = &self.bodies[joint.parent];
+        format!(
+            "R {name}_bearing = {damping}; 1 {name}_twist[3]: rotation; 0 {name}_moment[3]: rotation;\n\
+             {name}_twist -> {name}_bearing; {name}_twist -> {name}_moment; {parent}.rotation -> {name}_moment -> {child}.rotation;\n"
+        )
+    }
+
+    /// What brakes a free body: a resistance to its angular velocity, and a joint to the ground that holds nothing.
+    fn drag(&self, joint: &Joint) -> String {
+        if joint.damping.is_zero() {
+            return String::new();
+        }
+        let (body, damping) = (&self.bodies[joint.child], number(joint.damping.0[0]));
+        format!(
+            "R {body}_drag = {damping}; {body}.rotation -> {body}_drag;\n\
+             joint {body}_brake: spherical (ground -> {body}) {{ stiffness 0; damping {damping}; }}\n"
+        )
+    }
+
+    /// A joint that follows another one: its speed is kept at the ratio of the leader's.
+    fn coupling(&self, coupling: &Coupling) -> String {
+        let [(follower, name), (leader, other)] =
+            [coupling.follower, coupling.leader].map(|joint| (&self.robot.joints[joint], &self.joints[joint].joint));
+        let domain = if follower.kind == Kind::Prismatic { "translation" } else { "rotation" };
+        let mut text = String::new();
+        line(&mut text, &format!("// `{name}` follows `{other}`."));
+        let word = if coupling.is_linear() { "TF" } else { "MTF" };
+        let ratio = polynomial(&coupling.slope(), &format!("{other}.{}", coordinate_word(leader)));
+        line(&mut text, &format!("{word} {name}_ratio = {ratio}; 0 {name}_tie: {domain}; rSe {name}_follows = 0;"));
+        let (axis, other_axis) = (axis(follower), axis(leader));
+        line(
+            &mut text,
+            &format!(
+                "{other}.{other_axis} -> {name}_ratio -> {name}_tie -> {name}.{axis}; {name}_follows -> {name}_tie;"
+            ),
+        );
+        let start = polynomial(&coupling.polynomial, &self.joints[coupling.leader].start);
+        line(
+            &mut text,
+            &format!("let {}: {} = {start};", self.joints[coupling.follower].start, coordinate(follower).1),
+        );
+        text
+    }
+
+    /// The coupling by which a joint follows.
+    fn coupling_of(&self, joint: &Joint) -> Option<&Coupling> {
+        self.leaders[joint.child - 1].map(|k| &self.robot.couplings[k])
     }
 
     /// What acts on the free axis of a joint.
     fn actors(&self, text: &mut String, joint: &Joint, names: &JointNames) {
         let JointNames { joint: name, start, effort: input } = names;
         let slides = joint.kind == Kind::Prismatic;
-        let axis = if slides { "slide" } else { "spin" };
+        let axis = axis(joint);
+        let is_plain = joint.damping.is_linear() && joint.damping.0[0] >= 0.0;
         if joint.friction > 0.0 {
-            let viscous =
-                if joint.damping > 0.0 { format!(" viscous {};", number(joint.damping)) } else { String::new() };
+            let viscous = if is_plain && !joint.damping.is_zero() {
+                format!(" viscous {};", number(joint.damping.0[0]))
+            } else {
+                String::new()
+            };
             line(
                 text,
                 &format!("friction {name}_friction on {name} {{ coulomb {};{viscous} }}", number(joint.friction)),
             );
-        } else if joint.damping > 0.0 {
-            line(text, &format!("R {name}_bearing = {}; {name}.{axis} -> {name}_bearing;", number(joint.damping)));
         }
-        if let Some((stiffness, rest)) = joint.spring {
+        let is_said = is_plain && joint.friction > 0.0;
+        if !(is_said || joint.damping.is_zero()) {
+            let law = if is_plain { format!(" = {}", number(joint.damping.0[0])) } else { odd(&joint.damping, "w") };
+            line(text, &format!("R {name}_bearing{law}; {name}.{axis} -> {name}_bearing;"));
+        }
+        if let Some(Spring { law, rest }) = joint.spring {
             let from = match number(-rest) {
                 zero if zero == "0" => start.clone(),
                 rest if rest.starts_with('-') => format!("{start} - {}", &rest[1..]),
                 rest => format!("{start} + {rest}"),
             };
-            line(
-                text,
-                &format!(
-                    "C {name}_spring(q) = {} * q start {from}; {name}.{axis} -> {name}_spring;",
-                    number(stiffness)
-                ),
-            );
+            let (law, energy) = (odd(&law, "q"), energy(&law, "q"));
+            line(text, &format!("C {name}_spring{law} start {from}{energy}; {name}.{axis} -> {name}_spring;"));
         }
         if joint.armature > 0.0 {
             line(text, &format!("I {name}_rotor = {}; {name}.{axis} -> {name}_rotor;", number(joint.armature)));
         }
         if let Some((least, most)) = joint.limits.filter(|_| self.options.limits) {
             let from = if slides { String::new() } else { format!(" start {start};") };
-            let (least, most) = (number(least), number(most));
-            line(
-                text,
-                &format!("stop {name}_stop on {name} {{ at least {least}; at most {most}; restitution 0;{from} }}"),
-            );
+            let end = |word: &str, value: f64| {
+                if value.is_finite() { format!("at {word} {}; ", number(value)) } else { String::new() }
+            };
+            let ends = end("least", least) + &end("most", most);
+            line(text, &format!("stop {name}_stop on {name} {{ {ends}restitution 0;{from} }}"));
         }
         if self.options.drives {
-            line(text, &format!("drive {name}_motor on {name} {} = {input};", effort(joint).0));
+            let value = joint.effort.map_or_else(|| input.clone(), |most| clamped(input, most));
+            line(text, &format!("drive {name}_motor on {name} {} = {value};", effort(joint).0));
         }
     }
 
     /// A joint that closes a loop.
     fn closed(&self, closed: &Loop, name: &str) -> String {
-        let kind = if closed.holds_rotation { "fixed" } else { "spherical" };
+        let kind = match closed.kind {
+            Kind::Spherical => "spherical",
+            Kind::Revolute => "revolute z",
+            Kind::Prismatic => "prismatic z",
+            _ => "fixed",
+        };
         let [first, second] = closed.ends.each_ref().map(|(link, pose)| self.end(*link, name, pose));
-        let clauses = clauses("loop", closed.holds_rotation);
+        let clauses = clauses("loop", closed.kind != Kind::Spherical);
         format!("joint {name}: {kind} ({first} -> {second}) {{ {clauses} }}\n")
     }
 
@@ -335,8 +444,7 @@ impl Writer<'_> {
         let mut inner = String::new();
         for (joint, names) in self.scalar() {
             let (name, unit) = (&names.joint, coordinate(joint).1);
-            let what = if joint.kind == Kind::Prismatic { "travel" } else { "angle" };
-            line(&mut inner, &format!("{name}: {unit} = {name}.{what};"));
+            line(&mut inner, &format!("{name}: {unit} = {name}.{};", coordinate_word(joint)));
         }
         for joint in self.robot.joints.iter().filter(|joint| joint.kind == Kind::Free) {
             let body = &self.bodies[joint.child];
@@ -355,9 +463,15 @@ impl Writer<'_> {
             return String::new();
         }
         let terms = |of: &str| {
-            let bodies: Vec<String> =
-                self.bodies[1..].iter().map(|body| format!("{body}.mass * {body}.position{of}")).collect();
-            bodies.join("\n    + ")
+            let weight = |(k, body): (usize, &String)| {
+                let mut term = format!("{body}.mass * {body}.position{of}");
+                for (lift, (mass, place)) in self.lifts[k].iter().zip(&self.robot.links[k].lifts) {
+                    let point = if is_point(&Pose::at(*place)) { lift } else { "origin" };
+                    let _ = write!(term, " - {} * {body}.{point}.position{of}", number(*mass));
+                }
+                term
+            };
+            self.bodies.iter().enumerate().skip(1).map(weight).collect::<Vec<_>>().join("\n    + ")
         };
         let along =
             ["x", "y", "z"].into_iter().zip(gravity.iter()).filter(|(_, part)| **part != 0.0).collect::<Vec<_>>();
@@ -422,6 +536,59 @@ fn coordinate(joint: &Joint) -> (&'static str, &'static str) {
     if joint.kind == Kind::Prismatic { ("Travel", "m") } else { ("Angle", "rad") }
 }
 
+/// What its angle or travel is called.
+fn coordinate_word(joint: &Joint) -> &'static str {
+    if joint.kind == Kind::Prismatic { "travel" } else { "angle" }
+}
+
+/// The junction of its free axis.
+fn axis(joint: &Joint) -> &'static str {
+    if joint.kind == Kind::Prismatic { "slide" } else { "spin" }
+}
+
+/// An odd law of a variable.
+fn odd(law: &Law, variable: &str) -> String {
+    let powers = [variable.to_owned(), format!("{variable} * abs({variable})"), format!("pow({variable}, 3)")];
+    format!("({variable}) = {}", sum(law.0.iter().zip(&powers).map(|(factor, power)| (*factor, power.as_str()))))
+}
+
+/// The energy of a spring with such a law; none where the compiler finds it.
+fn energy(law: &Law, variable: &str) -> String {
+    if law.is_linear() {
+        return String::new();
+    }
+    let powers = [format!("pow({variable}, 2)"), format!("abs(pow({variable}, 3))"), format!("pow({variable}, 4)")];
+    let factors = law.0.iter().zip([2.0, 3.0, 4.0]).map(|(factor, power)| factor / power);
+    format!(" energy {}", sum(factors.zip(&powers).map(|(factor, power)| (factor, power.as_str()))))
+}
+
+/// A polynomial, constant first.
+fn polynomial(coefficients: &[f64], variable: &str) -> String {
+    let power = |k: usize| match k {
+        0 => String::new(),
+        1 => variable.to_owned(),
+        _ => format!("pow({variable}, {k})"),
+    };
+    let powers: Vec<String> = (0..coefficients.len()).map(power).collect();
+    sum(coefficients.iter().copied().zip(powers.iter().map(String::as_str)))
+}
+
+/// A sum of products; those of 0 are left out, those of 1 are not, since a number takes whatever unit is asked for.
+fn sum<'t>(terms: impl Iterator<Item = (f64, &'t str)>) -> String {
+    let term = |(factor, power): (f64, &str)| match power {
+        "" => number(factor),
+        _ => format!("{} * {power}", number(factor)),
+    };
+    let terms: Vec<String> = terms.filter(|(factor, _)| *factor != 0.0).map(term).collect();
+    if terms.is_empty() { "0".to_owned() } else { terms.join(" + ").replace("+ -", "- ") }
+}
+
+/// An input within a most effort of both signs.
+fn clamped(input: &str, most: f64) -> String {
+    let most = number(most);
+    format!("if {input} > {most} {{ {most} }} else if {input} < -{most} {{ -{most} }} else {{ {input} }}")
+}
+
 fn effort(joint: &Joint) -> (&'static str, &'static str) {
     if joint.kind == Kind::Prismatic { ("force", "N") } else { ("torque", "N*m") }
 }
@@ -435,7 +602,7 @@ fn line(text: &mut String, line: &str) {
 fn comment(text: &mut String, mark: &str, words: &str) {
     let mut row = format!("// {mark}");
     let indent = format!("// {}", " ".repeat(mark.len()));
-    for word in words.split(' ') {
+    for word in shown(words).split(' ') {
         if row.len() + word.len() > WIDTH {
             line(text, row.trim_end());
             row.clone_from(&indent);
