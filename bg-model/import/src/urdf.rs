@@ -97,17 +97,13 @@ impl<'n> Reader<'n> {
         let ends = (self.end(node, "parent")?, self.end(node, "child")?);
         let origin = origin(node)?;
         let word = node.needed("type")?;
-        if word == "fixed" || word == "floating" {
-            // Nothing of these is about a joint without an axis.
-            node.all_children()
-                .filter(|child| ["axis", "limit", "safety_controller"].contains(&child.name.as_str()))
-                .for_each(Node::mark_deep);
-        }
-        if word == "fixed" {
-            node.all_children()
-                .filter(|child| ["dynamics", "mimic"].contains(&child.name.as_str()))
-                .for_each(Node::mark_deep);
-        }
+        // What is about an axis is about nothing here.
+        let about_axis: &[&str] = match word {
+            "fixed" => &["axis", "limit", "safety_controller", "dynamics", "mimic"],
+            "floating" => &["axis", "limit", "safety_controller"],
+            _ => &[],
+        };
+        node.children.iter().filter(|child| about_axis.contains(&child.name.as_str())).for_each(Node::mark_deep);
         let kind = match word {
             "revolute" | "continuous" => Kind::Revolute,
             "prismatic" => Kind::Prismatic,
@@ -175,15 +171,14 @@ impl<'n> Reader<'n> {
             self.joints.iter().enumerate().map(|(index, joint)| (joint.name.as_str(), index)).collect();
         for &(follower, mimic) in &self.mimics {
             let other = mimic.needed("joint")?;
-            let unknown = || ImportError::Unknown { place: mimic.place.clone(), what: "joint", name: other.to_owned() };
-            let leader = *index.get(other).ok_or_else(unknown)?;
             let ratio = mimic.number("multiplier")?.unwrap_or(1.0);
             let offset = mimic.number("offset")?.unwrap_or(0.0);
-            let name = &self.joints[follower].name;
-            if !self.joints[leader].is_scalar() {
-                self.notes.push(format!("Joint `{name}` does not mimic `{other}`, which has no angle or travel."));
+            let Some(&leader) = index.get(other).filter(|&&leader| self.joints[leader].is_scalar()) else {
+                let (place, name) = (&mimic.place, &self.joints[follower].name);
+                let why = if index.contains_key(other) { "which has no angle or travel" } else { "which is not there" };
+                self.notes.push(format!("{place}: joint `{name}` does not mimic `{other}`, {why}: it moves on its own."));
                 continue;
-            }
+            };
             self.couplings.push(Coupling { follower, leader, polynomial: [offset, ratio, 0.0, 0.0, 0.0] });
         }
         let Some((index, what)) = crate::couple::impossible(&self.couplings, &self.joints) else { return Ok(()) };

@@ -190,7 +190,7 @@ fn what_is_wrong_with_an_mjcf_is_told_with_its_line() {
             "line 2: `type` of <joint> is \"screw\": it must be free, ball, slide or hinge",
         ),
         (body("<joint axis='0 0 0'/>"), "line 2: `axis` of <joint> is \"0 0 0\": it must be a direction, not zero"),
-        (body("<inertial mass='1'/>"), "line 2: <inertial> has no `diaginertia`: add it"),
+        (body("<joint/><inertial mass='1'/>"), "line 2: <inertial> has no `diaginertia`: add it"),
         (body("<geom quat='0 0 0 0'/>"), "line 2: `quat` of <geom> is \"0 0 0 0\": it must be not zero"),
         (body("<body name='b'/>"), "line 2: a second body `b`: rename one of the two"),
         (

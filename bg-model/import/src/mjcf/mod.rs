@@ -331,7 +331,7 @@ impl<'n> Reader<'n> {
             FromShapes::Otherwise | FromShapes::Never => true,
         };
         let inertia = match first {
-            Some(item) if is_used => self.given(item)?,
+            Some(item) if is_used => self.given(item, items.iter().any(|item| item.node.name.ends_with("joint")))?,
             Some(item) => {
                 item.node.mark_all();
                 from_shapes
@@ -342,7 +342,8 @@ impl<'n> Reader<'n> {
         self.settings.bounded(inertia, first.map_or(body, |item| item.node))
     }
 
-    fn given(&self, item: &Item<'n>) -> Result<Option<Inertia>, ImportError> {
+    /// What `inertial` says; of a body that a joint moves also its moments.
+    fn given(&self, item: &Item<'n>, is_moved: bool) -> Result<Option<Inertia>, ImportError> {
         let node = item.node;
         node.needed("mass")?;
         let mass = node.not_negative("mass")?;
@@ -353,6 +354,9 @@ impl<'n> Reader<'n> {
         let tensor = if let Some(text) = node.attribute("fullinertia") {
             let [xx, yy, zz, xy, xz, yz] = node.array::<6>("fullinertia", text)?;
             Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+        } else if let (None, false) = (node.peek("diaginertia"), is_moved) {
+            node.mark("diaginertia");
+            Matrix3::zeros()
         } else {
             let text = node.needed("diaginertia")?;
             let moments = node.array::<3>("diaginertia", text)?;
