@@ -111,7 +111,9 @@ pub enum ImportError {
     #[error("{0}: the joints of a URDF are a tree with one root")]
     NoTree(String),
     /// A robot without a motion.
-    #[error("nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or take --free-base for a URDF whose root moves")]
+    #[error(
+        "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or take --free-base for a URDF whose root moves"
+    )]
     NothingMoves,
     /// A number that the calculation has not kept finite.
     #[error("{what} has numbers that are too large to calculate with: check its sizes, places and masses")]

@@ -23,6 +23,7 @@ pub mod xml;
 mod couple;
 mod encoding;
 mod geometry;
+mod mesh;
 mod names;
 mod number;
 

@@ -176,7 +176,8 @@ impl<'n> Reader<'n> {
             let Some(&leader) = index.get(other).filter(|&&leader| self.joints[leader].is_scalar()) else {
                 let (place, name) = (&mimic.place, &self.joints[follower].name);
                 let why = if index.contains_key(other) { "which has no angle or travel" } else { "which is not there" };
-                self.notes.push(format!("{place}: joint `{name}` does not mimic `{other}`, {why}: it moves on its own."));
+                self.notes
+                    .push(format!("{place}: joint `{name}` does not mimic `{other}`, {why}: it moves on its own."));
                 continue;
             };
             self.couplings.push(Coupling { follower, leader, polynomial: [offset, ratio, 0.0, 0.0, 0.0] });

@@ -8,6 +8,7 @@ mod contents;
 mod defaults;
 mod equality;
 mod expand;
+mod meshes;
 mod orientation;
 mod rules;
 mod settings;
@@ -23,6 +24,7 @@ use crate::xml::{Node, unread};
 use crate::{Folder, ImportError, Options};
 use contents::{Item, contents};
 use defaults::{Defaults, Element};
+use meshes::Meshes;
 use settings::{FromShapes, Settings};
 
 /// Reads a robot; `folder` has the files that it includes.
@@ -41,7 +43,7 @@ pub fn read(text: &str, folder: Folder, options: Options) -> Result<Robot, Impor
         let action = "save the model with MuJoCo (mj_saveLastXML), which writes it out".to_owned();
         return Err(ImportError::NotExpanded { place: node.place.clone(), element: node.name.clone(), action });
     }
-    let mut reader = Reader::new(root, options)?;
+    let mut reader = Reader::new(root, folder, options)?;
     root.needed_child("worldbody")?;
     for world in root.children("worldbody") {
         reader.world(world)?;
@@ -60,6 +62,7 @@ pub fn read(text: &str, folder: Folder, options: Options) -> Result<Robot, Impor
 struct Reader<'n> {
     defaults: Defaults<'n>,
     settings: Settings,
+    meshes: Meshes<'n>,
     options: Options,
     bodies: BTreeMap<String, usize>,
     /// The joints that the file names.
@@ -74,11 +77,13 @@ struct Reader<'n> {
 }
 
 impl<'n> Reader<'n> {
-    fn new(root: &'n Node, options: Options) -> Result<Self, ImportError> {
+    fn new(root: &'n Node, folder: Folder<'n>, options: Options) -> Result<Self, ImportError> {
         let settings = Settings::new(root)?;
         let name = root.attribute("model").unwrap_or("robot");
+        let defaults = Defaults::new(root)?;
         Ok(Self {
-            defaults: Defaults::new(root)?,
+            meshes: Meshes::new(root, folder, &defaults)?,
+            defaults,
             options,
             bodies: BTreeMap::from([("world".to_owned(), 0)]),
             joints: BTreeMap::new(),
@@ -378,7 +383,7 @@ impl<'n> Reader<'n> {
             let group = element.number("group")?.unwrap_or(0.0);
             let has_mass = group >= self.settings.groups.0 && group <= self.settings.groups.1;
             let kept = has_mass && self.settings.from_shapes != FromShapes::Never;
-            let shape = shapes::read(&element, &self.settings.angles, kept)?;
+            let shape = shapes::read(&element, &self.settings.angles, &self.meshes, kept)?;
             self.robot.notes.extend(shape.note);
             self.has_shapes |=
                 ["contype", "conaffinity"].iter().any(|name| element.text(name).map(str::trim) != Some("0"));

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::defaults::Element;
+use super::meshes::Meshes;
 use super::orientation::Angles;
 use crate::ImportError;
 use crate::geometry::Shape;
@@ -23,7 +24,7 @@ const WATER: f64 = 1000.0;
 ///
 /// # Errors
 /// Sizes, mass or density that MuJoCo refuses.
-pub fn read(element: &Element, angles: &Angles, is_wanted: bool) -> Result<Massive, ImportError> {
+pub fn read(element: &Element, angles: &Angles, meshes: &Meshes, is_wanted: bool) -> Result<Massive, ImportError> {
     let node = element.node;
     let mut frame = angles.pose(element)?;
     let sizes = element.text("size").map(|text| node.list("size", text)).transpose()?.unwrap_or_default();
@@ -55,8 +56,21 @@ pub fn read(element: &Element, angles: &Angles, is_wanted: bool) -> Result<Massi
         let note = format!("{}: shape{name} is {what}: its mass is not known and left out.", node.place);
         Massive { inertia: None, note: (is_wanted && !is_massless).then_some(note) }
     };
-    if element.text("mesh").is_some() && kind != "mesh" {
-        return Ok(unknown(&format!("a {kind} fitted to a mesh")));
+    if let Some(name) = element.text("mesh") {
+        if kind != "mesh" {
+            return Ok(unknown(&format!("a {kind} fitted to a mesh")));
+        }
+        if is_massless || !is_wanted {
+            return Ok(Massive { inertia: None, note: None });
+        }
+        return Ok(match meshes.inertia(name, is_shell) {
+            Ok(unit) => {
+                let factor = mass.map_or_else(|| density.unwrap_or(WATER), |mass| mass / unit.mass);
+                let inertia = Inertia { mass: factor * unit.mass, tensor: factor * unit.tensor, ..unit };
+                Massive { inertia: Some(inertia.seen_from(&frame)), note: None }
+            }
+            Err(what) => unknown(&what),
+        });
     }
     let (shape, needed) = match kind {
         "sphere" => (Shape::Ellipsoid(Vector3::repeat(size(0))), 1),

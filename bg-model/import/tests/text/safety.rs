@@ -86,8 +86,7 @@ fn numbers_of_any_size_become_a_graph_or_an_error() {
 
 #[test]
 fn a_robot_in_which_nothing_moves_is_refused() {
-    let message =
-        "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or take \
+    let message = "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or take \
                    --free-base for a URDF whose root moves";
     for text in [
         "<robot name='r'><link name='a'/></robot>".to_owned(),
