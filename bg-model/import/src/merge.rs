@@ -90,6 +90,9 @@ pub fn in_order_of_the_tree(robot: &mut Robot, ground: usize) -> Result<(), Stri
     for coupling in &mut robot.couplings {
         (coupling.follower, coupling.leader) = (moved[coupling.follower], moved[coupling.leader]);
     }
+    for actuator in &mut robot.actuators {
+        actuator.joint = moved[actuator.joint];
+    }
     robot.links = order.iter().map(|&link| robot.links[link].clone()).collect();
     Ok(())
 }
@@ -168,6 +171,9 @@ fn combine(robot: &mut Robot) {
     for coupling in &robot.couplings {
         is_coupled[coupling.follower] = true;
         is_coupled[coupling.leader] = true;
+    }
+    for actuator in &robot.actuators {
+        is_coupled[actuator.joint] = true;
     }
     let mut is_held = vec![false; robot.links.len()];
     for end in robot.loops.iter().flat_map(|closed| &closed.ends) {
@@ -373,6 +379,14 @@ fn refuse_what_is_not_finite(robot: &Robot) -> Result<(), ImportError> {
     }
     if !is_fine(robot.gravity.as_slice()) {
         return too_large("gravity".to_owned());
+    }
+    for actuator in &robot.actuators {
+        let ranges = [actuator.control, actuator.force].into_iter().flatten().flat_map(|(least, most)| [least, most]);
+        let values: Vec<f64> =
+            ranges.chain(actuator.bias).chain([actuator.gear, actuator.gain, actuator.shift]).collect();
+        if !is_fine(&values) {
+            return too_large(format!("actuator `{}`", actuator.name));
+        }
     }
     let is_coupled = |coupling: &crate::robot::Coupling| is_fine(&coupling.polynomial);
     if robot.couplings.iter().all(is_coupled) { Ok(()) } else { too_large("what couples two joints".to_owned()) }

@@ -51,7 +51,7 @@ impl Mesh {
             vertices.get(at..at + 3).map(Vector3::from_column_slice)
         };
         let face = |corners: &[f64]| Some([corner(corners[0])?, corner(corners[1])?, corner(corners[2])?]);
-        (faces.len() % 3 == 0).then(|| faces.chunks(3).map(face).collect::<Option<_>>().map(Self))?
+        faces.len().is_multiple_of(3).then(|| faces.chunks(3).map(face).collect::<Option<_>>().map(Self))?
     }
 
     /// The same with each vertex moved.

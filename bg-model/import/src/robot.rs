@@ -257,6 +257,27 @@ impl Coupling {
     }
 }
 
+/// What drives a joint by a control: gear f, with f = gain u + b0 + b1 l + b2 l' within a range, where l = gear (q + shift).
+#[derive(Clone, Debug)]
+pub struct Actuator {
+    /// As in the file, or made of the joint's name.
+    pub name: String,
+    /// The index of the joint.
+    pub joint: usize,
+    /// Length for each rad or m.
+    pub gear: f64,
+    /// Force for each unit of the control.
+    pub gain: f64,
+    /// Force without a control: constant, for each unit of length, for each unit of its speed.
+    pub bias: [f64; 3],
+    /// The least and the most control.
+    pub control: Option<(f64, f64)>,
+    /// The least and the most force.
+    pub force: Option<(f64, f64)>,
+    /// What the file's value of the joint is at its start, rad or m.
+    pub shift: f64,
+}
+
 /// A tree of links. The first link is the ground.
 #[derive(Clone, Debug)]
 pub struct Robot {
@@ -274,6 +295,8 @@ pub struct Robot {
     pub loops: Vec<Loop>,
     /// Joints that follow others.
     pub couplings: Vec<Coupling>,
+    /// What drives joints; without any each joint has an input of its own.
+    pub actuators: Vec<Actuator>,
     /// What is other than in the file, a sentence each.
     pub notes: Vec<String>,
     /// In which way the file's robot is described, where that is not plain; nothing is lost by it.
@@ -292,6 +315,7 @@ impl Robot {
             joints: Vec::new(),
             loops: Vec::new(),
             couplings: Vec::new(),
+            actuators: Vec::new(),
             notes: Vec::new(),
             remarks: Vec::new(),
         }
@@ -307,7 +331,7 @@ impl Robot {
         carried
     }
 
-    /// Keeps some of the joints, and the couplings between them.
+    /// Keeps some of the joints, the couplings between them and what drives them.
     pub fn keep_joints(&mut self, keeps: &[bool]) {
         let mut left = 0;
         let places: Vec<Option<usize>> = keeps
@@ -324,6 +348,11 @@ impl Robot {
             Some(Coupling { follower, leader, polynomial: coupling.polynomial })
         };
         self.couplings = self.couplings.iter().filter_map(moved).collect();
+        self.actuators.retain_mut(|actuator| {
+            let place = places[actuator.joint];
+            actuator.joint = place.unwrap_or_default();
+            place.is_some()
+        });
     }
 }
 

@@ -68,6 +68,11 @@ fn an_mjcf_of_shapes_classes_and_turned_frames() {
 }
 
 #[test]
+fn an_mjcf_of_springs_dampers_and_a_joint_that_follows() {
+    is_the_text("features.xml", "features.rs", PLAIN);
+}
+
+#[test]
 fn loops_hinges_in_a_row_and_links_without_mass() {
     is_the_text("linkage.xml", "linkage.rs", Options::default());
     compiles(&std::fs::read_to_string(folder().join("linkage.rs")).expect("the text is there"));

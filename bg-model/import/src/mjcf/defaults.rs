@@ -17,6 +17,22 @@ pub struct Defaults<'n> {
     classes: BTreeMap<&'n str, Vec<&'n Node>>,
 }
 
+/// Kinds of actuators.
+const ACTUATORS: [&str; 12] = [
+    "general",
+    "motor",
+    "position",
+    "velocity",
+    "intvelocity",
+    "damper",
+    "cylinder",
+    "muscle",
+    "adhesion",
+    "pid",
+    "dcmotor",
+    "orientation",
+];
+
 /// The outermost class.
 const MAIN: &str = "main";
 
@@ -77,8 +93,13 @@ impl<'n> Defaults<'n> {
     pub fn element(&self, node: &'n Node, class: Option<&'n str>) -> Result<Element<'n>, ImportError> {
         let class = node.attribute("class").or(class).unwrap_or(MAIN);
         self.known(node, class)?;
-        let same = |class: &&'n Node| class.children.iter().find(|child| child.name == node.name);
-        let defaults: Vec<&Node> = self.classes.get(class).into_iter().flatten().filter_map(same).collect();
+        // All actuators of a class share what it says of any.
+        let is_same = |child: &&'n Node| {
+            let are_actuators = [&child.name, &node.name].iter().all(|name| ACTUATORS.contains(&name.as_str()));
+            child.name == node.name || are_actuators
+        };
+        let same = |class: &'n Node| class.children.iter().rev().filter(is_same);
+        let defaults: Vec<&Node> = self.classes.get(class).into_iter().flatten().copied().flat_map(same).collect();
         node.inherit(&defaults);
         Ok(Element { node, defaults })
     }

@@ -27,7 +27,7 @@ impl<'n> Meshes<'n> {
     /// A class that is not there, or a mesh without a name and a file.
     pub fn new(root: &'n Node, folder: Folder<'n>, defaults: &Defaults<'n>) -> Result<Self, ImportError> {
         let compilers: Vec<&Node> = root.children("compiler").collect();
-        let last = |name: &str| compilers.iter().filter_map(|node| node.attribute(name)).last();
+        let last = |name: &str| compilers.iter().filter_map(|node| node.attribute(name)).next_back();
         let mesh_folder = last("meshdir").or(last("assetdir")).unwrap_or_default().to_owned();
         let mut meshes = BTreeMap::new();
         for node in root.children("asset").flat_map(|asset| asset.children("mesh")) {

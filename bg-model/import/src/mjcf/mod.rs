@@ -4,6 +4,7 @@
 //! frame. Of several joints of a body the first is the outermost; between two stands a link without mass. Where a body has no
 //! `inertial`, its shapes give its mass. Source: MuJoCo's XML reference, 4.0.
 
+mod actuators;
 mod contents;
 mod defaults;
 mod equality;
@@ -54,6 +55,9 @@ pub fn read(text: &str, folder: Folder, options: Options) -> Result<Robot, Impor
     reader.damp_springs();
     reader.armatures_of_free_joints();
     equality::read(&mut reader, root)?;
+    if options.actuators && reader.settings.actuators {
+        actuators::read(&mut reader, root)?;
+    }
     reader.left_out(root);
     reader.robot.notes.extend(crate::unread::notes(&unread(root), rules::RULES));
     Ok(reader.robot)
@@ -71,6 +75,8 @@ struct Reader<'n> {
     places: Vec<Pose>,
     /// Time constant and damping ratio of joints that have their springs so.
     spring_dampers: Vec<(usize, [f64; 2])>,
+    /// What MuJoCo counts from, of joints where that is not 0.
+    references: BTreeMap<usize, f64>,
     /// Whether a shape could touch another one.
     has_shapes: bool,
     robot: Robot,
@@ -89,6 +95,7 @@ impl<'n> Reader<'n> {
             joints: BTreeMap::new(),
             places: vec![Pose::identity()],
             spring_dampers: Vec::new(),
+            references: BTreeMap::new(),
             has_shapes: false,
             robot: Robot { gravity: settings.gravity, ..Robot::new(name, "MJCF") },
             settings,
@@ -302,6 +309,7 @@ impl<'n> Reader<'n> {
         let limits = self.limits(element, unit, reference)?;
         joint.limits = limits.filter(|_| self.settings.limits);
         if reference != 0.0 {
+            self.references.insert(self.robot.joints.len(), reference);
             let shift = crate::number::number(reference);
             let remark = format!("Joint `{name}` counts from its start: MuJoCo's value is larger by {shift}.");
             self.robot.remarks.push(remark);
@@ -411,11 +419,17 @@ impl<'n> Reader<'n> {
 
     fn left_out(&mut self, root: &Node) {
         for (element, what) in [
-            ("actuator", "The actuators are left out; each joint has an input of its own."),
+            (
+                "actuator",
+                "The actuators are left out; each joint has an input of its own. With --actuators those that act on joints are not.",
+            ),
             ("tendon", "The tendons are left out."),
         ] {
             let sections: Vec<&Node> = root.children(element).collect();
             let is_off = element == "actuator" && !self.settings.actuators;
+            if element == "actuator" && self.options.actuators {
+                continue;
+            }
             sections.iter().for_each(|section| section.mark_deep());
             if sections.iter().any(|section| !section.children.is_empty()) && !is_off {
                 self.robot.notes.push(what.to_owned());

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use crate::Options;
 use crate::names::{Names, shown, type_name};
 use crate::number::{inverse_rotation, is_identity, matrix, number, rotation, vector};
-use crate::robot::{Coupling, Inertia, Joint, Kind, Law, Link, Loop, Pose, Robot, Spring};
+use crate::robot::{Actuator, Coupling, Inertia, Joint, Kind, Law, Link, Loop, Pose, Robot, Spring};
 use frames::{Frames, frames};
 
 /// Columns of a comment.
@@ -36,6 +36,8 @@ pub fn write(robot: &Robot, file: &str, options: Options) -> String {
     };
     let bodies: Vec<String> = robot.links.iter().enumerate().map(body).collect();
     let joints: Vec<JointNames> = robot.joints.iter().map(|joint| JointNames::new(joint, &mut names)).collect();
+    let control = |actuator: &Actuator| names.take(&actuator.name, "control", &["control", "effort", "drive"]);
+    let controls: Vec<String> = robot.actuators.iter().map(control).collect();
     let loops: Vec<String> = robot.loops.iter().map(|closed| names.take(&closed.name, "loop", &[])).collect();
     let lift = |(k, link): (usize, &Link)| {
         link.lifts.iter().map(|_| names.take(&format!("{}_lifted", bodies[k]), "mass", &[])).collect()
@@ -52,6 +54,7 @@ pub fn write(robot: &Robot, file: &str, options: Options) -> String {
         bodies,
         joints,
         loops,
+        controls,
         lifts,
         points,
         starts: vec![Start::default()],
@@ -105,6 +108,8 @@ struct Writer<'r> {
     joints: Vec<JointNames>,
     /// For each loop.
     loops: Vec<String>,
+    /// For each actuator its input.
+    controls: Vec<String>,
     /// For each link those of its masses without a weight.
     lifts: Vec<Vec<String>>,
     /// For each link the joints that have a point of it, and whether it is their parent.
@@ -123,6 +128,8 @@ impl Writer<'_> {
             sections.push(self.body(joint) + &self.joint(joint, &self.joints[k]));
         }
         sections.extend(self.robot.couplings.iter().map(|coupling| self.coupling(coupling)));
+        let actuators = self.robot.actuators.iter().zip(&self.controls);
+        sections.push(actuators.map(|(actuator, name)| self.actuator(actuator, name)).collect());
         sections.extend(self.robot.loops.iter().zip(&self.loops).map(|(closed, name)| self.closed(closed, name)));
         sections.push(self.observed());
         sections.push(self.scene(&graph));
@@ -178,7 +185,11 @@ impl Writer<'_> {
 
     fn inputs(&self) -> String {
         let mut text = String::new();
-        for (joint, names) in self.scalar().filter(|_| self.options.drives) {
+        for (actuator, name) in self.robot.actuators.iter().zip(&self.controls) {
+            line(&mut text, &format!("/// Controls `{}`.", self.joints[actuator.joint].joint));
+            line(&mut text, &format!("input {name}: 1;"));
+        }
+        for (joint, names) in self.scalar().filter(|_| self.has_drives()) {
             let (word, unit) = effort(joint);
             line(&mut text, &format!("/// Drives `{}`: a {word}.", names.joint));
             line(&mut text, &format!("input {}: {unit};", names.effort));
@@ -369,6 +380,40 @@ impl Writer<'_> {
         text
     }
 
+    /// Whether each joint has an input of its own.
+    fn has_drives(&self) -> bool {
+        self.options.drives && self.robot.actuators.is_empty()
+    }
+
+    /// What drives a joint by a control.
+    fn actuator(&self, actuator: &Actuator, name: &str) -> String {
+        let Actuator { joint, gear, gain, bias, control, force, shift, .. } = actuator;
+        let (joint, on) = (&self.robot.joints[*joint], &self.joints[*joint].joint);
+        let (word, unit) = effort(joint);
+        let mut text = String::new();
+        let input = control.map_or_else(
+            || name.to_owned(),
+            |range| {
+                line(&mut text, &format!("let {name}_control: 1 = {};", within(name, range)));
+                format!("{name}_control")
+            },
+        );
+        let (place, speed) = (format!("{on}.{}", coordinate_word(joint)), format!("{on}.{}.flow", axis(joint)));
+        let constant = bias[0] + bias[1] * gear * shift;
+        let terms = [(*gain, input.as_str()), (constant, ""), (bias[1] * gear, &place), (bias[2] * gear, &speed)];
+        let law = sum(terms.into_iter());
+        let value = force.map_or_else(
+            || format!("{} * ({law})", number(*gear)),
+            |range| {
+                line(&mut text, &format!("let {name}_effort: {unit} = {law};"));
+                let limited = within(&format!("{name}_effort"), range);
+                if *gear == 1.0 { limited } else { format!("{} * ({limited})", number(*gear)) }
+            },
+        );
+        line(&mut text, &format!("drive {name}_drive on {on} {word} = {value};"));
+        text
+    }
+
     /// The coupling by which a joint follows.
     fn coupling_of(&self, joint: &Joint) -> Option<&Coupling> {
         self.leaders[joint.child - 1].map(|k| &self.robot.couplings[k])
@@ -416,8 +461,8 @@ impl Writer<'_> {
             let ends = end("least", least) + &end("most", most);
             line(text, &format!("stop {name}_stop on {name} {{ {ends}restitution 0;{from} }}"));
         }
-        if self.options.drives {
-            let value = joint.effort.map_or_else(|| input.clone(), |most| clamped(input, most));
+        if self.has_drives() {
+            let value = joint.effort.map_or_else(|| input.clone(), |most| within(input, (-most, most)));
             line(text, &format!("drive {name}_motor on {name} {} = {value};", effort(joint).0));
         }
     }
@@ -448,7 +493,7 @@ impl Writer<'_> {
         }
         for joint in self.robot.joints.iter().filter(|joint| joint.kind == Kind::Free) {
             let body = &self.bodies[joint.child];
-            line(&mut inner, &format!("{body}_position: m = {body}.position;"));
+            line(&mut inner, &format!("{body}_position: m = {body}.origin.position;"));
         }
         let potential = self.potential();
         let sum = if potential.is_empty() { "" } else { " + potential" };
@@ -557,9 +602,9 @@ fn energy(law: &Law, variable: &str) -> String {
     if law.is_linear() {
         return String::new();
     }
-    let powers = [format!("pow({variable}, 2)"), format!("abs(pow({variable}, 3))"), format!("pow({variable}, 4)")];
-    let factors = law.0.iter().zip([2.0, 3.0, 4.0]).map(|(factor, power)| factor / power);
-    format!(" energy {}", sum(factors.zip(&powers).map(|(factor, power)| (factor, power.as_str()))))
+    let powers =
+        [format!("pow({variable}, 2) / 2"), format!("abs(pow({variable}, 3)) / 3"), format!("pow({variable}, 4) / 4")];
+    format!(" energy {}", sum(law.0.iter().zip(&powers).map(|(factor, power)| (*factor, power.as_str()))))
 }
 
 /// A polynomial, constant first.
@@ -583,10 +628,10 @@ fn sum<'t>(terms: impl Iterator<Item = (f64, &'t str)>) -> String {
     if terms.is_empty() { "0".to_owned() } else { terms.join(" + ").replace("+ -", "- ") }
 }
 
-/// An input within a most effort of both signs.
-fn clamped(input: &str, most: f64) -> String {
-    let most = number(most);
-    format!("if {input} > {most} {{ {most} }} else if {input} < -{most} {{ -{most} }} else {{ {input} }}")
+/// A name's value within a range.
+fn within(name: &str, (least, most): (f64, f64)) -> String {
+    let (least, most) = (number(least), number(most));
+    format!("if {name} > {most} {{ {most} }} else if {name} < {least} {{ {least} }} else {{ {name} }}")
 }
 
 fn effort(joint: &Joint) -> (&'static str, &'static str) {

@@ -1,6 +1,7 @@
 // The robot `four bar`, made by bg-import from `linkage.xml` (MJCF). SI units.
 // In `fork`: `flag`.
-// - The actuators are left out; each joint has an input of its own.
+// - The actuators are left out; each joint has an input of its own. With --actuators those that act on joints
+//   are not.
 // - Shapes touch nothing: there is no contact with the floor (--no-contacts says that you know it).
 // - Link `fork_carrier1` has no mass: here it has 7.61503845163e-6 kg, for its joints.
 // - Link `puck_carrier1` has no mass: here it has 7.61503845163e-6 kg, for its joints.
@@ -172,7 +173,7 @@ bond_graph! {
             puck_x: m = puck_x.travel;
             puck_y: m = puck_y.travel;
             puck_turn: rad = puck_turn.angle;
-            ball_position: m = ball.position;
+            ball_position: m = ball.origin.position;
             energy: J = stored_energy + potential;
         }
     }

@@ -217,8 +217,8 @@ fn springs_and_dampers_are_mujocos() {
     has(
         &rod("", "", "stiffness='20 3 100' damping='2 0 5'"),
         &[
-            "C pin_spring(q) = 20 * q + 3 * q * abs(q) + 100 * pow(q, 3) start pin_start energy 10 * pow(q, 2) + 1 * abs(pow(q, 3)) \
-             + 25 * pow(q, 4);",
+            "C pin_spring(q) = 20 * q + 3 * q * abs(q) + 100 * pow(q, 3) start pin_start energy 20 * pow(q, 2) / 2 + 3 * abs(pow(q, 3)) / 3 \
+             + 100 * pow(q, 4) / 4;",
             "R pin_bearing(w) = 2 * w + 5 * pow(w, 3);",
         ],
         &[],
@@ -464,4 +464,62 @@ fn what_other_readers_read_is_read() {
         &[],
     );
     has(&format!("<!DOCTYPE robot>\n{}", arm(MASS, "continuous", "")), &["body b {"], &[]);
+}
+
+#[test]
+fn actuators_are_drives_on_request() {
+    let actuators = |inner: &str| rods(&format!("<actuator>\n{inner}</actuator>"));
+    let asked = Options { actuators: true, ..NO_CONTACTS };
+    let made = |text: &str| {
+        let imported = import(Format::Mjcf, "r.xml", text, asked).unwrap_or_else(|fault| panic!("{fault}\n{text}"));
+        compiles(&imported.text);
+        imported
+    };
+    let cases = [
+        (
+            "<motor name='m' joint='pin' gear='30' ctrlrange='-1 2'/>",
+            vec![
+                "input m: 1;",
+                "let m_control: 1 = if m > 2 { 2 } else if m < -1 { -1 } else { m };",
+                "drive m_drive on pin torque = 30 * (1 * m_control);",
+            ],
+        ),
+        (
+            "<velocity joint='pin' kv='5'/>",
+            vec!["drive pin_velocity_drive on pin torque = 1 * (5 * pin_velocity - 5 * pin.spin.flow);"],
+        ),
+        (
+            "<position name='servo' joint='pin' kp='20' kv='2' gear='3' forcerange='-4 4'/>",
+            vec![
+                "let servo_effort: N*m = 20 * servo - 60 * pin.angle - 6 * pin.spin.flow;",
+                "drive servo_drive on pin torque = 3 * (if servo_effort > 4 { 4 } else if servo_effort < -4 { -4 } else { servo_effort });",
+            ],
+        ),
+        (
+            "<general name='g' joint='pin' gainprm='7' biastype='affine' biasprm='1 -2 -3'/>",
+            vec!["drive g_drive on pin torque = 1 * (7 * g + 1 - 2 * pin.angle - 3 * pin.spin.flow);"],
+        ),
+    ];
+    for (inner, words) in cases {
+        let imported = made(&actuators(inner));
+        assert_eq!(imported.notes, [""; 0], "{inner}");
+        for word in words {
+            assert!(imported.text.contains(word), "no `{word}` in\n{}", imported.text);
+        }
+        assert!(!imported.text.contains("pin_torque"), "{}", imported.text);
+        let left_out = import(Format::Mjcf, "r.xml", &actuators(inner), NO_CONTACTS).expect("a robot");
+        assert_eq!(left_out.notes.len(), 1, "{:?}", left_out.notes);
+    }
+    let muscle = made(&actuators("<muscle name='m' joint='pin'/>"));
+    assert_eq!(
+        muscle.notes,
+        ["line 5: the actuator `m` is left out: only motor, position, velocity and general are read."]
+    );
+    // What is said of a joint's motor in a URDF.
+    let text = arm(MASS, "continuous", "<limit effort='5'/>");
+    let imported = import(Format::Urdf, "r.urdf", &text, asked).expect("a robot");
+    compiles(&imported.text);
+    assert_eq!(imported.notes, [""; 0]);
+    let limited = "drive j_motor on j torque = if j_torque > 5 { 5 } else if j_torque < -5 { -5 } else { j_torque };";
+    assert!(imported.text.contains(limited), "{}", imported.text);
 }
