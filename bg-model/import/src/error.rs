@@ -112,9 +112,14 @@ pub enum ImportError {
     NoTree(String),
     /// A robot without a motion.
     #[error(
-        "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or take --free-base for a URDF whose root moves"
+        "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or take \
+         --free-base for a URDF whose root moves{}",
+        listed("\nWhat is not there:", notes)
     )]
-    NothingMoves,
+    NothingMoves {
+        /// What has been left out until then, a sentence each.
+        notes: Vec<String>,
+    },
     /// A number that the calculation has not kept finite.
     #[error("{what} has numbers that are too large to calculate with: check its sizes, places and masses")]
     TooLarge {
@@ -122,9 +127,18 @@ pub enum ImportError {
         what: String,
     },
     /// Something is not as in the file, and it has to be.
-    #[error("not all of the file can be kept, so nothing is written:\n{}", notes.iter().map(|note| format!("  {note}")).collect::<Vec<_>>().join("\n"))]
+    #[error("{}", listed("not all of the file can be kept, so nothing is written:", notes))]
     NotAll {
         /// What, a sentence each.
         notes: Vec<String>,
     },
+}
+
+/// Notes below a head; nothing where there are none.
+fn listed(head: &str, notes: &[String]) -> String {
+    if notes.is_empty() {
+        return String::new();
+    }
+    let lines: String = notes.iter().map(|note| format!("\n  {note}")).collect();
+    format!("{head}{lines}")
 }

@@ -35,7 +35,7 @@ pub fn merge(mut robot: Robot, options: Options) -> Result<Robot, ImportError> {
     one_bodies(&mut robot, options.keep_fixed);
     leave_out_what_carries_nothing(&mut robot);
     if robot.joints.is_empty() {
-        return Err(ImportError::NothingMoves);
+        return Err(ImportError::NothingMoves { notes: robot.notes });
     }
     if !options.limits {
         robot.joints.iter_mut().for_each(|joint| joint.limits = None);

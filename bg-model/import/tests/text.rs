@@ -54,6 +54,8 @@ fn compiles(text: &str) {
 
 #[path = "text/kinds.rs"]
 mod kinds;
+#[path = "text/program.rs"]
+mod program;
 #[path = "text/safety.rs"]
 mod safety;
 

@@ -146,7 +146,9 @@ impl<'n> Reader<'n> {
         }
         self.robot.links[from].inertia = inertia;
         self.lift(node, from)?;
-        if self.bodies.insert(name.clone(), from).is_some() {
+        if let Some(name) = item.name()
+            && self.bodies.insert(name.clone(), from).is_some()
+        {
             return Err(ImportError::Twice { place: node.place.clone(), what: "body", name });
         }
         Ok((from, items))
@@ -319,6 +321,9 @@ impl<'n> Reader<'n> {
 
     fn limits(&self, element: &Element, unit: f64, reference: f64) -> Result<Option<(f64, f64)>, ImportError> {
         let is_limited = element.truth("limited")?;
+        if is_limited == Some(true) && element.text("range").is_none() {
+            return Err(element.node.missing("range"));
+        }
         let Some(text) = element.text("range").filter(|_| is_limited.unwrap_or(self.settings.automatic_limits)) else {
             return Ok(None);
         };

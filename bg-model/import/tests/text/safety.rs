@@ -94,9 +94,24 @@ fn a_robot_in_which_nothing_moves_is_refused() {
         named("r", "b", "j").replace(MASS, ""),
     ] {
         let fault = import(Format::Urdf, "r.urdf", &text, Options::default()).expect_err("nothing moves");
-        assert_eq!(fault.to_string(), message, "{text}");
+        assert!(fault.to_string().starts_with(message), "{fault}");
     }
+    let left_out = "Link `b` has no mass and carries nothing: it is left out with joint `j`.";
+    let fault = import(Format::Urdf, "r.urdf", &named("r", "b", "j").replace(MASS, ""), Options::default())
+        .expect_err("no mass");
+    assert_eq!(fault.to_string(), format!("{message}\nWhat is not there:\n  {left_out}"));
     assert_eq!(refused("<mujoco><worldbody/></mujoco>").to_string(), message);
+}
+
+#[test]
+fn a_body_may_have_the_name_that_another_one_without_would_get() {
+    let body = "<joint/><geom size='0.1'/></body>";
+    let text = format!(
+        "<mujoco><worldbody><body>{body}<body name='body1'>{body}<body name='body1_joint1'>{body}</worldbody></mujoco>"
+    );
+    let text = import(Format::Mjcf, "r.xml", &text, Options::default()).expect("a robot").text;
+    compiles(&text);
+    assert_eq!(text.matches("\n        body ").count(), 3);
 }
 
 #[test]
