@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::number::number;
-use crate::robot::{Inertia, Joint, Kind, Pose, Robot};
+use crate::robot::{Drag, Inertia, Joint, Kind, Pose, Robot};
 use crate::{ImportError, Options, couple};
 
 /// Of the whole mass: what a link without mass gets that has to stay. Of the largest moment: what a moment of 0 gets.
@@ -140,6 +140,12 @@ fn one_body(robot: &mut Robot, fixed: &Joint, frame: &Pose) {
     if fixed.parent != 0 {
         let moved = |(mass, place): (f64, Vector3<f64>)| (mass, frame.place + frame.turned * place);
         parent.lifts.extend(child.lifts.into_iter().map(moved));
+        let carried = |drag: Drag| Drag {
+            place: frame.place + frame.turned * drag.place,
+            axes: frame.turned * drag.axes,
+            ..drag
+        };
+        parent.drags.extend(child.drags.into_iter().map(carried));
     }
     parent.merged.push(child.name);
     parent.merged.extend(child.merged);
@@ -353,7 +359,12 @@ fn refuse_what_is_not_finite(robot: &Robot) -> Result<(), ImportError> {
             [&sizes[..], inertia.center.as_slice(), inertia.tensor.as_slice()].concat()
         });
         let lifts = link.lifts.iter().flat_map(|(mass, place)| [*mass, place.x, place.y, place.z]).collect::<Vec<_>>();
-        if !is_fine(&values.unwrap_or_default()) || !is_fine(&lifts) {
+        let drags = link.drags.iter().flat_map(|drag| {
+            [&drag.force[..], &drag.torque, drag.areas.as_slice(), drag.turns.as_slice(), drag.place.as_slice()]
+                .concat()
+        });
+        let parts = drags.chain(lifts).collect::<Vec<_>>();
+        if !is_fine(&values.unwrap_or_default()) || !is_fine(&parts) {
             return too_large(format!("link `{}`", link.name));
         }
     }

@@ -88,14 +88,33 @@ pub struct Link {
     pub merged: Vec<String>,
     /// Masses whose weight does not act, kg, and where they are in the link's frame: gravity compensation.
     pub lifts: Vec<(f64, Vector3<f64>)>,
+    /// What a fluid does to it.
+    pub drags: Vec<Drag>,
 }
 
 impl Link {
     /// A link of this name and no mass.
     #[must_use]
     pub fn new(name: &str) -> Self {
-        Self { name: name.to_owned(), inertia: None, merged: Vec::new(), lifts: Vec::new() }
+        Self { name: name.to_owned(), inertia: None, merged: Vec::new(), lifts: Vec::new(), drags: Vec::new() }
     }
+}
+
+/// What a fluid does to a body, along three axes: a force -(f0 + f1 a |v|) v at a place, a torque -(t0 + t1 b |w|) w.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drag {
+    /// In the link's frame, m.
+    pub place: Vector3<f64>,
+    /// The three axes, in the link's frame.
+    pub axes: Matrix3<f64>,
+    /// f0 and f1: N s/m, kg/m^3.
+    pub force: [f64; 2],
+    /// a, m^2.
+    pub areas: Vector3<f64>,
+    /// t0 and t1: N m s, kg/m^3.
+    pub torque: [f64; 2],
+    /// b, m^5.
+    pub turns: Vector3<f64>,
 }
 
 /// An odd law of a displacement or speed: c0 x + c1 x |x| + c2 x^3. SI units.
@@ -287,6 +306,8 @@ pub struct Robot {
     pub format: &'static str,
     /// m/s^2.
     pub gravity: Vector3<f64>,
+    /// How fast the fluid moves, m/s.
+    pub wind: Vector3<f64>,
     /// The ground and all that moves.
     pub links: Vec<Link>,
     /// A joint for each link but the ground; parents first.
@@ -311,6 +332,7 @@ impl Robot {
             name: name.to_owned(),
             format,
             gravity: Vector3::new(0.0, 0.0, -9.81),
+            wind: Vector3::zeros(),
             links: vec![Link::new("ground")],
             joints: Vec::new(),
             loops: Vec::new(),

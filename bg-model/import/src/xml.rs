@@ -162,10 +162,11 @@ impl Node {
         self.used.borrow_mut().insert(name.to_owned());
     }
 
-    /// All attributes are used.
+    /// All attributes are used, also those that classes give.
     pub fn mark_all(&self) {
         self.is_read.set(true);
         self.attributes.iter().for_each(|(name, _)| self.mark(name));
+        self.inherited.borrow().iter().for_each(|(name, ..)| self.mark(name));
     }
 
     /// The element and all that is inside are used.

@@ -42,6 +42,7 @@ class M:
     __sub__ = lambda self, other: M(self.v - (other.v if isinstance(other, M) else other))
     __rsub__ = lambda self, other: M(other) - self
     __neg__ = lambda self: M(-self.v)
+    x, y, z = (property(lambda self, k=k: M(self.v[k])) for k in range(3))
 
 
 def rotation(axis):
@@ -59,6 +60,7 @@ def rotation(axis):
 
 FUNCTIONS = {f"rotation_{letter}": rotation(k) for k, letter in enumerate("xyz")}
 FUNCTIONS["pow"] = lambda a, b: (a if isinstance(a, M) else M(a)).v ** b
+FUNCTIONS["transpose"] = lambda a: M(a.v.T)
 FUNCTIONS["abs"] = lambda a: abs(a.v if isinstance(a, M) else a)
 
 
@@ -82,7 +84,11 @@ class Text:
         found = re.search(r"^\s*gravity (.*);$", graph, re.M)
         if found:
             self.gravity = value(found.group(1), {})
-        self.lets = [(name, rest) for name, rest in re.findall(r"let (\w+): [^=]* = ([^;]*);", graph) if name != "potential"]
+        lets = [found for found in re.findall(r"let (\w+): [^=]* = ([^;]*);", graph) if found[0] != "potential"]
+        # Those of a fluid depend on speeds.
+        moving = [name for name, rest in lets if re.search(r"\.(orientation|velocity|angular_velocity)\b", rest)]
+        self.lets = [found for found in lets if found[0] not in moving]
+        self.moving = [found for found in lets if found[0] in moving]
         for name, inside in re.findall(r"^\s*(?:body )?(\w+) \{\n(.*?)\n        \}", graph, re.M | re.S):
             if name == "observe":
                 continue
@@ -184,6 +190,16 @@ def cross(a):
     return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
 
 
+class Moving:
+    """What an expression may ask of a body."""
+
+    def __init__(self, velocity, orientation, spin):
+        self.at, self.orientation, self.angular_velocity = velocity, M(orientation), M(spin)
+
+    def __getattr__(self, point):
+        return type("Point", (), {"velocity": M(self.at(point))})
+
+
 def forces(text, angles, speeds):
     """Names of the freedoms, mass matrix, bias, passive forces."""
     state = State(text, angles)
@@ -241,10 +257,17 @@ def forces(text, angles, speeds):
         mass += float(parts["mass"]) * jv.T @ jv + w.T @ tensor @ w
         bias += jv.T @ (float(parts["mass"]) * (acceleration - text.gravity)) + w.T @ (tensor @ alpha + np.cross(omega, tensor @ omega))
     kinds = {name: kind for name, _, _, kind, _, _ in tree}
-    for name, body, point, force in re.findall(r"drive (\w+) on (\w+)(?:\.(\w+))? force = (\[[^;]*\]);", text.graph):
+    def velocity(body, point):
         v, w, _, _ = motion[body]
-        arm = state.pose[body][1] @ text.frame((body, point))[0]
-        passive += (v - cross(arm) @ w).T @ value(force, {})
+        return v - cross(state.pose[body][1] @ text.frame((body, point))[0]) @ w
+
+    names = {body: Moving(lambda point, body=body: velocity(body, point) @ u, state.pose[body][1], motion[body][1] @ u) for body in motion}
+    for name, expression in text.moving:
+        names[name] = M(value(expression, names))
+    for body, point, force in re.findall(r"drive \w+ on (\w+)(?:\.(\w+))? force = ((?:\[|\w+_fluid)[^;]*);", text.graph):
+        passive += velocity(body, point).T @ value(force, names)
+    for body, torque in re.findall(r"drive \w+ on (\w+) torque = (\w+_fluid[^;]*);", text.graph):
+        passive += motion[body][1].T @ value(torque, names)
     for name, variable, law, joint in re.findall(r"R (\w+)(?:\((\w)\))? = ([^;]*); (\w+)\.(?:spin|slide) -> ", text.graph):
         k = columns[joint][0]
         passive[k] -= value(law, {"w": M(u[k])}) if variable else float(law) * u[k]

@@ -9,6 +9,7 @@ mod contents;
 mod defaults;
 mod equality;
 mod expand;
+mod fluid;
 mod meshes;
 mod orientation;
 mod rules;
@@ -25,6 +26,7 @@ use crate::xml::{Node, unread};
 use crate::{Folder, ImportError, Options};
 use contents::{Item, contents};
 use defaults::{Defaults, Element};
+use fluid::Fluid;
 use meshes::Meshes;
 use settings::{FromShapes, Settings};
 
@@ -67,6 +69,7 @@ struct Reader<'n> {
     defaults: Defaults<'n>,
     settings: Settings,
     meshes: Meshes<'n>,
+    fluid: Option<Fluid>,
     options: Options,
     bodies: BTreeMap<String, usize>,
     /// The joints that the file names.
@@ -89,6 +92,7 @@ impl<'n> Reader<'n> {
         let defaults = Defaults::new(root)?;
         Ok(Self {
             meshes: Meshes::new(root, folder, &defaults)?,
+            fluid: Fluid::new(root)?.filter(|_| settings.springs || settings.dampers),
             defaults,
             options,
             bodies: BTreeMap::from([("world".to_owned(), 0)]),
@@ -127,7 +131,7 @@ impl<'n> Reader<'n> {
         let pose = item.frame.then(&self.settings.angles.pose(&Element::plain(node))?);
         let inside = Item { frame: Pose::identity(), class, ..item.clone() };
         let items = contents(&inside, &self.settings.angles, &self.defaults)?;
-        let inertia = self.inertia(node, &items)?;
+        let (inertia, axes) = self.inertia(node, &items)?;
         let joints: Vec<&Item> = items.iter().filter(|item| item.node.name.ends_with("joint")).collect();
         self.refuse_joints(node, &joints, parent)?;
         let count = self.robot.links.len();
@@ -146,6 +150,7 @@ impl<'n> Reader<'n> {
         }
         self.robot.links[from].inertia = inertia;
         self.lift(node, from)?;
+        self.drag(&items, from, axes)?;
         if let Some(name) = item.name()
             && self.bodies.insert(name.clone(), from).is_some()
         {
@@ -177,6 +182,28 @@ impl<'n> Reader<'n> {
         if freedoms > 6 {
             return wrong("a body moves in at most 6 ways: leave a joint out");
         }
+        Ok(())
+    }
+
+    /// What a fluid does to a body.
+    fn drag(&mut self, items: &[Item<'n>], link: usize, axes: Option<Matrix3<f64>>) -> Result<(), ImportError> {
+        let Some(fluid) = &self.fluid else { return Ok(()) };
+        let link = &mut self.robot.links[link];
+        let Some(inertia) = link.inertia.filter(|inertia| inertia.mass > 0.0) else { return Ok(()) };
+        for item in items.iter().filter(|item| item.node.name == "geom") {
+            if self.defaults.element(item.node, item.class)?.text("fluidshape") == Some("ellipsoid") {
+                let what = "the fluid around its ellipsoids (fluidshape) does not act on it";
+                self.robot.notes.push(format!("{}: body `{}`: {what}.", item.node.place, link.name));
+                return Ok(());
+            }
+        }
+        let (principal, is_unique) = fluid::principal(&inertia);
+        if axes.is_none() && !is_unique {
+            let what = "brakes along axes that MuJoCo may choose otherwise, since two of its moments are equal";
+            self.robot.notes.push(format!("The fluid around body `{}` {what}.", link.name));
+        }
+        link.drags.push(fluid.drag(&inertia, axes.unwrap_or(principal)));
+        self.robot.wind = fluid.wind;
         Ok(())
     }
 
@@ -335,9 +362,13 @@ impl<'n> Reader<'n> {
         Ok(is_range.then_some((least * unit - reference, most * unit - reference)))
     }
 
-    /// Of `inertial`, else of the shapes; none where there is neither.
-    fn inertia(&mut self, body: &'n Node, items: &[Item<'n>]) -> Result<Option<Inertia>, ImportError> {
-        let from_shapes = self.sum_of_shapes(items)?;
+    /// Of `inertial`, else of the shapes; none where there is neither. With the principal axes where the file says them.
+    fn inertia(
+        &mut self,
+        body: &'n Node,
+        items: &[Item<'n>],
+    ) -> Result<(Option<Inertia>, Option<Matrix3<f64>>), ImportError> {
+        let (from_shapes, axes_of_shape) = self.sum_of_shapes(items)?;
         let mut given = items.iter().filter(|item| item.node.name == "inertial");
         let first = given.next();
         if let Some(second) = given.next() {
@@ -357,7 +388,15 @@ impl<'n> Reader<'n> {
             None if self.settings.from_shapes == FromShapes::Never => None,
             None => from_shapes,
         };
-        self.settings.bounded(inertia, first.map_or(body, |item| item.node))
+        let axes = match first {
+            Some(item) if is_used => {
+                let is_full = item.node.peek("fullinertia").is_some();
+                let own = self.settings.angles.pose(&Element::plain(item.node))?;
+                Some(item.frame.turned * own.turned).filter(|_| !is_full)
+            }
+            _ => axes_of_shape,
+        };
+        Ok((self.settings.bounded(inertia, first.map_or(body, |item| item.node))?, axes))
     }
 
     /// What `inertial` says; of a body that a joint moves also its moments.
@@ -388,9 +427,10 @@ impl<'n> Reader<'n> {
         Ok(is_something.then(|| Inertia { mass, center: Vector3::zeros(), tensor }.seen_from(&frame)))
     }
 
-    /// All shapes of a body in one; all are looked at.
-    fn sum_of_shapes(&mut self, items: &[Item<'n>]) -> Result<Option<Inertia>, ImportError> {
+    /// All shapes of a body in one; all are looked at. With the axes of the shape, where one alone has a mass.
+    fn sum_of_shapes(&mut self, items: &[Item<'n>]) -> Result<(Option<Inertia>, Option<Matrix3<f64>>), ImportError> {
         let mut sum: Option<Inertia> = None;
+        let mut axes = Vec::new();
         for item in items.iter().filter(|item| item.node.name == "geom") {
             let element = self.defaults.element(item.node, item.class)?;
             let group = element.number("group")?.unwrap_or(0.0);
@@ -402,9 +442,10 @@ impl<'n> Reader<'n> {
                 ["contype", "conaffinity"].iter().any(|name| element.text(name).map(str::trim) != Some("0"));
             if let Some(inertia) = shape.inertia.filter(|_| kept).map(|inertia| inertia.seen_from(&item.frame)) {
                 sum = Some(sum.map_or(inertia, |sum| sum.with(&inertia)));
+                axes.push(shape.axes.map(|axes| item.frame.turned * axes));
             }
         }
-        Ok(sum)
+        Ok((sum, if let [axes] = axes[..] { axes } else { None }))
     }
 
     /// Scales masses and moments so that the masses' sum is the one given.

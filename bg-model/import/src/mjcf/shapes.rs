@@ -1,6 +1,6 @@
 //! The mass of a `geom`.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::defaults::Element;
 use super::meshes::Meshes;
@@ -13,6 +13,8 @@ use crate::robot::{Inertia, Pose, with_z};
 pub struct Massive {
     /// In its body's frame; none where it has no mass.
     pub inertia: Option<Inertia>,
+    /// Its principal axes in its body's frame, where its kind says them.
+    pub axes: Option<Matrix3<f64>>,
     /// That its mass is not known.
     pub note: Option<String>,
 }
@@ -54,20 +56,20 @@ pub fn read(element: &Element, angles: &Angles, meshes: &Meshes, is_wanted: bool
     let unknown = |what: &str| {
         let name = node.peek("name").map(|name| format!(" `{name}`")).unwrap_or_default();
         let note = format!("{}: shape{name} is {what}: its mass is not known and left out.", node.place);
-        Massive { inertia: None, note: (is_wanted && !is_massless).then_some(note) }
+        Massive { inertia: None, axes: None, note: (is_wanted && !is_massless).then_some(note) }
     };
     if let Some(name) = element.text("mesh") {
         if kind != "mesh" {
             return Ok(unknown(&format!("a {kind} fitted to a mesh")));
         }
         if is_massless || !is_wanted {
-            return Ok(Massive { inertia: None, note: None });
+            return Ok(Massive { inertia: None, axes: None, note: None });
         }
         return Ok(match meshes.inertia(name, is_shell) {
             Ok(unit) => {
                 let factor = mass.map_or_else(|| density.unwrap_or(WATER), |mass| mass / unit.mass);
                 let inertia = Inertia { mass: factor * unit.mass, tensor: factor * unit.tensor, ..unit };
-                Massive { inertia: Some(inertia.seen_from(&frame)), note: None }
+                Massive { inertia: Some(inertia.seen_from(&frame)), axes: None, note: None }
             }
             Err(what) => unknown(&what),
         });
@@ -78,7 +80,7 @@ pub fn read(element: &Element, angles: &Angles, meshes: &Meshes, is_wanted: bool
         "box" => (Shape::Cuboid(sides), 3),
         "cylinder" => (Shape::Cylinder(size(0), half), 2),
         "capsule" => (Shape::Capsule(size(0), half), 2),
-        "plane" | "hfield" => return Ok(Massive { inertia: None, note: None }),
+        "plane" | "hfield" => return Ok(Massive { inertia: None, axes: None, note: None }),
         "mesh" | "sdf" => return Ok(unknown(&format!("a {kind}"))),
         other => {
             return Err(node.bad(
@@ -101,5 +103,5 @@ pub fn read(element: &Element, angles: &Angles, meshes: &Meshes, is_wanted: bool
     } else {
         shape.inertia(mass, density.unwrap_or(WATER))
     };
-    Ok(Massive { inertia: inertia.map(|inertia| inertia.seen_from(&frame)), note: None })
+    Ok(Massive { inertia: inertia.map(|inertia| inertia.seen_from(&frame)), axes: Some(frame.turned), note: None })
 }

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use crate::Options;
 use crate::names::{Names, shown, type_name};
 use crate::number::{inverse_rotation, is_identity, matrix, number, rotation, vector};
-use crate::robot::{Actuator, Coupling, Inertia, Joint, Kind, Law, Link, Loop, Pose, Robot, Spring};
+use crate::robot::{Actuator, Coupling, Drag, Inertia, Joint, Kind, Law, Link, Loop, Pose, Robot, Spring};
 use frames::{Frames, frames};
 
 /// Columns of a comment.
@@ -43,6 +43,11 @@ pub fn write(robot: &Robot, file: &str, options: Options) -> String {
         link.lifts.iter().map(|_| names.take(&format!("{}_lifted", bodies[k]), "mass", &[])).collect()
     };
     let lifts = robot.links.iter().enumerate().map(lift).collect();
+    let drag = |(k, link): (usize, &Link)| {
+        let made = ["axes", "velocity", "spin", "force", "torque"];
+        link.drags.iter().map(|_| names.take(&format!("{}_fluid", bodies[k]), "drag", &made)).collect()
+    };
+    let drags = robot.links.iter().enumerate().map(drag).collect();
     let mut points = vec![Vec::new(); robot.links.len()];
     for (k, joint) in robot.joints.iter().enumerate().filter(|(_, joint)| joint.kind != Kind::Free) {
         points[joint.parent].push((k, true));
@@ -56,6 +61,7 @@ pub fn write(robot: &Robot, file: &str, options: Options) -> String {
         loops,
         controls,
         lifts,
+        drags,
         points,
         starts: vec![Start::default()],
         leaders: Vec::new(),
@@ -112,6 +118,8 @@ struct Writer<'r> {
     controls: Vec<String>,
     /// For each link those of its masses without a weight.
     lifts: Vec<Vec<String>>,
+    /// For each link what a fluid does to it.
+    drags: Vec<Vec<String>>,
     /// For each link the joints that have a point of it, and whether it is their parent.
     points: Vec<Vec<(usize, bool)>>,
     /// For each link.
@@ -225,6 +233,9 @@ impl Writer<'_> {
         for (name, (_, place)) in self.lifts[link].iter().zip(&self.robot.links[link].lifts) {
             point(name, &Pose::at(*place));
         }
+        for (name, drag) in self.drags[link].iter().zip(&self.robot.links[link].drags) {
+            point(name, &Pose::at(drag.place));
+        }
         for (closed, name) in self.robot.loops.iter().zip(&self.loops) {
             closed.ends.iter().filter(|end| end.0 == link).for_each(|end| point(name, &end.1));
         }
@@ -259,6 +270,38 @@ impl Writer<'_> {
                 line(&mut text, &format!("drive {lift} on {at} force = {up};"));
             }
         }
+        for (drag, name) in link.drags.iter().zip(&self.drags[joint.child]) {
+            text += &self.drag_by_fluid(&self.bodies[joint.child], name, drag);
+        }
+        text
+    }
+
+    /// What a fluid does to a body: a force at a place and a torque, along axes of the body.
+    fn drag_by_fluid(&self, body: &str, name: &str, drag: &Drag) -> String {
+        let axes = rotation(&drag.axes).map_or_else(String::new, |axes| format!(" * {axes}"));
+        let at = if is_point(&Pose::at(drag.place)) { name } else { "origin" };
+        let wind = self.robot.wind;
+        let against = if wind == Vector3::zeros() {
+            format!("{body}.{at}.velocity")
+        } else {
+            format!("({body}.{at}.velocity - {})", vector(&wind, 0.0))
+        };
+        let brakes = |[plain, square]: [f64; 2], sizes: &Vector3<f64>, of: &str| {
+            let parts = ["x", "y", "z"].into_iter().zip(sizes.iter()).map(|(axis, size)| {
+                let speed = format!("{name}_{of}.{axis}");
+                sum([(-plain, speed.as_str()), (-square * size, &format!("{speed} * abs({speed})"))].into_iter())
+            });
+            format!("[{}]", parts.collect::<Vec<_>>().join(", "))
+        };
+        let mut text = String::new();
+        line(&mut text, &format!("let {name}_axes: 1 = {body}.orientation{axes};"));
+        line(&mut text, &format!("let {name}_velocity: m/s = transpose({name}_axes) * {against};"));
+        line(&mut text, &format!("let {name}_spin: rad/s = transpose({name}_axes) * {body}.angular_velocity;"));
+        let target = if at == "origin" { body.to_owned() } else { format!("{body}.{at}") };
+        let force = brakes(drag.force, &drag.areas, "velocity");
+        line(&mut text, &format!("drive {name}_force on {target} force = {name}_axes * {force};"));
+        let torque = brakes(drag.torque, &drag.turns, "spin");
+        line(&mut text, &format!("drive {name}_torque on {body} torque = {name}_axes * {torque};"));
         text
     }
 

@@ -49,10 +49,6 @@ fn what_is_not_used_is_a_note_with_its_line() {
         (rod("", "", "colour='red'"), "line 3: `colour` of <joint> is not used."),
         (rod("", "weather='wet'", ""), "line 2: `weather` of <body> is not used."),
         (rod("<compiler magic='1'/>", "", ""), "line 1: `magic` of <compiler> is not used."),
-        (
-            rod("<option density='3'/>", "", ""),
-            "line 1: `density` of <option> is not used: nothing flows around the bodies.",
-        ),
         (rod("<spell/>", "", ""), "line 1: <spell> in <mujoco> is not used."),
         (
             rod("<default><joint springyield='1'/></default>", "", ""),
@@ -109,10 +105,10 @@ fn what_changes_no_motion_is_no_note() {
 #[test]
 fn strict_makes_a_note_an_error() {
     let strict = Options { strict: true, ..NO_CONTACTS };
-    let text = rod("<option density='3'/>", "", "colour='red'");
+    let text = rod("<option magic='3'/>", "", "colour='red'");
     let fault = import(Format::Mjcf, "r.xml", &text, strict).expect_err("there are notes");
-    let told = "not all of the file can be kept, so nothing is written:\n  line 1: `density` of <option> is not used: nothing flows \
-                around the bodies.\n  line 3: `colour` of <joint> is not used.";
+    let told = "not all of the file can be kept, so nothing is written:\n  line 1: `magic` of <option> is not used.\n  \
+                line 3: `colour` of <joint> is not used.";
     assert_eq!(fault.to_string(), told);
     assert!(import(Format::Mjcf, "r.xml", &rod("", "", ""), strict).is_ok());
 }
@@ -176,6 +172,43 @@ fn gravity_compensation_is_a_force_at_the_centre_of_mass() {
     let words = ["point rod_lifted = [0.3, 0, 0];", "drive rod_lifted on rod.rod_lifted force = [0, 0, 9.81];"];
     has(&rod("", "gravcomp='0.5'", ""), &words, &[]);
     has(&rod("", "gravcomp='0.5'", ""), &["rod.mass * rod.position.z - 1 * rod.rod_lifted.position.z"], &[]);
+}
+
+#[test]
+fn a_fluid_brakes_the_box_of_each_body() {
+    // Sizes of the box by MuJoCo's documentation: sqrt(6 (I2 + I3 - I1) / m) of 0.01, 0.05, 0.05 and 2 kg.
+    let edges = [0.27_f64.sqrt(), 0.03_f64.sqrt(), 0.03_f64.sqrt()];
+    let fluid = "<option density='1000' viscosity='0.1' wind='1 0 0'/>";
+    let imported = made(&rod(fluid, "", ""));
+    assert_eq!(imported.notes, [""; 0]);
+    compiles(&imported.text);
+    let number = |start: &str| -> f64 {
+        let after = imported.text.split(start).nth(1).unwrap_or_else(|| panic!("no `{start}` in\n{}", imported.text));
+        after.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number")
+    };
+    let is_near = |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 1e-9, "{found}, not {wanted}");
+    let pi = std::f64::consts::PI;
+    let diameter = edges.iter().sum::<f64>() / 3.0;
+    is_near(number("force = rod_fluid_axes * [-"), 3.0 * pi * diameter * 0.1);
+    is_near(number("rod_fluid_velocity.x - "), 500.0 * edges[1] * edges[2]);
+    is_near(number("rod_fluid_velocity.y - "), 500.0 * edges[0] * edges[2]);
+    is_near(number("torque = rod_fluid_axes * [-"), pi * diameter.powi(3) * 0.1);
+    is_near(number("rod_fluid_spin.y - "), 1000.0 * edges[1] * (edges[0].powi(4) + edges[2].powi(4)) / 64.0);
+    assert!(imported.text.contains("* (rod.rod_fluid.velocity - [1, 0, 0]);"), "{}", imported.text);
+    let off = "<option density='1000'><flag spring='disable' damper='disable'/></option>";
+    has(&rod(off, "", ""), &[], &["fluid"]);
+    let round = shapes("<option density='1'/>", "<geom size='0.1'/><geom size='0.1' pos='1 0 0'/>");
+    assert_eq!(
+        made(&round).notes,
+        [
+            "The fluid around body `b` brakes along axes that MuJoCo may choose otherwise, since two of its moments are equal."
+        ]
+    );
+    let ellipsoid = shapes("<option density='1'/>", "<geom size='0.1' fluidshape='ellipsoid'/>");
+    assert_eq!(
+        made(&ellipsoid).notes,
+        ["line 1: body `b`: the fluid around its ellipsoids (fluidshape) does not act on it."]
+    );
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn told(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-const PENDULUM: &str = "<mujoco><option density='3'/><worldbody><body name='rod'><joint name='pin'/>\
+const PENDULUM: &str = "<mujoco><option magic='3'/><worldbody><body name='rod'><joint name='pin'/>\
                         <inertial pos='1 0 0' mass='1' diaginertia='1 1 1'/></body></worldbody></mujoco>";
 
 #[test]
@@ -34,13 +34,13 @@ fn strict_writes_nothing_where_there_is_a_note() {
     let folder = folder("strict", &[("a.xml", PENDULUM.as_bytes())]);
     let output = run(&folder, &["mjcf", "a.xml", "-o", "a.rs", "--strict"]);
     assert_eq!(output.status.code(), Some(1));
-    let message = "error: a.xml: not all of the file can be kept, so nothing is written:\n  line 1: `density` of <option> is not used: \
-                   nothing flows around the bodies.\n";
+    let message = "error: a.xml: not all of the file can be kept, so nothing is written:\n  line 1: `magic` of <option> is \
+                   not used.\n";
     assert_eq!(told(&output), message);
     assert!(!folder.join("a.rs").exists());
     let output = run(&folder, &["mjcf", "a.xml", "-o", "a.rs"]);
     assert!(output.status.success() && folder.join("a.rs").exists());
-    assert_eq!(told(&output), "note: line 1: `density` of <option> is not used: nothing flows around the bodies.\n");
+    assert_eq!(told(&output), "note: line 1: `magic` of <option> is not used.\n");
 }
 
 #[test]
