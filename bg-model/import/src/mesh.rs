@@ -46,7 +46,6 @@ impl Mesh {
         let corner = |index: f64| {
             let is_index = index >= 0.0 && index.fract() == 0.0 && index < 1e9;
             // A small whole number.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let at = if is_index { 3 * index as usize } else { return None };
             vertices.get(at..at + 3).map(Vector3::from_column_slice)
         };

@@ -87,8 +87,7 @@ fn copies<'n>(
         turned: angles.euler(&node.vector("euler")?.unwrap_or(Vector3::zeros())),
     };
     let separator = node.attribute("sep").unwrap_or_default();
-    // At most COPIES.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    // At most COPIES, so a whole number stays what it is.
     let count = count as usize;
     let width = count.saturating_sub(1).to_string().len();
     let mut frame = around.frame;
