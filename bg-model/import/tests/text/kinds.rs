@@ -324,6 +324,16 @@ fn a_loop_joint_of_a_urdf_closes_a_loop() {
 }
 
 #[test]
+fn a_motor_that_drake_reads_is_an_armature_and_told() {
+    let text = arm(MASS, "continuous", "<drake:rotor_inertia value='0.3'/><drake:gear_ratio value='10'/>");
+    let imported = made(&text);
+    assert!(imported.text.contains("I j_rotor = 30; j.spin -> j_rotor;"), "{}", imported.text);
+    compiles(&imported.text);
+    let [note] = &imported.notes[..] else { panic!("{:?}", imported.notes) };
+    assert!(note.contains("drake:rotor_inertia") && note.contains("drake:gear_ratio"), "{note}");
+}
+
+#[test]
 fn moments_of_thin_rods_stay_as_they_are() {
     let moments = |moments: &str| format!("<inertial><mass value='1'/><inertia {moments}/></inertial>");
     let cases = [
@@ -414,6 +424,7 @@ fn frames_and_copies_are_written_out() {
             "body b0 {",
             "joint j2: revolute z",
             "point j1 = [0.5, 0.866025403784, 0] turned rotation_z(0.523598775598);",
+            "point j2 = [1, 1, 0] turned rotation_z(1.0471975512);",
         ],
         &[],
     );
