@@ -6,7 +6,7 @@
 //! are replaced. A joint whose limits exclude 0 starts in the middle. Each of these is a note or a remark. All takes a time in
 //! proportion to the number of links.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::number::number;
 use crate::robot::{Drag, Inertia, Joint, Kind, Pose, Robot};
@@ -46,6 +46,7 @@ pub fn merge(mut robot: Robot, options: Options) -> Result<Robot, ImportError> {
     give_starts(&mut robot);
     couple::start(&mut robot);
     forget_unused(&mut robot);
+    tell_open_loops(&mut robot);
     refuse_what_is_not_finite(&robot)?;
     Ok(robot)
 }
@@ -322,6 +323,44 @@ fn give_starts(robot: &mut Robot) {
             joint.start = middle;
             let (name, start) = (&joint.name, number(joint.start));
             robot.remarks.push(format!("Joint `{name}` starts at {start}, inside of its limits: 0 is outside."));
+        }
+    }
+}
+
+/// How far the ends of a loop may be apart at the start, m, or turned, rad: more is no rounding.
+const CLOSED: f64 = 1e-9;
+
+/// Loops whose ends are apart at the start, from which no run begins.
+fn tell_open_loops(robot: &mut Robot) {
+    if robot.loops.is_empty() {
+        return;
+    }
+    let mut places = vec![Pose::identity(); robot.links.len()];
+    for joint in &robot.joints {
+        let moved = match joint.kind {
+            Kind::Revolute => Rotation3::new(joint.axis * joint.start).into_inner(),
+            _ => Matrix3::identity(),
+        };
+        let travel = if joint.kind == Kind::Prismatic { joint.axis * joint.start } else { Vector3::zeros() };
+        let motion = Pose { turned: moved, place: travel };
+        places[joint.child] = places[joint.parent].then(&joint.in_parent).then(&motion).then(&joint.in_child.inverse());
+    }
+    for closed in &robot.loops {
+        let [first, second] = closed.ends.each_ref().map(|(link, pose)| places[*link].then(pose));
+        let across = first.inverse().then(&second);
+        let gap = if closed.kind == Kind::Prismatic { across.place.xy().norm() } else { across.place.norm() };
+        // The angle between the axes that are held.
+        let turned = match closed.kind {
+            Kind::Spherical => 0.0,
+            Kind::Revolute => across.turned.column(2).xy().norm(),
+            _ => (across.turned - Matrix3::identity()).amax(),
+        };
+        if gap > CLOSED || turned > CLOSED {
+            let (name, gap) = (&closed.name, number(gap));
+            robot.notes.push(format!(
+                "Loop `{name}` is open at the start, by {gap} m or by an angle: make starts of its joints guesses, or give them values \
+                 that close it."
+            ));
         }
     }
 }

@@ -321,6 +321,17 @@ fn a_loop_joint_of_a_urdf_closes_a_loop() {
          <axis xyz='0 1 0'/></loop_joint></robot>",
     );
     has(&text, &["joint tie: revolute z (ground.tie -> b.tie) {"], &[]);
+    let open = made(&text.replace("link2 link='b' xyz='0.1 0 0'", "link2 link='b' xyz='0.1 0 0.25'"));
+    let note = "Loop `tie` is open at the start, by 0.25 m or by an angle: make starts of its joints guesses, or give them values \
+                that close it.";
+    assert_eq!(open.notes, [note]);
+    let limited = rods("<equality><connect body1='rod' body2='other' anchor='0.5 0 0'/></equality>")
+        .replace("name='pin'", "name='pin' range='10 20'");
+    assert!(
+        made(&limited).notes[0].starts_with("Loop `rod_other` is open at the start, by 0.13"),
+        "{:?}",
+        made(&limited).notes
+    );
 }
 
 #[test]
