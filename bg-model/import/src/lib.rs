@@ -20,6 +20,7 @@ pub mod unread;
 pub mod urdf;
 pub mod xml;
 
+mod check;
 mod couple;
 mod encoding;
 mod geometry;

@@ -4,7 +4,9 @@
 //! the order of the tree, outputs. A joint about an axis of its frame has that axis; one against it goes from the child to
 //! the parent; for any other one the points at both ends are turned, so that x or z is the axis.
 
+mod acts;
 mod frames;
+mod law;
 
 use std::fmt::Write;
 
@@ -13,7 +15,7 @@ use nalgebra::Vector3;
 use crate::Options;
 use crate::names::{Names, shown, type_name};
 use crate::number::{inverse_rotation, is_identity, matrix, number, rotation, vector};
-use crate::robot::{Actuator, Coupling, Drag, Inertia, Joint, Kind, Law, Link, Loop, Pose, Robot, Spring};
+use crate::robot::{Actuator, Coupling, Inertia, Joint, Kind, Link, Loop, Pose, Robot};
 use frames::{Frames, frames};
 
 /// Columns of a comment.
@@ -276,35 +278,6 @@ impl Writer<'_> {
         text
     }
 
-    /// What a fluid does to a body: a force at a place and a torque, along axes of the body.
-    fn drag_by_fluid(&self, body: &str, name: &str, drag: &Drag) -> String {
-        let axes = rotation(&drag.axes).map_or_else(String::new, |axes| format!(" * {axes}"));
-        let at = if is_point(&Pose::at(drag.place)) { name } else { "origin" };
-        let wind = self.robot.wind;
-        let against = if wind == Vector3::zeros() {
-            format!("{body}.{at}.velocity")
-        } else {
-            format!("({body}.{at}.velocity - {})", vector(&wind, 0.0))
-        };
-        let brakes = |[plain, square]: [f64; 2], sizes: &Vector3<f64>, of: &str| {
-            let parts = ["x", "y", "z"].into_iter().zip(sizes.iter()).map(|(axis, size)| {
-                let speed = format!("{name}_{of}.{axis}");
-                sum([(-plain, speed.as_str()), (-square * size, &format!("{speed} * abs({speed})"))].into_iter())
-            });
-            format!("[{}]", parts.collect::<Vec<_>>().join(", "))
-        };
-        let mut text = String::new();
-        line(&mut text, &format!("let {name}_axes: 1 = {body}.orientation{axes};"));
-        line(&mut text, &format!("let {name}_velocity: m/s = transpose({name}_axes) * {against};"));
-        line(&mut text, &format!("let {name}_spin: rad/s = transpose({name}_axes) * {body}.angular_velocity;"));
-        let target = if at == "origin" { body.to_owned() } else { format!("{body}.{at}") };
-        let force = brakes(drag.force, &drag.areas, "velocity");
-        line(&mut text, &format!("drive {name}_force on {target} force = {name}_axes * {force};"));
-        let torque = brakes(drag.torque, &drag.turns, "spin");
-        line(&mut text, &format!("drive {name}_torque on {body} torque = {name}_axes * {torque};"));
-        text
-    }
-
     /// Where the body of a joint starts; its parent's start is known.
     fn start(&self, joint: &Joint, names: &JointNames) -> Start {
         let Frames { letter, reversed, in_parent, in_child } = frames(joint);
@@ -373,141 +346,14 @@ impl Writer<'_> {
         text
     }
 
-    /// What brakes a spherical joint: a resistance to the relative angular velocity.
-    fn ball_bearing(&self, joint: &Joint, name: &str) -> String {
-        let (child, damping) = (&self.bodies[joint.child], number(joint.damping.0[0]));
-        if joint.parent == 0 {
-            return format!("R {name}_bearing = {damping}; {child}.rotation -> {name}_bearing;\n");
-        }
-        let parent = &self.bodies[joint.parent];
-        format!(
-            "R {name}_bearing = {damping}; 1 {name}_twist[3]: rotation; 0 {name}_moment[3]: rotation;\n\
-             {name}_twist -> {name}_bearing; {name}_twist -> {name}_moment; {parent}.rotation -> {name}_moment -> {child}.rotation;\n"
-        )
-    }
-
-    /// What brakes a free body: a resistance to its angular velocity, and a joint to the ground that holds nothing.
-    fn drag(&self, joint: &Joint) -> String {
-        if joint.damping.is_zero() {
-            return String::new();
-        }
-        let (body, damping) = (&self.bodies[joint.child], number(joint.damping.0[0]));
-        format!(
-            "R {body}_drag = {damping}; {body}.rotation -> {body}_drag;\n\
-             joint {body}_brake: spherical (ground -> {body}) {{ stiffness 0; damping {damping}; }}\n"
-        )
-    }
-
-    /// A joint that follows another one: its speed is kept at the ratio of the leader's.
-    fn coupling(&self, coupling: &Coupling) -> String {
-        let [(follower, name), (leader, other)] =
-            [coupling.follower, coupling.leader].map(|joint| (&self.robot.joints[joint], &self.joints[joint].joint));
-        let domain = if follower.kind == Kind::Prismatic { "translation" } else { "rotation" };
-        let mut text = String::new();
-        line(&mut text, &format!("// `{name}` follows `{other}`."));
-        let word = if coupling.is_linear() { "TF" } else { "MTF" };
-        let ratio = polynomial(&coupling.slope(), &format!("{other}.{}", coordinate_word(leader)));
-        line(&mut text, &format!("{word} {name}_ratio = {ratio}; 0 {name}_tie: {domain}; rSe {name}_follows = 0;"));
-        let (axis, other_axis) = (axis(follower), axis(leader));
-        line(
-            &mut text,
-            &format!(
-                "{other}.{other_axis} -> {name}_ratio -> {name}_tie -> {name}.{axis}; {name}_follows -> {name}_tie;"
-            ),
-        );
-        let start = polynomial(&coupling.polynomial, &self.joints[coupling.leader].start);
-        line(
-            &mut text,
-            &format!("let {}: {} = {start};", self.joints[coupling.follower].start, coordinate(follower).1),
-        );
-        text
-    }
-
     /// Whether each joint has an input of its own.
     fn has_drives(&self) -> bool {
         self.options.drives && self.robot.actuators.is_empty()
     }
 
-    /// What drives a joint by a control.
-    fn actuator(&self, actuator: &Actuator, name: &str) -> String {
-        let Actuator { joint, gear, gain, bias, control, force, shift, .. } = actuator;
-        let (joint, on) = (&self.robot.joints[*joint], &self.joints[*joint].joint);
-        let (word, unit) = effort(joint);
-        let mut text = String::new();
-        let input = control.map_or_else(
-            || name.to_owned(),
-            |range| {
-                line(&mut text, &format!("let {name}_control: 1 = {};", within(name, range)));
-                format!("{name}_control")
-            },
-        );
-        let (place, speed) = (format!("{on}.{}", coordinate_word(joint)), format!("{on}.{}.flow", axis(joint)));
-        let constant = bias[0] + bias[1] * gear * shift;
-        let terms = [(*gain, input.as_str()), (constant, ""), (bias[1] * gear, &place), (bias[2] * gear, &speed)];
-        let law = sum(terms.into_iter());
-        let value = force.map_or_else(
-            || format!("{} * ({law})", number(*gear)),
-            |range| {
-                line(&mut text, &format!("let {name}_effort: {unit} = {law};"));
-                let limited = within(&format!("{name}_effort"), range);
-                if *gear == 1.0 { limited } else { format!("{} * ({limited})", number(*gear)) }
-            },
-        );
-        line(&mut text, &format!("drive {name}_drive on {on} {word} = {value};"));
-        text
-    }
-
     /// The coupling by which a joint follows.
     fn coupling_of(&self, joint: &Joint) -> Option<&Coupling> {
         self.leaders[joint.child - 1].map(|k| &self.robot.couplings[k])
-    }
-
-    /// What acts on the free axis of a joint.
-    fn actors(&self, text: &mut String, joint: &Joint, names: &JointNames) {
-        let JointNames { joint: name, start, effort: input } = names;
-        let slides = joint.kind == Kind::Prismatic;
-        let axis = axis(joint);
-        let is_plain = joint.damping.is_linear() && joint.damping.0[0] >= 0.0;
-        if joint.friction > 0.0 {
-            let viscous = if is_plain && !joint.damping.is_zero() {
-                format!(" viscous {};", number(joint.damping.0[0]))
-            } else {
-                String::new()
-            };
-            line(
-                text,
-                &format!("friction {name}_friction on {name} {{ coulomb {};{viscous} }}", number(joint.friction)),
-            );
-        }
-        let is_said = is_plain && joint.friction > 0.0;
-        if !(is_said || joint.damping.is_zero()) {
-            let law = if is_plain { format!(" = {}", number(joint.damping.0[0])) } else { odd(&joint.damping, "w") };
-            line(text, &format!("R {name}_bearing{law}; {name}.{axis} -> {name}_bearing;"));
-        }
-        if let Some(Spring { law, rest }) = joint.spring {
-            let from = match number(-rest) {
-                zero if zero == "0" => start.clone(),
-                rest if rest.starts_with('-') => format!("{start} - {}", &rest[1..]),
-                rest => format!("{start} + {rest}"),
-            };
-            let (law, energy) = (odd(&law, "q"), energy(&law, "q"));
-            line(text, &format!("C {name}_spring{law} start {from}{energy}; {name}.{axis} -> {name}_spring;"));
-        }
-        if joint.armature > 0.0 {
-            line(text, &format!("I {name}_rotor = {}; {name}.{axis} -> {name}_rotor;", number(joint.armature)));
-        }
-        if let Some((least, most)) = joint.limits.filter(|_| self.options.limits) {
-            let from = if slides { String::new() } else { format!(" start {start};") };
-            let end = |word: &str, value: f64| {
-                if value.is_finite() { format!("at {word} {}; ", number(value)) } else { String::new() }
-            };
-            let ends = end("least", least) + &end("most", most);
-            line(text, &format!("stop {name}_stop on {name} {{ {ends}restitution 0;{from} }}"));
-        }
-        if self.has_drives() {
-            let value = joint.effort.map_or_else(|| input.clone(), |most| within(input, (-most, most)));
-            line(text, &format!("drive {name}_motor on {name} {} = {value};", effort(joint).0));
-        }
     }
 
     /// A joint that closes a loop.
@@ -632,49 +478,6 @@ fn coordinate_word(joint: &Joint) -> &'static str {
 /// The junction of its free axis.
 fn axis(joint: &Joint) -> &'static str {
     if joint.kind == Kind::Prismatic { "slide" } else { "spin" }
-}
-
-/// An odd law of a variable.
-fn odd(law: &Law, variable: &str) -> String {
-    let powers = [variable.to_owned(), format!("{variable} * abs({variable})"), format!("pow({variable}, 3)")];
-    format!("({variable}) = {}", sum(law.0.iter().zip(&powers).map(|(factor, power)| (*factor, power.as_str()))))
-}
-
-/// The energy of a spring with such a law; none where the compiler finds it.
-fn energy(law: &Law, variable: &str) -> String {
-    if law.is_linear() {
-        return String::new();
-    }
-    let powers =
-        [format!("pow({variable}, 2) / 2"), format!("abs(pow({variable}, 3)) / 3"), format!("pow({variable}, 4) / 4")];
-    format!(" energy {}", sum(law.0.iter().zip(&powers).map(|(factor, power)| (*factor, power.as_str()))))
-}
-
-/// A polynomial, constant first.
-fn polynomial(coefficients: &[f64], variable: &str) -> String {
-    let power = |k: usize| match k {
-        0 => String::new(),
-        1 => variable.to_owned(),
-        _ => format!("pow({variable}, {k})"),
-    };
-    let powers: Vec<String> = (0..coefficients.len()).map(power).collect();
-    sum(coefficients.iter().copied().zip(powers.iter().map(String::as_str)))
-}
-
-/// A sum of products; those of 0 are left out, those of 1 are not, since a number takes whatever unit is asked for.
-fn sum<'t>(terms: impl Iterator<Item = (f64, &'t str)>) -> String {
-    let term = |(factor, power): (f64, &str)| match power {
-        "" => number(factor),
-        _ => format!("{} * {power}", number(factor)),
-    };
-    let terms: Vec<String> = terms.filter(|(factor, _)| *factor != 0.0).map(term).collect();
-    if terms.is_empty() { "0".to_owned() } else { terms.join(" + ").replace("+ -", "- ") }
-}
-
-/// A name's value within a range.
-fn within(name: &str, (least, most): (f64, f64)) -> String {
-    let (least, most) = (number(least), number(most));
-    format!("if {name} > {most} {{ {most} }} else if {name} < {least} {{ {least} }} else {{ {name} }}")
 }
 
 fn effort(joint: &Joint) -> (&'static str, &'static str) {
