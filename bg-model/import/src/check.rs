@@ -37,8 +37,8 @@ pub fn tell_open_loops(robot: &mut Robot) {
         if gap > CLOSED || turned > CLOSED {
             let (name, gap) = (&closed.name, number(gap));
             robot.notes.push(format!(
-                "Loop `{name}` is open at the start, by {gap} m or by an angle: make starts of its joints guesses, or give them values \
-                 that close it."
+                "Loop `{name}` is open at the start, by {gap} m or by an angle: make starts of its joints guesses, or \
+                 give them values that close it."
             ));
         }
     }

@@ -22,8 +22,8 @@ pub fn impossible(couplings: &[Coupling], joints: &[Joint]) -> Option<(usize, St
     None
 }
 
-/// Gives each follower its start, and its leader the limits that the follower would reach: two stops that hold one motion at once
-/// would share their force in no way that is known.
+/// Gives each follower its start, and its leader the limits that the follower would reach: two stops that hold one
+/// motion at once would share their force in no way that is known.
 pub fn settle(robot: &mut Robot) {
     let mut leaders = vec![None; robot.joints.len()];
     for coupling in &robot.couplings {

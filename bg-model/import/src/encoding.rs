@@ -1,7 +1,7 @@
 //! A file's bytes as text, in the encoding that they say.
 //!
-//! In: bytes. Out: text, by the byte order mark, else by `encoding=".."` of the XML declaration, else as UTF-8. Source: XML 1.0,
-//! appendix F; names of encodings are those of the WHATWG Encoding Standard.
+//! In: bytes. Out: text, by the byte order mark, else by `encoding=".."` of the XML declaration, else as UTF-8. Source:
+//! XML 1.0, appendix F; names of encodings are those of the WHATWG Encoding Standard.
 
 use encoding_rs::{Encoding, UTF_8};
 

@@ -112,8 +112,8 @@ pub enum ImportError {
     NoTree(String),
     /// A robot without a motion.
     #[error(
-        "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or take \
-         --free-base for a URDF whose root moves{}",
+        "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or \
+         take --free-base for a URDF whose root moves{}",
         listed("\nWhat is not there:", notes)
     )]
     NothingMoves {

@@ -60,7 +60,8 @@ impl Shape {
         of(mass.unwrap_or(density * self.volume()), &self.moments())
     }
 
-    /// The same of a thin shell, whose density is for each m^2; none outside where that is not known, inside where it is 0.
+    /// The same of a thin shell, whose density is for each m^2; none outside where that is not known, inside where it
+    /// is 0.
     pub fn shell(&self, mass: Option<f64>, density: f64) -> Option<Option<Inertia>> {
         let (area, moments) = self.surface()?;
         Some(of(mass.unwrap_or(density * area), &moments))

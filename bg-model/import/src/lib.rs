@@ -1,6 +1,7 @@
 //! Descriptions of robots, URDF and MJCF, as text of `bond_graph!`.
 //!
-//! In: the text of a file. Out: the text of a Rust file with one graph, and what was left out. Method: three pure stages.
+//! In: the text of a file. Out: the text of a Rust file with one graph, and what was left out. Method: three pure
+//! stages.
 //!
 //! | stage | from -> to | what no longer occurs after it |
 //! |---|---|---|
@@ -105,7 +106,8 @@ pub fn import_file(format: Format, file: &Path, options: Options) -> Result<Impo
     robot(format, &name, &encoding::text(&bytes)?, folder, options)
 }
 
-/// Makes a graph of the text of a file; `file` is its name, for the head comment. Other files that it names are not read.
+/// Makes a graph of the text of a file; `file` is its name, for the head comment. Other files that it names are not
+/// read.
 ///
 /// # Errors
 /// What is no XML, no robot, or has values that cannot be: with the line.

@@ -1,10 +1,10 @@
 //! A robot of which each link is a body with a mass.
 //!
-//! Fixed joints make their links one. A chain of joints over links without mass becomes one joint, where one has the same
-//! motion and nothing is lost: two hinges a universal joint, three hinges through one point a spherical one, a slide and a hinge along
-//! one line a cylindrical one. Other links without mass get a small one. What carries nothing is left out. Moments that no body has
-//! are replaced. A joint whose limits exclude 0 starts in the middle. Each of these is a note or a remark. All takes a time in
-//! proportion to the number of links.
+//! Fixed joints make their links one. A chain of joints over links without mass becomes one joint, where one has the
+//! same motion and nothing is lost: two hinges a universal joint, three hinges through one point a spherical one, a
+//! slide and a hinge along one line a cylindrical one. Other links without mass get a small one. What carries nothing
+//! is left out. Moments that no body has are replaced. A joint whose limits exclude 0 starts in the middle. Each of
+//! these is a note or a remark. All takes a time in proportion to the number of links.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -98,7 +98,8 @@ pub fn in_order_of_the_tree(robot: &mut Robot, ground: usize) -> Result<(), Stri
     Ok(())
 }
 
-/// Makes the child of each fixed joint a piece of its parent; parents are looked at first, so that a chain ends in one link.
+/// Makes the child of each fixed joint a piece of its parent; parents are looked at first, so that a chain ends in one
+/// link.
 fn one_bodies(robot: &mut Robot, keep_fixed: bool) {
     // Where each link is now: in which other one, and its frame in that.
     let mut homes: Vec<(usize, Pose)> = (0..robot.links.len()).map(|link| (link, Pose::identity())).collect();
@@ -172,7 +173,8 @@ fn leave_out_what_carries_nothing(robot: &mut Robot) {
     robot.keep_joints(&keeps);
 }
 
-/// One joint in the place of two with a link between that has no mass and carries nothing else, as long as there are such.
+/// One joint in the place of two with a link between that has no mass and carries nothing else, as long as there are
+/// such.
 fn combine(robot: &mut Robot) {
     let mut is_coupled = vec![false; robot.joints.len()];
     for coupling in &robot.couplings {
@@ -199,7 +201,8 @@ fn combine(robot: &mut Robot) {
             let Some(joint) = combined(robot, (first, second)) else { break };
             let (one, other) = (&robot.joints[first].name, &robot.joints[second].name);
             robot.notes.push(format!(
-                "Joints `{one}` and `{other}` are one {} joint, `{}`, whose angles and travels have no outputs and no inputs.",
+                "Joints `{one}` and `{other}` are one {} joint, `{}`, whose angles and travels have no outputs and no \
+                 inputs.",
                 word(joint.kind),
                 joint.name
             ));

@@ -1,10 +1,10 @@
 //! Volume, centre and moments of a body whose surface is a mesh of triangles.
 //!
-//! In: a file, STL, OBJ or MSH, or lists of vertices and faces. Out: its mass for a density of 1. Method: the sum over the tetrahedra
-//! between each triangle and a point. Exactly, they count with the sign of their side; in MuJoCo's older way, its default, each
-//! counts as positive, first from the centre of the surface, then from the centre of mass found so. A shell has its mass on the
-//! triangles. Source: MuJoCo's XML reference, `asset/mesh/inertia`; M. Tonon 2004, Explicit exact formulas for the 3-D tetrahedron inertia
-//! tensor; checked against MuJoCo 4.0.
+//! In: a file, STL, OBJ or MSH, or lists of vertices and faces. Out: its mass for a density of 1. Method: the sum over
+//! the tetrahedra between each triangle and a point. Exactly, they count with the sign of their side; in MuJoCo's older
+//! way, its default, each counts as positive, first from the centre of the surface, then from the centre of mass found
+//! so. A shell has its mass on the triangles. Source: MuJoCo's XML reference, `asset/mesh/inertia`; M. Tonon 2004,
+//! Explicit exact formulas for the 3-D tetrahedron inertia tensor; checked against MuJoCo 4.0.
 
 use std::io::Cursor;
 
@@ -144,7 +144,8 @@ fn obj(bytes: &[u8]) -> Result<Mesh, String> {
         .ok_or_else(|| "a face has no vertex".to_owned())
 }
 
-/// MuJoCo's own format: numbers of vertices, normals, texture coordinates and faces, then these in a row, four bytes each number.
+/// MuJoCo's own format: numbers of vertices, normals, texture coordinates and faces, then these in a row, four bytes
+/// each number.
 fn msh(bytes: &[u8]) -> Option<Mesh> {
     let words: Vec<[u8; 4]> = bytes.chunks(4).map(|word| word.try_into().ok()).collect::<Option<_>>()?;
     let count = |k: usize| usize::try_from(i32::from_le_bytes(*words.get(k)?)).ok();

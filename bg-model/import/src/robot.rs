@@ -180,8 +180,8 @@ pub struct Joint {
     pub in_child: Pose,
     /// A unit vector in its frame: of a positive rotation or travel of the child.
     pub axis: Vector3<f64>,
-    /// Effort from the speed. Of a free joint it acts on the velocity of the link's origin, and on its angular velocity; of a
-    /// spherical one on the relative angular velocity.
+    /// Effort from the speed. Of a free joint it acts on the velocity of the link's origin, and on its angular
+    /// velocity; of a spherical one on the relative angular velocity.
     pub damping: Law,
     /// Dry friction, N m or N, not negative.
     pub friction: f64,
@@ -276,7 +276,8 @@ impl Coupling {
     }
 }
 
-/// What drives a joint by a control: gear f, with f = gain u + b0 + b1 l + b2 l' within a range, where l = gear (q + shift).
+/// What drives a joint by a control: gear f, with f = gain u + b0 + b1 l + b2 l' within a range, where l = gear (q +
+/// shift).
 #[derive(Clone, Debug)]
 pub struct Actuator {
     /// As in the file, or made of the joint's name.

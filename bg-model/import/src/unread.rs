@@ -1,7 +1,7 @@
 //! What of a file was not used: a note each, but for what changes no motion.
 //!
-//! In: what nobody has asked for ([`crate::xml::unread`]) and a format's [`Rule`]s. Out: sentences with the lines. An element or
-//! attribute without a rule is a note, so that what this reader does not know is told.
+//! In: what nobody has asked for ([`crate::xml::unread`]) and a format's [`Rule`]s. Out: sentences with the lines. An
+//! element or attribute without a rule is a note, so that what this reader does not know is told.
 
 use crate::xml::{Place, Unread};
 

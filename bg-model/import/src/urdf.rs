@@ -1,7 +1,7 @@
 //! URDF to a robot.
 //!
-//! A joint's `origin` is the child's frame in the parent, turned by roll, pitch, yaw about the fixed axes x, y, z; its axis is
-//! given in the child's frame; an `inertial` has a frame of its own. Source: wiki.ros.org/urdf/XML.
+//! A joint's `origin` is the child's frame in the parent, turned by roll, pitch, yaw about the fixed axes x, y, z; its
+//! axis is given in the child's frame; an `inertial` has a frame of its own. Source: wiki.ros.org/urdf/XML.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -157,8 +157,8 @@ impl<'n> Reader<'n> {
         let ratio = value("drake:gear_ratio")?.flatten().unwrap_or(1.0);
         joint.armature = rotor * ratio * ratio;
         self.notes.push(format!(
-            "Joint `{}` has the inertia {} of its motor, drake:rotor_inertia times the square of drake:gear_ratio: other programs \
-             than Drake leave it out.",
+            "Joint `{}` has the inertia {} of its motor, drake:rotor_inertia times the square of drake:gear_ratio: other \
+             programs than Drake leave it out.",
             joint.name,
             crate::number::number(joint.armature)
         ));

@@ -1,7 +1,8 @@
 //! A file's elements, each with its place, and a record of what was read of them.
 //!
-//! In: the text of a file. Out: a tree of [`Node`]s. Whoever asks for an attribute or an element marks it; what nobody has asked for is
-//! found by [`unread`]. Prefixes that the file does not declare, and a DOCTYPE, are read as other programs do.
+//! In: the text of a file. Out: a tree of [`Node`]s. Whoever asks for an attribute or an element marks it; what nobody
+//! has asked for is found by [`unread`]. Prefixes that the file does not declare, and a DOCTYPE, are read as other
+//! programs do.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;

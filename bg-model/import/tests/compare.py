@@ -4,10 +4,10 @@
     cargo build --release -p bg-import
     python compare.py ../../../target/release/bg-import [-v] [PART OF A PATH]
 
-Of each file: the text that is written is read here, without the compiler, and its mass matrix, bias (Coriolis, centrifugal and weights)
-and passive forces (springs, dampers, gravity compensation) are calculated at a random pose with random speeds. MJCF is compared with
-MuJoCo, URDF with Pinocchio. A file without a note has to agree to 1e-9 of the largest entry; one that differs needs a note. That
-there are no contacts, and that efforts and speeds are not limited, changes none of the three: such notes do not count.
+Of each file: the text that is written is read here, without the compiler, and its mass matrix, bias (Coriolis,
+centrifugal and weights) and passive forces (springs, dampers, fluids, gravity compensation) are calculated at a random
+pose with random speeds. MJCF is compared with MuJoCo, URDF with Pinocchio. A file without a note has to agree to 1e-9
+of the largest entry; one that differs needs a note. That there are no contacts, and that efforts and speeds are not limited, changes none of the three: such notes do not count.
 """
 
 import os
@@ -22,7 +22,13 @@ import numpy as np
 
 ALLOWED = 1e-9
 # Notes of what changes neither mass matrix nor bias nor passive forces.
-ASIDE = ("Shapes touch nothing", "`effort` of <limit>", "`velocity` of <limit>", "The actuators are left out", "are among those of")
+ASIDE = (
+    "Shapes touch nothing",
+    "`effort` of <limit>",
+    "`velocity` of <limit>",
+    "The actuators are left out",
+    "are among those of",
+)
 
 
 class M:
@@ -78,7 +84,7 @@ class Text:
     def __init__(self, text):
         self.parameters, self.lets, self.bodies, self.joints, self.elements = {}, [], {"ground": {}}, [], []
         self.gravity = np.zeros(3)
-        graph = re.sub(r"^\s*//.*$", "", text[text.index("\nbond_graph!"):], flags=re.M)
+        graph = re.sub(r"^\s*//.*$", "", text[text.index("\nbond_graph!") :], flags=re.M)
         for name, rest in re.findall(r"param (\w+): [^=]* = ([^;,]*)", graph):
             self.parameters[name] = float(rest)
         found = re.search(r"^\s*gravity (.*);$", graph, re.M)
@@ -101,7 +107,9 @@ class Text:
                 body[clause] = value(found.group(1), {}) if found else np.zeros(3)
             body["place"], body["turned"] = f"{name}_place", f"{name}_turned"
         ends = r"\((\w+)(?:\.(\w+))? -> (\w+)(?:\.(\w+))?\)"
-        for name, kind, axis, a, p, b, q, inside in re.findall(rf"joint (\w+): (\w+)([ xyz]*) {ends} \{{(.*?)\}}", graph):
+        for name, kind, axis, a, p, b, q, inside in re.findall(
+            rf"joint (\w+): (\w+)([ xyz]*) {ends} \{{(.*?)\}}", graph
+        ):
             self.joints.append((name, kind, axis.strip(), (a, p), (b, q), inside.strip()))
         self.graph = graph
 
@@ -130,7 +138,9 @@ class State:
             left = rest
         self.names = names
         get = lambda name, other: names[name].v if name in names else other
-        self.pose = {body: (get(f"{body}_place", np.zeros(3)), get(f"{body}_turned", np.eye(3))) for body in text.bodies}
+        self.pose = {
+            body: (get(f"{body}_place", np.zeros(3)), get(f"{body}_turned", np.eye(3))) for body in text.bodies
+        }
 
     def world(self, end):
         place, turned = self.text.frame(end)
@@ -211,9 +221,9 @@ def forces(text, angles, speeds):
         count += width[kind]
     u = np.zeros(count)
     for name, (start, size) in columns.items():
-        u[start:start + size] = speeds[name][:size] if size else []
+        u[start : start + size] = speeds[name][:size] if size else []
     zero = lambda: np.zeros((3, count))
-    # Of each body: the Jacobians of its origin's velocity and its angular velocity; both, and the accelerations without u'.
+    # Of each body: the Jacobians of its origin's velocity and its angular velocity, and the accelerations without u'.
     motion = {"ground": (zero(), zero(), np.zeros(3), np.zeros(3))}
     for name, parent, child, kind, direction, anchor in tree:
         start, size = columns[name]
@@ -233,15 +243,19 @@ def forces(text, angles, speeds):
             jv[:, start] += direction
             acceleration = acceleration + 2 * np.cross(omega, direction * u[start])
         elif kind == "spherical":
-            jw[:, start:start + 3] += axes
-            turning = turning + np.cross(jw @ u, axes @ u[start:start + 3])
+            jw[:, start : start + 3] += axes
+            turning = turning + np.cross(jw @ u, axes @ u[start : start + 3])
         elif kind == "free":
-            jv[:, start:start + 3] += np.eye(3)
-            jw[:, start + 3:start + 6] += axes
+            jv[:, start : start + 3] += np.eye(3)
+            jw[:, start + 3 : start + 6] += axes
         arm = at - anchor
         omega = jw @ u
         motion[child] = (
-            jv - cross(arm) @ jw, jw, acceleration + np.cross(turning, arm) + np.cross(omega, np.cross(omega, arm)), turning)
+            jv - cross(arm) @ jw,
+            jw,
+            acceleration + np.cross(turning, arm) + np.cross(omega, np.cross(omega, arm)),
+            turning,
+        )
     mass, bias, passive = np.zeros((count, count)), np.zeros(count), np.zeros(count)
     for body, parts in text.bodies.items():
         if body == "ground":
@@ -255,20 +269,30 @@ def forces(text, angles, speeds):
         tensor = parts["inertia"] if parts["inertia"].ndim == 2 else np.diag(parts["inertia"])
         tensor = axes @ tensor @ axes.T
         mass += float(parts["mass"]) * jv.T @ jv + w.T @ tensor @ w
-        bias += jv.T @ (float(parts["mass"]) * (acceleration - text.gravity)) + w.T @ (tensor @ alpha + np.cross(omega, tensor @ omega))
+        bias += jv.T @ (float(parts["mass"]) * (acceleration - text.gravity)) + w.T @ (
+            tensor @ alpha + np.cross(omega, tensor @ omega)
+        )
     kinds = {name: kind for name, _, _, kind, _, _ in tree}
+
     def velocity(body, point):
         v, w, _, _ = motion[body]
         return v - cross(state.pose[body][1] @ text.frame((body, point))[0]) @ w
 
-    names = {body: Moving(lambda point, body=body: velocity(body, point) @ u, state.pose[body][1], motion[body][1] @ u) for body in motion}
+    names = {
+        body: Moving(lambda point, body=body: velocity(body, point) @ u, state.pose[body][1], motion[body][1] @ u)
+        for body in motion
+    }
     for name, expression in text.moving:
         names[name] = M(value(expression, names))
-    for body, point, force in re.findall(r"drive \w+ on (\w+)(?:\.(\w+))? force = ((?:\[|\w+_fluid)[^;]*);", text.graph):
+    for body, point, force in re.findall(
+        r"drive \w+ on (\w+)(?:\.(\w+))? force = ((?:\[|\w+_fluid)[^;]*);", text.graph
+    ):
         passive += velocity(body, point).T @ value(force, names)
     for body, torque in re.findall(r"drive \w+ on (\w+) torque = (\w+_fluid[^;]*);", text.graph):
         passive += motion[body][1].T @ value(torque, names)
-    for name, variable, law, joint in re.findall(r"R (\w+)(?:\((\w)\))? = ([^;]*); (\w+)\.(?:spin|slide) -> ", text.graph):
+    for name, variable, law, joint in re.findall(
+        r"R (\w+)(?:\((\w)\))? = ([^;]*); (\w+)\.(?:spin|slide) -> ", text.graph
+    ):
         k = columns[joint][0]
         passive[k] -= value(law, {"w": M(u[k])}) if variable else float(law) * u[k]
     for joint, damping in re.findall(r"friction \w+ on (\w+) \{ coulomb [^;]*; viscous ([^;]*); \}", text.graph):
@@ -276,13 +300,17 @@ def forces(text, angles, speeds):
     for damping, body in re.findall(r"R \w+ = ([^;]*); (\w+)\.rotation -> ", text.graph):
         jw = motion[body][1]
         passive -= float(damping) * jw.T @ (jw @ u)
-    for damping, parent, child in re.findall(r"R \w+ = ([^;]*); 1 \w+\[3\]: rotation;.*\n.* (\w+)\.rotation -> \w+ -> (\w+)\.rotation", text.graph):
+    for damping, parent, child in re.findall(
+        r"R \w+ = ([^;]*); 1 \w+\[3\]: rotation;.*\n.* (\w+)\.rotation -> \w+ -> (\w+)\.rotation", text.graph
+    ):
         jw = motion[child][1] - motion[parent][1]
         passive -= float(damping) * jw.T @ (jw @ u)
     for body, damping in re.findall(r"spherical \(ground -> (\w+)\) \{ stiffness 0; damping ([^;]*);", text.graph):
         jv = motion[body][0]
         passive -= float(damping) * jv.T @ (jv @ u)
-    for law, start, joint in re.findall(r"C \w+\(q\) = ([^;]*?) start ([^;]*?)(?: energy [^;]*)?; (\w+)\.(?:spin|slide) -> ", text.graph):
+    for law, start, joint in re.findall(
+        r"C \w+\(q\) = ([^;]*?) start ([^;]*?)(?: energy [^;]*)?; (\w+)\.(?:spin|slide) -> ", text.graph
+    ):
         passive[columns[joint][0]] -= value(law, {"q": M(value(start, state.names))})
     for inertia, joint in re.findall(r"I \w+ = ([^;]*); (\w+)\.(?:spin|slide) -> ", text.graph):
         mass[columns[joint][0], columns[joint][0]] += float(inertia)
@@ -324,8 +352,11 @@ def with_mujoco(path, text, random):
     kinds = dict((name, kind) for name, _, _, kind, _, _ in State(text, angles).tree())
     mine = [name for name in mine if kinds[name] != "fixed"]
     # The text has joints in the order of the file, free bodies by their own names.
-    order = [name for name in re.findall(r"^\s*(?:joint|body) (\w+)[: ]", text.graph, re.M) if name in mine and kinds[name] != "free"
-             or name in mine and kinds[name] == "free"]
+    order = [
+        name
+        for name in re.findall(r"^\s*(?:joint|body) (\w+)[: ]", text.graph, re.M)
+        if name in mine and kinds[name] != "free" or name in mine and kinds[name] == "free"
+    ]
     if len(order) != model.njnt:
         raise ValueError(f"{len(order)} joints, {model.njnt} in MuJoCo")
     speeds, wanted = {}, np.zeros(model.nv)
@@ -334,9 +365,11 @@ def with_mujoco(path, text, random):
         kind, q, v = model.jnt_type[k], model.jnt_qposadr[k], model.jnt_dofadr[k]
         width = {0: 6, 1: 3}.get(int(kind), 1)
         speeds[name] = random.uniform(-1, 1, width)
-        wanted[v:v + width] = speeds[name]
+        wanted[v : v + width] = speeds[name]
         if width == 1:
-            data.qpos[q] = model.qpos0[q] + float(np.asarray(getattr(names[f"{name}_start"], "v", names[f"{name}_start"])))
+            data.qpos[q] = model.qpos0[q] + float(
+                np.asarray(getattr(names[f"{name}_start"], "v", names[f"{name}_start"]))
+            )
         picked.append((name, v, width))
     data.qvel[:] = wanted
     mujoco.mj_forward(model, data)
@@ -389,13 +422,22 @@ def with_pinocchio(path, text, random):
     columns, _, mass, own, passive = forces(text, angles, speeds)
     mine, theirs = [columns[name][0] for name, _ in picked], [k for _, k in picked]
     reference = -np.asarray(model.damping)[theirs] * v[theirs]
-    return differences((mass[np.ix_(mine, mine)], own[mine], passive[mine]), (full[np.ix_(theirs, theirs)], bias[theirs], reference)), model.nv
+    return (
+        differences(
+            (mass[np.ix_(mine, mine)], own[mine], passive[mine]),
+            (full[np.ix_(theirs, theirs)], bias[theirs], reference),
+        ),
+        model.nv,
+    )
 
 
 def without_small_masses(text, notes, compare, path):
     """The differences where links without mass have none: MuJoCo and Pinocchio take them as they are."""
     for name in re.findall(r"Link `([^`]*)` has no mass: here it has", "\n".join(notes)):
-        body = next((text.bodies[known] for known in (identifier(name), f"{identifier(name)}_body") if known in text.bodies), None)
+        body = next(
+            (text.bodies[known] for known in (identifier(name), f"{identifier(name)}_body") if known in text.bodies),
+            None,
+        )
         if body:
             body["mass"], body["inertia"] = 0.0, np.zeros((3, 3))
     return compare(path, text, np.random.default_rng(1))[0]
@@ -405,7 +447,11 @@ def robots():
     for package, ending in (("example-robot-data", ".urdf"), ("gymnasium", ".xml"), ("dm_control", ".xml")):
         for file in sorted(files(package) or [], key=str):
             path = Path(os.path.realpath(file.locate()))
-            if str(file).endswith(ending) and path.exists() and (ending == ".urdf" or "<mujoco" in path.read_text(errors="replace")):
+            if (
+                str(file).endswith(ending)
+                and path.exists()
+                and (ending == ".urdf" or "<mujoco" in path.read_text(errors="replace"))
+            ):
                 yield package, path
 
 
@@ -421,7 +467,9 @@ def main():
             output = Path(folder) / "robot.rs"
             output.unlink(missing_ok=True)
             kind = "urdf" if path.suffix == ".urdf" else "mjcf"
-            done = subprocess.run([program, kind, str(path), "-o", str(output)], capture_output=True, text=True, timeout=120)
+            done = subprocess.run(
+                [program, kind, str(path), "-o", str(output)], capture_output=True, text=True, timeout=120
+            )
             notes = [line for line in done.stderr.splitlines() if line.startswith("note: ")]
             counted = [note for note in notes if not any(words in note for words in ASIDE)]
             detail = ""

@@ -1,7 +1,7 @@
 //! The text that files become, and what is said of those that become none.
 //!
-//! Each file of `cases` with its text beside it, which `swing.rs` compiles. `RENEW=1 cargo test -p bg-import --test text` writes the
-//! texts anew: read the difference.
+//! Each file of `cases` with its text beside it, which `swing.rs` compiles. `RENEW=1 cargo test -p bg-import --test
+//! text` writes the texts anew: read the difference.
 
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! `actuator`: motors, position and velocity servos on joints, and general ones of the same kind.
 //!
-//! The force is gain u + b0 + b1 l + b2 l' of the control u and the length l = gear q, within the range of forces; the joint gets gear
-//! times it. A motor has the gain 1; `position` the gain kp and b1 = -kp, b2 = -kv; `velocity` the gain kv and b2 = -kv. Source:
-//! MuJoCo's XML reference, `actuator`, and its chapter on computation.
+//! The force is gain u + b0 + b1 l + b2 l' of the control u and the length l = gear q, within the range of forces; the
+//! joint gets gear times it. A motor has the gain 1; `position` the gain kp and b1 = -kp, b2 = -kv; `velocity` the gain
+//! kv and b2 = -kv. Source: MuJoCo's XML reference, `actuator`, and its chapter on computation.
 
 use super::Reader;
 use super::defaults::Element;

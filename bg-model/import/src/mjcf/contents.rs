@@ -1,8 +1,8 @@
 //! What is inside of a body, with `frame` and `replicate` written out.
 //!
-//! In: a body's element. Out: its joints, shapes and bodies, each with the frame in which its place is given, its class and the ending of
-//! its names. The k-th copy of a `replicate` is in the k-th power of its frame; its names end with k, in as many digits as the last
-//! one has. Source: MuJoCo's XML reference.
+//! In: a body's element. Out: its joints, shapes and bodies, each with the frame in which its place is given, its class
+//! and the ending of its names. The k-th copy of a `replicate` is in the k-th power of its frame; its names end with k,
+//! in as many digits as the last one has. Source: MuJoCo's XML reference.
 
 use nalgebra::Vector3;
 

@@ -1,8 +1,8 @@
 //! Default classes: what an element's attribute is where the element does not say.
 //!
-//! Order: the element, its class, or else the `childclass` of the nearest body, or else the outermost class; each class after
-//! it the one around it. A class has of the one around it what stood there when it began: first what is beside it, then, section by
-//! section, what follows.
+//! Order: the element, its class, or else the `childclass` of the nearest body, or else the outermost class; each class
+//! after it the one around it. A class has of the one around it what stood there when it began: first what is beside
+//! it, then, section by section, what follows.
 
 use std::collections::BTreeMap;
 

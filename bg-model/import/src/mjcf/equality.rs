@@ -1,7 +1,7 @@
 //! `equality`: what closes loops, and joints that follow others.
 //!
-//! `connect` and `weld` hold what they find in the file's pose; the anchor of `connect` is in the first body's frame, that of
-//! `weld` in the second's. `joint` makes joint1 a polynomial of joint2, both counted from the file's pose.
+//! `connect` and `weld` hold what they find in the file's pose; the anchor of `connect` is in the first body's frame,
+//! that of `weld` in the second's. `joint` makes joint1 a polynomial of joint2, both counted from the file's pose.
 
 use super::Reader;
 use crate::ImportError;

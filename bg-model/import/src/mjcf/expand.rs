@@ -1,7 +1,7 @@
 //! `include`: what other files hold, in its place.
 //!
-//! In: a tree and the folder of its file. Out: the tree with the children of each included file's root where its `include` stood. Each
-//! file at most once, as MuJoCo has it; paths count from the folder of the first file.
+//! In: a tree and the folder of its file. Out: the tree with the children of each included file's root where its
+//! `include` stood. Each file at most once, as MuJoCo has it; paths count from the folder of the first file.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;

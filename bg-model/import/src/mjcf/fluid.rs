@@ -1,8 +1,8 @@
 //! The fluid of `option`: what slows a body down in it, as MuJoCo's model of inertia boxes has it.
 //!
-//! A body counts as a box with its mass and moments. Along each axis of the box the density brakes with the square of the speed, the
-//! viscosity in proportion to it as a ball of the mean diameter. Source: MuJoCo's documentation, *Fluid forces, inertia model*; checked
-//! against MuJoCo 4.0.
+//! A body counts as a box with its mass and moments. Along each axis of the box the density brakes with the square of
+//! the speed, the viscosity in proportion to it as a ball of the mean diameter. Source: MuJoCo's documentation, *Fluid
+//! forces, inertia model*; checked against MuJoCo 4.0.
 
 use std::f64::consts::PI;
 

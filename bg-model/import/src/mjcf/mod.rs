@@ -1,7 +1,8 @@
 //! MJCF to a robot: bodies, joints, inertias, and what closes loops.
 //!
-//! Bodies are nested; a body's `pos` and orientation are its frame in the parent, a joint's `pos` and `axis` are in the body's
-//! frame. Of several joints of a body the first is the outermost; between two stands a link without mass. Where a body has no
+//! Bodies are nested; a body's `pos` and orientation are its frame in the parent, a joint's `pos` and `axis` are in the
+//! body's frame. Of several joints of a body the first is the outermost; between two stands a link without mass. Where
+//! a body has no
 //! `inertial`, its shapes give its mass. Source: MuJoCo's XML reference, 4.0.
 
 mod actuators;
@@ -297,7 +298,8 @@ impl<'n> Reader<'n> {
         Ok(())
     }
 
-    /// The armature of a free joint resists the velocity of the origin and the angular velocity alike: a ball there, without a weight.
+    /// The armature of a free joint resists the velocity of the origin and the angular velocity alike: a ball there,
+    /// without a weight.
     fn armatures_of_free_joints(&mut self) {
         let free = self.robot.joints.iter_mut().filter(|joint| joint.kind == Kind::Free && joint.armature > 0.0);
         for joint in free {
@@ -362,7 +364,8 @@ impl<'n> Reader<'n> {
         Ok(is_range.then_some((least * unit - reference, most * unit - reference)))
     }
 
-    /// Of `inertial`, else of the shapes; none where there is neither. With the principal axes where the file says them.
+    /// Of `inertial`, else of the shapes; none where there is neither. With the principal axes where the file says
+    /// them.
     fn inertia(
         &mut self,
         body: &'n Node,
@@ -467,7 +470,8 @@ impl<'n> Reader<'n> {
         for (element, what) in [
             (
                 "actuator",
-                "The actuators are left out; each joint has an input of its own. With --actuators those that act on joints are not.",
+                "The actuators are left out; each joint has an input of its own. With --actuators those that act on \
+                 joints are not.",
             ),
             ("tendon", "The tendons are left out."),
         ] {

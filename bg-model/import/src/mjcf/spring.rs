@@ -1,7 +1,7 @@
 //! `springdamper`: a joint's stiffness and damping from a time constant t and a damping ratio d.
 //!
-//! With the inertia m of all that the joint moves, in the file's pose, stiffness m / (t d)^2 and damping 2 m / t. Source: MuJoCo's XML
-//! reference, `joint/springdamper`; checked against MuJoCo 4.0.
+//! With the inertia m of all that the joint moves, in the file's pose, stiffness m / (t d)^2 and damping 2 m / t.
+//! Source: MuJoCo's XML reference, `joint/springdamper`; checked against MuJoCo 4.0.
 
 use super::Reader;
 use crate::robot::{Inertia, Kind, Law};

@@ -1,8 +1,8 @@
 //! A robot to a Rust file with one `bond_graph!`, as a person would write it.
 //!
-//! In: a robot whose links all have masses. Out: a head comment, parameters, inputs, bodies with their start poses and joints in
-//! the order of the tree, outputs. A joint about an axis of its frame has that axis; one against it goes from the child to
-//! the parent; for any other one the points at both ends are turned, so that x or z is the axis.
+//! In: a robot whose links all have masses. Out: a head comment, parameters, inputs, bodies with their start poses and
+//! joints in the order of the tree, outputs. A joint about an axis of its frame has that axis; one against it goes from
+//! the child to the parent; for any other one the points at both ends are turned, so that x or z is the axis.
 
 mod acts;
 mod frames;
