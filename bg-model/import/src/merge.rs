@@ -24,6 +24,9 @@ const NOTHING: f64 = 1e-9;
 /// The density of an atom's nucleus, kg/m^3: moments of a denser ball come from rounding, or the file has a point mass.
 const NUCLEAR: f64 = 2.3e17;
 
+/// How much more than half their sum the largest moment may be: the language takes 1.01, and numbers are rounded.
+const WIDER: f64 = 1.01 - 1e-9;
+
 /// How exactly axes meet and stand across each other.
 const EXACT: f64 = 1e-9;
 
@@ -296,7 +299,8 @@ fn possible(inertia: &mut Inertia, name: &str) -> Option<String> {
     let about_origin = inertia.mass * inertia.center.norm_squared();
     // A ball of the radius r has 0.4 m r^2.
     let is_point = size <= 0.15 * inertia.mass * (inertia.mass / NUCLEAR).powf(2.0 / 3.0);
-    if is_point || moments.min() > -NOTHING * size && moments.min() < NOTHING * size {
+    let is_body = 2.0 * moments.max() <= moments.sum() * WIDER;
+    if is_point || is_body && moments.min() > -NOTHING * size && moments.min() < NOTHING * size {
         let reference = if is_point { about_origin } else { size };
         let floor = SMALL * if reference > 0.0 { reference } else { inertia.mass * RADIUS * RADIUS };
         for (k, moment) in moments.iter().enumerate().filter(|(_, moment)| is_point || **moment < NOTHING * size) {
@@ -307,7 +311,7 @@ fn possible(inertia: &mut Inertia, name: &str) -> Option<String> {
             if is_point { "no moments of inertia: here all are" } else { "a moment of inertia of 0: here it is" };
         return Some(format!("Link `{name}` has {what} {} kg*m^2.", number(floor)));
     }
-    if moments.min() > 0.0 && 2.0 * moments.max() <= moments.sum() * 1.01 {
+    if moments.min() > 0.0 && is_body {
         return None;
     }
     let mean = moments.mean();

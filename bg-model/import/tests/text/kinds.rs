@@ -370,6 +370,16 @@ fn moments_of_thin_rods_stay_as_they_are() {
             "Link `b` has no moments of inertia: here all are 1e-8 kg*m^2.",
         ),
         (
+            "ixx='0' iyy='0.01' izz='0.02'",
+            "inertia [0.01, 0.01, 0.01];",
+            "Link `b` has moments of inertia that no body has: here all are 0.01 kg*m^2.",
+        ),
+        (
+            "ixx='0' iyy='0' izz='0.03'",
+            "inertia [0.01, 0.01, 0.01];",
+            "Link `b` has moments of inertia that no body has: here all are 0.01 kg*m^2.",
+        ),
+        (
             "ixx='-0.02' iyy='0.01' izz='0.010000000001'",
             "inertia [0.01, 0.01, 0.01];",
             "Link `b` has moments of inertia that no body has: here all are 0.01 kg*m^2.",
