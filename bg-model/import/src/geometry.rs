@@ -57,10 +57,60 @@ impl Shape {
 
     /// Of a mass, or of a density; none where that is 0.
     pub fn inertia(&self, mass: Option<f64>, density: f64) -> Option<Inertia> {
-        let mass = mass.unwrap_or(density * self.volume());
-        let tensor = mass * Matrix3::from_diagonal(&self.moments());
-        (mass > 0.0).then_some(Inertia { mass, center: Vector3::zeros(), tensor })
+        of(mass.unwrap_or(density * self.volume()), &self.moments())
     }
+
+    /// The same of a thin shell, whose density is for each m^2; none outside where that is not known, inside where it
+    /// is 0.
+    pub fn shell(&self, mass: Option<f64>, density: f64) -> Option<Option<Inertia>> {
+        let (area, moments) = self.surface()?;
+        Some(of(mass.unwrap_or(density * area), &moments))
+    }
+
+    /// Area, m^2, and moments of a shell of 1 kg, m^2; none of an ellipsoid, which has no closed form.
+    fn surface(&self) -> Option<(f64, Vector3<f64>)> {
+        Some(match *self {
+            Self::Ellipsoid(half) if half.x == half.y && half.y == half.z => {
+                (4.0 * PI * half.x * half.x, Vector3::repeat(2.0 / 3.0 * half.x * half.x))
+            }
+            Self::Ellipsoid(_) => return None,
+            Self::Cuboid(half) => {
+                // Two faces across each axis: thin plates at their distance from the centre.
+                let area = |k: usize| 8.0 * half[(k + 1) % 3] * half[(k + 2) % 3];
+                let total: f64 = (0..3).map(area).sum();
+                let squares = half.component_mul(&half);
+                // The mean square of a coordinate over the whole surface.
+                let mean = |axis: usize| -> f64 {
+                    (0..3).map(|k| area(k) * squares[axis] * if k == axis { 1.0 } else { 1.0 / 3.0 }).sum::<f64>()
+                        / total
+                };
+                let means = Vector3::new(mean(0), mean(1), mean(2));
+                (total, Vector3::new(means.y + means.z, means.x + means.z, means.x + means.y))
+            }
+            Self::Cylinder(radius, half) => {
+                let (wall, lids) = (4.0 * PI * radius * half, 2.0 * PI * radius * radius);
+                let total = wall + lids;
+                let square = radius * radius;
+                let across = wall * (square / 2.0 + half * half / 3.0) + lids * (square / 4.0 + half * half);
+                (total, round(across / total, (wall * square + lids * square / 2.0) / total))
+            }
+            Self::Capsule(radius, half) => {
+                let (wall, ball) = (4.0 * PI * radius * half, 4.0 * PI * radius * radius);
+                let total = wall + ball;
+                let square = radius * radius;
+                // A half sphere has its centre of mass at half its radius.
+                let ends = 2.0 / 3.0 * square + half * half + half * radius;
+                let across = wall * (square / 2.0 + half * half / 3.0) + ball * ends;
+                (total, round(across / total, (wall * square + ball * 2.0 / 3.0 * square) / total))
+            }
+        })
+    }
+}
+
+/// Of a mass and the moments of 1 kg.
+fn of(mass: f64, moments: &Vector3<f64>) -> Option<Inertia> {
+    let tensor = mass * Matrix3::from_diagonal(moments);
+    (mass > 0.0).then_some(Inertia { mass, center: Vector3::zeros(), tensor })
 }
 
 /// Sums of two squares each, divided.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use bg_import::{Format, Options, import};
+use bg_import::{Format, Options, import_file, shown};
 use clap::{Args, Parser, Subcommand};
 
 /// Makes a `bond_graph!` of a robot's description. The text goes to the output, notes go to the error output.
@@ -50,13 +50,22 @@ struct File {
     /// Limits of joints do not become stops.
     #[arg(long)]
     no_limits: bool,
+    /// That shapes touch nothing is known, and no note.
+    #[arg(long)]
+    no_contacts: bool,
+    /// The inputs that drive joints give no more effort than the file says.
+    #[arg(long)]
+    actuators: bool,
+    /// Where something is not as in the file nothing is written, and the exit code is 1.
+    #[arg(long)]
+    strict: bool,
 }
 
 fn main() -> ExitCode {
     match run(Arguments::parse().format) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            eprintln!("error: {message}");
+            eprintln!("error: {}", message.lines().map(shown).collect::<Vec<_>>().join("\n"));
             ExitCode::FAILURE
         }
     }
@@ -68,18 +77,22 @@ fn run(command: Command) -> Result<(), String> {
         Command::Mjcf { file } => (Format::Mjcf, false, file),
     };
     let path = file.file.display();
-    let text = std::fs::read_to_string(&file.file).map_err(|source| format!("cannot read {path}: {source}"))?;
-    let name = file.file.file_name().map_or_else(|| path.to_string(), |name| name.to_string_lossy().into_owned());
     let options = Options {
         free_base,
         keep_fixed: file.keep_fixed,
         compliant: file.compliant,
         drives: !file.no_drives,
         limits: !file.no_limits,
+        contacts: !file.no_contacts,
+        actuators: file.actuators,
+        strict: file.strict,
     };
-    let imported = import(format, &name, &text, options).map_err(|fault| format!("{path}: {fault}"))?;
+    let imported = import_file(format, &file.file, options).map_err(|fault| format!("{path}: {fault}"))?;
     for note in &imported.notes {
-        eprintln!("note: {note}");
+        eprintln!("note: {}", shown(note));
+    }
+    for remark in &imported.remarks {
+        eprintln!("remark: {}", shown(remark));
     }
     match &file.output {
         Some(output) => std::fs::write(output, imported.text)

@@ -1,54 +1,57 @@
 //! A robot of which each link is a body with a mass.
 //!
-//! Fixed joints make their links one. A chain of joints over links without mass becomes one joint, where one has the same
-//! motion: two hinges a universal joint, three hinges through one point a spherical one, a slide and a hinge along one line a
-//! cylindrical one. Other links without mass get a small one. What carries nothing is left out. Moments that no body has
-//! are replaced. A joint whose limits exclude 0 starts in the middle. Each of these is a note.
+//! Fixed joints make their links one. A chain of joints over links without mass becomes one joint, where one has the
+//! same motion and nothing is lost: two hinges a universal joint, three hinges through one point a spherical one, a
+//! slide and a hinge along one line a cylindrical one. Other links without mass get a small one. What carries nothing
+//! is left out. Moments that no body has are replaced. A joint whose limits exclude 0 starts in the middle. Each of
+//! these is a note or a remark. All takes a time in proportion to the number of links.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::number::number;
-use crate::robot::{Inertia, Joint, Kind, Pose, Robot};
+use crate::robot::{Drag, Inertia, Joint, Kind, Pose, Robot};
+use crate::{ImportError, Options, check, couple};
 
-/// Of the whole mass: what a link without mass gets that has to stay.
+/// Of the whole mass: what a link without mass gets that has to stay. Of the largest moment: what a moment of 0 gets.
 const SMALL: f64 = 1e-6;
 
-/// Its radius of gyration, m.
+/// The radius of gyration of a link without a size, m.
 const RADIUS: f64 = 0.1;
+
+/// What is nothing beside 1, in moments that a file gives with ten digits.
+const NOTHING: f64 = 1e-9;
+
+/// The density of an atom's nucleus, kg/m^3: moments of a denser ball come from rounding, or the file has a point mass.
+const NUCLEAR: f64 = 2.3e17;
+
+/// How much more than half their sum the largest moment may be: the language takes 1.01, and numbers are rounded.
+const WIDER: f64 = 1.01 - 1e-9;
 
 /// How exactly axes meet and stand across each other.
 const EXACT: f64 = 1e-9;
 
 /// Merges; with `keep_fixed` fixed joints between links with mass stay.
-#[must_use]
-pub fn merge(mut robot: Robot, keep_fixed: bool) -> Robot {
-    while let Some(at) = robot.joints.iter().position(|joint| is_merged(&robot, joint, keep_fixed)) {
-        one_body(&mut robot, at);
+///
+/// # Errors
+/// Nothing moves, or numbers are too large to calculate with.
+pub fn merge(mut robot: Robot, options: Options) -> Result<Robot, ImportError> {
+    one_bodies(&mut robot, options.keep_fixed);
+    leave_out_what_carries_nothing(&mut robot);
+    if robot.joints.is_empty() {
+        return Err(ImportError::NothingMoves { notes: robot.notes });
     }
-    while let Some(at) = robot.joints.iter().position(|joint| carries_nothing(&robot, joint)) {
-        let joint = robot.joints.remove(at);
-        let link = &robot.links[joint.child].name;
-        robot.notes.push(format!(
-            "Link `{link}` has no mass and carries nothing: it is left out with joint `{}`.",
-            joint.name
-        ));
+    if !options.limits {
+        robot.joints.iter_mut().for_each(|joint| joint.limits = None);
     }
-    while let Some((first, second)) = chained(&robot).into_iter().find(|&pair| combined(&robot, pair).is_some()) {
-        if let Some(joint) = combined(&robot, (first, second)) {
-            let (one, other) = (&robot.joints[first].name, &robot.joints[second].name);
-            robot.notes.push(format!(
-                "Joints `{one}` and `{other}` are one {} joint, `{}`, without their limits, damping and friction.",
-                word(joint.kind),
-                joint.name
-            ));
-            robot.joints[first] = joint;
-            robot.joints.remove(second);
-        }
-    }
+    couple::settle(&mut robot);
+    combine(&mut robot);
     give_masses(&mut robot);
     give_starts(&mut robot);
+    couple::start(&mut robot);
     forget_unused(&mut robot);
-    robot
+    check::tell_open_loops(&mut robot);
+    check::refuse_what_is_not_finite(&robot)?;
+    Ok(robot)
 }
 
 /// Puts the ground first and parents before their children.
@@ -56,29 +59,74 @@ pub fn merge(mut robot: Robot, keep_fixed: bool) -> Robot {
 /// # Errors
 /// A ring of joints, with its links.
 pub fn in_order_of_the_tree(robot: &mut Robot, ground: usize) -> Result<(), String> {
+    let carried = robot.carried();
     let mut order = vec![ground];
     let mut next = 0;
     while let Some(&parent) = order.get(next) {
-        order.extend(robot.joints.iter().filter(|joint| joint.parent == parent).map(|joint| joint.child));
+        order.extend(carried[parent].iter().map(|&joint| robot.joints[joint].child));
         next += 1;
     }
+    let mut places = vec![None; robot.links.len()];
+    for (place, &link) in order.iter().enumerate() {
+        places[link] = Some(place);
+    }
     let lost: Vec<String> = (0..robot.links.len())
-        .filter(|link| !order.contains(link))
+        .filter(|&link| places[link].is_none())
         .map(|link| format!("`{}`", robot.links[link].name))
         .collect();
     if !lost.is_empty() {
         return Err(format!("{} carry each other in a ring", lost.join(", ")));
     }
-    let place = |link: usize| order.iter().position(|&other| other == link).unwrap_or_default();
+    let place = |link: usize| places[link].unwrap_or_default();
     for joint in &mut robot.joints {
         (joint.parent, joint.child) = (place(joint.parent), place(joint.child));
     }
     for end in robot.loops.iter_mut().flat_map(|closed| &mut closed.ends) {
         end.0 = place(end.0);
     }
+    let mut sorted: Vec<usize> = (0..robot.joints.len()).collect();
+    sorted.sort_by_key(|&joint| robot.joints[joint].child);
+    let mut moved = vec![0; sorted.len()];
+    for (new, &old) in sorted.iter().enumerate() {
+        moved[old] = new;
+    }
     robot.joints.sort_by_key(|joint| joint.child);
+    for coupling in &mut robot.couplings {
+        (coupling.follower, coupling.leader) = (moved[coupling.follower], moved[coupling.leader]);
+    }
+    for actuator in &mut robot.actuators {
+        actuator.joint = moved[actuator.joint];
+    }
     robot.links = order.iter().map(|&link| robot.links[link].clone()).collect();
     Ok(())
+}
+
+/// Makes the child of each fixed joint a piece of its parent; parents are looked at first, so that a chain ends in one
+/// link.
+fn one_bodies(robot: &mut Robot, keep_fixed: bool) {
+    // Where each link is now: in which other one, and its frame in that.
+    let mut homes: Vec<(usize, Pose)> = (0..robot.links.len()).map(|link| (link, Pose::identity())).collect();
+    let mut keeps = vec![true; robot.joints.len()];
+    for (at, keep) in keeps.iter_mut().enumerate() {
+        let joint = &mut robot.joints[at];
+        let (home, frame) = homes[joint.parent];
+        if home != joint.parent {
+            (joint.parent, joint.in_parent) = (home, frame.then(&joint.in_parent));
+        }
+        let joint = robot.joints[at].clone();
+        if is_merged(robot, &joint, keep_fixed) {
+            *keep = false;
+            homes[joint.child] = (joint.parent, joint.in_parent.then(&joint.in_child.inverse()));
+            one_body(robot, &joint, &homes[joint.child].1);
+        }
+    }
+    for end in robot.loops.iter_mut().flat_map(|closed| &mut closed.ends) {
+        let (home, frame) = homes[end.0];
+        if home != end.0 {
+            *end = (home, frame.then(&end.1));
+        }
+    }
+    robot.keep_joints(&keeps);
 }
 
 fn is_merged(robot: &Robot, joint: &Joint, keep_fixed: bool) -> bool {
@@ -87,40 +135,86 @@ fn is_merged(robot: &Robot, joint: &Joint, keep_fixed: bool) -> bool {
     joint.kind == Kind::Fixed && !(keep_fixed && joint.parent != 0 && is_heavy(joint.child) && is_heavy(joint.parent))
 }
 
-/// Makes the child of a fixed joint a piece of its parent.
-fn one_body(robot: &mut Robot, at: usize) {
-    let fixed = robot.joints.remove(at);
-    let frame = fixed.in_parent.then(&fixed.in_child.inverse());
-    let child = robot.links[fixed.child].clone();
+/// Gives what the child of a fixed joint has to its parent.
+fn one_body(robot: &mut Robot, fixed: &Joint, frame: &Pose) {
+    let child = std::mem::replace(&mut robot.links[fixed.child], crate::robot::Link::new(""));
     let parent = &mut robot.links[fixed.parent];
-    if let Some(inertia) = child.inertia.map(|inertia| inertia.seen_from(&frame)).filter(|_| fixed.parent != 0) {
+    if let Some(inertia) = child.inertia.map(|inertia| inertia.seen_from(frame)).filter(|_| fixed.parent != 0) {
         parent.inertia = Some(parent.inertia.map_or(inertia, |own| own.with(&inertia)));
+    }
+    if fixed.parent != 0 {
+        let moved = |(mass, place): (f64, Vector3<f64>)| (mass, frame.place + frame.turned * place);
+        parent.lifts.extend(child.lifts.into_iter().map(moved));
+        let carried = |drag: Drag| Drag {
+            place: frame.place + frame.turned * drag.place,
+            axes: frame.turned * drag.axes,
+            ..drag
+        };
+        parent.drags.extend(child.drags.into_iter().map(carried));
     }
     parent.merged.push(child.name);
     parent.merged.extend(child.merged);
-    for joint in robot.joints.iter_mut().filter(|joint| joint.parent == fixed.child) {
-        (joint.parent, joint.in_parent) = (fixed.parent, frame.then(&joint.in_parent));
-    }
-    for end in robot.loops.iter_mut().flat_map(|closed| &mut closed.ends).filter(|end| end.0 == fixed.child) {
-        *end = (fixed.parent, frame.then(&end.1));
-    }
 }
 
-fn carries_nothing(robot: &Robot, joint: &Joint) -> bool {
-    let is_held = |closed: &crate::robot::Loop| closed.ends.iter().any(|end| end.0 == joint.child);
-    robot.links[joint.child].inertia.is_none()
-        && !robot.joints.iter().any(|other| other.parent == joint.child)
-        && !robot.loops.iter().any(is_held)
+/// Links without mass and moments that carry nothing, from the last one on.
+fn leave_out_what_carries_nothing(robot: &mut Robot) {
+    let mut needs: Vec<bool> = robot.links.iter().map(|link| link.inertia.is_some()).collect();
+    for end in robot.loops.iter().flat_map(|closed| &closed.ends) {
+        needs[end.0] = true;
+    }
+    let mut keeps = vec![true; robot.joints.len()];
+    for (at, joint) in robot.joints.iter().enumerate().rev() {
+        keeps[at] = needs[joint.child];
+        needs[joint.parent] |= needs[joint.child];
+        if !keeps[at] {
+            let (link, joint) = (&robot.links[joint.child].name, &joint.name);
+            robot
+                .notes
+                .push(format!("Link `{link}` has no mass and carries nothing: it is left out with joint `{joint}`."));
+        }
+    }
+    robot.keep_joints(&keeps);
 }
 
-/// Pairs of joints with a link between that has no mass and carries nothing else.
-fn chained(robot: &Robot) -> Vec<(usize, usize)> {
-    let next = |first: &Joint| {
-        let mut carried = (0..robot.joints.len()).filter(|&at| robot.joints[at].parent == first.child);
-        let only = carried.next().filter(|_| robot.links[first.child].inertia.is_none());
-        only.filter(|_| carried.next().is_none())
-    };
-    robot.joints.iter().enumerate().filter_map(|(first, joint)| Some((first, next(joint)?))).collect()
+/// One joint in the place of two with a link between that has no mass and carries nothing else, as long as there are
+/// such.
+fn combine(robot: &mut Robot) {
+    let mut is_coupled = vec![false; robot.joints.len()];
+    for coupling in &robot.couplings {
+        is_coupled[coupling.follower] = true;
+        is_coupled[coupling.leader] = true;
+    }
+    for actuator in &robot.actuators {
+        is_coupled[actuator.joint] = true;
+    }
+    let mut is_held = vec![false; robot.links.len()];
+    for end in robot.loops.iter().flat_map(|closed| &closed.ends) {
+        is_held[end.0] = true;
+    }
+    let carried = robot.carried();
+    let mut keeps = vec![true; robot.joints.len()];
+    for at in 0..robot.joints.len() {
+        let mut first = at;
+        while keeps[first] && !is_coupled[first] {
+            let link = robot.joints[first].child;
+            let [second] = carried[link][..] else { break };
+            if robot.links[link].inertia.is_some() || is_held[link] || is_coupled[second] {
+                break;
+            }
+            let Some(joint) = combined(robot, (first, second)) else { break };
+            let (one, other) = (&robot.joints[first].name, &robot.joints[second].name);
+            robot.notes.push(format!(
+                "Joints `{one}` and `{other}` are one {} joint, `{}`, whose angles and travels have no outputs and no \
+                 inputs.",
+                word(joint.kind),
+                joint.name
+            ));
+            keeps[first] = false;
+            robot.joints[second] = joint;
+            first = second;
+        }
+    }
+    robot.keep_joints(&keeps);
 }
 
 /// The one joint that leaves the motion of two in a chain, if there is one.
@@ -130,8 +224,7 @@ fn combined(robot: &Robot, (first, second): (usize, usize)) -> Option<Joint> {
     let between = first.in_child.inverse();
     let (place, other) = (first.in_child.place, second.in_parent.place);
     let (axis, other_axis) = (first.in_child.turned * first.axis, second.in_parent.turned * second.axis);
-    let is_free = |joint: &Joint| joint.armature == 0.0 && joint.spring.is_none();
-    if !(is_free(first) && is_free(second)) {
+    if !(first.is_bare() && second.is_bare()) {
         return None;
     }
     let kind = match (first.kind, second.kind) {
@@ -148,7 +241,7 @@ fn combined(robot: &Robot, (first, second): (usize, usize)) -> Option<Joint> {
         }
         _ => return None,
     };
-    if kind == Kind::Spherical && (first.in_child.turned * nalgebra::Vector3::y()).cross(&other_axis).norm() < EXACT {
+    if kind == Kind::Spherical && (first.in_child.turned * Vector3::y()).cross(&other_axis).norm() < EXACT {
         return None;
     }
     // The common frame, in the link between.
@@ -177,53 +270,87 @@ fn word(kind: Kind) -> &'static str {
 /// A mass for each link that moves, moments that a body can have.
 fn give_masses(robot: &mut Robot) {
     let total: f64 = robot.links.iter().filter_map(|link| link.inertia).map(|inertia| inertia.mass).sum();
-    let moving: Vec<usize> = robot.joints.iter().map(|joint| joint.child).collect();
-    for link in moving {
-        let link = &mut robot.links[link];
+    let small = if total > 0.0 { SMALL * total } else { SMALL };
+    for at in 0..robot.joints.len() {
+        let link = &mut robot.links[robot.joints[at].child];
         let name = &link.name;
         let Some(inertia) = &mut link.inertia else {
-            let mass = if total > 0.0 { SMALL * total } else { SMALL };
-            let tensor = mass * RADIUS * RADIUS * Matrix3::identity();
-            robot.notes.push(format!("Link `{name}` has no mass: here it has {} kg, for its joints.", number(mass)));
-            link.inertia = Some(Inertia { mass, center: nalgebra::Vector3::zeros(), tensor });
+            let tensor = small * RADIUS * RADIUS * Matrix3::identity();
+            robot.notes.push(format!("Link `{name}` has no mass: here it has {} kg, for its joints.", number(small)));
+            link.inertia = Some(Inertia { mass: small, center: Vector3::zeros(), tensor });
             continue;
         };
-        let moments = inertia.tensor.symmetric_eigenvalues();
-        let is_possible = moments.min() > 0.0 && 2.0 * moments.max() <= moments.sum() * 1.01;
-        if !is_possible {
-            let mean = moments.mean();
-            let moment = if mean > 0.0 { mean } else { inertia.mass * RADIUS * RADIUS };
-            inertia.tensor = moment * Matrix3::identity();
+        if inertia.mass == 0.0 {
             robot.notes.push(format!(
-                "Link `{name}` has moments of inertia that no body has: here all are {} kg*m^2.",
-                number(moment)
+                "Link `{name}` has moments of inertia and no mass: here it has {} kg, for its joints.",
+                number(small)
             ));
+            inertia.mass = small;
         }
+        robot.notes.extend(possible(inertia, name));
     }
+}
+
+/// Makes moments such that a body can have them, and says what was changed.
+fn possible(inertia: &mut Inertia, name: &str) -> Option<String> {
+    let principal = inertia.tensor.symmetric_eigen();
+    let moments = principal.eigenvalues;
+    let size = moments.amax();
+    let about_origin = inertia.mass * inertia.center.norm_squared();
+    // A ball of the radius r has 0.4 m r^2.
+    let is_point = size <= 0.15 * inertia.mass * (inertia.mass / NUCLEAR).powf(2.0 / 3.0);
+    let is_body = 2.0 * moments.max() <= moments.sum() * WIDER;
+    if is_point || is_body && moments.min() > -NOTHING * size && moments.min() < NOTHING * size {
+        let reference = if is_point { about_origin } else { size };
+        let floor = SMALL * if reference > 0.0 { reference } else { inertia.mass * RADIUS * RADIUS };
+        for (k, moment) in moments.iter().enumerate().filter(|(_, moment)| is_point || **moment < NOTHING * size) {
+            let axis = principal.eigenvectors.column(k);
+            inertia.tensor += (floor - moment) * axis * axis.transpose();
+        }
+        let what =
+            if is_point { "no moments of inertia: here all are" } else { "a moment of inertia of 0: here it is" };
+        return Some(format!("Link `{name}` has {what} {} kg*m^2.", number(floor)));
+    }
+    if moments.min() > 0.0 && is_body {
+        return None;
+    }
+    let mean = moments.mean();
+    let moment = if mean > 1e-3 * size { mean } else { inertia.mass * RADIUS * RADIUS };
+    inertia.tensor = moment * Matrix3::identity();
+    Some(format!("Link `{name}` has moments of inertia that no body has: here all are {} kg*m^2.", number(moment)))
 }
 
 /// A start inside the limits.
 fn give_starts(robot: &mut Robot) {
     for joint in &mut robot.joints {
         if let Some((least, most)) = joint.limits.filter(|(least, most)| *least > 0.0 || *most < 0.0) {
-            joint.start = (least + most) / 2.0;
+            let middle =
+                if least.is_finite() && most.is_finite() { (least + most) / 2.0 } else { least.max(most.min(0.0)) };
+            let middle = if middle.is_finite() { middle } else { most };
+            joint.start = middle;
             let (name, start) = (&joint.name, number(joint.start));
-            robot.notes.push(format!("Joint `{name}` starts at {start}, the middle of its limits: 0 is outside."));
+            robot.remarks.push(format!("Joint `{name}` starts at {start}, inside of its limits: 0 is outside."));
         }
     }
 }
 
 /// Leaves out the links that no joint carries any more.
 fn forget_unused(robot: &mut Robot) {
-    let keep: Vec<usize> = (0..robot.links.len())
-        .filter(|&link| link == 0 || robot.joints.iter().any(|joint| joint.child == link))
-        .collect();
-    let place = |link: usize| keep.iter().position(|&other| other == link).unwrap_or_default();
+    let mut is_kept = vec![false; robot.links.len()];
+    is_kept[0] = true;
+    for joint in &robot.joints {
+        is_kept[joint.child] = true;
+    }
+    let mut places = vec![0; robot.links.len()];
+    for (left, (place, _)) in places.iter_mut().zip(&is_kept).filter(|(_, kept)| **kept).enumerate() {
+        *place = left;
+    }
     for joint in &mut robot.joints {
-        (joint.parent, joint.child) = (place(joint.parent), place(joint.child));
+        (joint.parent, joint.child) = (places[joint.parent], places[joint.child]);
     }
     for end in robot.loops.iter_mut().flat_map(|closed| &mut closed.ends) {
-        end.0 = place(end.0);
+        end.0 = places[end.0];
     }
-    robot.links = keep.iter().map(|&link| robot.links[link].clone()).collect();
+    let mut kept = is_kept.iter();
+    robot.links.retain(|_| kept.next() == Some(&true));
 }

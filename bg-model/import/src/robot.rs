@@ -1,6 +1,6 @@
 //! What a robot is, whatever described it: links with masses, joints with frames. SI units.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// Where a frame is in another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl Pose {
 /// How heavy a link is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia {
-    /// kg, above 0.
+    /// kg, not negative.
     pub mass: f64,
     /// The centre of mass in the link's frame, m.
     pub center: Vector3<f64>,
@@ -67,7 +67,8 @@ impl Inertia {
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
-        let center = (self.mass * self.center + other.mass * other.center) / mass;
+        let weighted = self.mass * self.center + other.mass * other.center;
+        let center = if mass > 0.0 { weighted / mass } else { self.center };
         let about = |part: &Self| {
             let arm = part.center - center;
             part.tensor + part.mass * (arm.norm_squared() * Matrix3::identity() - arm * arm.transpose())
@@ -81,10 +82,66 @@ impl Inertia {
 pub struct Link {
     /// As in the file.
     pub name: String,
-    /// None where it has no mass.
+    /// None where it has neither mass nor moments.
     pub inertia: Option<Inertia>,
     /// The links that were made one with it.
     pub merged: Vec<String>,
+    /// Masses whose weight does not act, kg, and where they are in the link's frame: gravity compensation.
+    pub lifts: Vec<(f64, Vector3<f64>)>,
+    /// What a fluid does to it.
+    pub drags: Vec<Drag>,
+}
+
+impl Link {
+    /// A link of this name and no mass.
+    #[must_use]
+    pub fn new(name: &str) -> Self {
+        Self { name: name.to_owned(), inertia: None, merged: Vec::new(), lifts: Vec::new(), drags: Vec::new() }
+    }
+}
+
+/// What a fluid does to a body, along three axes: a force -(f0 + f1 a |v|) v at a place, a torque -(t0 + t1 b |w|) w.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drag {
+    /// In the link's frame, m.
+    pub place: Vector3<f64>,
+    /// The three axes, in the link's frame.
+    pub axes: Matrix3<f64>,
+    /// f0 and f1: N s/m, kg/m^3.
+    pub force: [f64; 2],
+    /// a, m^2.
+    pub areas: Vector3<f64>,
+    /// t0 and t1: N m s, kg/m^3.
+    pub torque: [f64; 2],
+    /// b, m^5.
+    pub turns: Vector3<f64>,
+}
+
+/// An odd law of a displacement or speed: c0 x + c1 x |x| + c2 x^3. SI units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Law(pub [f64; 3]);
+
+impl Law {
+    /// Whether it gives anything.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.0 == [0.0; 3]
+    }
+
+    /// Whether it is a number times its variable.
+    #[must_use]
+    pub fn is_linear(&self) -> bool {
+        self.0[1..] == [0.0; 2]
+    }
+}
+
+/// A spring on a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// Effort from how far it is from its rest.
+    pub law: Law,
+    /// The angle or travel at which it is loose, rad or m.
+    pub rest: f64,
 }
 
 /// Which motion a joint leaves.
@@ -123,16 +180,19 @@ pub struct Joint {
     pub in_child: Pose,
     /// A unit vector in its frame: of a positive rotation or travel of the child.
     pub axis: Vector3<f64>,
-    /// N m s/rad or N s/m, not negative.
-    pub damping: f64,
+    /// Effort from the speed. Of a free joint it acts on the velocity of the link's origin, and on its angular
+    /// velocity; of a spherical one on the relative angular velocity.
+    pub damping: Law,
     /// Dry friction, N m or N, not negative.
     pub friction: f64,
     /// Inertia of what turns with the joint, such as a rotor, kg m^2 or kg, not negative.
     pub armature: f64,
-    /// A spring: N m/rad or N/m, and the angle or travel at which it is loose.
-    pub spring: Option<(f64, f64)>,
-    /// The least and the most angle or travel, rad or m.
+    /// A spring.
+    pub spring: Option<Spring>,
+    /// The least and the most angle or travel, rad or m; one of the two may be infinite.
     pub limits: Option<(f64, f64)>,
+    /// The most effort that what drives it gives, N m or N.
+    pub effort: Option<f64>,
     /// Angle or travel at the start, rad or m.
     pub start: f64,
 }
@@ -149,13 +209,21 @@ impl Joint {
             in_parent,
             in_child: Pose::identity(),
             axis: Vector3::z(),
-            damping: 0.0,
+            damping: Law::default(),
             friction: 0.0,
             armature: 0.0,
             spring: None,
             limits: None,
+            effort: None,
             start: 0.0,
         }
+    }
+
+    /// Whether nothing but the motion itself is known of it.
+    #[must_use]
+    pub fn is_bare(&self) -> bool {
+        let is_free = self.damping.is_zero() && self.friction == 0.0 && self.armature == 0.0;
+        is_free && self.spring.is_none() && self.limits.is_none() && self.effort.is_none()
     }
 
     /// Whether it has an angle or a travel of its own.
@@ -170,10 +238,64 @@ impl Joint {
 pub struct Loop {
     /// As in the file, or made of the links' names.
     pub name: String,
-    /// Rotations are held, too.
-    pub holds_rotation: bool,
+    /// Which motion it leaves; of a revolute or prismatic one about or along z of both frames.
+    pub kind: Kind,
     /// The links, and the frame in each.
     pub ends: [(usize, Pose); 2],
+}
+
+/// A joint whose angle or travel another one determines.
+#[derive(Clone, Debug)]
+pub struct Coupling {
+    /// The index of the joint that follows.
+    pub follower: usize,
+    /// The index of the joint that leads.
+    pub leader: usize,
+    /// The follower's angle or travel is c0 + c1 q + c2 q^2 + .. of the leader's; rad and m.
+    pub polynomial: [f64; 5],
+}
+
+impl Coupling {
+    /// The follower's angle or travel where the leader's is q.
+    #[must_use]
+    pub fn at(&self, q: f64) -> f64 {
+        self.polynomial.iter().rev().fold(0.0, |sum, coefficient| sum * q + coefficient)
+    }
+
+    /// The change of the follower with the leader's q, in the same form.
+    #[must_use]
+    pub fn slope(&self) -> [f64; 4] {
+        let [_, first, second, third, fourth] = self.polynomial;
+        [first, 2.0 * second, 3.0 * third, 4.0 * fourth]
+    }
+
+    /// Whether a fixed ratio joins the two.
+    #[must_use]
+    pub fn is_linear(&self) -> bool {
+        self.polynomial[2..] == [0.0; 3]
+    }
+}
+
+/// What drives a joint by a control: gear f, with f = gain u + b0 + b1 l + b2 l' within a range, where l = gear (q +
+/// shift).
+#[derive(Clone, Debug)]
+pub struct Actuator {
+    /// As in the file, or made of the joint's name.
+    pub name: String,
+    /// The index of the joint.
+    pub joint: usize,
+    /// Length for each rad or m.
+    pub gear: f64,
+    /// Force for each unit of the control.
+    pub gain: f64,
+    /// Force without a control: constant, for each unit of length, for each unit of its speed.
+    pub bias: [f64; 3],
+    /// The least and the most control.
+    pub control: Option<(f64, f64)>,
+    /// The least and the most force.
+    pub force: Option<(f64, f64)>,
+    /// What the file's value of the joint is at its start, rad or m.
+    pub shift: f64,
 }
 
 /// A tree of links. The first link is the ground.
@@ -185,12 +307,81 @@ pub struct Robot {
     pub format: &'static str,
     /// m/s^2.
     pub gravity: Vector3<f64>,
+    /// How fast the fluid moves, m/s.
+    pub wind: Vector3<f64>,
     /// The ground and all that moves.
     pub links: Vec<Link>,
     /// A joint for each link but the ground; parents first.
     pub joints: Vec<Joint>,
     /// What closes loops.
     pub loops: Vec<Loop>,
+    /// Joints that follow others.
+    pub couplings: Vec<Coupling>,
+    /// What drives joints; without any each joint has an input of its own.
+    pub actuators: Vec<Actuator>,
     /// What is other than in the file, a sentence each.
     pub notes: Vec<String>,
+    /// In which way the file's robot is described, where that is not plain; nothing is lost by it.
+    pub remarks: Vec<String>,
+}
+
+impl Robot {
+    /// A robot of the ground alone.
+    #[must_use]
+    pub fn new(name: &str, format: &'static str) -> Self {
+        Self {
+            name: name.to_owned(),
+            format,
+            gravity: Vector3::new(0.0, 0.0, -9.81),
+            wind: Vector3::zeros(),
+            links: vec![Link::new("ground")],
+            joints: Vec::new(),
+            loops: Vec::new(),
+            couplings: Vec::new(),
+            actuators: Vec::new(),
+            notes: Vec::new(),
+            remarks: Vec::new(),
+        }
+    }
+
+    /// The joints that each link carries.
+    #[must_use]
+    pub fn carried(&self) -> Vec<Vec<usize>> {
+        let mut carried = vec![Vec::new(); self.links.len()];
+        for (index, joint) in self.joints.iter().enumerate() {
+            carried[joint.parent].push(index);
+        }
+        carried
+    }
+
+    /// Keeps some of the joints, the couplings between them and what drives them.
+    pub fn keep_joints(&mut self, keeps: &[bool]) {
+        let mut left = 0;
+        let places: Vec<Option<usize>> = keeps
+            .iter()
+            .map(|&keeps| {
+                left += usize::from(keeps);
+                keeps.then(|| left - 1)
+            })
+            .collect();
+        let mut keep = keeps.iter();
+        self.joints.retain(|_| keep.next() == Some(&true));
+        let moved = |coupling: &Coupling| {
+            let (follower, leader) = (places[coupling.follower]?, places[coupling.leader]?);
+            Some(Coupling { follower, leader, polynomial: coupling.polynomial })
+        };
+        self.couplings = self.couplings.iter().filter_map(moved).collect();
+        self.actuators.retain_mut(|actuator| {
+            let place = places[actuator.joint];
+            actuator.joint = place.unwrap_or_default();
+            place.is_some()
+        });
+    }
+}
+
+/// The shortest rotation that takes z to a direction.
+#[must_use]
+pub fn with_z(direction: &Vector3<f64>) -> Matrix3<f64> {
+    let half_turn = || Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+    Rotation3::rotation_between(&Vector3::z(), direction).unwrap_or_else(half_turn).into_inner()
 }

@@ -1,113 +1,219 @@
 //! URDF to a robot.
 //!
-//! A joint's `origin` is the child's frame in the parent, turned by roll, pitch, yaw about the fixed axes x, y, z; its axis is
-//! given in the child's frame; an `inertial` has a frame of its own. Source: wiki.ros.org/urdf/XML.
+//! A joint's `origin` is the child's frame in the parent, turned by roll, pitch, yaw about the fixed axes x, y, z; its
+//! axis is given in the child's frame; an `inertial` has a frame of its own. Source: wiki.ros.org/urdf/XML.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use roxmltree::{Document, Node};
 
-use crate::ImportError;
-use crate::robot::{Inertia, Joint, Kind, Link, Pose, Robot};
-use crate::xml::{child, children, line, needed, needed_child, number, vector};
+use crate::robot::{Coupling, Inertia, Joint, Kind, Law, Link, Loop, Pose, Robot, with_z};
+use crate::unread::{Rule, harmless, told, unless};
+use crate::xml::{Node, unread};
+use crate::{ImportError, Options};
+
+/// What of a URDF may be left unused.
+const RULES: [Rule; 14] = [
+    harmless("visual", "", "seen only"),
+    harmless("material", "", "seen only"),
+    harmless("sensor", "", "it measures"),
+    harmless("safety_controller", "", "bounds of a controller"),
+    harmless("calibration", "", "where a sensor counts from"),
+    harmless("robot", "name", "a name"),
+    harmless("robot", "version", "of the format"),
+    harmless("inertial", "name", "a name"),
+    unless("limit", "effort", 0.0, "what drives a joint may give any effort; with --actuators it is limited"),
+    unless("limit", "velocity", 0.0, "speeds are not limited"),
+    told("mujoco", "", "what it changes for MuJoCo is not done"),
+    told("constraint", "", "the loop that it closes is open"),
+    told("limit", "*", "the joint is not limited by it"),
+    told("mimic", "", "the joint moves on its own"),
+];
 
 /// Reads a robot. Its root link is the ground, or moves freely above it.
 ///
 /// # Errors
 /// What is no URDF, or has values that cannot be.
-pub fn read(text: &str, free_base: bool) -> Result<Robot, ImportError> {
-    let document = Document::parse(text)?;
-    let root = document.root_element();
-    if !root.has_tag_name("robot") {
+pub fn read(text: &str, options: Options) -> Result<Robot, ImportError> {
+    let root = &Node::parse(text, None)?;
+    if root.name != "robot" {
         let action = "give a URDF, or use `mjcf` for MuJoCo's XML";
-        return Err(ImportError::WrongRoot { found: root.tag_name().name().to_owned(), wanted: "robot", action });
+        return Err(ImportError::WrongRoot { found: root.name.clone(), wanted: "robot", action });
     }
-    let macros = |node: &Node| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
-    if let Some(node) = root.descendants().find(macros) {
-        let (element, action) =
-            (format!("xacro:{}", node.tag_name().name()), "run `xacro FILE` first and give its result");
-        return Err(ImportError::NotExpanded { line: line(node), element, action });
+    if let Some(node) = root.descendants().into_iter().find(|node| node.name.starts_with("xacro:")) {
+        let action = "run `xacro FILE` first and give its result".to_owned();
+        return Err(ImportError::NotExpanded { place: node.place.clone(), element: node.name.clone(), action });
     }
-    let mut reader = Reader::default();
+    let mut reader = Reader { options, ..Reader::default() };
     reader.links(root)?;
     reader.joints(root)?;
+    reader.mimics()?;
+    reader.loops(root)?;
     reader.left_out(root);
-    reader.robot(root, free_base)
+    reader.notes.extend(crate::unread::notes(&unread(root), &RULES));
+    reader.robot(root)
 }
 
 #[derive(Default)]
-struct Reader {
+struct Reader<'n> {
+    options: Options,
     links: Vec<Link>,
     index: BTreeMap<String, usize>,
     joints: Vec<Joint>,
+    /// The element of each joint that mimics another one.
+    mimics: Vec<(usize, &'n Node)>,
+    couplings: Vec<Coupling>,
+    loops: Vec<Loop>,
     notes: Vec<String>,
+    remarks: Vec<String>,
 }
 
-impl Reader {
-    fn links(&mut self, root: Node) -> Result<(), ImportError> {
-        for node in children(root, "link") {
-            let name = needed(node, "name")?;
-            let inertia = child(node, "inertial").map(inertial).transpose()?.flatten();
-            self.links.push(Link { name: name.to_owned(), inertia, merged: Vec::new() });
+impl<'n> Reader<'n> {
+    fn links(&mut self, root: &'n Node) -> Result<(), ImportError> {
+        for node in root.children("link") {
+            let name = node.needed("name")?;
+            let inertia = node.child("inertial").map(inertial).transpose()?.flatten();
+            self.links.push(Link { inertia, ..Link::new(name) });
             if self.index.insert(name.to_owned(), self.links.len() - 1).is_some() {
-                return Err(ImportError::Twice { line: line(node), what: "link", name: name.to_owned() });
+                return Err(ImportError::Twice { place: node.place.clone(), what: "link", name: name.to_owned() });
             }
         }
-        if self.links.is_empty() { Err(crate::xml::missing(root, "link")) } else { Ok(()) }
+        if self.links.is_empty() { Err(root.missing("link")) } else { Ok(()) }
     }
 
-    fn joints(&mut self, root: Node) -> Result<(), ImportError> {
+    fn joints(&mut self, root: &'n Node) -> Result<(), ImportError> {
         let mut names = BTreeSet::new();
-        for node in children(root, "joint") {
-            let name = needed(node, "name")?;
+        for node in root.children("joint") {
+            let name = node.needed("name")?;
             if !names.insert(name) {
-                return Err(ImportError::Twice { line: line(node), what: "joint", name: name.to_owned() });
+                return Err(ImportError::Twice { place: node.place.clone(), what: "joint", name: name.to_owned() });
             }
             self.joint(node, name)?;
         }
         Ok(())
     }
 
-    fn joint(&mut self, node: Node, name: &str) -> Result<(), ImportError> {
+    fn joint(&mut self, node: &'n Node, name: &str) -> Result<(), ImportError> {
         let ends = (self.end(node, "parent")?, self.end(node, "child")?);
         let origin = origin(node)?;
-        let axis = child(node, "axis").map(|axis| vector(axis, "xyz")).transpose()?.flatten().unwrap_or(Vector3::x());
-        let unit = |axis: Vector3<f64>| {
-            let text = || format!("{} {} {}", axis.x, axis.y, axis.z);
-            axis.try_normalize(1e-12).ok_or_else(|| crate::xml::bad(node, "axis", &text(), "a direction, not zero"))
+        let word = node.needed("type")?;
+        // What is about an axis is about nothing here.
+        let about_axis: &[&str] = match word {
+            "fixed" => &["axis", "limit", "safety_controller", "dynamics", "mimic"],
+            "floating" => &["axis", "limit", "safety_controller"],
+            _ => &[],
         };
-        let kind = match needed(node, "type")? {
+        node.children.iter().filter(|child| about_axis.contains(&child.name.as_str())).for_each(Node::mark_deep);
+        let kind = match word {
             "revolute" | "continuous" => Kind::Revolute,
             "prismatic" => Kind::Prismatic,
             "fixed" => Kind::Fixed,
             "floating" => Kind::Free,
-            "planar" => return self.planar(name, ends, origin, &unit(axis)?),
+            "planar" => return self.planar(name, ends, origin, &axis(node)?),
             other => {
                 let wanted = "revolute, continuous, prismatic, fixed, floating or planar";
-                return Err(crate::xml::bad(node, "type", other, wanted));
+                return Err(node.bad("type", other, wanted));
             }
         };
         let mut joint = Joint::new(name, kind, ends, origin);
         if joint.is_scalar() {
-            joint.axis = unit(axis)?;
-            if let Some(dynamics) = child(node, "dynamics") {
-                joint.damping = not_negative(dynamics, "damping")?;
-                joint.friction = not_negative(dynamics, "friction")?;
+            joint.axis = axis(node)?;
+            if let Some(dynamics) = node.child("dynamics") {
+                joint.damping = Law([dynamics.not_negative("damping")?, 0.0, 0.0]);
+                joint.friction = dynamics.not_negative("friction")?;
             }
-            if let Some(limit) = child(node, "limit").filter(|_| node.attribute("type") != Some("continuous")) {
-                let ends = (number(limit, "lower")?.unwrap_or(0.0), number(limit, "upper")?.unwrap_or(0.0));
-                joint.limits = (ends.0 < ends.1).then_some(ends);
-                if joint.limits.is_none() {
-                    self.notes.push(format!("The limits of joint `{name}` leave it no room: it has none here."));
-                }
+            if let Some(limit) = node.child("limit") {
+                self.limits(limit, word, &mut joint)?;
             }
-        }
-        if let Some(mimic) = child(node, "mimic") {
-            let other = mimic.attribute("joint").unwrap_or("another joint");
-            self.notes.push(format!("Joint `{name}` does not mimic `{other}`: it moves on its own."));
+            self.rotor(node, &mut joint)?;
+            self.mimics.extend(node.child("mimic").map(|mimic| (self.joints.len(), mimic)));
         }
         self.joints.push(joint);
+        Ok(())
+    }
+
+    fn limits(&mut self, limit: &Node, kind: &str, joint: &mut Joint) -> Result<(), ImportError> {
+        if self.options.actuators {
+            joint.effort = limit.number("effort")?.filter(|effort| *effort > 0.0);
+        }
+        if kind == "continuous" {
+            limit.mark("lower");
+            limit.mark("upper");
+            return Ok(());
+        }
+        let (least, most) = (end_of_range(limit, "lower")?, end_of_range(limit, "upper")?);
+        let is_limited = least.is_finite() || most.is_finite();
+        joint.limits = (least < most && is_limited).then_some((least, most));
+        if least >= most {
+            self.notes.push(format!("The limits of joint `{}` leave it no room: it has none here.", joint.name));
+        }
+        Ok(())
+    }
+
+    /// What Drake reads of a joint's motor.
+    fn rotor(&mut self, node: &Node, joint: &mut Joint) -> Result<(), ImportError> {
+        let value = |name: &'static str| node.child(name).map(|child| child.number("value")).transpose();
+        let Some(rotor) = value("drake:rotor_inertia")?.flatten() else { return Ok(()) };
+        let ratio = value("drake:gear_ratio")?.flatten().unwrap_or(1.0);
+        joint.armature = rotor * ratio * ratio;
+        self.notes.push(format!(
+            "Joint `{}` has the inertia {} of its motor, drake:rotor_inertia times the square of drake:gear_ratio: other \
+             programs than Drake leave it out.",
+            joint.name,
+            crate::number::number(joint.armature)
+        ));
+        Ok(())
+    }
+
+    /// Joints that follow others: multiplier times their angle, and an offset.
+    fn mimics(&mut self) -> Result<(), ImportError> {
+        let index: BTreeMap<&str, usize> =
+            self.joints.iter().enumerate().map(|(index, joint)| (joint.name.as_str(), index)).collect();
+        for &(follower, mimic) in &self.mimics {
+            let other = mimic.needed("joint")?;
+            let ratio = mimic.number("multiplier")?.unwrap_or(1.0);
+            let offset = mimic.number("offset")?.unwrap_or(0.0);
+            let Some(&leader) = index.get(other).filter(|&&leader| self.joints[leader].is_scalar()) else {
+                let (place, name) = (&mimic.place, &self.joints[follower].name);
+                let why = if index.contains_key(other) { "which has no angle or travel" } else { "which is not there" };
+                self.notes
+                    .push(format!("{place}: joint `{name}` does not mimic `{other}`, {why}: it moves on its own."));
+                continue;
+            };
+            self.couplings.push(Coupling { follower, leader, polynomial: [offset, ratio, 0.0, 0.0, 0.0] });
+        }
+        let Some((index, what)) = crate::couple::impossible(&self.couplings, &self.joints) else { return Ok(()) };
+        let follower = self.couplings[index].follower;
+        let node = self.mimics.iter().find(|(joint, _)| *joint == follower).map(|(_, node)| &node.place);
+        Err(ImportError::Wrong { place: node.cloned().unwrap_or(crate::xml::Place { file: None, line: 1 }), what })
+    }
+
+    /// `loop_joint`: two links, a frame in each.
+    fn loops(&mut self, root: &'n Node) -> Result<(), ImportError> {
+        for node in root.children("loop_joint") {
+            let name = node.needed("name")?;
+            let kind = match node.needed("type")? {
+                "fixed" => Kind::Fixed,
+                "revolute" | "continuous" => Kind::Revolute,
+                "prismatic" => Kind::Prismatic,
+                "spherical" | "ball" => Kind::Spherical,
+                other => {
+                    return Err(node.bad("type", other, "fixed, revolute, continuous, prismatic, spherical or ball"));
+                }
+            };
+            let end = |which: &'static str| {
+                let end = node.needed_child(which)?;
+                Ok::<_, ImportError>((self.link(end)?, frame(end)?))
+            };
+            let (first, second) = (end("link1")?, end("link2")?);
+            let axes = if matches!(kind, Kind::Revolute | Kind::Prismatic) {
+                with_z(&axis(node)?)
+            } else {
+                Matrix3::identity()
+            };
+            let ends = [first, second].map(|(link, pose)| (link, pose.with_axes(&axes)));
+            self.loops.push(Loop { name: name.to_owned(), kind, ends });
+        }
         Ok(())
     }
 
@@ -136,27 +242,35 @@ impl Reader {
     }
 
     fn between(&mut self, joint: &str) -> usize {
-        self.links.push(Link { name: format!("{joint}_carrier"), inertia: None, merged: Vec::new() });
+        self.links.push(Link::new(&format!("{joint}_carrier")));
         self.links.len() - 1
     }
 
-    fn end(&self, node: Node, which: &'static str) -> Result<usize, ImportError> {
-        let end = needed_child(node, which)?;
-        let name = needed(end, "link")?;
-        let unknown = || ImportError::Unknown { line: line(end), what: "link", name: name.to_owned() };
+    fn end(&self, node: &Node, which: &'static str) -> Result<usize, ImportError> {
+        self.link(node.needed_child(which)?)
+    }
+
+    /// The link that an element names.
+    fn link(&self, node: &Node) -> Result<usize, ImportError> {
+        let name = node.needed("link")?;
+        let unknown = || ImportError::Unknown { place: node.place.clone(), what: "link", name: name.to_owned() };
         self.index.get(name).copied().ok_or_else(unknown)
     }
 
-    fn left_out(&mut self, root: Node) {
+    fn left_out(&mut self, root: &Node) {
         for (element, what) in [("transmission", "transmissions"), ("gazebo", "settings for Gazebo")] {
-            if children(root, element).next().is_some() {
+            if root.children(element).inspect(|node| node.mark_deep()).count() > 0 {
                 self.notes.push(format!("The {what} are left out."));
             }
+        }
+        let shapes = root.children("link").flat_map(|link| link.children("collision")).inspect(|node| node.mark_deep());
+        if shapes.count() > 0 && self.options.contacts {
+            self.notes.push(NO_CONTACT.to_owned());
         }
     }
 
     /// The links in the order of the tree, the ground first.
-    fn robot(mut self, root: Node, free_base: bool) -> Result<Robot, ImportError> {
+    fn robot(mut self, root: &Node) -> Result<Robot, ImportError> {
         let mut carried_by = BTreeMap::new();
         for joint in &self.joints {
             if carried_by.insert(joint.child, joint).is_some() {
@@ -174,56 +288,73 @@ impl Reader {
             };
             return Err(ImportError::NoTree(found));
         };
-        let ground = Link { name: "ground".to_owned(), inertia: None, merged: Vec::new() };
-        self.links.push(ground);
+        self.links.push(Link::new("ground"));
         let ground = self.links.len() - 1;
-        let (kind, name) = if free_base { (Kind::Free, "base") } else { (Kind::Fixed, "base") };
+        let (kind, name) = if self.options.free_base { (Kind::Free, "base") } else { (Kind::Fixed, "base") };
         self.joints.push(Joint::new(name, kind, (ground, base), Pose::identity()));
-        if !free_base && let Some(inertia) = &self.links[base].inertia {
+        if !self.options.free_base
+            && let Some(inertia) = &self.links[base].inertia
+        {
             let (name, mass) = (&self.links[base].name, crate::number::number(inertia.mass));
-            self.notes.push(format!("Link `{name}` ({mass} kg) is part of the ground; with --free-base it moves."));
+            self.remarks.push(format!("Link `{name}` ({mass} kg) is part of the ground; with --free-base it moves."));
         }
+        let name = root.attribute("name").unwrap_or("robot");
         let mut robot = Robot {
-            name: root.attribute("name").unwrap_or("robot").to_owned(),
-            format: "URDF",
-            gravity: Vector3::new(0.0, 0.0, -9.81),
             links: self.links,
             joints: self.joints,
-            loops: Vec::new(),
+            loops: self.loops,
+            couplings: self.couplings,
             notes: self.notes,
+            remarks: self.remarks,
+            ..Robot::new(name, "URDF")
         };
         crate::merge::in_order_of_the_tree(&mut robot, ground).map_err(ImportError::NoTree)?;
         Ok(robot)
     }
 }
 
-/// An `origin`: `xyz` in m, `rpy` in rad about the fixed axes.
-fn origin(node: Node) -> Result<Pose, ImportError> {
-    let Some(origin) = child(node, "origin") else { return Ok(Pose::identity()) };
-    let place = vector(origin, "xyz")?.unwrap_or_default();
-    let turned = vector(origin, "rpy")?.unwrap_or_default();
+/// Said once of all shapes.
+const NO_CONTACT: &str = "Shapes touch nothing: there is no contact (--no-contacts says that you know it).";
+
+/// A joint's axis, in its frame.
+fn axis(node: &Node) -> Result<Vector3<f64>, ImportError> {
+    let axis = node.child("axis").map(|axis| axis.vector("xyz")).transpose()?.flatten().unwrap_or(Vector3::x());
+    let text = || format!("{} {} {}", axis.x, axis.y, axis.z);
+    let size = axis.amax();
+    if size > 1e-12 { Ok((axis / size).normalize()) } else { Err(node.bad("axis", &text(), "a direction, not zero")) }
+}
+
+/// An `origin`; none is the same frame.
+fn origin(node: &Node) -> Result<Pose, ImportError> {
+    node.child("origin").map_or_else(|| Ok(Pose::identity()), frame)
+}
+
+/// A frame: `xyz` in m, `rpy` in rad about the fixed axes.
+fn frame(node: &Node) -> Result<Pose, ImportError> {
+    let place = node.vector("xyz")?.unwrap_or_default();
+    let turned = node.vector("rpy")?.unwrap_or_default();
     // nalgebra's order is roll, pitch, yaw: Rz Ry Rx.
     Ok(Pose { place, turned: Rotation3::from_euler_angles(turned.x, turned.y, turned.z).into_inner() })
 }
 
-/// Mass and moments in the link's frame; none where there is no mass.
-fn inertial(node: Node) -> Result<Option<Inertia>, ImportError> {
-    let mass = not_negative(needed_child(node, "mass")?, "value")?;
-    if mass == 0.0 {
-        return Ok(None);
-    }
-    let inertia = needed_child(node, "inertia")?;
+/// An end of a joint's range, which may be infinite; 0 when left out.
+fn end_of_range(node: &Node, name: &str) -> Result<f64, ImportError> {
+    let Some(text) = node.attribute(name) else { return Ok(0.0) };
+    let value = text.trim().parse().ok().filter(|value: &f64| !value.is_nan());
+    value.ok_or_else(|| node.bad(name, text, "a number"))
+}
+
+/// Mass and moments in the link's frame; none where there are neither.
+fn inertial(node: &Node) -> Result<Option<Inertia>, ImportError> {
+    let mass = node.needed_child("mass")?.not_negative("value")?;
+    let frame = origin(node)?;
+    let inertia = if mass > 0.0 { Some(node.needed_child("inertia")?) } else { node.child("inertia") };
     let mut values = [0.0; 6];
     for (value, name) in values.iter_mut().zip(["ixx", "iyy", "izz", "ixy", "ixz", "iyz"]) {
-        *value = number(inertia, name)?.unwrap_or(0.0);
+        *value = inertia.map(|inertia| inertia.number(name)).transpose()?.flatten().unwrap_or(0.0);
     }
     let [xx, yy, zz, xy, xz, yz] = values;
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    Ok(Some(Inertia { mass, center: Vector3::zeros(), tensor }.seen_from(&origin(node)?)))
-}
-
-/// A number that is not negative; 0 when left out.
-fn not_negative(node: Node, name: &str) -> Result<f64, ImportError> {
-    let value = number(node, name)?.unwrap_or(0.0);
-    if value < 0.0 { Err(crate::xml::bad(node, name, &value.to_string(), "0 or more")) } else { Ok(value) }
+    let is_something = mass > 0.0 || tensor != Matrix3::zeros();
+    Ok(is_something.then(|| Inertia { mass, center: Vector3::zeros(), tensor }.seen_from(&frame)))
 }

@@ -1,7 +1,8 @@
 //! Published robots as programs: imported, compiled and run as `docs/import.md` says, they swing as in MuJoCo.
 //!
-//! The variable `ROBOTS_PYTHON` names a Python with mujoco, gymnasium and example-robot-data, whose files these are; without it
-//! nothing is done, since each robot takes minutes to compile. The program is made of this repository's crates and versions.
+//! The variable `ROBOTS_PYTHON` names a Python with mujoco, gymnasium and example-robot-data, whose files these are;
+//! without it nothing is done, since each robot takes minutes to compile. The program is made of this repository's
+//! crates and versions.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

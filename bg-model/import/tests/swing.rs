@@ -10,11 +10,15 @@ mod crane;
 #[path = "cases/double_pendulum.rs"]
 mod double_pendulum;
 
+#[path = "cases/features.rs"]
+mod features;
+
 use crane::{Crane, CraneParameters};
 use double_pendulum::{DoublePendulum, DoublePendulumParameters};
+use features::{Features, FeaturesParameters};
 
 /// Runs, and compares the outputs at each eighth of a second.
-fn swings<Me: Mechanism>(model: &Me, outputs: [&str; 2], references: [[f64; 2]; 4]) {
+fn swings<const N: usize, Me: Mechanism>(model: &Me, outputs: [&str; N], references: [[f64; N]; 4]) {
     let run = Simulation::new(model).rtol(1e-11).atol(1e-12).every(0.125).until(0.5).run().expect("it runs");
     for (k, reference) in references.iter().enumerate() {
         for (output, reference) in outputs.iter().zip(reference) {
@@ -54,4 +58,52 @@ fn a_crane_with_a_spring_a_rotor_and_a_ball_joint_from_an_mjcf() {
             [0.246_535_118_208_107_36, 0.859_762_703_919_094_2],
         ],
     );
+}
+
+#[test]
+fn gravity_compensation_springs_dampers_and_a_joint_that_follows_from_an_mjcf() {
+    let start = FeaturesParameters { pin_start: 0.6, tuned_start: 0.4, leader_start: 0.0 };
+    let model = Features::new(start).expect("the parameters are in range");
+    // Two slides of 2 and 1 kg, of which the second moves by -0.5 of the first: 2.25 a = -1.5 g.
+    let slides = |time: f64| {
+        let leader = -9.81 * 1.5 / 2.25 * time * time / 2.0;
+        [leader, 0.1 - 0.5 * leader]
+    };
+    let references = [
+        [
+            0.484_719_771_696_695_5,
+            0.459_868_377_827_388,
+            -0.001_324_768_414_763,
+            -0.000_671_446_641_815,
+            0.958_495_551_303_2,
+        ],
+        [
+            0.354_591_284_673_291_5,
+            0.572_269_230_872_314,
+            -0.004_277_806_572_459,
+            -0.002_159_583_548_255,
+            0.843_399_849_516_2,
+        ],
+        [
+            0.324_742_355_741_162_4,
+            0.670_598_868_200_022,
+            -0.006_706_894_650_913,
+            -0.003_387_621_435_591,
+            0.666_277_923_642_1,
+        ],
+        [
+            0.374_753_605_380_139_3,
+            0.728_512_510_885_175,
+            -0.006_280_253_306_847,
+            -0.003_190_714_988_306,
+            0.436_471_736_524_8,
+        ],
+    ];
+    let mut times = [0.125, 0.25, 0.375, 0.5].into_iter();
+    let both = references.map(|[pin, tuned, x, y, z]| {
+        let [leader, follower] = slides(times.next().unwrap_or_default());
+        [pin, tuned, x, y, z, leader, follower]
+    });
+    let outputs = ["pin", "tuned", "float_position_x", "float_position_y", "float_position_z", "leader", "follower"];
+    swings(&model, outputs, both);
 }

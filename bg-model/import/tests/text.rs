@@ -1,7 +1,7 @@
 //! The text that files become, and what is said of those that become none.
 //!
-//! Each file of `cases` with its text beside it, which `swing.rs` compiles. `RENEW=1 cargo test -p bg-import --test text` writes the
-//! texts anew: read the difference.
+//! Each file of `cases` with its text beside it, which `swing.rs` compiles. `RENEW=1 cargo test -p bg-import --test
+//! text` writes the texts anew: read the difference.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,16 @@ fn folder() -> PathBuf {
 }
 
 /// The options of the texts that `swing.rs` runs: nothing from outside.
-const PLAIN: Options = Options { free_base: false, keep_fixed: false, compliant: false, drives: false, limits: true };
+const PLAIN: Options = Options {
+    free_base: false,
+    keep_fixed: false,
+    compliant: false,
+    drives: false,
+    limits: true,
+    contacts: true,
+    actuators: false,
+    strict: false,
+};
 
 fn is_the_text(file: &str, text: &str, options: Options) {
     let format = if file.ends_with(".urdf") { Format::Urdf } else { Format::Mjcf };
@@ -30,7 +39,7 @@ fn is_the_text(file: &str, text: &str, options: Options) {
 
 /// The tokens inside of `bond_graph! { .. }`.
 fn tokens(text: &str) -> proc_macro2::TokenStream {
-    let start = text.find("bond_graph! {").expect("there is a graph") + "bond_graph! {".len();
+    let start = text.find("\nbond_graph! {").expect("there is a graph") + "\nbond_graph! {".len();
     let end = text.rfind('}').expect("it ends");
     text[start..end].parse().expect("tokens")
 }
@@ -43,6 +52,13 @@ fn compiles(text: &str) {
     }
 }
 
+#[path = "text/kinds.rs"]
+mod kinds;
+#[path = "text/program.rs"]
+mod program;
+#[path = "text/safety.rs"]
+mod safety;
+
 #[test]
 fn a_urdf_with_skew_axes_and_merged_links() {
     is_the_text("double_pendulum.urdf", "double_pendulum.rs", PLAIN);
@@ -54,6 +70,11 @@ fn an_mjcf_of_shapes_classes_and_turned_frames() {
 }
 
 #[test]
+fn an_mjcf_of_springs_dampers_and_a_joint_that_follows() {
+    is_the_text("features.xml", "features.rs", PLAIN);
+}
+
+#[test]
 fn loops_hinges_in_a_row_and_links_without_mass() {
     is_the_text("linkage.xml", "linkage.rs", Options::default());
     compiles(&std::fs::read_to_string(folder().join("linkage.rs")).expect("the text is there"));
@@ -62,7 +83,7 @@ fn loops_hinges_in_a_row_and_links_without_mass() {
 #[test]
 fn every_option_gives_a_text_that_compiles() {
     let urdf = std::fs::read_to_string(folder().join("double_pendulum.urdf")).expect("the case is there");
-    let options = Options { free_base: true, keep_fixed: true, compliant: true, drives: true, limits: false };
+    let options = Options { free_base: true, keep_fixed: true, compliant: true, limits: false, ..Options::default() };
     let text = import(Format::Urdf, "double_pendulum.urdf", &urdf, options).expect("a robot").text;
     compiles(&text);
     let has = |words: &str| assert!(text.contains(words), "no `{words}` in\n{text}");
@@ -77,7 +98,7 @@ fn every_option_gives_a_text_that_compiles() {
 /// What is said of a URDF.
 fn told(text: &str) -> String {
     match import(Format::Urdf, "robot.urdf", text, Options::default()) {
-        Ok(imported) => imported.notes.join(" "),
+        Ok(imported) => [imported.notes, imported.remarks].concat().join(" "),
         Err(fault) => fault.to_string(),
     }
 }
@@ -138,15 +159,20 @@ fn what_is_wrong_with_a_urdf_is_told_with_its_line() {
             "`a` and `c` are roots: the joints of a URDF are a tree with one root",
         ),
         (
-            arm(MASS, "revolute", "<mimic joint='k'/><limit lower='1' upper='2'/>"),
-            "Joint `j` does not mimic `k`: it moves on its own. \
-             Joint `j` starts at 1.5, the middle of its limits: 0 is outside.",
+            arm(MASS, "revolute", "<limit lower='1' upper='2'/>"),
+            "Joint `j` starts at 1.5, inside of its limits: 0 is outside.",
         ),
         (
             arm(&MASS.replace("izz='1'", "izz='4'"), "continuous", ""),
             "Link `b` has moments of inertia that no body has: here all are 2 kg*m^2.",
         ),
-        (arm("", "continuous", ""), "Link `b` has no mass and carries nothing: it is left out with joint `j`."),
+        (
+            arm(MASS, "continuous", "").replace(
+                "</robot>",
+                "<link name='c'/><joint name='k' type='continuous'><parent link='b'/><child link='c'/></joint></robot>",
+            ),
+            "Link `c` has no mass and carries nothing: it is left out with joint `k`.",
+        ),
     ];
     for (text, message) in cases {
         assert_eq!(told(&text), message, "{text}");
@@ -163,7 +189,7 @@ fn what_is_wrong_with_an_mjcf_is_told_with_its_line() {
         ),
         (
             body("<include file='x'/>"),
-            "line 2: <include> is not read here: save the model with MuJoCo (mj_saveLastXML), which writes it out",
+            "line 2: <include> is not read here: import the file from its folder, where the included one is",
         ),
         ("<mujoco/>".to_owned(), "line 1: <mujoco> has no `worldbody`: add it"),
         (
@@ -171,7 +197,7 @@ fn what_is_wrong_with_an_mjcf_is_told_with_its_line() {
             "line 2: `type` of <joint> is \"screw\": it must be free, ball, slide or hinge",
         ),
         (body("<joint axis='0 0 0'/>"), "line 2: `axis` of <joint> is \"0 0 0\": it must be a direction, not zero"),
-        (body("<inertial mass='1'/>"), "line 2: <inertial> has no `diaginertia`: add it"),
+        (body("<joint/><inertial mass='1'/>"), "line 2: <inertial> has no `diaginertia`: add it"),
         (body("<geom quat='0 0 0 0'/>"), "line 2: `quat` of <geom> is \"0 0 0 0\": it must be not zero"),
         (body("<body name='b'/>"), "line 2: a second body `b`: rename one of the two"),
         (

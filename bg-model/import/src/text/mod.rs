@@ -1,19 +1,21 @@
 //! A robot to a Rust file with one `bond_graph!`, as a person would write it.
 //!
-//! In: a robot whose links all have masses. Out: a head comment, parameters, inputs, bodies with their start poses and joints in
-//! the order of the tree, outputs. A joint about an axis of its frame has that axis; one against it goes from the child to
-//! the parent; for any other one the points at both ends are turned, so that x or z is the axis.
+//! In: a robot whose links all have masses. Out: a head comment, parameters, inputs, bodies with their start poses and
+//! joints in the order of the tree, outputs. A joint about an axis of its frame has that axis; one against it goes from
+//! the child to the parent; for any other one the points at both ends are turned, so that x or z is the axis.
 
+mod acts;
 mod frames;
+mod law;
 
 use std::fmt::Write;
 
 use nalgebra::Vector3;
 
 use crate::Options;
-use crate::names::{Names, type_name};
+use crate::names::{Names, shown, type_name};
 use crate::number::{inverse_rotation, is_identity, matrix, number, rotation, vector};
-use crate::robot::{Inertia, Joint, Kind, Link, Loop, Pose, Robot};
+use crate::robot::{Actuator, Coupling, Inertia, Joint, Kind, Link, Loop, Pose, Robot};
 use frames::{Frames, frames};
 
 /// Columns of a comment.
@@ -31,15 +33,49 @@ const COMPLIANCE: [(&str, &str, &str); 4] = [
 #[must_use]
 pub fn write(robot: &Robot, file: &str, options: Options) -> String {
     let mut names = Names::default();
-    let bodies: Vec<String> = robot
-        .links
-        .iter()
-        .enumerate()
-        .map(|(k, link)| if k == 0 { "ground".to_owned() } else { names.take(&link.name, "body") })
-        .collect();
+    let body = |(k, link): (usize, &Link)| {
+        if k == 0 { "ground".to_owned() } else { names.take(&link.name, "body", &["place", "turned", "drag", "brake"]) }
+    };
+    let bodies: Vec<String> = robot.links.iter().enumerate().map(body).collect();
     let joints: Vec<JointNames> = robot.joints.iter().map(|joint| JointNames::new(joint, &mut names)).collect();
-    let loops: Vec<String> = robot.loops.iter().map(|closed| names.take(&closed.name, "loop")).collect();
-    let writer = Writer { robot, options, bodies, joints, loops };
+    let control = |actuator: &Actuator| names.take(&actuator.name, "control", &["control", "effort", "drive"]);
+    let controls: Vec<String> = robot.actuators.iter().map(control).collect();
+    let loops: Vec<String> = robot.loops.iter().map(|closed| names.take(&closed.name, "loop", &[])).collect();
+    let lift = |(k, link): (usize, &Link)| {
+        link.lifts.iter().map(|_| names.take(&format!("{}_lifted", bodies[k]), "mass", &[])).collect()
+    };
+    let lifts = robot.links.iter().enumerate().map(lift).collect();
+    let drag = |(k, link): (usize, &Link)| {
+        let made = ["axes", "velocity", "spin", "force", "torque"];
+        link.drags.iter().map(|_| names.take(&format!("{}_fluid", bodies[k]), "drag", &made)).collect()
+    };
+    let drags = robot.links.iter().enumerate().map(drag).collect();
+    let mut points = vec![Vec::new(); robot.links.len()];
+    for (k, joint) in robot.joints.iter().enumerate().filter(|(_, joint)| joint.kind != Kind::Free) {
+        points[joint.parent].push((k, true));
+        points[joint.child].push((k, false));
+    }
+    let mut writer = Writer {
+        robot,
+        options,
+        bodies,
+        joints,
+        loops,
+        controls,
+        lifts,
+        drags,
+        points,
+        starts: vec![Start::default()],
+        leaders: Vec::new(),
+    };
+    writer.leaders = vec![None; robot.joints.len()];
+    for (k, coupling) in robot.couplings.iter().enumerate() {
+        writer.leaders[coupling.follower] = Some(k);
+    }
+    for (joint, names) in robot.joints.iter().zip(&writer.joints) {
+        let start = writer.start(joint, names);
+        writer.starts.push(start);
+    }
     writer.file(file)
 }
 
@@ -55,12 +91,20 @@ struct JointNames {
 
 impl JointNames {
     fn new(joint: &Joint, names: &mut Names) -> Self {
-        let name = names.take(&joint.name, "joint");
-        let of = |names: &mut Names, what: &str| names.take(&format!("{name}_{what}"), "of_joint");
-        let start = of(names, "start");
-        let effort = of(names, if joint.kind == Kind::Prismatic { "force" } else { "torque" });
-        Self { joint: name, start, effort }
+        let effort = if joint.kind == Kind::Prismatic { "force" } else { "torque" };
+        let made =
+            ["start", effort, "bearing", "friction", "spring", "rotor", "stop", "motor", "follows", "ratio", "tie"];
+        let made = if joint.is_scalar() { &made[..] } else { &["bearing", "twist", "moment"] };
+        let name = names.take(&joint.name, "joint", made);
+        Self { start: format!("{name}_start"), effort: format!("{name}_{effort}"), joint: name }
     }
+}
+
+/// Where a body starts: the terms of its origin's place, the factors of its orientation; none for zero and one.
+#[derive(Default)]
+struct Start {
+    place: Vec<String>,
+    turned: Vec<String>,
 }
 
 struct Writer<'r> {
@@ -68,10 +112,22 @@ struct Writer<'r> {
     options: Options,
     /// For each link.
     bodies: Vec<String>,
-    /// For each joint.
+    /// For each joint; the k-th one carries link k + 1.
     joints: Vec<JointNames>,
     /// For each loop.
     loops: Vec<String>,
+    /// For each actuator its input.
+    controls: Vec<String>,
+    /// For each link those of its masses without a weight.
+    lifts: Vec<Vec<String>>,
+    /// For each link what a fluid does to it.
+    drags: Vec<Vec<String>>,
+    /// For each link the joints that have a point of it, and whether it is their parent.
+    points: Vec<Vec<(usize, bool)>>,
+    /// For each link.
+    starts: Vec<Start>,
+    /// For each joint the coupling by which it follows.
+    leaders: Vec<Option<usize>>,
 }
 
 impl Writer<'_> {
@@ -79,17 +135,21 @@ impl Writer<'_> {
         let graph = type_name(&self.robot.name);
         let mut sections = vec![self.parameters(), self.inputs(), self.surroundings()];
         for (k, joint) in self.robot.joints.iter().enumerate() {
-            sections.push(self.body(joint, &self.joints[k]) + &self.joint(joint, &self.joints[k]));
+            sections.push(self.body(joint) + &self.joint(joint, &self.joints[k]));
         }
+        sections.extend(self.robot.couplings.iter().map(|coupling| self.coupling(coupling)));
+        let actuators = self.robot.actuators.iter().zip(&self.controls);
+        sections.push(actuators.map(|(actuator, name)| self.actuator(actuator, name)).collect());
         sections.extend(self.robot.loops.iter().zip(&self.loops).map(|(closed, name)| self.closed(closed, name)));
         sections.push(self.observed());
         sections.push(self.scene(&graph));
         let body: Vec<String> =
             sections.iter().filter(|section| !section.is_empty()).map(|section| indented(&indented(section))).collect();
         format!(
-            "{}\nuse bg_model::bond_graph;\n\nbond_graph! {{\n    /// The robot `{}` of `{file}`.\n    pub graph {graph} {{\n{}    }}\n}}\n",
+            "{}\nuse bg_model::bond_graph;\n\nbond_graph! {{\n    /// The robot `{}` of `{}`.\n    pub graph {graph} {{\n{}    }}\n}}\n",
             self.head(file),
-            self.robot.name,
+            shown(&self.robot.name),
+            shown(file),
             body.join("\n")
         )
     }
@@ -103,7 +163,7 @@ impl Writer<'_> {
             let merged: Vec<String> = link.merged.iter().map(|name| format!("`{name}`")).collect();
             comment(&mut text, "", &format!("In `{body}`: {}.", merged.join(", ")));
         }
-        for note in &self.robot.notes {
+        for note in self.robot.notes.iter().chain(&self.robot.remarks) {
             comment(&mut text, "- ", note);
         }
         text
@@ -114,10 +174,12 @@ impl Writer<'_> {
         for (joint, names) in self.scalar() {
             let (what, unit) = coordinate(joint);
             let (name, start) = (&names.joint, number(joint.start));
-            line(&mut text, &format!("/// {what} of `{name}` at the start."));
-            line(&mut text, &format!("param {}: {unit} = {start};", names.start));
+            if self.coupling_of(joint).is_none() {
+                line(&mut text, &format!("/// {what} of `{name}` at the start."));
+                line(&mut text, &format!("param {}: {unit} = {start};", names.start));
+            }
         }
-        let has_welds = self.robot.loops.iter().any(|closed| closed.holds_rotation);
+        let has_welds = self.robot.loops.iter().any(|closed| closed.kind != Kind::Spherical);
         let used = [
             (self.options.compliant, "joint", "joints", true),
             (!self.robot.loops.is_empty(), "loop", "joints that close loops", has_welds),
@@ -133,7 +195,11 @@ impl Writer<'_> {
 
     fn inputs(&self) -> String {
         let mut text = String::new();
-        for (joint, names) in self.scalar().filter(|_| self.options.drives) {
+        for (actuator, name) in self.robot.actuators.iter().zip(&self.controls) {
+            line(&mut text, &format!("/// Controls `{}`.", self.joints[actuator.joint].joint));
+            line(&mut text, &format!("input {name}: 1;"));
+        }
+        for (joint, names) in self.scalar().filter(|_| self.has_drives()) {
             let (word, unit) = effort(joint);
             line(&mut text, &format!("/// Drives `{}`: a {word}.", names.joint));
             line(&mut text, &format!("input {}: {unit};", names.effort));
@@ -162,14 +228,15 @@ impl Writer<'_> {
                 line(&mut text, &format!("point {name} = {}{turned};", vector(&pose.place, 1e-3)));
             }
         };
-        for (joint, names) in self.robot.joints.iter().zip(&self.joints).filter(|(joint, _)| joint.kind != Kind::Free) {
-            let frames = frames(joint);
-            if joint.parent == link {
-                point(&names.joint, &frames.in_parent);
-            }
-            if joint.child == link {
-                point(&names.joint, &frames.in_child);
-            }
+        for &(k, is_parent) in &self.points[link] {
+            let frames = frames(&self.robot.joints[k]);
+            point(&self.joints[k].joint, if is_parent { &frames.in_parent } else { &frames.in_child });
+        }
+        for (name, (_, place)) in self.lifts[link].iter().zip(&self.robot.links[link].lifts) {
+            point(name, &Pose::at(*place));
+        }
+        for (name, drag) in self.drags[link].iter().zip(&self.robot.links[link].drags) {
+            point(name, &Pose::at(drag.place));
         }
         for (closed, name) in self.robot.loops.iter().zip(&self.loops) {
             closed.ends.iter().filter(|end| end.0 == link).for_each(|end| point(name, &end.1));
@@ -178,9 +245,9 @@ impl Writer<'_> {
     }
 
     /// The body that a joint carries, with its start.
-    fn body(&self, joint: &Joint, names: &JointNames) -> String {
+    fn body(&self, joint: &Joint) -> String {
         let (link, name) = (&self.robot.links[joint.child], &self.bodies[joint.child]);
-        let (place, turned) = self.start(joint, names);
+        let Start { place, turned } = &self.starts[joint.child];
         let mut inner = masses(link);
         inner += &self.points(joint.child);
         let (has_place, has_turned) = (!place.is_empty(), !turned.is_empty());
@@ -198,11 +265,21 @@ impl Writer<'_> {
             line(&mut text, &format!("let {name}_place: m = {};", place.join(" + ").replace("+ -", "- ")));
         }
         line(&mut text, &format!("body {name} {{\n{}}}", indented(&inner)));
+        if self.robot.gravity != Vector3::zeros() {
+            for (lift, (mass, place)) in self.lifts[joint.child].iter().zip(&link.lifts) {
+                let at = self.end(joint.child, lift, &Pose::at(*place));
+                let up = vector(&(-self.robot.gravity * *mass), 0.0);
+                line(&mut text, &format!("drive {lift} on {at} force = {up};"));
+            }
+        }
+        for (drag, name) in link.drags.iter().zip(&self.drags[joint.child]) {
+            text += &self.drag_by_fluid(&self.bodies[joint.child], name, drag);
+        }
         text
     }
 
-    /// Where a body starts: the terms of its origin's place, the factors of its orientation; none for zero and one.
-    fn start(&self, joint: &Joint, names: &JointNames) -> (Vec<String>, Vec<String>) {
+    /// Where the body of a joint starts; its parent's start is known.
+    fn start(&self, joint: &Joint, names: &JointNames) -> Start {
         let Frames { letter, reversed, in_parent, in_child } = frames(joint);
         let start = if reversed { format!("-{}", names.start) } else { names.start.clone() };
         let parent = self.turned(joint.parent);
@@ -229,23 +306,17 @@ impl Writer<'_> {
                 format!("-{}_turned * {}", self.bodies[joint.child], vector(&in_child.place, 1e-3))
             });
         }
-        (place, turned)
+        Start { place, turned }
     }
 
     /// The name of a link's orientation at the start; none where it is not turned.
     fn turned(&self, link: usize) -> Option<String> {
-        let has = |k: usize| !self.start(&self.robot.joints[k], &self.joints[k]).1.is_empty();
-        self.carrier(link).filter(|&k| has(k)).map(|_| format!("{}_turned", self.bodies[link]))
+        (!self.starts[link].turned.is_empty()).then(|| format!("{}_turned", self.bodies[link]))
     }
 
     /// The name of a link's place at the start; none where it is the ground's origin.
     fn placed(&self, link: usize) -> Option<String> {
-        let has = |k: usize| !self.start(&self.robot.joints[k], &self.joints[k]).0.is_empty();
-        self.carrier(link).filter(|&k| has(k)).map(|_| format!("{}_place", self.bodies[link]))
-    }
-
-    fn carrier(&self, link: usize) -> Option<usize> {
-        self.robot.joints.iter().position(|joint| joint.child == link)
+        (!self.starts[link].place.is_empty()).then(|| format!("{}_place", self.bodies[link]))
     }
 
     /// A joint with what acts on it.
@@ -253,7 +324,7 @@ impl Writer<'_> {
         let name = &names.joint;
         let Frames { letter, reversed, in_parent, in_child } = frames(joint);
         let kind = match joint.kind {
-            Kind::Free => return String::new(),
+            Kind::Free => return self.drag(joint),
             Kind::Fixed => "fixed".to_owned(),
             Kind::Revolute => format!("revolute {letter}"),
             Kind::Prismatic => format!("prismatic {letter}"),
@@ -269,60 +340,32 @@ impl Writer<'_> {
         line(&mut text, &format!("joint {name}: {kind} ({first} -> {second}) {{ {clauses} }}"));
         if joint.is_scalar() {
             self.actors(&mut text, joint, names);
+        } else if !joint.damping.is_zero() {
+            text += &self.ball_bearing(joint, name);
         }
         text
     }
 
-    /// What acts on the free axis of a joint.
-    fn actors(&self, text: &mut String, joint: &Joint, names: &JointNames) {
-        let JointNames { joint: name, start, effort: input } = names;
-        let slides = joint.kind == Kind::Prismatic;
-        let axis = if slides { "slide" } else { "spin" };
-        if joint.friction > 0.0 {
-            let viscous =
-                if joint.damping > 0.0 { format!(" viscous {};", number(joint.damping)) } else { String::new() };
-            line(
-                text,
-                &format!("friction {name}_friction on {name} {{ coulomb {};{viscous} }}", number(joint.friction)),
-            );
-        } else if joint.damping > 0.0 {
-            line(text, &format!("R {name}_bearing = {}; {name}.{axis} -> {name}_bearing;", number(joint.damping)));
-        }
-        if let Some((stiffness, rest)) = joint.spring {
-            let from = match number(-rest) {
-                zero if zero == "0" => start.clone(),
-                rest if rest.starts_with('-') => format!("{start} - {}", &rest[1..]),
-                rest => format!("{start} + {rest}"),
-            };
-            line(
-                text,
-                &format!(
-                    "C {name}_spring(q) = {} * q start {from}; {name}.{axis} -> {name}_spring;",
-                    number(stiffness)
-                ),
-            );
-        }
-        if joint.armature > 0.0 {
-            line(text, &format!("I {name}_rotor = {}; {name}.{axis} -> {name}_rotor;", number(joint.armature)));
-        }
-        if let Some((least, most)) = joint.limits.filter(|_| self.options.limits) {
-            let from = if slides { String::new() } else { format!(" start {start};") };
-            let (least, most) = (number(least), number(most));
-            line(
-                text,
-                &format!("stop {name}_stop on {name} {{ at least {least}; at most {most}; restitution 0;{from} }}"),
-            );
-        }
-        if self.options.drives {
-            line(text, &format!("drive {name}_motor on {name} {} = {input};", effort(joint).0));
-        }
+    /// Whether each joint has an input of its own.
+    fn has_drives(&self) -> bool {
+        self.options.drives && self.robot.actuators.is_empty()
+    }
+
+    /// The coupling by which a joint follows.
+    fn coupling_of(&self, joint: &Joint) -> Option<&Coupling> {
+        self.leaders[joint.child - 1].map(|k| &self.robot.couplings[k])
     }
 
     /// A joint that closes a loop.
     fn closed(&self, closed: &Loop, name: &str) -> String {
-        let kind = if closed.holds_rotation { "fixed" } else { "spherical" };
+        let kind = match closed.kind {
+            Kind::Spherical => "spherical",
+            Kind::Revolute => "revolute z",
+            Kind::Prismatic => "prismatic z",
+            _ => "fixed",
+        };
         let [first, second] = closed.ends.each_ref().map(|(link, pose)| self.end(*link, name, pose));
-        let clauses = clauses("loop", closed.holds_rotation);
+        let clauses = clauses("loop", closed.kind != Kind::Spherical);
         format!("joint {name}: {kind} ({first} -> {second}) {{ {clauses} }}\n")
     }
 
@@ -335,12 +378,11 @@ impl Writer<'_> {
         let mut inner = String::new();
         for (joint, names) in self.scalar() {
             let (name, unit) = (&names.joint, coordinate(joint).1);
-            let what = if joint.kind == Kind::Prismatic { "travel" } else { "angle" };
-            line(&mut inner, &format!("{name}: {unit} = {name}.{what};"));
+            line(&mut inner, &format!("{name}: {unit} = {name}.{};", coordinate_word(joint)));
         }
         for joint in self.robot.joints.iter().filter(|joint| joint.kind == Kind::Free) {
             let body = &self.bodies[joint.child];
-            line(&mut inner, &format!("{body}_position: m = {body}.position;"));
+            line(&mut inner, &format!("{body}_position: m = {body}.origin.position;"));
         }
         let potential = self.potential();
         let sum = if potential.is_empty() { "" } else { " + potential" };
@@ -355,9 +397,15 @@ impl Writer<'_> {
             return String::new();
         }
         let terms = |of: &str| {
-            let bodies: Vec<String> =
-                self.bodies[1..].iter().map(|body| format!("{body}.mass * {body}.position{of}")).collect();
-            bodies.join("\n    + ")
+            let weight = |(k, body): (usize, &String)| {
+                let mut term = format!("{body}.mass * {body}.position{of}");
+                for (lift, (mass, place)) in self.lifts[k].iter().zip(&self.robot.links[k].lifts) {
+                    let point = if is_point(&Pose::at(*place)) { lift } else { "origin" };
+                    let _ = write!(term, " - {} * {body}.{point}.position{of}", number(*mass));
+                }
+                term
+            };
+            self.bodies.iter().enumerate().skip(1).map(weight).collect::<Vec<_>>().join("\n    + ")
         };
         let along =
             ["x", "y", "z"].into_iter().zip(gravity.iter()).filter(|(_, part)| **part != 0.0).collect::<Vec<_>>();
@@ -422,6 +470,16 @@ fn coordinate(joint: &Joint) -> (&'static str, &'static str) {
     if joint.kind == Kind::Prismatic { ("Travel", "m") } else { ("Angle", "rad") }
 }
 
+/// What its angle or travel is called.
+fn coordinate_word(joint: &Joint) -> &'static str {
+    if joint.kind == Kind::Prismatic { "travel" } else { "angle" }
+}
+
+/// The junction of its free axis.
+fn axis(joint: &Joint) -> &'static str {
+    if joint.kind == Kind::Prismatic { "slide" } else { "spin" }
+}
+
 fn effort(joint: &Joint) -> (&'static str, &'static str) {
     if joint.kind == Kind::Prismatic { ("force", "N") } else { ("torque", "N*m") }
 }
@@ -435,7 +493,7 @@ fn line(text: &mut String, line: &str) {
 fn comment(text: &mut String, mark: &str, words: &str) {
     let mut row = format!("// {mark}");
     let indent = format!("// {}", " ".repeat(mark.len()));
-    for word in words.split(' ') {
+    for word in shown(words).split(' ') {
         if row.len() + word.len() > WIDTH {
             line(text, row.trim_end());
             row.clone_from(&indent);

@@ -1,5 +1,5 @@
 // The robot `crane`, made by bg-import from `crane.xml` (MJCF). SI units.
-// - Shapes touch nothing: there is no contact with the floor.
+// - Shapes touch nothing: there is no contact with the floor (--no-contacts says that you know it).
 
 use bg_model::bond_graph;
 

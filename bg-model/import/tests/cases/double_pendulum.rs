@@ -2,6 +2,9 @@
 // In `ground`: `world`, `stand`.
 // In `upper_arm`: `elbow-housing`.
 // In `forearm`: `tool`.
+// - lines 53 and 62: `effort` of <limit> is not used: what drives a joint may give any effort; with
+//   --actuators it is limited.
+// - lines 53 and 62: `velocity` of <limit> is not used: speeds are not limited.
 // - Link `camera` has no mass and carries nothing: it is left out with joint `tool_to_camera`.
 
 use bg_model::bond_graph;

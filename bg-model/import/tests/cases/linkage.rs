@@ -1,9 +1,9 @@
 // The robot `four bar`, made by bg-import from `linkage.xml` (MJCF). SI units.
 // In `fork`: `flag`.
-// - The equality of the kind `joint` is left out.
-// - The actuators are left out; each joint has an input of its own.
-// - Shapes touch nothing: there is no contact with the floor.
-// - Joints `pan` and `tilt` are one universal joint, `tilt`, without their limits, damping and friction.
+// - The actuators are left out; each joint has an input of its own. With --actuators those that act on joints
+//   are not.
+// - Shapes touch nothing: there is no contact with the floor (--no-contacts says that you know it).
+// - Link `fork_carrier1` has no mass: here it has 7.61503845163e-6 kg, for its joints.
 // - Link `puck_carrier1` has no mass: here it has 7.61503845163e-6 kg, for its joints.
 // - Link `puck_carrier2` has no mass: here it has 7.61503845163e-6 kg, for its joints.
 
@@ -18,6 +18,8 @@ bond_graph! {
         param pin_start: rad = 0;
         /// Angle of `rocker_joint` at the start.
         param rocker_joint_start: rad = 0;
+        /// Angle of `tilt` at the start.
+        param tilt_start: rad = 0;
         /// Travel of `puck_x` at the start.
         param puck_x_start: m = 0;
         /// Travel of `puck_y` at the start.
@@ -35,6 +37,10 @@ bond_graph! {
         input pin_torque: N*m;
         /// Drives `rocker_joint`: a torque.
         input rocker_joint_torque: N*m;
+        /// Drives `pan`: a torque.
+        input pan_torque: N*m;
+        /// Drives `tilt`: a torque.
+        input tilt_torque: N*m;
         /// Drives `puck_x`: a force.
         input puck_x_force: N;
         /// Drives `puck_y`: a force.
@@ -45,7 +51,7 @@ bond_graph! {
         gravity [0, 0, -9.81];
         ground {
             point rocker_joint = [0.5, 0, 0];
-            point tilt = [0, 1, 0] turned rotation_y(-1.57079632679);
+            point pan = [0, 1, 0];
             point puck_x = [0, 2, 0];
         }
 
@@ -85,14 +91,25 @@ bond_graph! {
         friction rocker_joint_friction on rocker_joint { coulomb 0.01; viscous 0.02; }
         drive rocker_joint_motor on rocker_joint torque = rocker_joint_torque;
 
-        let fork_place: m = [0, 1, 0];
+        let fork_carrier1_turned: 1 = rotation_z(pan_start);
+        let fork_carrier1_place: m = [0, 1, 0];
+        body fork_carrier1 {
+            mass 7.61503845163e-6;
+            inertia [7.61503845163e-8, 7.61503845163e-8, 7.61503845163e-8];
+            start at fork_carrier1_place; start turned fork_carrier1_turned;
+        }
+        joint pan: revolute z (ground.pan -> fork_carrier1) { rigid; }
+        drive pan_motor on pan torque = pan_torque;
+
+        let fork_turned: 1 = fork_carrier1_turned * rotation_y(tilt_start);
+        let fork_place: m = fork_carrier1_place;
         body fork {
             mass 0.8;
             inertia [7.73333333333e-4, 0.00277333333333, 0.00333333333333];
-            point tilt = [0, 0, 0] turned rotation_y(-1.57079632679);
-            start at fork_place;
+            start at fork_place; start turned fork_turned;
         }
-        joint tilt: universal x y (ground.tilt -> fork.tilt) { rigid; }
+        joint tilt: revolute y (fork_carrier1 -> fork) { rigid; }
+        drive tilt_motor on tilt torque = tilt_torque;
 
         let puck_carrier1_place: m = [0, 2, 0] + [puck_x_start, 0, 0];
         body puck_carrier1 {
@@ -129,12 +146,18 @@ bond_graph! {
             start at ball_place;
         }
 
+        // `pan` follows `tilt`.
+        TF pan_ratio = 1; 0 pan_tie: rotation; rSe pan_follows = 0;
+        tilt.spin -> pan_ratio -> pan_tie -> pan.spin; pan_follows -> pan_tie;
+        let pan_start: rad = 1 * tilt_start;
+
         joint tie: spherical (coupler.tie -> rocker.tie) { stiffness loop_stiffness; damping loop_damping; }
 
         let potential: J = 9.81 * (
             crank.mass * crank.position.z
             + coupler.mass * coupler.position.z
             + rocker.mass * rocker.position.z
+            + fork_carrier1.mass * fork_carrier1.position.z
             + fork.mass * fork.position.z
             + puck_carrier1.mass * puck_carrier1.position.z
             + puck_carrier2.mass * puck_carrier2.position.z
@@ -145,10 +168,12 @@ bond_graph! {
             crank_joint: rad = crank_joint.angle;
             pin: rad = pin.angle;
             rocker_joint: rad = rocker_joint.angle;
+            pan: rad = pan.angle;
+            tilt: rad = tilt.angle;
             puck_x: m = puck_x.travel;
             puck_y: m = puck_y.travel;
             puck_turn: rad = puck_turn.angle;
-            ball_position: m = ball.position;
+            ball_position: m = ball.origin.position;
             energy: J = stored_energy + potential;
         }
     }

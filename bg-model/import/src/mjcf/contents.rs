@@ -1,0 +1,100 @@
+//! What is inside of a body, with `frame` and `replicate` written out.
+//!
+//! In: a body's element. Out: its joints, shapes and bodies, each with the frame in which its place is given, its class
+//! and the ending of its names. The k-th copy of a `replicate` is in the k-th power of its frame; its names end with k,
+//! in as many digits as the last one has. Source: MuJoCo's XML reference.
+
+use nalgebra::Vector3;
+
+use super::defaults::{Defaults, Element};
+use super::orientation::Angles;
+use crate::ImportError;
+use crate::robot::Pose;
+use crate::xml::Node;
+
+/// Something inside of a body.
+#[derive(Clone)]
+pub struct Item<'n> {
+    /// Its element.
+    pub node: &'n Node,
+    /// The frame in which its place is given, in the body's.
+    pub frame: Pose,
+    /// The class of those around it.
+    pub class: Option<&'n str>,
+    /// What its name ends with.
+    pub ending: String,
+}
+
+impl<'n> Item<'n> {
+    /// A name that the file gives it.
+    pub fn name(&self) -> Option<String> {
+        self.node.attribute("name").map(|name| format!("{name}{}", self.ending))
+    }
+}
+
+/// The elements that are looked into.
+const READ: [&str; 5] = ["body", "joint", "freejoint", "geom", "inertial"];
+
+/// The most copies of one element: more is a slip of the pen.
+const COPIES: f64 = 1e4;
+
+/// All of a body's content.
+///
+/// # Errors
+/// Values that cannot be.
+pub fn contents<'n>(around: &Item<'n>, angles: &Angles, defaults: &Defaults<'n>) -> Result<Vec<Item<'n>>, ImportError> {
+    let mut found = Vec::new();
+    collect(around, angles, defaults, &mut found)?;
+    Ok(found)
+}
+
+fn collect<'n>(
+    around: &Item<'n>,
+    angles: &Angles,
+    defaults: &Defaults<'n>,
+    found: &mut Vec<Item<'n>>,
+) -> Result<(), ImportError> {
+    for node in &around.node.children {
+        match node.name.as_str() {
+            "frame" => {
+                node.mark("name");
+                let frame = around.frame.then(&angles.pose(&Element::plain(node))?);
+                let class = node.attribute("childclass").or(around.class);
+                class.map_or(Ok(()), |class| defaults.known(node, class))?;
+                collect(&Item { node, frame, class, ending: around.ending.clone() }, angles, defaults, found)?;
+            }
+            "replicate" => copies(&Item { node, ..around.clone() }, angles, defaults, found)?,
+            name if READ.contains(&name) => found.push(Item { node, ..around.clone() }),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn copies<'n>(
+    around: &Item<'n>,
+    angles: &Angles,
+    defaults: &Defaults<'n>,
+    found: &mut Vec<Item<'n>>,
+) -> Result<(), ImportError> {
+    let node = around.node;
+    let count = node.number("count")?.ok_or_else(|| node.missing("count"))?;
+    if !(0.0..=COPIES).contains(&count) || count.fract() != 0.0 {
+        return Err(node.bad("count", node.peek("count").unwrap_or_default(), "a whole number up to 10000"));
+    }
+    let step = Pose {
+        place: node.vector("offset")?.unwrap_or_default(),
+        turned: angles.euler(&node.vector("euler")?.unwrap_or(Vector3::zeros())),
+    };
+    let separator = node.attribute("sep").unwrap_or_default();
+    // At most COPIES, so a whole number stays what it is.
+    let count = count as usize;
+    let width = count.saturating_sub(1).to_string().len();
+    let mut frame = around.frame;
+    for copy in 0..count {
+        let ending = format!("{separator}{copy:0width$}{}", around.ending);
+        collect(&Item { frame, ending, ..around.clone() }, angles, defaults, found)?;
+        frame = frame.then(&step);
+    }
+    Ok(())
+}

@@ -1,0 +1,47 @@
+//! Laws, polynomials and ranges as expressions of the language.
+
+use crate::number::number;
+use crate::robot::Law;
+
+/// An odd law of a variable.
+pub fn odd(law: &Law, variable: &str) -> String {
+    let powers = [variable.to_owned(), format!("{variable} * abs({variable})"), format!("pow({variable}, 3)")];
+    format!("({variable}) = {}", sum(law.0.iter().zip(&powers).map(|(factor, power)| (*factor, power.as_str()))))
+}
+
+/// The energy of a spring with such a law; none where the compiler finds it.
+pub fn energy(law: &Law, variable: &str) -> String {
+    if law.is_linear() {
+        return String::new();
+    }
+    let powers =
+        [format!("pow({variable}, 2) / 2"), format!("abs(pow({variable}, 3)) / 3"), format!("pow({variable}, 4) / 4")];
+    format!(" energy {}", sum(law.0.iter().zip(&powers).map(|(factor, power)| (*factor, power.as_str()))))
+}
+
+/// A polynomial, constant first.
+pub fn polynomial(coefficients: &[f64], variable: &str) -> String {
+    let power = |k: usize| match k {
+        0 => String::new(),
+        1 => variable.to_owned(),
+        _ => format!("pow({variable}, {k})"),
+    };
+    let powers: Vec<String> = (0..coefficients.len()).map(power).collect();
+    sum(coefficients.iter().copied().zip(powers.iter().map(String::as_str)))
+}
+
+/// A sum of products; those of 0 are left out, those of 1 are not, since a number takes whatever unit is asked for.
+pub fn sum<'t>(terms: impl Iterator<Item = (f64, &'t str)>) -> String {
+    let term = |(factor, power): (f64, &str)| match power {
+        "" => number(factor),
+        _ => format!("{} * {power}", number(factor)),
+    };
+    let terms: Vec<String> = terms.filter(|(factor, _)| *factor != 0.0).map(term).collect();
+    if terms.is_empty() { "0".to_owned() } else { terms.join(" + ").replace("+ -", "- ") }
+}
+
+/// A name's value within a range.
+pub fn within(name: &str, (least, most): (f64, f64)) -> String {
+    let (least, most) = (number(least), number(most));
+    format!("if {name} > {most} {{ {most} }} else if {name} < {least} {{ {least} }} else {{ {name} }}")
+}
