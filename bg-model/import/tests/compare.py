@@ -460,7 +460,10 @@ def main():
     is_told = "-v" in rest
     part = next((word for word in rest if word != "-v"), "")
     counts = {}
+    program = os.path.abspath(program)
     with tempfile.TemporaryDirectory() as folder:
+        # MuJoCo writes its log where it stands.
+        os.chdir(folder)
         for package, path in robots():
             if part not in str(path):
                 continue
