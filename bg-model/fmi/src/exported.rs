@@ -11,7 +11,7 @@ use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::system::Model;
 
-use crate::instance::{AtStart, Fault, InDuals, Machine, Signals, Slopes};
+use crate::instance::{AtStart, Fault, InDuals, Machine, Nominals, Signals, Slopes};
 
 /// A model with what it knows of its derivatives.
 pub struct Made {
@@ -32,6 +32,9 @@ pub trait Described {
 
     /// For each state the states on which its derivative may depend; none where that is not known.
     fn dependencies(&self) -> Option<Vec<Vec<usize>>>;
+
+    /// How large each state is to be taken for, in its unit, above zero; none where the default start cannot be assembled.
+    fn nominals(&self) -> Option<Vec<f64>>;
 }
 
 /// Keeps [`Exported`] to the types of this crate.
@@ -88,6 +91,10 @@ impl<Me: Mechanism> Described for Of<Me> {
 
     fn dependencies(&self) -> Option<Vec<Vec<usize>>> {
         Me::make(Me::Parameters::default(), &[]).ok()?.visit(Pattern)
+    }
+
+    fn nominals(&self) -> Option<Vec<f64>> {
+        Me::make(Me::Parameters::default(), &[]).ok()?.visit(Nominals)
     }
 }
 

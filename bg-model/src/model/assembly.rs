@@ -5,6 +5,7 @@
 
 use alloc::format;
 use alloc::string::{String, ToString};
+use alloc::vec;
 use alloc::vec::Vec;
 
 use nalgebra::{DVector, SVector};
@@ -14,7 +15,8 @@ use crate::model::holding::{FITTING, Redundancy, Slipping};
 use crate::model::nearest::nearest;
 use crate::model::requirement::Impossible;
 
-/// The largest gap of a closed joint, in the gap's unit (m or rad).
+/// The largest gap of a closed joint, as a part of the largest sum of terms of which a gap in its unit (m or rad) consists: of the
+/// size of the machine.
 pub const CLOSED: f64 = 1e-10;
 
 /// One residual row: a component of the gap of a joint.
@@ -42,6 +44,8 @@ pub struct OpenGap {
     pub gap: Gap,
     /// Its signed size, in the gap's unit.
     pub size: f64,
+    /// The largest that would be closed, in the gap's unit.
+    pub allowed: f64,
 }
 
 impl core::fmt::Display for OpenGap {
@@ -53,8 +57,8 @@ impl core::fmt::Display for OpenGap {
 /// A mechanism that cannot be put together near the guess.
 #[derive(Clone, PartialEq, Error)]
 pub enum AssemblyError {
-    /// Some joints stay open by more than [`CLOSED`].
-    #[error("the mechanism does not close: joint {largest} (allowed: {CLOSED:e}){}", also_open(.others))]
+    /// Some joints stay open by more than [`CLOSED`] allows.
+    #[error("the mechanism does not close: joint {largest} (allowed: {:.0e}){}", .largest.allowed, also_open(.others))]
     Open {
         /// The largest gap.
         largest: OpenGap,
@@ -126,22 +130,25 @@ fn also_open(others: &[OpenGap]) -> String {
 
 /// The coordinates nearest to `guess`, to first order, at which all gaps are closed to rounding.
 ///
-/// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates. Redundant gaps
-/// and coordinates without influence are allowed. With `U = 0` the gaps are only checked. Allocates.
+/// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates, `terms` the sum of the
+/// absolute values of its terms. Redundant gaps and coordinates without influence are allowed. With `U = 0` the gaps are only checked. Allocates.
 ///
 /// # Errors
-/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 m or rad), [`AssemblyError::NonFinite`] if a gap is
+/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 of the machine's size), [`AssemblyError::NonFinite`] if a gap is
 /// not a number.
 pub fn close<const U: usize>(
     guess: [f64; U],
     gaps: &'static [Gap],
     residual: impl Fn(&[f64; U], &mut [f64]),
+    terms: impl Fn(&[f64; U], &mut [f64]),
 ) -> Result<[f64; U], AssemblyError> {
     // Half a radian, or half the size of the coordinates, so that the pose is not thrown over into another one that
     // closes as well.
     let longest = |coordinates: &SVector<f64, U>| 0.5 * coordinates.amax().max(1.0);
     let (coordinates, sizes) = nearest(guess, gaps.len(), longest, residual, |sizes| check_finite(gaps, sizes))?;
-    check_closed(gaps, &sizes)?;
+    let mut all = vec![0.0; gaps.len()];
+    terms(&coordinates, &mut all);
+    check_closed(gaps, &sizes, &all)?;
     Ok(coordinates)
 }
 
@@ -152,13 +159,22 @@ fn check_finite(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError>
     }
 }
 
-fn check_closed(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError> {
+fn check_closed(gaps: &[Gap], sizes: &DVector<f64>, terms: &[f64]) -> Result<(), AssemblyError> {
+    // One component of a gap may have no terms at all; of an angle a radian counts.
+    let allowed = |unit: &str| {
+        let of_unit = gaps.iter().zip(terms).filter(|(gap, _)| gap.unit == unit);
+        CLOSED * of_unit.fold(if unit == "rad" { 1.0 } else { 0.0_f64 }, |largest, (_, &terms)| largest.max(terms))
+    };
     let mut joints: Vec<OpenGap> = Vec::new();
-    for (gap, size) in gaps.iter().zip(sizes.iter()).filter(|(_, size)| size.abs() > CLOSED) {
-        match joints.iter_mut().find(|open| open.gap.joint == gap.joint) {
-            Some(open) if open.size.abs() >= size.abs() => {}
-            Some(open) => *open = OpenGap { gap: *gap, size: *size },
-            None => joints.push(OpenGap { gap: *gap, size: *size }),
+    for (&gap, &size) in gaps.iter().zip(sizes.iter()) {
+        let open = OpenGap { gap, size, allowed: allowed(gap.unit) };
+        if size.abs() <= open.allowed {
+            continue;
+        }
+        match joints.iter_mut().find(|other| other.gap.joint == gap.joint) {
+            Some(other) if other.size.abs() >= size.abs() => {}
+            Some(other) => *other = open,
+            None => joints.push(open),
         }
     }
     joints.sort_by(|a, b| b.size.abs().total_cmp(&a.size.abs()));
@@ -172,6 +188,27 @@ fn check_closed(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The same of a machine of 1 m.
+    fn close<const U: usize>(
+        guess: [f64; U],
+        gaps: &'static [Gap],
+        residual: impl Fn(&[f64; U], &mut [f64]),
+    ) -> Result<[f64; U], AssemblyError> {
+        super::close(guess, gaps, residual, |_, terms| terms.fill(1.0))
+    }
+
+    #[test]
+    fn what_is_closed_is_a_part_of_the_machine() {
+        for size in [1e-6, 1.0, 1e6] {
+            let gap = |part: f64| {
+                super::close([], &PIN, |_, r| r.fill(part * size), |_, terms| terms.copy_from_slice(&[0.0, size]))
+            };
+            assert!(gap(0.9e-10).is_ok());
+            let AssemblyError::Open { largest, .. } = gap(1.1e-10).expect_err("open") else { panic!("a gap") };
+            assert!((largest.allowed / size - 1e-10).abs() < 1e-16, "{largest:?}");
+        }
+    }
 
     const fn gap(joint: &'static str, component: &'static str) -> Gap {
         Gap { joint, component, unit: "m" }
@@ -241,7 +278,7 @@ mod tests {
         let error = close([], &GAPS, |_, r| r.copy_from_slice(&[1e-3, 2e-3, -5e-3, 0.0])).unwrap_err();
         let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
         assert_eq!((largest.gap, largest.size), (GAPS[2], -5e-3));
-        assert_eq!(others.as_slice(), &[OpenGap { gap: GAPS[0], size: 1e-3 }]);
+        assert_eq!(others.as_slice(), &[OpenGap { gap: GAPS[0], size: 1e-3, allowed: CLOSED }]);
         assert!(error.to_string().ends_with("also open: `a` by 1.00e-3 m in x"), "{error}");
     }
 

@@ -10,7 +10,7 @@ use super::reversed::{Reversed, reversed};
 use super::tape::{Tape, tape};
 use super::{Counts, Program, Request, Routine, schedule};
 use crate::expr::{Id, Pool};
-use crate::system::equations::Iteration;
+use crate::system::equations::{Iteration, size};
 use crate::system::{Jacobian, SecondOrder, Sizes, StateEquations};
 
 /// Longer rates are not inlined into an integrator's step: they would only fill the cache.
@@ -94,6 +94,8 @@ pub struct Starting {
     pub guesses: Program<1>,
     /// The gaps of the assembly.
     pub gaps: Program<1>,
+    /// The sums of the absolute values of their terms.
+    pub gap_sizes: Program<1>,
     /// The start state.
     pub start_state: Program<1>,
     /// What the sides of roots have the signs of, where there are any.
@@ -222,9 +224,11 @@ fn starting(equations: &mut StateEquations) -> Starting {
     let gaps = roots(&equations.gaps, |gap| gap.value);
     let starts = roots(&equations.states, |state| state.start);
     let pool = &mut equations.pool;
+    let sizes: Vec<Id> = gaps.iter().map(|&gap| size(pool, gap)).collect();
     Starting {
         guesses: alone(pool, "guesses", &equations.guesses),
         gaps: alone(pool, "gaps", &gaps),
+        gap_sizes: alone(pool, "gap_sizes", &sizes),
         start_state: alone(pool, "start_state", &starts),
         sides: (!equations.sides.is_empty()).then(|| alone(pool, "sides", &equations.sides)),
     }
@@ -278,7 +282,7 @@ impl SecondOrderPrograms {
 impl Starting {
     /// All of them.
     pub fn programs(&self) -> impl Iterator<Item = &Program<1>> {
-        [&self.guesses, &self.gaps, &self.start_state].into_iter().chain(&self.sides)
+        [&self.guesses, &self.gaps, &self.gap_sizes, &self.start_state].into_iter().chain(&self.sides)
     }
 }
 

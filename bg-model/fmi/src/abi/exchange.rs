@@ -36,20 +36,15 @@ pub unsafe extern "C" fn fmi3GetContinuousStateDerivatives(
     unsafe { Handle::call(instance, |own| own.derivatives(room(derivatives, count))) }
 }
 
-/// The nominal values of the continuous states: 1 SI unit, as the absolute tolerance of a run has it.
+/// The nominal values of the continuous states: where the error norm of a run takes them to count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetNominalsOfContinuousStates(
     instance: *mut c_void,
     nominals: *mut f64,
     count: usize,
 ) -> Status {
-    let fill = |_: &mut crate::Instance| {
-        // SAFETY: an array of this length, as `Handle::call` says.
-        unsafe { room(nominals, count) }.fill(1.0);
-        Ok(())
-    };
-    // SAFETY: an instance, as `Handle::call` says.
-    unsafe { Handle::call(instance, fill) }
+    // SAFETY: an instance and an array of this length, as `Handle::call` says.
+    unsafe { Handle::call(instance, |own| own.nominals(room(nominals, count))) }
 }
 
 /// Reads the event indicators.

@@ -32,6 +32,10 @@ impl Described for Panics {
         static NOTHING: std::sync::LazyLock<Description> = std::sync::LazyLock::new(Description::default);
         &NOTHING
     }
+    fn nominals(&self) -> Option<Vec<f64>> {
+        None
+    }
+
     fn dependencies(&self) -> Option<Vec<Vec<usize>>> {
         None
     }

@@ -177,7 +177,8 @@ struct Variable {
 }
 
 /// All variables in the order of their value references; `number` gives what a derivative names its state by.
-fn variables(description: &'static Description, number: fn(usize) -> usize) -> Vec<Variable> {
+fn variables(model: &dyn Described, number: fn(usize) -> usize) -> Vec<Variable> {
+    let (description, nominals) = (model.description(), model.nominals());
     let counts = Counts::of(description);
     let variable = |(kind, (reference, name)): (Kind, (usize, String))| {
         let (causality, variability, initial, doc) = match kind {
@@ -204,7 +205,10 @@ fn variables(description: &'static Description, number: fn(usize) -> usize) -> V
             }
             Kind::Input(_) => value.push(("start", "0.0".to_owned())),
             // An event may move it: an impact, the projection.
-            Kind::State(_) => value.push(("reinit", "true".to_owned())),
+            Kind::State(index) => {
+                value.extend(nominals.as_ref().map(|nominals| ("nominal", format!("{:?}", nominals[index]))));
+                value.push(("reinit", "true".to_owned()));
+            }
             Kind::Derivative(index) => {
                 value.push(("derivative", number(counts.reference(Kind::State(index))).to_string()));
             }

@@ -4,7 +4,6 @@
 
 use std::io;
 
-use bg_model::description::Description;
 
 use super::{Packing, Variable, Xml, categories, dependencies, empty, experiment, head, initial, nested, units};
 use crate::exported::Described;
@@ -27,14 +26,14 @@ pub(super) fn write(xml: &mut Xml, model: &dyn Described, packing: &Packing, tok
         units(xml, description)?;
         categories(xml)?;
         experiment(xml, packing)?;
-        variables(xml, description)?;
+        variables(xml, model)?;
         structure(xml, model)
     })
 }
 
-fn variables(xml: &mut Xml, description: &'static Description) -> io::Result<()> {
+fn variables(xml: &mut Xml, model: &dyn Described) -> io::Result<()> {
     nested(xml, "ModelVariables", &[], |xml| {
-        let all = super::variables(description, |reference| reference);
+        let all = super::variables(model, |reference| reference);
         all.into_iter().try_for_each(|Variable { about, value }| empty(xml, "Float64", &[about, value].concat()))
     })
 }

@@ -4,7 +4,6 @@
 
 use std::io;
 
-use bg_model::description::Description;
 
 use super::{Packing, Variable, Xml, categories, dependencies, empty, experiment, head, initial, nested, units};
 use crate::exported::Described;
@@ -32,14 +31,14 @@ pub(super) fn write(xml: &mut Xml, model: &dyn Described, packing: &Packing, tok
         units(xml, description)?;
         categories(xml)?;
         experiment(xml, packing)?;
-        variables(xml, description)?;
+        variables(xml, model)?;
         structure(xml, model)
     })
 }
 
-fn variables(xml: &mut Xml, description: &'static Description) -> io::Result<()> {
+fn variables(xml: &mut Xml, model: &dyn Described) -> io::Result<()> {
     nested(xml, "ModelVariables", &[], |xml| {
-        super::variables(description, place).into_iter().try_for_each(|Variable { about, value }| {
+        super::variables(model, place).into_iter().try_for_each(|Variable { about, value }| {
             nested(xml, "ScalarVariable", &about, |xml| empty(xml, "Real", &value))
         })
     })

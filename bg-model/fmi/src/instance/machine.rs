@@ -8,7 +8,7 @@ use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::mechanism::ModelVisitor;
 use bg_model::nalgebra::SVector;
 use bg_model::run::Request;
-use bg_model::simulation::{Ongoing, Settings};
+use bg_model::simulation::{Ongoing, Settings, sizes};
 use bg_model::standing::{CLOSE, Misplaced, Standing};
 use bg_model::statistics::Statistics;
 use bg_model::system::Model;
@@ -36,6 +36,8 @@ pub(crate) trait Machine {
     fn branches(&self) -> &[bool];
     /// Whether the branches are found.
     fn knows_branches(&self) -> bool;
+    /// How large each state is to be taken for, in its unit, above zero: what a host measures its errors by.
+    fn nominals(&self) -> Vec<f64>;
     /// Writes dx/dt.
     fn rates(&self, rates: &mut [f64]);
     fn outputs(&self, outputs: &mut [f64]);
@@ -126,6 +128,25 @@ fn settings<const N: usize>(rtol: f64) -> Settings<N> {
     Settings { tolerances: Tolerances::relative(rtol), ..Settings::default() }
 }
 
+/// Nominal values of these sizes: 1 SI unit, as the standard has it, where nothing is known.
+fn above_zero<const N: usize>(sizes: &SVector<f64, N>) -> Vec<f64> {
+    sizes.iter().map(|&size| if size > 0.0 && size.is_finite() { size } else { 1.0 }).collect()
+}
+
+/// The nominal values of a model's states at its start.
+pub(crate) struct Nominals;
+
+impl ModelVisitor<f64> for Nominals {
+    type Output = Option<Vec<f64>>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M>,
+    {
+        Some(above_zero(&sizes(model, 0.0, &model.start().ok()?)))
+    }
+}
+
 fn misplaced(fault: Misplaced) -> Fault {
     Fault::Misplaced(fault.to_string())
 }
@@ -189,6 +210,10 @@ where
 
     fn knows_branches(&self) -> bool {
         self.negative.is_some()
+    }
+
+    fn nominals(&self) -> Vec<f64> {
+        above_zero(&sizes(&self.model, self.t, &self.x).sup(&self.largest))
     }
 
     fn rates(&self, rates: &mut [f64]) {

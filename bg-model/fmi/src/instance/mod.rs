@@ -18,7 +18,7 @@ use bg_model::statistics::Statistics;
 use crate::exported::{Exported, Made};
 use crate::variables::{Counts, Kind, names};
 pub use fault::Fault;
-pub(crate) use machine::{AtStart, Machine};
+pub(crate) use machine::{AtStart, Machine, Nominals};
 pub use saved::Snapshot;
 pub(crate) use signals::Signals;
 pub(crate) use slopes::{InDuals, Slopes};
@@ -245,6 +245,16 @@ impl Instance {
         same_length("derivatives", dx.len(), self.counts.states)?;
         self.machine()?.rates(dx);
         self.check_finite(dx, |model, index| (format!("der({})", model.states[index].name), None))
+    }
+
+    /// Reads the nominal values of the states, above zero: where an error norm would take them to count.
+    ///
+    /// # Errors
+    /// [`Fault::Length`], what keeps the model from its start.
+    pub fn nominals(&mut self, nominals: &mut [f64]) -> Result<(), Fault> {
+        same_length("nominal values", nominals.len(), self.counts.states)?;
+        nominals.copy_from_slice(&self.machine()?.nominals());
+        Ok(())
     }
 
     /// Reads the event indicators: the guards of the switches in their present branches.

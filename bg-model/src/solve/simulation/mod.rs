@@ -25,6 +25,7 @@ pub use observer::{EachSample, EachStep, Observer, Switching};
 pub use ongoing::Ongoing;
 pub use recording::{Column, MissingColumn, NoNumber, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
+pub use sizes::sizes;
 
 use crate::model::system::System;
 use crate::solve::event::{Condition, Located, Never};

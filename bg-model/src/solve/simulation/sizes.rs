@@ -21,8 +21,8 @@ use nalgebra::SVector;
 use super::rounding::is_exposed;
 use crate::model::capability::Storages;
 use crate::model::description::StateKind;
-use crate::model::system::System;
-use crate::solve::integrator::{Absolute, Method, Point, Scale, Tolerances, displaced, rounding};
+use crate::model::system::{System, branches};
+use crate::solve::integrator::{Absolute, Dop853, Method, Point, Scale, Tolerances, displaced, rounding};
 use crate::solve::stepper::Stepper;
 
 /// The part of a state's largest value that its absolute tolerance is, over the relative one. A smaller one costs steps where states
@@ -378,6 +378,25 @@ impl<const N: usize> SizeMonitor<N> {
     fn size(&self, i: usize) -> f64 {
         larger(OWN * self.sizes.own[i], BESIDE * self.sizes.beside[i])
     }
+}
+
+/// How large each state is to be taken for at time `t` (s) and state `x`, in its unit: where an error norm would take it to count, by its
+/// own value, the stored energy and what present forces can do; of a start at rest by what happens within a second. Zero where
+/// nothing is known. For the nominal values that other programs ask for.
+pub fn sizes<Sys, const N: usize, const G: usize>(system: &Sys, t: f64, x: &SVector<f64, N>) -> SVector<f64, N>
+where
+    Sys: System<f64, N, G>,
+{
+    const AHEAD: f64 = 1.0;
+    let (mut method, tolerances) = (Dop853::new(), Tolerances::default());
+    let mut stepper = Stepper::new(system, &mut method, Scale::from(&tolerances), Point::at(t, *x));
+    stepper.negative = branches(system, t, x);
+    stepper.evaluate_start();
+    let mut monitor = SizeMonitor::new(&tolerances, t);
+    monitor.start(&mut stepper);
+    monitor.begin(&mut stepper);
+    monitor.look_ahead(&mut stepper, AHEAD);
+    monitor.sizes.own.sup(&monitor.sizes.beside)
 }
 
 /// The size of the machine: its largest coordinate, m.

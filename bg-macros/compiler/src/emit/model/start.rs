@@ -93,7 +93,7 @@ impl Emission<'_> {
                 #guess
                 let unknowns = ::bg_model::assembly::close(guess, GAPS, |unknowns, gaps| {
                     gaps.copy_from_slice(&Model::<f64>::gaps(&numbers, unknowns));
-                })?;
+                }, |unknowns, sizes| sizes.copy_from_slice(&Model::<f64>::gap_sizes(&numbers, unknowns)))?;
                 #required
             };
         }
@@ -109,7 +109,7 @@ impl Emission<'_> {
             };
             let poses = ::bg_model::assembly::close([#(guess[#poses]),*], GAPS, |poses, gaps| {
                 gaps.copy_from_slice(&Model::<f64>::gaps(&numbers, &whole(poses)));
-            })?;
+            }, |poses, sizes| sizes.copy_from_slice(&Model::<f64>::gap_sizes(&numbers, &whole(poses))))?;
             let unknowns = whole(&poses);
             #required
         }
