@@ -4,7 +4,6 @@
 
 use std::io;
 
-
 use super::{Packing, Variable, Xml, categories, dependencies, empty, experiment, head, initial, nested, units};
 use crate::exported::Described;
 use crate::variables::{Counts, Kind};

@@ -8,7 +8,7 @@
 //! - A momentum or displacement x counts beside sqrt(2 E / (d2E/dx2)), E the largest energy so far; at the start at least the work of
 //!   the forces there over the machine's length, or over a radian.
 //! - A component of an orientation and an angle count beside 1, a position beside the machine's length.
-//! - An integral and what has no second derivative count beside the way that their rate leads in the time so far where the storages
+//! - An integral, a way and what has no second derivative count beside the way that their rate leads in the time so far where the storages
 //!   are displaced by their sizes.
 //! - In a system that does not know what it stores, states count beside the largest of them.
 //!
@@ -252,9 +252,10 @@ impl<const N: usize> SizeMonitor<N> {
                 StateKind::Momentum(_) | StateKind::Displacement(_) if curvatures[i] != 0.0 => {
                     libm::sqrt(2.0 * *energy / curvatures[i].abs())
                 }
-                StateKind::Orientation(..) | StateKind::Angle | StateKind::Way => 1.0,
+                StateKind::Orientation(..) | StateKind::Angle => 1.0,
+                StateKind::Way if state.unit == "rad" => 1.0,
                 StateKind::Position(_) => length,
-                StateKind::Momentum(_) | StateKind::Displacement(_) | StateKind::Integral => 0.0,
+                StateKind::Momentum(_) | StateKind::Displacement(_) | StateKind::Way | StateKind::Integral => 0.0,
             };
             beside[i] = larger(size, beside[i]);
         }
@@ -320,7 +321,7 @@ impl<const N: usize> SizeMonitor<N> {
         let Some(storages) = stepper.system.storages() else { return };
         let states = storages.states();
         let is_stored = |i: usize| matches!(states[i].kind, StateKind::Momentum(_) | StateKind::Displacement(_));
-        let drifts = |i: usize| matches!(states[i].kind, StateKind::Position(_) | StateKind::Integral);
+        let drifts = |i: usize| matches!(states[i].kind, StateKind::Position(_) | StateKind::Way | StateKind::Integral);
         if !(0..N).any(drifts) {
             return;
         }
