@@ -35,7 +35,7 @@ use crate::model::standing::{CLOSE, Standing};
 use crate::model::system::Model;
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
-use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason};
+use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason, Scale};
 use crate::solve::simulation::{Observer, Part, Recorder, Samples, Span, Switching};
 use crate::solve::statistics::Statistics;
 
@@ -404,6 +404,12 @@ impl<const N: usize, const G: usize> Observer<N, G> for Another<'_, N, G> {
     fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
         if let Some(another) = &mut self.0 {
             another.sample(t, x, negative);
+        }
+    }
+
+    fn measured(&mut self, scale: &Scale<N>) {
+        if let Some(another) = &mut self.0 {
+            another.measured(scale);
         }
     }
 
