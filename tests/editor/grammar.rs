@@ -59,7 +59,7 @@ fn of_the_parser() -> Words {
     between(&text("bg-macros/compiler/src/graph/term.rs"), "NAMES: [", "];")
         .for_each(|table| quoted(table, &mut words));
     words.extend(DOMAINS.iter().map(|domain| domain.name.to_owned()));
-    words.extend(["guess", "ground", "pub"].map(str::to_owned));
+    words.extend(["guess", "ground", "pub", "unwrapped"].map(str::to_owned));
     words.retain(|word| !OTHERS.contains(&word.as_str()));
     words
 }

@@ -11,8 +11,6 @@ use nalgebra::SVector;
 use super::collocation::{Collocation, GAUSS6};
 use super::{Flow, Method, Point, Scale, StepControl};
 
-/// What corrections of a fixed step are measured by in place of the relative tolerance: such a step has none.
-const OF_FIXED: f64 = 1e-8;
 /// A disagreement of this part of a state shows that a step's equations were not solved.
 const LOST: f64 = 1e-3;
 
@@ -60,6 +58,10 @@ impl<const N: usize> Method<N> for Gauss6<N> {
         self.control
     }
 
+    fn measures(&self) -> bool {
+        true
+    }
+
     fn attempt(
         &mut self,
         flow: &impl Flow<N>,
@@ -68,14 +70,6 @@ impl<const N: usize> Method<N> for Gauss6<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
-        let own;
-        let scale = if let StepControl::Fixed { .. } = self.control {
-            let absolute = scale.absolute * (OF_FIXED / scale.relative);
-            own = Scale { relative: OF_FIXED, absolute, ..*scale };
-            &own
-        } else {
-            scale
-        };
         let error = match self.core.solve(flow, start, h, scale) {
             Ok(()) => {
                 *end = SVector::from_fn(|i, _| start.x[i] + self.core.quadrature(i, h));

@@ -12,6 +12,10 @@ macro_rules! hand_on {
             $present!((&) self, method => method.control())
         }
 
+        fn measures(&self) -> bool {
+            $present!((&) self, method => method.measures())
+        }
+
         fn error_after(
             &mut self,
             flow: &impl Flow<N>,

@@ -182,6 +182,11 @@ pub trait Method<const N: usize> {
     /// How its steps are to be chosen.
     fn control(&self) -> StepControl;
 
+    /// Whether its steps are measured by a scale: those of a fixed size have no tolerances, unless they solve equations.
+    fn measures(&self) -> bool {
+        self.control().order().is_some()
+    }
+
     /// Whether it needs the Taylor series of the system ([`System::series`](crate::system::System::series)).
     fn needs_series(&self) -> bool {
         false

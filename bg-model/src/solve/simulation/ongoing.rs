@@ -153,9 +153,9 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         let stepper = Stepper::new(system, method, Scale::from(&settings.tolerances), self.start);
         let mut run = Run::new(stepper, Never, control, span, settings);
         run.stepper.statistics = self.statistics;
-        if let Some(sizes) = self.sizes.take() {
+        if let Some(mut sizes) = self.sizes.take() {
+            sizes.go_on(&run.sizes, &mut run.stepper.scale);
             run.sizes = sizes;
-            run.sizes.go_on(&settings.tolerances, &mut run.stepper.scale);
         }
         let outcome = settings::check(system, control, &self.start.x, span, settings)
             .and_then(|()| settings::check_series(system, needs_series))

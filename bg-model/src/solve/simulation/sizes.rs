@@ -96,10 +96,9 @@ impl<const N: usize> SizeMonitor<N> {
         }
     }
 
-    /// Goes on with these tolerances.
-    pub fn go_on(&mut self, tolerances: &Tolerances<N>, scale: &mut Scale<N>) {
-        self.relative = tolerances.relative;
-        self.is_leading = tolerances.absolute == Absolute::OfSizes;
+    /// Goes on with the tolerances of another one.
+    pub fn go_on(&mut self, other: &Self, scale: &mut Scale<N>) {
+        (self.relative, self.is_leading) = (other.relative, other.is_leading);
         self.lead(scale);
     }
 
@@ -144,7 +143,7 @@ impl<const N: usize> SizeMonitor<N> {
         Sys: System<f64, N, G>,
         M: Method<N>,
     {
-        if !self.is_leading || stepper.method.control().order().is_none() {
+        if !self.is_leading || !stepper.method.measures() {
             return;
         }
         if let Some(ahead) = self.way_ahead(stepper, longest) {
@@ -212,8 +211,8 @@ impl<const N: usize> SizeMonitor<N> {
         }
         let (end, negative, h) = (stepper.end, stepper.negative, stepper.h);
         self.measure(stepper.system, &end, &negative);
-        // A fixed step has no tolerances: projections alone are measured.
-        if stepper.method.control().order().is_some() {
+        // Else projections alone are measured.
+        if stepper.method.measures() {
             self.drift(stepper, &end, end.t - self.t0);
             self.listen(stepper, &end, h);
         } else {

@@ -107,7 +107,7 @@ fn scenes_runs_and_folders_are_compared() {
 fn what_the_model_consists_of_is_printed() {
     let folder = tempfile::tempdir().unwrap();
     let text = |arguments: &[&str]| text(folder.path(), arguments);
-    assert!(text(&["scene"]).lines().nth(1).unwrap().starts_with("  literal      19 "));
+    assert!(text(&["scene"]).lines().nth(1).unwrap().starts_with("  literal      20 "));
     assert!(text(&["states"]).contains("rod.linear.p_x"));
     assert!(text(&["equations"]).contains("d(rod.position)/dt = "));
     assert!(text(&["parameters"]).contains("Length of the rod."));
