@@ -9,6 +9,8 @@ use bg_model::integrator::{Change, Integrator};
 use bg_model::run::{Request, Trajectory};
 use serde::{Serialize, Serializer};
 
+use crate::inputs::{self, Named};
+
 /// A statement about a run and what the run says to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
@@ -51,6 +53,9 @@ pub struct Summary {
     pub scene: String,
     /// The parameters that differ from their defaults, as `name = value unit`.
     pub changed_parameters: Vec<String>,
+    /// The inputs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<Named>,
     /// The end that was asked for, s.
     pub t_end_s: f64,
     /// The start, s, of a run that goes on from a saved state; else nothing.
@@ -127,8 +132,8 @@ fn as_map<S: Serializer>(entries: &[Entry], serializer: S) -> Result<S::Ok, S::E
 }
 
 impl Summary {
-    /// Summarises a run of the scene called `scene`; `failure` says why it stopped before its end, if it did. Files and changed
-    /// parameters are added by the caller.
+    /// Summarises a run of the scene called `scene`; `failure` says why it stopped before its end, if it did. Files, changed
+    /// parameters and inputs are added by the caller.
     #[must_use]
     pub fn new(scene: &str, run: &Trajectory, failure: Option<String>, additions: Additions) -> Self {
         let Request { method, fixed_step, t_end, rtol, .. } = run.request;
@@ -139,6 +144,7 @@ impl Summary {
         Self {
             scene: scene.to_owned(),
             changed_parameters: Vec::new(),
+            inputs: Vec::new(),
             t_end_s: t_end,
             from_s: (from != 0.0).then_some(from),
             reached_s: reached,
@@ -196,6 +202,7 @@ impl Summary {
             self.changed_parameters.join(", ")
         };
         lines.push(("parameters", changed));
+        lines.extend(inputs::lines(&self.inputs, [self.from_s.unwrap_or(0.0), self.reached_s]));
         lines.push(("integrator", self.integrators.join(", ")));
         lines.push(match self.fixed_step_s {
             Some(step) => ("fixed step", format!("{step:e} s")),
