@@ -10,6 +10,7 @@ use bg_model::run::{Request, Trajectory};
 use serde::{Serialize, Serializer};
 
 use crate::inputs::{self, Named};
+use crate::parameters::number;
 
 /// A statement about a run and what the run says to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -104,6 +105,9 @@ pub struct Summary {
     pub uncontrolled: Vec<&'static str>,
     /// Switchings of the stroke.
     pub events: u64,
+    /// The longest time between two samples, s: ranges and peaks are those of samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample_step_s: Option<f64>,
     /// Time on the wall clock, s.
     pub wall_time_s: f64,
     /// Simulated time over wall time.
@@ -167,6 +171,7 @@ impl Summary {
             is_at_rounding: statistics.is_at_rounding(),
             uncontrolled: run.uncontrolled.clone(),
             events: statistics.events,
+            sample_step_s: longest_step(&run.times),
             wall_time_s: wall,
             times_real_time: (reached - from) / wall,
             entries: additions.entries,
@@ -250,6 +255,10 @@ impl Summary {
         lines.push(("switching events", self.events.to_string()));
         let wall = format!("{:.3} s, {:.1} times faster than real time", self.wall_time_s, self.times_real_time);
         lines.push(("wall time", wall));
+        if let Some(step) = self.sample_step_s {
+            let text = format!("at most {} s apart; ranges and peaks are those of samples", short(step));
+            lines.push(("samples", text));
+        }
         lines.extend(self.lines.iter().map(|(name, text)| (name.as_str(), text.clone())));
         lines
     }
@@ -272,6 +281,17 @@ impl fmt::Display for Summary {
         }
         Ok(())
     }
+}
+
+/// The longest time between two of the samples at `times` (s); none of a single one.
+pub(crate) fn longest_step(times: &[f64]) -> Option<f64> {
+    times.windows(2).map(|pair| pair[1] - pair[0]).reduce(f64::max)
+}
+
+/// Six digits, plain where that is short.
+pub(crate) fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    number(rounded)
 }
 
 /// A tolerance to twelve digits: a tenth of 1e-10 reads 1e-11, not 1.0000000000000001e-11.

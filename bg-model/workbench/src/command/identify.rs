@@ -99,8 +99,13 @@ pub fn identify<Me: Scenes>(program: &Program<Me>, arguments: &IdentifyArguments
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
     let printed = console::print(&format!("{told}\nwritten: {written}\n"));
-    let unfinished =
-        (!found.has_converged).then(|| "the fit did not converge; start nearer with --set, or fit fewer".to_owned());
+    let unfinished = if !found.has_converged {
+        Some("the fit did not converge; start nearer with --set, or fit fewer".to_owned())
+    } else if !found.leaves_noise() {
+        Some("what the fit leaves is no noise; start elsewhere with --set, or fit what else may differ".to_owned())
+    } else {
+        None
+    };
     let faults = faults.iter().map(ToString::to_string).chain(printed.err().map(|fault| fault.to_string()));
     Ok(ended(faults.chain(unfinished)))
 }

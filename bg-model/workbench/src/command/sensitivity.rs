@@ -25,6 +25,7 @@ use crate::scenes::Scene;
 use crate::sensitivity::{
     Course, Influence, Measure, Question, courses, courses_csv, csv, influences, text, without_influence,
 };
+use crate::summary::{longest_step, short};
 
 const TABLE: &str = "sensitivity.txt";
 const CSV: &str = "sensitivity.csv";
@@ -217,8 +218,10 @@ fn told(found: &Sensitivities, all: &[Influence], question: &Question, most: usi
         format!("\nno influence on these outputs: {}\n", still.join(", "))
     };
     let (t, events) = (found.trajectory.last.t, found.trajectory.statistics.events);
+    let samples = longest_step(&found.trajectory.times)
+        .map_or_else(String::new, |step| format!("measures are those of samples at most {} s apart\n", short(step)));
     format!(
-        "derivatives of {} outputs by {} parameters over {t} s, {events} events\n\n{}{still}",
+        "derivatives of {} outputs by {} parameters over {t} s, {events} events\n{samples}\n{}{still}",
         question.outputs.len(),
         question.parameters.len(),
         text(all, most)

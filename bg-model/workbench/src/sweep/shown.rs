@@ -49,6 +49,7 @@ pub fn lines(folder: &Folder) -> Result<String, FolderError> {
         text("runs"),
     );
     said += &inputs(&recipe);
+    said += &samples(&recipe);
     for (reason, count, first) in reasons {
         let runs = if count == 1 { format!("run {first}") } else { format!("{count} runs, the first is {first}") };
         writeln!(said, "         {runs}: {reason}").expect("memory takes all text");
@@ -102,6 +103,12 @@ fn inputs(recipe: &toml::Table) -> String {
         format!("input    {name} = {}\n", file.unwrap_or(value).to_string().replace('"', ""))
     };
     table(INPUTS).into_iter().flatten().map(line).collect()
+}
+
+/// How far the samples are apart that columns are made from.
+fn samples(recipe: &toml::Table) -> String {
+    let step = recipe.get("step").map_or_else(String::new, ToString::to_string);
+    format!("samples  every {step} s; max, min, mean and integral are those of samples\n")
 }
 
 fn whole(recipe: &toml::Table, name: &str) -> usize {
