@@ -339,6 +339,13 @@ mod tests {
     }
 
     #[test]
+    fn samples_are_apart_by_the_longest_of_their_steps() {
+        assert_eq!(longest_step(&[0.0, 0.25, 0.375, 1.0, 1.5]), Some(0.625));
+        assert_eq!((longest_step(&[2.0]), longest_step(&[])), (None, None));
+        assert_eq!(short(0.1 + 0.2), "0.3");
+    }
+
+    #[test]
     fn a_tolerance_reads_as_it_was_meant() {
         assert_eq!([1e-10 / 10.0, 1e-8 / 10.0, 2.5e-7, 1.0].map(tolerance), ["1e-11", "1e-9", "2.5e-7", "1e0"]);
     }
