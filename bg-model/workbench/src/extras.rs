@@ -8,7 +8,7 @@ use serde_json::json;
 
 #[cfg(not(target_arch = "wasm32"))]
 use crate::figures::{Figure, outputs};
-use crate::summary::{Additions, Entry};
+use crate::summary::{Additions, Entry, short};
 
 /// What a program adds to the workbench. Every method has a default that serves any mechanism.
 pub trait Extras {
@@ -96,12 +96,6 @@ fn line(column: &Column) -> (String, String) {
     let unit = if column.unit == "1" { "" } else { &column.unit };
     let text = format!("{start} to {end}, between {least} and {largest} {unit}");
     (column.name.clone(), text.trim_end().to_owned())
-}
-
-/// Six digits, plain where that is short.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    crate::parameters::number(rounded)
 }
 
 /// The first and the last value, the least and the largest; not a number of a run without samples.

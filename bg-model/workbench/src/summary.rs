@@ -9,6 +9,9 @@ use bg_model::integrator::{Change, Integrator};
 use bg_model::run::{Request, Trajectory};
 use serde::{Serialize, Serializer};
 
+use crate::inputs::{self, Named};
+use crate::parameters::number;
+
 /// A statement about a run and what the run says to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
@@ -51,6 +54,9 @@ pub struct Summary {
     pub scene: String,
     /// The parameters that differ from their defaults, as `name = value unit`.
     pub changed_parameters: Vec<String>,
+    /// The inputs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<Named>,
     /// The end that was asked for, s.
     pub t_end_s: f64,
     /// The start, s, of a run that goes on from a saved state; else nothing.
@@ -99,6 +105,9 @@ pub struct Summary {
     pub uncontrolled: Vec<&'static str>,
     /// Switchings of the stroke.
     pub events: u64,
+    /// The longest time between two samples, s: ranges and peaks are those of samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample_step_s: Option<f64>,
     /// Time on the wall clock, s.
     pub wall_time_s: f64,
     /// Simulated time over wall time.
@@ -127,8 +136,8 @@ fn as_map<S: Serializer>(entries: &[Entry], serializer: S) -> Result<S::Ok, S::E
 }
 
 impl Summary {
-    /// Summarises a run of the scene called `scene`; `failure` says why it stopped before its end, if it did. Files and changed
-    /// parameters are added by the caller.
+    /// Summarises a run of the scene called `scene`; `failure` says why it stopped before its end, if it did. Files, changed
+    /// parameters and inputs are added by the caller.
     #[must_use]
     pub fn new(scene: &str, run: &Trajectory, failure: Option<String>, additions: Additions) -> Self {
         let Request { method, fixed_step, t_end, rtol, .. } = run.request;
@@ -139,6 +148,7 @@ impl Summary {
         Self {
             scene: scene.to_owned(),
             changed_parameters: Vec::new(),
+            inputs: Vec::new(),
             t_end_s: t_end,
             from_s: (from != 0.0).then_some(from),
             reached_s: reached,
@@ -161,6 +171,7 @@ impl Summary {
             is_at_rounding: statistics.is_at_rounding(),
             uncontrolled: run.uncontrolled.clone(),
             events: statistics.events,
+            sample_step_s: longest_step(&run.times),
             wall_time_s: wall,
             times_real_time: (reached - from) / wall,
             entries: additions.entries,
@@ -196,6 +207,7 @@ impl Summary {
             self.changed_parameters.join(", ")
         };
         lines.push(("parameters", changed));
+        lines.extend(inputs::lines(&self.inputs, [self.from_s.unwrap_or(0.0), self.reached_s]));
         lines.push(("integrator", self.integrators.join(", ")));
         lines.push(match self.fixed_step_s {
             Some(step) => ("fixed step", format!("{step:e} s")),
@@ -243,6 +255,10 @@ impl Summary {
         lines.push(("switching events", self.events.to_string()));
         let wall = format!("{:.3} s, {:.1} times faster than real time", self.wall_time_s, self.times_real_time);
         lines.push(("wall time", wall));
+        if let Some(step) = self.sample_step_s {
+            let text = format!("at most {} s apart; ranges and peaks are those of samples", short(step));
+            lines.push(("samples", text));
+        }
         lines.extend(self.lines.iter().map(|(name, text)| (name.as_str(), text.clone())));
         lines
     }
@@ -265,6 +281,17 @@ impl fmt::Display for Summary {
         }
         Ok(())
     }
+}
+
+/// The longest time between two of the samples at `times` (s); none of a single one.
+pub(crate) fn longest_step(times: &[f64]) -> Option<f64> {
+    times.windows(2).map(|pair| pair[1] - pair[0]).reduce(f64::max)
+}
+
+/// Six digits, plain where that is short.
+pub(crate) fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    number(rounded)
 }
 
 /// A tolerance to twelve digits: a tenth of 1e-10 reads 1e-11, not 1.0000000000000001e-11.
@@ -309,6 +336,13 @@ mod tests {
             "1 more change",
         ];
         assert_eq!(texts, expected);
+    }
+
+    #[test]
+    fn samples_are_apart_by_the_longest_of_their_steps() {
+        assert_eq!(longest_step(&[0.0, 0.25, 0.375, 1.0, 1.5]), Some(0.625));
+        assert_eq!((longest_step(&[2.0]), longest_step(&[])), (None, None));
+        assert_eq!(short(0.1 + 0.2), "0.3");
     }
 
     #[test]

@@ -7,6 +7,7 @@
 
 mod data;
 pub mod fit;
+mod noise;
 
 use bg_model::description::ParameterInfo;
 use bg_model::mechanism::Mechanism;
@@ -19,6 +20,7 @@ use thiserror::Error;
 
 pub use data::{Data, Measured};
 use fit::{Fitted, Problem, fit};
+pub use noise::{Left, NoNoise};
 
 /// A parameter that may change.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,7 +89,7 @@ pub struct Estimate {
     /// The value found, in its unit.
     pub value: f64,
     /// The ends of the interval that has the true value with 95 % confidence, where the model and normal noise hold; none where the
-    /// data do not determine it.
+    /// data do not determine it, or what is left of a column is no noise.
     pub interval: Option<[f64; 2]>,
     /// Whether it is at a bound.
     pub is_held: bool,
@@ -100,8 +102,8 @@ pub struct Column {
     pub output: usize,
     /// The model's values at all instants, in the output's unit.
     pub model: Vec<f64>,
-    /// Its noise: the root of the mean square of its residuals, in the output's unit.
-    pub noise: f64,
+    /// What is left of it.
+    pub left: Left,
 }
 
 /// What an identification found.
@@ -124,6 +126,14 @@ pub struct Identified {
     pub has_converged: bool,
 }
 
+impl Identified {
+    /// Whether what is left of all columns is noise; else nothing is known of how far the parameters are off.
+    #[must_use]
+    pub fn leaves_noise(&self) -> bool {
+        self.columns.iter().all(|column| column.left.fault.is_none())
+    }
+}
+
 /// Most values that one fit tries, and fits for the noise to settle.
 const EVALUATIONS: usize = 60;
 const FITS: usize = 4;
@@ -131,6 +141,9 @@ const FITS: usize = 4;
 const SETTLED: f64 = 0.02;
 /// Noise below this part of a column's size is rounding and the run's own error.
 const EXACT: f64 = 1e-9;
+/// The run's own error in parts of a column's size: so many relative tolerances of a step, since errors of steps add up, and at most this.
+const OWN_ERROR: f64 = 1e3;
+const MOST_OWN: f64 = 1e-3;
 /// Singular values of the derivatives, each column of length one, below this part of the largest: the data do not determine what is
 /// along them.
 const SAME: f64 = 1e-7;
@@ -256,6 +269,7 @@ fn fitted(
         return Err(IdentifyError::TooFew { values: count, parameters: variables.len() });
     }
     let t_end = *data.times.last().expect("there are values");
+    let rtol = request.rtol;
     let request = Request { samples: Samples::At(data.times.clone()), t_end, ..request.clone() };
     let inner = |value: fn(&Variable) -> f64| {
         DVector::from_iterator(variables.len(), variables.iter().map(|of| of.inner(value(of))))
@@ -277,17 +291,22 @@ fn fitted(
         let found = noise_of(data, models, &sizes_of_columns);
         let is_settled = found.iter().zip(&misfit.noise).all(|(found, noise)| (found - noise).abs() <= SETTLED * noise);
         if is_settled || round + 1 == FITS {
-            let columns = data.columns.iter().zip(found).map(|(column, noise)| Column {
-                output: column.output,
-                model: models[column.output].values.clone(),
-                noise,
-            });
+            let columns = data.columns.iter().map(|measured| column(measured, &models[measured.output].values, rtol));
             let runs = (evaluations, misfit.derivatives);
             return Ok(identified(variables, &fitted, columns.collect(), runs));
         }
         misfit.noise = found;
     }
     unreachable!("the last of several fits is given")
+}
+
+/// A measured column beside the values of a run with the relative tolerance `rtol`.
+fn column(measured: &Measured, model: &[f64], rtol: f64) -> Column {
+    let residuals = measured.values.iter().zip(model).filter_map(|(value, model)| Some(model - (*value)?));
+    let size = measured.values.iter().flatten().fold(0.0_f64, |size, value| size.max(value.abs()));
+    let error = size * (OWN_ERROR * rtol).clamp(EXACT, MOST_OWN);
+    let left = noise::left(&residuals.collect::<Vec<_>>(), spread(&measured.values), error);
+    Column { output: measured.output, model: model.to_vec(), left }
 }
 
 /// The root of the mean square of what a column is off its mean; of a constant one its size, or 1.
@@ -360,11 +379,12 @@ fn identified(
         variance * sum / (norms[i] * norms[j])
     });
     let quantile = student(freedom);
+    let is_noise = columns.iter().all(|column| column.left.fault.is_none());
     let estimates = variables.iter().enumerate().map(|(k, variable)| {
         let off = quantile * covariance[(k, k)].sqrt();
         let ends = [fitted.x[k] - off, fitted.x[k] + off].map(|end| variable.outer(end));
-        let interval =
-            (!is_undetermined(k) && !fitted.held[k] && ends.iter().all(|end| end.is_finite())).then_some(ends);
+        let interval = (is_noise && !is_undetermined(k) && !fitted.held[k] && ends.iter().all(|end| end.is_finite()))
+            .then_some(ends);
         Estimate { variable: variable.clone(), value: variable.outer(fitted.x[k]), interval, is_held: fitted.held[k] }
     });
     let correlation = |i: usize, j: usize| {

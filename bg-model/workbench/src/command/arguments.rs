@@ -143,7 +143,8 @@ pub struct ModelArguments {
     pub params: Option<PathBuf>,
 
     /// Set an input of the model, 0 otherwise: to a number, or to the second column of a CSV file over the first, in s. A column
-    /// by its name as FILE.csv:COLUMN; straight lines between the rows, a spline with cubic:FILE.csv
+    /// by its name as FILE.csv:COLUMN; straight lines between the rows, a spline with cubic:FILE.csv. The first line may be names or
+    /// numbers; outside the rows the value of the nearest one is held
     #[arg(long = "input", value_name = "NAME=VALUE|FILE.csv", allow_hyphen_values = true)]
     pub input: Vec<String>,
 }

@@ -19,11 +19,17 @@ use crate::samples::read_file;
 
 pub fn compare<Me: Scenes>(program: &Program<Me>, arguments: &CompareArguments) -> Result<ExitCode, InputError> {
     let mut chosen = parameters::merge::<Me::Parameters>(arguments.params.as_deref(), &arguments.set)?;
-    chosen.inputs = inputs::chosen(&arguments.input, Me::describe().inputs)?;
+    let (inputs, named) = inputs::chosen_and_named(&arguments.input, Me::describe().inputs)?;
+    chosen.inputs = inputs;
     let request = request(&arguments.integration, 0.0, None)?;
     let [a, b] = [&arguments.a, &arguments.b].map(|name| side(program, name, &chosen, &request));
     let ((a, first), (b, second)) = (a?, b?);
-    let code = say(&text([&arguments.a, &arguments.b], &a, &b));
+    let is_made = |name: &String| program.scenes.iter().any(|scene| scene.name == *name);
+    let inputs = match [&arguments.a, &arguments.b].into_iter().any(is_made) {
+        true => inputs::text(&named, [0.0, request.t_end]),
+        false => String::new(),
+    };
+    let code = say(&format!("{}{inputs}", text([&arguments.a, &arguments.b], &a, &b)));
     let failures: Vec<String> = first.into_iter().chain(second).collect();
     Ok(if failures.is_empty() { code } else { ended(failures) })
 }

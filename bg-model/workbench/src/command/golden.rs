@@ -18,7 +18,8 @@ use crate::running::{Begin, Outcome};
 pub fn record<Me: Scenes>(program: &Program<Me>, arguments: &RecordArguments) -> Result<ExitCode, InputError> {
     let RecordArguments { model, integration, out, name } = arguments;
     let mut chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
-    chosen.inputs = inputs::chosen(&model.input, Me::describe().inputs)?;
+    let (inputs, named) = inputs::chosen_and_named(&model.input, Me::describe().inputs)?;
+    chosen.inputs = inputs;
     let integration = integration.integration();
     let request = integration.request(0.0, None)?;
     let scene = program.scene_called(&model.scene);
@@ -29,7 +30,7 @@ pub fn record<Me: Scenes>(program: &Program<Me>, arguments: &RecordArguments) ->
     if let Some(failure) = failure {
         return Ok(ended([format!("the run failed, nothing is recorded: {failure}")]));
     }
-    let written = place.write(&scene.name, &model.input, integration, &chosen.values, &run);
+    let written = place.write(&scene.name, (&model.input, &named), integration, &chosen.values, &run);
     Ok(ended(written.and_then(|line| console::print(&format!("{line}\n"))).err()))
 }
 

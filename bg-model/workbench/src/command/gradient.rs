@@ -79,7 +79,8 @@ pub fn gradient<Me: Scenes>(program: &Program<Me>, arguments: &GradientArguments
     };
     let values = &arguments.model;
     let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
-    chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
+    let (inputs, named) = inputs::chosen_and_named(&values.input, Me::describe().inputs)?;
+    chosen.inputs = inputs;
     let scene = program.scene_called(&values.scene);
     let parameters = adjustable(scene, &chosen, &arguments.by, "--by")?;
     let mut request = request(&arguments.integration, 0.0, None)?;
@@ -118,11 +119,12 @@ pub fn gradient<Me: Scenes>(program: &Program<Me>, arguments: &GradientArguments
     let Question { words, unit, .. } = question;
     let (events, t_end) = (found.trajectory.statistics.events, request.t_end);
     let told = format!(
-        "{words}: {:.6e}{}{unit}; derivatives by {} parameters over {t_end} s, {events} events\n\n{}",
+        "{words}: {:.6e}{}{unit}; derivatives by {} parameters over {t_end} s, {events} events\n\n{}{}",
         found.value,
         if unit.is_empty() { "" } else { " " },
         slopes.len(),
-        text(found.value, &unit, &slopes)
+        text(found.value, &unit, &slopes),
+        inputs::text(&named, [0.0, t_end])
     );
     let written = write(folder, &told, &csv(found.value, &unit, &slopes));
     let place = written

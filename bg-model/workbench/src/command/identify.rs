@@ -75,7 +75,8 @@ pub struct IdentifyArguments {
 pub fn identify<Me: Scenes>(program: &Program<Me>, arguments: &IdentifyArguments) -> Result<ExitCode, InputError> {
     let values = &arguments.model;
     let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
-    chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
+    let (inputs, named_inputs) = inputs::chosen_and_named(&values.input, Me::describe().inputs)?;
+    chosen.inputs = inputs;
     let scene = program.scene_called(&values.scene);
     let outputs = scene.description.outputs;
     let mut variables: Vec<Variable> =
@@ -92,13 +93,19 @@ pub fn identify<Me: Scenes>(program: &Program<Me>, arguments: &IdentifyArguments
     let request = integration(arguments, &data)?;
     let fitting = Fitting { scene, scenes: &program.scenes, chosen: &chosen, request, data: &data, variables };
     let found = Me::model(scene.index, fitting)?;
-    let told = report::text(&found, &data, outputs);
+    let inputs = inputs::text(&named_inputs, [0.0, data.times.last().copied().unwrap_or_default()]);
+    let told = format!("{}{inputs}", report::text(&found, &data, outputs));
     let (written, faults) = write(folder, &told, &found, &data, scene);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
     let printed = console::print(&format!("{told}\nwritten: {written}\n"));
-    let unfinished =
-        (!found.has_converged).then(|| "the fit did not converge; start nearer with --set, or fit fewer".to_owned());
+    let unfinished = if !found.has_converged {
+        Some("the fit did not converge; start nearer with --set, or fit fewer".to_owned())
+    } else if !found.leaves_noise() {
+        Some("what the fit leaves is no noise; start elsewhere with --set, or fit what else may differ".to_owned())
+    } else {
+        None
+    };
     let faults = faults.iter().map(ToString::to_string).chain(printed.err().map(|fault| fault.to_string()));
     Ok(ended(faults.chain(unfinished)))
 }

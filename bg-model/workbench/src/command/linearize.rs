@@ -34,11 +34,13 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArgumen
     check_time("--at", arguments.at)?;
     let values = &arguments.model;
     let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
-    chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
+    let (inputs, named) = inputs::chosen_and_named(&values.input, Me::describe().inputs)?;
+    chosen.inputs = inputs;
     let scene = program.scene_called(&values.scene);
     let folder = RunFolder::claim(&arguments.out, &names(scene))?;
     let (space, sentence) = here(program, scene, &chosen, arguments)?;
-    let text = format!("{sentence}\n{}", space.table());
+    let inputs = inputs::text(&named, [0.0, arguments.at.unwrap_or(0.0)]);
+    let text = format!("{sentence}\n{}{inputs}", space.table());
     let (written, faults) = write(folder, &space, &text);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));

@@ -16,7 +16,7 @@ use super::report::Look;
 use super::{InputError, ended};
 use crate::Program;
 use crate::files::{console, whole};
-use crate::inputs;
+use crate::inputs::{self, Named};
 use crate::live::{Live, Order, changed};
 use crate::machine::{Machine, MachineError, Making};
 use crate::output::{Claimed, OutputError, Places, Table};
@@ -37,7 +37,9 @@ pub fn simulate<Me: Scenes>(
 ) -> Result<ExitCode, InputError> {
     let RunArguments { model, integration, .. } = arguments;
     let mut chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
-    chosen.inputs = inputs::chosen(&model.input, Me::describe().inputs)?;
+    let settings = inputs::settings(&model.input, Me::describe().inputs)?;
+    chosen.inputs = inputs::made(&settings);
+    let inputs = inputs::named(&settings, Me::describe().inputs);
     let begin = match (&arguments.from, arguments.start) {
         (Some(path), _) => Begin::At(read_state(path)?),
         (None, Start::Model) => Begin::Model,
@@ -60,7 +62,7 @@ pub fn simulate<Me: Scenes>(
             order: Order {
                 scene: scene.name.clone(),
                 parameters: differing(&chosen.values),
-                inputs: inputs::settings(&model.input, Me::describe().inputs)?,
+                inputs: settings,
                 integration: integration.integration(),
                 begin: begin.clone(),
             },
@@ -75,7 +77,7 @@ pub fn simulate<Me: Scenes>(
     let rows = sample_times(t0, integration.step, integration.t_end);
     let values = values(&chosen.values, |name| program.extras.source(name));
     let shown = look.zip(views.as_ref()).map(|(look, views)| (look, views, live.as_ref()));
-    let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, &values, shown) {
+    let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, (&values, inputs), shown) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
     };
@@ -160,13 +162,14 @@ fn report<Me>(
     outcome: Outcome,
     rows: &[f64],
     claimed: Claimed,
-    values: &[Parameter],
+    (values, inputs): (&[Parameter], Vec<Named>),
     shown: Option<(&Look, &Views, Option<&Live>)>,
 ) -> Result<Vec<OutputError>, MissingColumn> {
     let Outcome { run, failure } = outcome;
     let extras = &program.extras;
     let mut summary = Summary::new(&scene.name, &run, failure, extras.additions(&run)?);
     summary.changed_parameters = changed(values.iter().map(|parameter| (&parameter.info, parameter.value)));
+    summary.inputs = inputs;
     let columns = extras.columns(&run);
     let table = Table { samples: &run.at(rows), columns: columns.as_deref() };
     let texts = extras.page(scene.description);

@@ -25,6 +25,7 @@ use crate::scenes::Scene;
 use crate::sensitivity::{
     Course, Influence, Measure, Question, courses, courses_csv, csv, influences, text, without_influence,
 };
+use crate::summary::{longest_step, short};
 
 const TABLE: &str = "sensitivity.txt";
 const CSV: &str = "sensitivity.csv";
@@ -67,7 +68,8 @@ pub fn sensitivity<Me: Scenes>(
 ) -> Result<ExitCode, InputError> {
     let values = &arguments.model;
     let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
-    chosen.inputs = inputs::chosen(&values.input, Me::describe().inputs)?;
+    let (inputs, named) = inputs::chosen_and_named(&values.input, Me::describe().inputs)?;
+    chosen.inputs = inputs;
     let scene = program.scene_called(&values.scene);
     let parameters = adjustable(scene, &chosen, &arguments.by, "--by")?;
     let outputs = observed(scene, &arguments.outputs, "--output")?;
@@ -83,8 +85,10 @@ pub fn sensitivity<Me: Scenes>(
     measures.extend(arguments.at.iter().map(|&t| Measure::At(t)));
     let question = Question { outputs: &outputs, parameters: &parameters, measures: &measures };
     let all = influences(&found, &question);
-    let told = told(&found, &all, &question, arguments.most);
-    let (written, faults) = write(folder, &scene.name, &found, &all, &question);
+    let inputs = inputs::text(&named, [0.0, found.trajectory.last.t]);
+    let told = format!("{}{inputs}", told(&found, &all, &question, arguments.most));
+    let table = format!("{}{inputs}", text(&all, question.parameters.len()));
+    let (written, faults) = write(folder, &scene.name, &found, (&all, &table), &question);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
     let printed = console::print(&format!("{told}\nwritten: {written}\n"));
@@ -214,8 +218,10 @@ fn told(found: &Sensitivities, all: &[Influence], question: &Question, most: usi
         format!("\nno influence on these outputs: {}\n", still.join(", "))
     };
     let (t, events) = (found.trajectory.last.t, found.trajectory.statistics.events);
+    let samples = longest_step(&found.trajectory.times)
+        .map_or_else(String::new, |step| format!("measures are those of samples at most {} s apart\n", short(step)));
     format!(
-        "derivatives of {} outputs by {} parameters over {t} s, {events} events\n\n{}{still}",
+        "derivatives of {} outputs by {} parameters over {t} s, {events} events\n{samples}\n{}{still}",
         question.outputs.len(),
         question.parameters.len(),
         text(all, most)
@@ -227,12 +233,12 @@ fn write(
     mut folder: RunFolder,
     scene: &str,
     found: &Sensitivities,
-    all: &[Influence],
+    (all, table): (&[Influence], &str),
     question: &Question,
 ) -> (Option<usize>, Vec<OutputError>) {
     let mut faults = Vec::new();
     let mut fill = || -> Result<(), FileError> {
-        folder.write_text(TABLE, &text(all, question.parameters.len()))?;
+        folder.write_text(TABLE, table)?;
         folder.write_text(CSV, &csv(all))?;
         folder.write_text(COURSES, &courses_csv(&found.trajectory.times, &courses(found, question)))?;
         match influence(&format!("{scene}: change of each course for a change of the parameter by its size"), all) {

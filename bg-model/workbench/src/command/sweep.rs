@@ -10,6 +10,7 @@ use super::progress::bar;
 use super::{InputError, ended, say};
 use crate::Program;
 use crate::files::whole;
+use crate::parameters::number;
 use crate::sweep::folder::{Folder, Kind};
 use crate::sweep::plan::Plan;
 use crate::sweep::{Outcome, Share, SweepError, recipe, shown, sweep};
@@ -82,7 +83,7 @@ pub fn obey<Me: Scenes>(program: &Program<Me>, arguments: &SweepArguments) -> Re
     });
     bar.finish_and_clear();
     match outcome {
-        Ok(outcome) => Ok(say(&sentence(&outcome, &folder))),
+        Ok(outcome) => Ok(say(&sentence(&outcome, &folder, plan.integration.step))),
         // What could be made is there.
         Err(fault @ SweepError::File(_)) => Ok(ended([fault])),
         Err(fault) => Err(fault.into()),
@@ -90,13 +91,15 @@ pub fn obey<Me: Scenes>(program: &Program<Me>, arguments: &SweepArguments) -> Re
 }
 
 /// What was done, and how to look at it.
-fn sentence(outcome: &Outcome, folder: &Folder) -> String {
+fn sentence(outcome: &Outcome, folder: &Folder, step: f64) -> String {
     let Outcome { runs, shards, own, found, made, made_runs, failed } = *outcome;
     let part = if own == shards { String::new() } else { format!("{own} of its {shards} files are of this part; ") };
     let before = if found == 0 { String::new() } else { format!(", {found} were there") };
     let place = folder.path().display();
     format!(
         "sweep of {runs} runs: {part}{made} files made{before}; {made_runs} runs, {failed} of them failed\n\
-         written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table\n"
+         max, min, mean and integral are those of samples every {} s\n\
+         written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table\n",
+        number(step)
     )
 }

@@ -52,3 +52,9 @@ pub enum FileError {
     #[error("cannot write to standard output: {0}")]
     Standard(io::Error),
 }
+
+/// The CRC-32 of `bytes` in eight hexadecimal digits, by which files and values are told apart: it guards against mistakes, not against
+/// forgery.
+pub(crate) fn crc32(bytes: &[u8]) -> String {
+    format!("{:08x}", rawzip::crc32(bytes))
+}

@@ -69,6 +69,9 @@ pub struct Record {
     /// The inputs that are set, as `--input` takes them; files are seen from where the program is started.
     #[serde(default)]
     pub inputs: Vec<String>,
+    /// The CRC-32 of the files that they name, by the inputs' names.
+    #[serde(default)]
+    pub input_files: BTreeMap<String, String>,
     /// How it is integrated.
     pub run: Integration,
     /// The parameters that are not at their defaults.
@@ -83,7 +86,7 @@ pub struct Record {
 impl Record {
     /// The text of NAME.toml. Numbers have the shortest form that reads back to the same bits.
     pub(super) fn text(&self) -> Result<String, toml::ser::Error> {
-        let Self { model, version, scene, inputs, run, parameters, counts, tolerances } = self;
+        let Self { model, version, scene, inputs, input_files, run, parameters, counts, tolerances } = self;
         let Integration { t_end, step, method, rtol, atol, fixed_step } = run;
         let mut text = format!("{HEAD}model = {model:?}\nversion = {version:?}\nscene = {scene:?}\n");
         if !inputs.is_empty() {
@@ -93,6 +96,12 @@ impl Record {
             &format!("\n[run]\nt_end = {t_end:?}\nstep = {step:?}\nmethod = {:?}\nrtol = {rtol:?}\n", method.name());
         text += &atol.map(|atol| format!("atol = {atol:?}\n")).unwrap_or_default();
         text += &format!("fixed_step = {fixed_step:?}\n");
+        if !input_files.is_empty() {
+            text += "\n# The CRC-32 of the files of the inputs.\n[input_files]\n";
+        }
+        for (name, crc32) in input_files {
+            text += &format!("{name} = {crc32:?}\n");
+        }
         if !parameters.is_empty() {
             text += "\n[parameters]\n";
         }
@@ -221,6 +230,7 @@ mod tests {
             version: "0.1.0".to_owned(),
             scene: "fast".to_owned(),
             inputs: vec!["force=cubic:load.csv".to_owned()],
+            input_files: [("force".to_owned(), "00c0ffee".to_owned())].into(),
             parameters: values.map(|(index, value)| (format!("p_{index}"), value)).collect(),
             run: run.clone(),
             counts,

@@ -137,6 +137,18 @@ pub enum GoldenError {
     /// An input that cannot be.
     #[error(transparent)]
     Input(#[from] InputSettingError),
+    /// The file of an input is not the one of the recorded run.
+    #[error(
+        "{}: the file of the input `{input}` is not the one that the run was recorded with; restore it, or record the \
+         run again",
+        path.display()
+    )]
+    InputFile {
+        /// The record.
+        path: PathBuf,
+        /// The input.
+        input: String,
+    },
     /// An integration that cannot be.
     #[error("{}: {fault}", path.display())]
     Request {

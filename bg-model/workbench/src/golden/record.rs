@@ -2,6 +2,7 @@
 //!
 //! In: a run and how it was asked for. Out: its two files, each written whole. Tolerances that are there already stay.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Component, Path};
 
@@ -13,6 +14,7 @@ use super::counts::Counts;
 use super::file::{Files, Record, Tolerances, tolerances};
 use super::{VERSION, renewal, size};
 use crate::files::{FileError, check_is_no_file, whole};
+use crate::inputs::Named;
 use crate::request::Integration;
 
 /// A place for a golden output, which can be written.
@@ -52,7 +54,7 @@ impl Place {
     pub fn write<P: Parameters>(
         self,
         scene: &str,
-        inputs: &[String],
+        (inputs, named): (&[String], &[Named]),
         integration: Integration,
         parameters: &P,
         run: &Trajectory,
@@ -63,6 +65,7 @@ impl Place {
             version: VERSION.to_owned(),
             scene: scene.to_owned(),
             inputs: inputs.to_vec(),
+            input_files: files(named),
             run: integration,
             parameters: changed.map(|(name, value)| (name.to_owned(), value)).collect(),
             counts: Counts::from(&run.statistics),
@@ -78,6 +81,12 @@ impl Place {
         let (name, size) = (&self.files.name, size(run));
         Ok(format!("{name}: recorded, {size}, in {} and {}", csv.display(), toml.display()))
     }
+}
+
+/// The CRC-32 of the files that inputs are from, by the inputs' names.
+pub(super) fn files(inputs: &[Named]) -> BTreeMap<String, String> {
+    let source = |input: &Named| Some((input.name.to_owned(), input.table.as_ref()?.source.as_ref()?.crc32.clone()));
+    inputs.iter().filter_map(source).collect()
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@ use bg_model::parameters::Parameters;
 use bg_model::run::{Request, RunError, Trajectory};
 use thiserror::Error;
 
-use super::GoldenError;
 use super::file::Golden;
+use super::{GoldenError, record};
 use crate::inputs;
 use crate::machine::{MachineError, Making};
 use crate::parameters::{Chosen, set};
@@ -51,7 +51,13 @@ impl<'a, P: Parameters> Prepared<'a, P> {
         }
         let request =
             record.run.request(0.0, None).map_err(|fault| GoldenError::Request { path: path.clone(), fault })?;
-        let inputs = inputs::chosen(&record.inputs, scene.description.inputs)?;
+        let (inputs, named) = inputs::chosen_and_named(&record.inputs, scene.description.inputs)?;
+        let files = record::files(&named);
+        // A record that has no CRC-32 of a file is of an earlier version.
+        let other = record.input_files.iter().find(|(input, crc32)| files.get(*input) != Some(*crc32));
+        if let Some((input, _)) = other {
+            return Err(GoldenError::InputFile { path, input: input.clone() });
+        }
         Ok(Self { parameters: chosen.values, inputs, scene, scenes, request, golden })
     }
 

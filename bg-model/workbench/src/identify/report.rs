@@ -4,16 +4,23 @@
 
 use bg_model::description::OutputInfo;
 
-use super::{Data, Identified};
+use super::{Column, Data, Identified, Left, Measured, NoNoise};
 use crate::tables::table;
 
 /// Correlations above this are pointed out.
 const STRONG: f64 = 0.95;
+/// What to do where what is left is no noise.
+const ADVICE: &str = "so the parameters have no intervals: this minimum or this model is not the right one; start elsewhere with --set, \
+                      or fit what else may differ";
 
 /// The report.
 #[must_use]
 pub fn text(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> String {
-    let end = if found.has_converged { "converged" } else { "did not converge" };
+    let end = match (found.has_converged, found.leaves_noise()) {
+        (false, _) => "did not converge",
+        (true, true) => "converged",
+        (true, false) => "converged, but what is left is no noise,",
+    };
     let mut text = format!(
         "{} parameters from {} values in {} columns: {end} after {} runs, {} of them with derivatives\n\n{}",
         found.estimates.len(),
@@ -37,6 +44,7 @@ pub fn text(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> 
         text += &strong(found);
     }
     text += &format!("\n{}", columns(found, data, outputs));
+    text += &no_noise(found, data);
     if !data.ignored.is_empty() {
         text += &format!("columns that measure no output asked for: {}\n", data.ignored.join(", "));
     }
@@ -125,13 +133,49 @@ fn strong(found: &Identified) -> String {
 }
 
 fn columns(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> String {
-    let head = ["column", "output", "values", "noise found", "unit"].map(str::to_owned);
+    let noise = if found.leaves_noise() { "noise found" } else { "left" };
+    let head = ["column", "output", "values", noise, "unit", "% of spread", "correlated", "at lag"].map(str::to_owned);
     let rows = found.columns.iter().zip(&data.columns).map(|(column, measured)| {
         let output = &outputs[column.output];
         let count = measured.values.iter().flatten().count().to_string();
-        [measured.name.clone(), output.name.to_owned(), count, format!("{:.3e}", column.noise), output.unit.to_owned()]
+        let Left { size, spread, correlation, lag, .. } = column.left;
+        [
+            measured.name.clone(),
+            output.name.to_owned(),
+            count,
+            format!("{size:.3e}"),
+            output.unit.to_owned(),
+            percent(size / spread),
+            format!("{correlation:.2}"),
+            lag.to_string(),
+        ]
     });
     table(&std::iter::once(head).chain(rows).collect::<Vec<_>>())
+}
+
+/// A sentence on each column of which more than noise is left.
+fn no_noise(found: &Identified, data: &Data) -> String {
+    let sentence = |(column, measured): (&Column, &Measured)| {
+        let Left { size, spread, correlation, lag, fault } = column.left;
+        let why = match fault? {
+            NoNoise::Correlated => format!("is correlated by {correlation:.2} over {}", samples(lag)),
+            NoNoise::Large => "is more than a constant would leave".to_owned(),
+        };
+        let part = percent(size / spread);
+        Some(format!("what is left of `{}`, {part} % of its spread, {why}: no noise\n", measured.name))
+    };
+    let sentences: String = found.columns.iter().zip(&data.columns).filter_map(sentence).collect();
+    if sentences.is_empty() { sentences } else { format!("{sentences}{ADVICE}\n") }
+}
+
+/// A part as per cents, of which small ones keep two digits.
+fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    if percent >= 0.1 { format!("{percent:.1}") } else { format!("{percent:.1e}") }
+}
+
+fn samples(lag: usize) -> String {
+    if lag == 1 { "one sample".to_owned() } else { format!("{lag} samples") }
 }
 
 /// The parameters found, as a file for `--params`.
@@ -141,7 +185,14 @@ pub fn toml(found: &Identified) -> String {
         let info = estimate.variable.info;
         let unit = if info.unit.is_empty() { "1" } else { info.unit };
         let interval = estimate.interval.map_or_else(
-            || "not determined by the data".to_owned(),
+            || {
+                if found.leaves_noise() {
+                    "not determined by the data"
+                } else {
+                    "no interval: what is left is no noise"
+                }
+                .to_owned()
+            },
             |[lower, upper]| format!("95 %: {lower:.6e} to {upper:.6e}"),
         );
         format!("# [{unit}] {interval}\n{} = {:?}\n", info.name, estimate.value)

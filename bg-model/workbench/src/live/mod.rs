@@ -23,7 +23,7 @@ use thiserror::Error;
 
 use crate::Program;
 use crate::extras::Extras;
-use crate::inputs::Setting;
+use crate::inputs::{Named, Setting, named};
 use crate::machine::{Machine, MachineError, Making};
 use crate::page::film::Film;
 use crate::page::{Balance, Bonds, Data};
@@ -170,16 +170,17 @@ fn shown_of<Me: Scenes>(
     let outcome = follow(&*machine, request, from.as_ref(), |_| ())?;
     let table = Me::Parameters::table().iter().enumerate();
     let changed = changed(table.map(|(index, info)| (info, values.value(index))));
-    Ok(shown(&*program.extras, scene, outcome, &sample_times(t0, step, t_end), changed)?)
+    let inputs = named(&order.inputs, Me::describe().inputs);
+    Ok(shown(&*program.extras, scene, outcome, &sample_times(t0, step, t_end), (changed, inputs))?)
 }
 
-/// What a page shows of a run whose CSV file would have the rows `rows`, s.
+/// What a page shows of a run with these changed parameters and inputs, whose CSV file would have the rows `rows`, s.
 fn shown(
     extras: &dyn Extras,
     scene: &Scene,
     outcome: Outcome,
     rows: &[f64],
-    changed: Vec<String>,
+    (changed, inputs): (Vec<String>, Vec<Named>),
 ) -> Result<Shown, MissingColumn> {
     let Outcome { mut run, failure } = outcome;
     let description: &'static Description = scene.description;
@@ -188,6 +189,7 @@ fn shown(
     let data = Data::new(description, &run, rows, animation.as_ref(), None);
     let mut summary = Summary::new(&scene.name, &run, failure, extras.additions(&run)?);
     summary.changed_parameters = changed;
+    summary.inputs = inputs;
     let lines = summary.lines().into_iter().filter(|(name, _)| *name != WALL_TIME);
     Ok(Shown {
         note: data.note(run.times.len(), rows.iter().filter(|&&row| row <= summary.reached_s).count()),

@@ -8,7 +8,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use bg_model::description::Description;
-use bg_model::input::Input;
 use bg_model::mechanism::Scenes;
 use bg_model::parameters::Parameters;
 use bg_model::run::Request;
@@ -242,7 +241,7 @@ impl<'a, P: Parameters> Plan<'a, P> {
         parameters::set_from_table(&mut chosen, &format!("{plan}, [set]"), &file.set)?;
         let settings = inputs(&file.inputs, folder, Me::describe())
             .map_err(|fault| PlanError::Input { plan: plan.to_owned(), fault: Box::new(fault) })?;
-        chosen.inputs = settings.iter().map(Setting::input).collect::<Result<Vec<Input>, _>>().expect("read as tables");
+        chosen.inputs = inputs::made(&settings);
         let (of, design) = design(&file, plan, folder)?;
         check_parameters(&design, &chosen, &format!("{plan}, {of}"), scene, &program.scenes)?;
         if let Some(name) = design.names.iter().find(|name| file.set.contains_key(*name)) {

@@ -4,17 +4,25 @@
 //! another one. The model is known by the CRC-32 of its equations, the values of the parameters by that of all their bytes:
 //! they guard against mistakes, not against forgery.
 
+use std::path::Path;
+
 use bg_model::description::Description;
 use bg_model::parameters::Parameters;
 use toml::{Table, Value};
 
 use super::plan::Plan;
 use crate::Program;
-use crate::inputs::Setting;
+use crate::files::crc32;
+use crate::inputs::{Setting, Source};
 use crate::running::Begin;
 
-/// The entry that may differ: the plan as it was written, for people.
+/// The entries that may differ, since they are for people: the plan as it was written, and the files that inputs are from.
+const FOR_PEOPLE: [&str; 2] = [PLAN, INPUT_FILES];
 const PLAN: &str = "plan";
+/// The entry with the inputs: values, or of tables how many rows they have and the CRC-32 of the numbers in them.
+pub(super) const INPUTS: &str = "inputs";
+/// The entry with the files of those that are tables.
+pub(super) const INPUT_FILES: &str = "input_files";
 /// What stands for an absolute tolerance where the sizes of the states give it.
 pub(super) const OF_SIZES: &str = "by the sizes of the states";
 
@@ -28,6 +36,8 @@ pub fn of<Me, P: Parameters>(program: &Program<Me>, plan: &Plan<'_, P>) -> Table
     let base = P::table().iter().enumerate().filter(|(_, info)| !design.names.iter().any(|name| name == info.name));
     let base = base.map(|(index, info)| (info.name.to_owned(), Value::Float(chosen.values.value(index))));
     let inputs = model.inputs.iter().zip(settings).map(|(info, setting)| (info.name.to_owned(), input(setting)));
+    let files = model.inputs.iter().zip(settings);
+    let files = files.filter_map(|(info, setting)| Some((info.name.to_owned(), Value::String(file(setting)?))));
     let columns = wanted.columns(model).into_iter().map(|(name, _)| name);
     let trajectories = wanted.trajectories.iter().map(|&output| model.outputs[output].name.to_owned());
     let entries = [
@@ -46,11 +56,12 @@ pub fn of<Me, P: Parameters>(program: &Program<Me>, plan: &Plan<'_, P>) -> Table
         ("runs", whole(design.runs)),
         ("shard", whole(*shard)),
         ("swept", of_strings(&mut design.names.iter().cloned())),
-        ("values", Value::String(crc(&values.collect::<Vec<_>>()))),
+        ("values", Value::String(crc32(&values.collect::<Vec<_>>()))),
         ("columns", of_strings(&mut columns.into_iter())),
         ("trajectories", of_strings(&mut trajectories.into_iter())),
         ("parameters", Value::Table(base.collect())),
-        ("inputs", Value::Table(inputs.collect())),
+        (INPUTS, Value::Table(inputs.collect())),
+        (INPUT_FILES, Value::Table(files.collect())),
         (PLAN, Value::String(text.clone())),
     ];
     entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
@@ -60,31 +71,36 @@ fn whole(value: usize) -> Value {
     Value::Integer(i64::try_from(value).unwrap_or(i64::MAX))
 }
 
-fn crc(bytes: &[u8]) -> String {
-    format!("{:08x}", rawzip::crc32(bytes))
-}
-
 /// Of a model its equations, and what is observed.
 fn fingerprint(model: &Description) -> String {
     let outputs = model.outputs.iter().map(|output| output.name);
-    crc(model.equations.iter().copied().chain(outputs).collect::<Vec<_>>().join("\n").as_bytes())
+    crc32(model.equations.iter().copied().chain(outputs).collect::<Vec<_>>().join("\n").as_bytes())
 }
 
 fn input(setting: &Setting) -> Value {
     match setting {
+        Setting::NotGiven => Value::Float(0.0),
         Setting::Constant(value) => Value::Float(*value),
-        Setting::Table { times, values, cubic } => {
+        Setting::Table { times, values, cubic, .. } => {
             let bytes: Vec<u8> = times.iter().chain(values).flat_map(|value| value.to_le_bytes()).collect();
-            Value::String(format!("{} rows, cubic {cubic}, {}", times.len(), crc(&bytes)))
+            Value::String(format!("{} rows, cubic {cubic}, {}", times.len(), crc32(&bytes)))
         }
     }
+}
+
+/// The name of the file that a table is from, and its CRC-32. Without the folder, which may have another place on each machine.
+fn file(setting: &Setting) -> Option<String> {
+    let Setting::Table { source: Some(Source { file, column, crc32 }), .. } = setting else { return None };
+    let name = Path::new(file).file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
+    let column = column.as_ref().map_or_else(String::new, |column| format!(", column `{column}`"));
+    Some(format!("{name}{column}, CRC-32 {crc32}"))
 }
 
 /// The first entry in which a recipe differs from the one that is there, with both values; none if the bytes would be the same.
 #[must_use]
 pub fn difference(there: &Table, here: &Table) -> Option<String> {
     let names = there.keys().chain(here.keys().filter(|name| !there.contains_key(*name)));
-    for name in names.filter(|name| *name != PLAN) {
+    for name in names.filter(|name| !FOR_PEOPLE.contains(&name.as_str())) {
         match (there.get(name), here.get(name)) {
             (there, here) if there == here => {}
             (Some(Value::Table(there)), Some(Value::Table(here))) => {

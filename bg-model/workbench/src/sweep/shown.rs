@@ -7,6 +7,7 @@ use std::io::{self, Write};
 
 use super::folder::{Folder, FolderError, Kind};
 use super::parquet::{Table, Values};
+use super::recipe::{INPUT_FILES, INPUTS};
 
 /// The most reasons that are listed.
 const MOST: usize = 10;
@@ -47,6 +48,8 @@ pub fn lines(folder: &Folder) -> Result<String, FolderError> {
         text("swept").trim_matches(['[', ']']),
         text("runs"),
     );
+    said += &inputs(&recipe);
+    said += &samples(&recipe);
     for (reason, count, first) in reasons {
         let runs = if count == 1 { format!("run {first}") } else { format!("{count} runs, the first is {first}") };
         writeln!(said, "         {runs}: {reason}").expect("memory takes all text");
@@ -90,6 +93,22 @@ pub fn joined(folder: &Folder, kind: Kind) -> Result<Table, FolderError> {
         all.append(table?);
     }
     Ok(all)
+}
+
+/// A line for each input, with its value or its file.
+fn inputs(recipe: &toml::Table) -> String {
+    let table = |name: &str| recipe.get(name).and_then(toml::Value::as_table);
+    let line = |(name, value): (&String, &toml::Value)| {
+        let file = table(INPUT_FILES).and_then(|files| files.get(name));
+        format!("input    {name} = {}\n", file.unwrap_or(value).to_string().replace('"', ""))
+    };
+    table(INPUTS).into_iter().flatten().map(line).collect()
+}
+
+/// How far the samples are apart that columns are made from.
+fn samples(recipe: &toml::Table) -> String {
+    let step = recipe.get("step").map_or_else(String::new, ToString::to_string);
+    format!("samples  every {step} s; max, min, mean and integral are those of samples\n")
 }
 
 fn whole(recipe: &toml::Table, name: &str) -> usize {

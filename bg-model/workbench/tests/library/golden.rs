@@ -72,6 +72,18 @@ mod other {
     }
 }
 
+/// With an input.
+mod driven {
+    bg_model::bond_graph! {
+        pub graph Slide {
+            param mass: kg = 2, above 0;
+            input force: N;
+            1 slide: translation; I body = mass; Se push = force; push -> slide -> body;
+            observe { v: m/s = slide.flow }
+        }
+    }
+}
+
 /// A folder for golden outputs, and what a program says about it.
 struct Bench {
     root: TempDir,
@@ -313,6 +325,28 @@ fn a_run_that_can_no_longer_be_made_is_a_difference() {
         text.starts_with("fast: scene `fast` keeps `start` fixed at 0.1 m; use --scene literal\nfast: if"),
         "{text}"
     );
+}
+
+#[test]
+fn a_file_of_an_input_that_has_changed_is_told_before_any_run() {
+    let bench = Bench::new();
+    let table = bench.root.path().join("load.csv");
+    fs::write(&table, "0,4\n1,2\n").unwrap();
+    let input = format!("force={}", table.display());
+    let record = ["record", "--t-end", "1", "--step", "0.1", "--input", &input];
+    assert_eq!(bench.golden::<driven::Slide>(&record), ExitCode::SUCCESS);
+    check::<driven::Slide>(bench.folder()).unwrap();
+    // After the end of the run, where no value sees it.
+    fs::write(&table, "0,4\n1,2\n2,9\n").unwrap();
+    let expected = "DIR/literal.toml: the file of the input `force` is not the one that the run was recorded with; restore it, \
+                    or record the run again";
+    assert_eq!(bench.fault::<driven::Slide>(), expected);
+    // A record of an earlier version knows no file.
+    let toml = bench.read("literal.toml");
+    let (before, after) = toml.split_once("\n# The CRC-32 of the files of the inputs.").unwrap();
+    let rest = &after[after.find("\n[counts]").unwrap()..];
+    fs::write(bench.path("literal.toml"), format!("{before}{rest}")).unwrap();
+    check::<driven::Slide>(bench.folder()).unwrap();
 }
 
 /// What is wrong with a file, and the same by the command: exit code 2.

@@ -12,6 +12,16 @@ use crate::pendulum::Pendulum;
 use bg_workbench::{Program, live};
 use serde_json::{Value, json};
 
+bg_model::bond_graph! {
+    /// A mass that is pushed.
+    pub graph Pushed {
+        input force: N;
+        input other: N;
+        1 slide: translation; I body = 2; Se push = force + other; push -> slide -> body;
+        observe { v: m/s = slide.flow }
+    }
+}
+
 /// What a report of 2 s orders, with this length of the rod, m.
 fn order(length: f64) -> String {
     let integration =
@@ -80,6 +90,23 @@ fn an_answer_says_what_the_run_says_or_why_there_is_none() {
     assert_eq!(fault(&order(1.0).replace("2.0", "-2.0")), "t_end -2: must be a finite number above 0");
     let early = parsed(&native(&order(0.8).replace("1e-8", "1e-15")));
     assert!(early["fault"].as_str().unwrap().starts_with("rtol 1e-15: must be at least"), "{early}");
+}
+
+#[test]
+fn an_answer_names_the_inputs_as_the_report_does() {
+    let table = json!({ "times": [0.0, 1.0], "values": [4.0, 6.0], "cubic": false,
+        "source": { "file": "load.csv", "column": null, "crc32": "0a1b2c3d" } });
+    let order = order(0.8).replace("\"length\":0.8", "").replace("\"inputs\":[]", &format!("\"inputs\":[{table}]"));
+    let answer = parsed(&live::answer(&Program::<Pushed>::new(), &order));
+    let lines = answer["lines"].as_array().unwrap_or_else(|| panic!("{answer}"));
+    let expected = [
+        json!(["input", "force = load.csv: 2 rows from 0 to 1 s, CRC-32 0a1b2c3d"]),
+        json!(["input held", "force = 6 N after the last row at 1 s"]),
+        json!(["inputs not given", "other is 0; set it with --input NAME=VALUE or NAME=FILE.csv"]),
+    ];
+    assert_eq!(lines[3..6], expected);
+    // 5 N s until 1 s, 6 N s after that; the mass is 2 kg.
+    assert!(lines.iter().any(|line| line[0] == "v" && line[1].as_str().unwrap().starts_with("0 to 5.5,")), "{answer}");
 }
 
 #[test]

@@ -42,6 +42,26 @@ fn a_run_writes_its_trajectory_and_a_figure_of_each_output() {
     assert_eq!(json["outputs"]["angle"]["start"], 0.5);
 }
 
+/// The largest of samples is below the peak: of the pendulum's force by so much the farther apart the samples are.
+#[test]
+fn how_far_samples_are_apart_is_said_beside_ranges() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let step = |arguments: &[&str]| {
+        let told = text(path, &[&["run", "--no-figures", "--out", "o"], arguments].concat());
+        let line = told.lines().find(|line| line.starts_with("samples ")).unwrap();
+        let (step, rest) = line["samples ".len()..].trim().strip_prefix("at most ").unwrap().split_once(' ').unwrap();
+        assert_eq!(rest, "s apart; ranges and peaks are those of samples");
+        let json: serde_json::Value = serde_json::from_slice(&fs::read(path.join("o/summary.json")).unwrap()).unwrap();
+        let (step, exact) = (step.parse::<f64>().unwrap(), json["sample_step_s"].as_f64().unwrap());
+        assert!((step / exact - 1.0).abs() < 1e-5, "{step} {exact}");
+        step
+    };
+    // A 2500th of the run, or the interval of the CSV file where that is shorter.
+    assert_eq!(step(&["--t-end", "1"]), 4e-4);
+    assert_eq!(step(&["--t-end", "0.5", "--step", "1e-4"]), 1e-4);
+}
+
 #[test]
 fn a_run_goes_on_from_a_saved_state() {
     let folder = tempfile::tempdir().unwrap();

@@ -5,6 +5,7 @@ mod example;
 mod gallery;
 mod gradient;
 mod identify;
+mod inputs;
 mod outcome;
 mod picture;
 #[path = "../../../../bg-macros/picture/tests/support/mod.rs"]

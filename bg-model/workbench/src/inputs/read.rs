@@ -1,15 +1,17 @@
-//! The inputs of a run: numbers, or tables from CSV files.
+//! Inputs as they are written on the command line.
 //!
-//! In: `NAME=VALUE` and `NAME=FILE.csv` texts. Out: an input for each that the model declares, in its order; those that are not
-//! set are 0. What cannot be used is one line that says what to change.
+//! In: `NAME=VALUE` and `NAME=FILE.csv` texts. Out: a setting for each input that the model declares, in its order. What cannot be
+//! used is one line that says what to change.
 
 use std::path::{Path, PathBuf};
 
 use bg_model::description::InputInfo;
-use bg_model::input::{Input, Table, TableError};
-use serde::{Deserialize, Serialize};
+use bg_model::input::{Input, TableError};
+use csv::StringRecord;
 use thiserror::Error;
 
+use super::{Named, Setting, Source, made, named};
+use crate::files::crc32;
 use crate::parameters::nearest;
 
 /// An input setting that cannot be used.
@@ -55,6 +57,36 @@ pub enum InputSettingError {
         /// Those that there are.
         known: String,
     },
+    /// A column is asked for by its name, of a file without names.
+    #[error(
+        "--input {setting}: {} has no column `{column}`, since its first line has numbers, not names; write a first line \
+         with the columns' names",
+        path.display()
+    )]
+    NoHead {
+        /// The text.
+        setting: String,
+        /// The file.
+        path: PathBuf,
+        /// The column.
+        column: String,
+    },
+    /// The first line is neither a head nor a row.
+    #[error(
+        "--input {setting}: the first line of {} has both a name, `{name}`, and a number, `{number}`; give all columns \
+         names, or none",
+        path.display()
+    )]
+    MixedHead {
+        /// The text.
+        setting: String,
+        /// The file.
+        path: PathBuf,
+        /// Its first field that is no number.
+        name: String,
+        /// Its first one that is.
+        number: String,
+    },
     /// A field is no number.
     #[error("--input {setting}: `{field}` in line {line} of {} is not a number", path.display())]
     NotANumber {
@@ -85,43 +117,6 @@ fn other(near: Option<&str>, known: &str) -> String {
     }
 }
 
-/// What an input is set to.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Setting {
-    /// The same value at all times, in the input's unit.
-    Constant(f64),
-    /// The rows of a table.
-    Table {
-        /// Their times, s, ascending.
-        times: Vec<f64>,
-        /// Their values, in the input's unit.
-        values: Vec<f64>,
-        /// Whether a cubic spline joins them; else straight lines.
-        cubic: bool,
-    },
-}
-
-impl Default for Setting {
-    fn default() -> Self {
-        Self::Constant(0.0)
-    }
-}
-
-impl Setting {
-    /// The input.
-    ///
-    /// # Errors
-    /// The rows are no table.
-    pub fn input(&self) -> Result<Input, TableError> {
-        match self {
-            Self::Constant(value) => Ok(Input::constant(*value)),
-            Self::Table { times, values, cubic: true } => Ok(Input::table(Table::cubic(times, values)?)),
-            Self::Table { times, values, cubic: false } => Ok(Input::table(Table::linear(times, values)?)),
-        }
-    }
-}
-
 /// What stands before the name of a file whose rows a cubic spline joins.
 pub(crate) const CUBIC: &str = "cubic:";
 
@@ -130,8 +125,19 @@ pub(crate) const CUBIC: &str = "cubic:";
 /// # Errors
 /// The first setting that cannot be used.
 pub fn chosen(settings: &[String], infos: &[InputInfo]) -> Result<Vec<Input>, InputSettingError> {
-    let inputs = self::settings(settings, infos)?;
-    Ok(inputs.iter().map(|setting| setting.input().expect("a setting was checked when it was read")).collect())
+    Ok(made(&self::settings(settings, infos)?))
+}
+
+/// The same, and how results name them.
+///
+/// # Errors
+/// The first setting that cannot be used.
+pub fn chosen_and_named(
+    settings: &[String],
+    infos: &[InputInfo],
+) -> Result<(Vec<Input>, Vec<Named>), InputSettingError> {
+    let settings = self::settings(settings, infos)?;
+    Ok((made(&settings), named(&settings, infos)))
 }
 
 /// The same as values and rows of tables.
@@ -178,31 +184,45 @@ fn read(setting: &str, value: &str) -> Result<Setting, InputSettingError> {
         Some((path, column)) if !Path::new(file).exists() => (path, Some(column)),
         _ => (file, None),
     };
-    let (times, values) = rows(setting, Path::new(path), column)?;
-    let table = Setting::Table { times, values, cubic };
+    let table = table(setting, Path::new(path), column, cubic)?;
     match table.input() {
         Ok(_) => Ok(table),
         Err(fault) => Err(InputSettingError::Table { setting: setting.to_owned(), fault }),
     }
 }
 
-/// The first column of a CSV file with a header, and the one called `column` or the second.
-fn rows(setting: &str, path: &Path, column: Option<&str>) -> Result<(Vec<f64>, Vec<f64>), InputSettingError> {
+/// The first column of a CSV file, and the one called `column` or the second. A first line of numbers is a row, one of names the head.
+fn table(setting: &str, path: &Path, column: Option<&str>, cubic: bool) -> Result<Setting, InputSettingError> {
     let (setting, path) = (setting.to_owned(), path.to_owned());
     let unreadable = |source| InputSettingError::Unreadable { setting: setting.clone(), path: path.clone(), source };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(&path).map_err(unreadable)?;
-    let header = reader.headers().map_err(unreadable)?.clone();
+    let bytes = std::fs::read(&path).map_err(|fault| unreadable(fault.into()))?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).has_headers(false).from_reader(bytes.as_slice());
+    let mut records = reader.records().peekable();
+    let first = match records.peek() {
+        Some(Ok(record)) => record.clone(),
+        _ => StringRecord::new(),
+    };
+    let has_head = match kind(&first) {
+        First::Names => true,
+        First::Numbers => false,
+        First::Mixed { name, number } => {
+            return Err(InputSettingError::MixedHead { setting, path, name, number });
+        }
+    };
     let position = match column {
-        Some(column) => header.iter().position(|name| name == column),
-        None => (header.len() > 1).then_some(1),
+        Some(column) if has_head => first.iter().position(|name| name == column),
+        Some(column) => {
+            return Err(InputSettingError::NoHead { setting, path, column: column.to_owned() });
+        }
+        None => (first.len() > 1).then_some(1),
     };
     let Some(position) = position else {
-        let known = header.iter().collect::<Vec<_>>().join(", ");
+        let known = first.iter().collect::<Vec<_>>().join(", ");
         let column = column.unwrap_or("of values").to_owned();
         return Err(InputSettingError::NoColumn { setting, path, column, known });
     };
     let (mut times, mut values) = (Vec::new(), Vec::new());
-    for record in reader.records() {
+    for record in records.skip(usize::from(has_head)) {
         let record = record.map_err(unreadable)?;
         let line = record.position().map_or(0, csv::Position::line);
         let number = |place: usize| {
@@ -217,7 +237,30 @@ fn rows(setting: &str, path: &Path, column: Option<&str>) -> Result<(Vec<f64>, V
         times.push(number(0)?);
         values.push(number(position)?);
     }
-    Ok((times, values))
+    let column = has_head.then(|| first[position].to_owned());
+    let source = Source { file: path.display().to_string(), column, crc32: crc32(&bytes) };
+    Ok(Setting::Table { times, values, cubic, source: Some(source) })
+}
+
+/// What the first line of a file is.
+enum First {
+    /// The head.
+    Names,
+    /// A row.
+    Numbers,
+    /// Neither: it has both of them.
+    Mixed { name: String, number: String },
+}
+
+/// An empty field is neither a name nor a number: a head may lack a name, and a row a value.
+fn kind(first: &StringRecord) -> First {
+    let filled = || first.iter().filter(|field| !field.is_empty());
+    let is_number = |field: &&str| field.parse::<f64>().is_ok();
+    match (filled().find(|field| !is_number(field)), filled().find(is_number)) {
+        (Some(name), Some(number)) => First::Mixed { name: name.to_owned(), number: number.to_owned() },
+        (None, Some(_)) => First::Numbers,
+        (_, None) => First::Names,
+    }
 }
 
 #[cfg(test)]
@@ -251,6 +294,51 @@ mod tests {
     }
 
     #[test]
+    fn a_first_line_of_numbers_is_a_row() {
+        let rows = |text: &str, column: &str| {
+            let file = file(text);
+            let of = settings(&[format!("force={}{column}", file.path().display())], &INFOS);
+            match of.map(|all| all[0].clone()).map_err(|fault| fault.to_string())? {
+                Setting::Table { times, values, source, .. } => Ok((times, values, source.unwrap().column)),
+                other => panic!("{other:?}"),
+            }
+        };
+        let two = |column: Option<&str>| Ok((vec![0.0, 1.0], vec![40.0, 50.0], column.map(str::to_owned)));
+        for text in ["0,40\n1,50\n", " 0.0 , +4e1\n1,50", "\u{feff}0,40\r\n1,50\r\n"] {
+            assert_eq!(rows(text, ""), two(None), "{text}");
+        }
+        for text in ["t,w\n0,40\n1,50\n", ",w\n0,40\n1,50\n", "\u{feff}t,w\n0,40\n1,50\n"] {
+            assert_eq!(rows(text, ""), two(Some("w")), "{text}");
+        }
+        for text in ["t,2020\n0,40\n1,50\n", "0,w\n1,50\n2,60\n", "0,40,N\n1,50,N\n"] {
+            let fault: String = rows(text, "").unwrap_err();
+            assert!(
+                fault.contains("has both a name, `") && fault.ends_with("give all columns names, or none"),
+                "{fault}"
+            );
+        }
+        assert!(
+            rows("0,40\n1,50\n", ":w").unwrap_err().contains("has no column `w`, since its first line has numbers")
+        );
+        assert!(rows("0,\n1,50\n", "").unwrap_err().contains("`` in line 1 of "));
+    }
+
+    #[test]
+    fn a_table_knows_its_file_by_the_crc_32_of_all_bytes() {
+        // The check value of CRC-32/ISO-HDLC of the catalogue at https://reveng.sourceforge.io/crc-catalogue/.
+        assert_eq!(crc32(b"123456789"), "cbf43926");
+        let crc_of = |text: &str| {
+            let file = file(text);
+            let all = settings(&[format!("force={}", file.path().display())], &INFOS).unwrap();
+            let Setting::Table { source: Some(source), .. } = all[0].clone() else { panic!("{all:?}") };
+            assert_eq!(source.file, file.path().display().to_string());
+            source.crc32
+        };
+        assert_eq!(crc_of("0,40\n1,50\n"), crc32(b"0,40\n1,50\n"));
+        assert_ne!(crc_of("0,40\n1,50\n"), crc_of("0,40\n1,51\n"));
+    }
+
+    #[test]
     fn each_fault_is_one_line_that_says_what_to_change() {
         assert!(fault("force").contains("NAME=VALUE or NAME=FILE.csv"));
         assert_eq!(fault("forse=1"), "--input forse=1: there is no input `forse`; did you mean `force`?");
@@ -266,6 +354,7 @@ mod tests {
         assert!(of("t,a\n0,1\n1,two\n", "").contains("`two` in line 3 of "));
         assert!(of("t,a\n0,1\n1,nan\n", "").contains("the value in row 2 of the table is NaN"));
         assert!(of("t,a\n1,1\n0,2\n", "").contains("do not ascend: row 2 has t = 0"));
+        assert!(of("t,a\n", "").ends_with("the table has 0 rows; give at least two"));
         for text in ["", "t,a\n0,1\n", "t,a\n0,1\n1\n"] {
             assert!(!of(text, "").contains('\n'), "{}", of(text, ""));
         }
