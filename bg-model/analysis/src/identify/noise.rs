@@ -1,11 +1,12 @@
 //! Whether what a fit leaves of a measured column is noise.
 //!
-//! In: residuals in the order of time, the column's own spread, how exact the run is. Out: their size, how they are correlated from sample
-//! to sample, and why they are no noise, where they are none.
-//! Method: of noise that is independent from sample to sample, each sample autocorrelation of n values is normal with a standard deviation
-//! of n^(-1/2) (M. S. Bartlett, On the theoretical specification and sampling properties of autocorrelated time-series, Supplement to the
-//! Journal of the Royal Statistical Society 8 (1946) 27-41). The first lags are looked at, since an oscillation may be sampled at quarters of
-//! its period. It is taken about zero, not about the mean: noise has none.
+//! In: residuals in the order of time, the column's own spread, how exact the run is. Out: their size, how they are
+//! correlated from sample to sample, and why they are no noise, where they are none.
+//! Method: of noise that is independent from sample to sample, each sample autocorrelation of n values is normal with a
+//! standard deviation of n^(-1/2) (M. S. Bartlett, On the theoretical specification and sampling properties of
+//! autocorrelated time-series, Supplement to the Journal of the Royal Statistical Society 8 (1946) 27-41). The first
+//! lags are looked at, since an oscillation may be sampled at quarters of its period. It is taken about zero, not about
+//! the mean: noise has none.
 
 /// What a fit leaves of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +37,8 @@ const LAGS: usize = 10;
 const PART: usize = 4;
 /// So many standard deviations are no chance: of ten lags of independent noise one is beyond them once in 1500 columns.
 const CHANCE: f64 = 4.0;
-/// Correlations up to this one make an interval too narrow by less than a fourth: by sqrt((1 + r) / (1 - r)) where they fall off as powers.
+/// Correlations up to this one make an interval too narrow by less than a fourth: by sqrt((1 + r) / (1 - r)) where they
+/// fall off as powers.
 const SLIGHT: f64 = 0.2;
 
 /// What the `residuals` of a column are; below `error` they are the run's own, which no noise is asked of.

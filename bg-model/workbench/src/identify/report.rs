@@ -10,8 +10,8 @@ use crate::tables::table;
 /// Correlations above this are pointed out.
 const STRONG: f64 = 0.95;
 /// What to do where what is left is no noise.
-const ADVICE: &str = "so the parameters have no intervals: this minimum or this model is not the right one; start elsewhere with --set, \
-                      or fit what else may differ";
+const ADVICE: &str = "so the parameters have no intervals: this minimum or this model is not the right one; start elsewhere \
+                      with --set, or fit what else may differ";
 
 /// The report.
 #[must_use]

@@ -1,7 +1,7 @@
 //! The inputs of a run: numbers, or tables from CSV files.
 //!
-//! In: what each input is set to. Out: inputs as a model takes them, and how results name them: `named`. What is written on the
-//! command line is read in `read`.
+//! In: what each input is set to. Out: inputs as a model takes them, and how results name them: `named`. What is
+//! written on the command line is read in `read`.
 
 mod named;
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,7 +1,7 @@
 //! How results name the inputs of a run.
 //!
-//! In: what the inputs are set to, and over which time the run is. Out: a value with its unit, or a file with its CRC-32, for each; the
-//! inputs that were not given; what is held where a run goes beyond the rows of a table.
+//! In: what the inputs are set to, and over which time the run is. Out: a value with its unit, or a file with its
+//! CRC-32, for each; the inputs that were not given; what is held where a run goes beyond the rows of a table.
 
 use bg_model::description::InputInfo;
 use serde::Serialize;

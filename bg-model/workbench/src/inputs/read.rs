@@ -1,7 +1,7 @@
 //! Inputs as they are written on the command line.
 //!
-//! In: `NAME=VALUE` and `NAME=FILE.csv` texts. Out: a setting for each input that the model declares, in its order. What cannot be
-//! used is one line that says what to change.
+//! In: `NAME=VALUE` and `NAME=FILE.csv` texts. Out: a setting for each input that the model declares, in its order.
+//! What cannot be used is one line that says what to change.
 
 use std::path::{Path, PathBuf};
 
@@ -59,8 +59,8 @@ pub enum InputSettingError {
     },
     /// A column is asked for by its name, of a file without names.
     #[error(
-        "--input {setting}: {} has no column `{column}`, since its first line has numbers, not names; write a first line \
-         with the columns' names",
+        "--input {setting}: {} has no column `{column}`, since its first line has numbers, not names; write a first \
+         line with the columns' names",
         path.display()
     )]
     NoHead {
@@ -191,7 +191,8 @@ fn read(setting: &str, value: &str) -> Result<Setting, InputSettingError> {
     }
 }
 
-/// The first column of a CSV file, and the one called `column` or the second. A first line of numbers is a row, one of names the head.
+/// The first column of a CSV file, and the one called `column` or the second. A first line of numbers is a row, one of
+/// names the head.
 fn table(setting: &str, path: &Path, column: Option<&str>, cubic: bool) -> Result<Setting, InputSettingError> {
     let (setting, path) = (setting.to_owned(), path.to_owned());
     let unreadable = |source| InputSettingError::Unreadable { setting: setting.clone(), path: path.clone(), source };
