@@ -48,13 +48,11 @@ pub fn lines(folder: &Folder) -> Result<String, FolderError> {
         text("swept").trim_matches(['[', ']']),
         text("runs"),
     );
-    said += &inputs(&recipe);
-    said += &samples(&recipe);
     for (reason, count, first) in reasons {
         let runs = if count == 1 { format!("run {first}") } else { format!("{count} runs, the first is {first}") };
         writeln!(said, "         {runs}: {reason}").expect("memory takes all text");
     }
-    Ok(said)
+    Ok(said + &inputs(&recipe) + &samples(&recipe))
 }
 
 /// Writes the rows of all shards that are there as CSV; every number in the shortest form that reads back to the same bits.

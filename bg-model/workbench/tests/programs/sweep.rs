@@ -167,7 +167,7 @@ fn a_run_that_fails_is_a_row_with_its_reason() {
     assert!(count(0) == 12 && count(1) == 1 + (100.0 * reached[1]) as usize, "{} {}", count(0), count(1));
     let said = text(path, &["sweep", "show", "o", "--csv", "o.csv"]);
     assert!(said.contains("\nsamples  every 0.01 s; max, min, mean and integral are those of samples\n"), "{said}");
-    assert!(said.contains("runs     2 of 2 in 1 of 1 shards\nfailed   1\n         run 1: the limit of 100"), "{said}");
+    assert!(said.contains("runs     2 of 2 in 1 of 1 shards\nfailed   1\n         run 1: the limit of 120"), "{said}");
     let csv = fs::read_to_string(path.join("o.csv")).unwrap();
     assert!(csv.starts_with("run,angle,length,failure,reached,steps,events,angle_max,"), "{csv}");
     assert!(csv.lines().nth(1).unwrap().starts_with("0,0.5,0.6,,0.11,"), "{csv}");
