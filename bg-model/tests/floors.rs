@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms from the ground up; those of one floor do not know each other.
-const FLOORS: [&[&str]; 15] = [
+const FLOORS: [&[&str]; 16] = [
     &["model::scalar", "model::requirement", "model::holding"],
     &["model::drawing", "model::nearest", "model::joined"],
     &["model::description"],
@@ -23,6 +23,7 @@ const FLOORS: [&[&str]; 15] = [
     &["model::capability"],
     &["model::system"],
     &["model::reactions", "model::mechanism", "model::vectorised"],
+    &["model::standing"],
     &["solve::statistics"],
     &["solve::integrator", "solve::finish"],
     &["solve::stepper", "solve::failure", "solve::fixed_step"],

@@ -171,8 +171,10 @@ fn a_circuit_in_other_units_takes_the_same_steps_to_the_same_bits() {
             let model = Mesh::new(parameters).expect("in range");
             let parts = [Part::Outputs, Part::States, Part::Energy];
             let run = Simulation::new(&model).method(method).every(1e-7).until(2e-6).recording(&parts);
-            // A second is a second: charges are in amperes, flux linkages in volts.
-            measured(&run.run().expect("a run"), &[volts, amperes, volts, amperes, volts * amperes])
+            // A second is a second: the charge is in amperes, the flux linkage in volts.
+            let run = run.run().expect("a run");
+            assert_eq!(run.recording.columns[2].name, "plates.q");
+            measured(&run, &[volts, amperes, amperes, volts, volts * amperes])
         };
         let expected = run(1.0, 1.0);
         let is_exact = EXACT.contains(&method);

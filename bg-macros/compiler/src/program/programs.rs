@@ -10,7 +10,8 @@ use super::reversed::{Reversed, reversed};
 use super::tape::{Tape, tape};
 use super::{Counts, Program, Request, Routine, schedule};
 use crate::expr::{Id, Pool};
-use crate::system::equations::{Iteration, size};
+use crate::system::equations::Iteration;
+use crate::system::magnitude::magnitudes;
 use crate::system::{Jacobian, SecondOrder, Sizes, StateEquations};
 
 /// Longer rates are not inlined into an integrator's step: they would only fill the cache.
@@ -224,7 +225,7 @@ fn starting(equations: &mut StateEquations) -> Starting {
     let gaps = roots(&equations.gaps, |gap| gap.value);
     let starts = roots(&equations.states, |state| state.start);
     let pool = &mut equations.pool;
-    let sizes: Vec<Id> = gaps.iter().map(|&gap| size(pool, gap)).collect();
+    let sizes = magnitudes(pool, &gaps);
     Starting {
         guesses: alone(pool, "guesses", &equations.guesses),
         gaps: alone(pool, "gaps", &gaps),

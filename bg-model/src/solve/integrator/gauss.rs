@@ -11,6 +11,10 @@ use nalgebra::SVector;
 use super::collocation::{Collocation, GAUSS6};
 use super::{Flow, Method, Point, Scale, StepControl};
 
+/// What corrections of a fixed step are measured by in place of tolerances, which it has none of: a part of the sizes of the states, and
+/// this number in SI units where nothing is known of these.
+const OF_FIXED: f64 = 1e-8;
+const UNKNOWN: f64 = 1e-10;
 /// A disagreement of this part of a state shows that a step's equations were not solved.
 const LOST: f64 = 1e-3;
 
@@ -70,6 +74,13 @@ impl<const N: usize> Method<N> for Gauss6<N> {
         scale: &Scale<N>,
         end: &mut SVector<f64, N>,
     ) -> f64 {
+        let own;
+        let scale = if let StepControl::Fixed { .. } = self.control {
+            own = of_fixed(scale);
+            &own
+        } else {
+            scale
+        };
         let error = match self.core.solve(flow, start, h, scale) {
             Ok(()) => {
                 *end = SVector::from_fn(|i, _| start.x[i] + self.core.quadrature(i, h));
@@ -103,4 +114,11 @@ impl<const N: usize> Method<N> for Gauss6<N> {
     fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
         self.core.dense(start, theta, x);
     }
+}
+
+/// The scale of a fixed step, whatever the tolerances.
+fn of_fixed<const N: usize>(scale: &Scale<N>) -> Scale<N> {
+    let part = OF_FIXED / scale.relative;
+    let absolute = scale.absolute.map(|absolute| if absolute > f64::MIN_POSITIVE { absolute * part } else { UNKNOWN });
+    Scale { relative: OF_FIXED, absolute, coarsest: OF_FIXED }
 }

@@ -18,7 +18,7 @@ use crate::model::system::System;
 use crate::solve::event::{Condition, Crossing, EventMonitor, Stop, Struck};
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
-use crate::solve::integrator::{Method, Scale, StepControl, Tolerances, is_finite};
+use crate::solve::integrator::{Method, StepControl, is_finite};
 use crate::solve::stepper::Stepper;
 
 /// The norm of a projection above which it is looked at more closely. It is below 2 where a step errs by as much as is allowed.
@@ -73,12 +73,6 @@ where
         span: Span,
         settings: &'a Settings<N>,
     ) -> Self {
-        let mut stepper = stepper;
-        let tolerances = match control {
-            StepControl::Fixed { .. } => &Tolerances::default(),
-            _ => &settings.tolerances,
-        };
-        stepper.scale = Scale::from(tolerances);
         let has_breaks = stepper.system.next_break(span.t0) < f64::INFINITY;
         let loops = stepper.system.joints().and_then(LoopMonitor::new);
         let collision = stepper.system.impacts().map(Collision::new);
@@ -94,7 +88,7 @@ where
             limit: settings.step_limit,
             loops,
             collision,
-            sizes: SizeMonitor::new(tolerances, span.t0),
+            sizes: SizeMonitor::new(&settings.tolerances, span.t0),
             rounding: RoundingMonitor::new(settings.tolerances.relative),
         }
     }

@@ -92,7 +92,7 @@ impl StateEquations {
 }
 
 /// The sum of the absolute values of an expression's terms.
-pub(crate) fn size(pool: &mut Pool, id: Id) -> Id {
+fn size(pool: &mut Pool, id: Id) -> Id {
     let (constant, terms) = match pool.node(id) {
         Node::Sum { constant, terms } => (constant.value().abs(), terms.to_vec()),
         _ => (0.0, vec![(id, Number::new(1.0))]),

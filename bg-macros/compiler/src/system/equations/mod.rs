@@ -48,7 +48,6 @@ pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
 pub use impact::{Impacts, Rebound};
 pub use iteration::Iteration;
-pub(crate) use iteration::size;
 pub use origin::{Kind, Origin};
 pub use shown::{Quantity, Shown};
 
