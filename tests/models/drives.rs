@@ -30,7 +30,7 @@ bond_graph! {
             geared_speed: rad/s = second.speed;
             block_speed: m/s = block.velocity.x;
             travel: m = third.travel;
-            moment: kg*m^2 = wheel.angular.p.z / wheel.angular_velocity.z;
+            turning: kg*m^2/s = wheel.angular.p.z;
             stored: J = stored_energy;
             supplied: J = integral(supplied_power);
             dissipated: J = integral(dissipated_power);

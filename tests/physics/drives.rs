@@ -11,7 +11,7 @@ fn torque_force_and_speed_move_what_they_drive() {
     let run = record(&Drives::new(p.clone()).unwrap(), &instants(2.0, 100), 1e-11);
     let mass = PI * 2700.0 * 0.2 * 0.2 * 0.05;
     let moment = 0.5 * mass * 0.2 * 0.2;
-    within("moment of inertia", (run.series("moment")[1] / moment - 1.0).abs(), 1e-12);
+    within("moment of inertia", (run.series("turning")[1] / run.series("wheel_speed")[1] / moment - 1.0).abs(), 1e-12);
     within("torque", run.deviation("wheel_speed", |t| p.torque / moment * t), 1e-9);
     within("force", run.deviation("block_speed", |t| p.force / 2.0 * t), 1e-9);
     within("travel", run.deviation("travel", |t| p.force / 4.0 * t * t), 1e-9);

@@ -126,7 +126,7 @@ fn the_reports_say_what_went() {
         [
             "85 states: 46 constant; 8 equal up to sign; 0 recovered; 0 unwatched; 29 integrated; 2 for outputs only",
             "85 states: 0 constant; 0 equal up to sign; 2 recovered; 0 unwatched; 81 integrated; 2 for outputs only",
-            "83 states: 46 constant; 8 equal up to sign; 5 recovered; 0 unwatched; 24 integrated; 0 for outputs only",
+            "87 states: 46 constant; 8 equal up to sign; 9 recovered; 0 unwatched; 24 integrated; 0 for outputs only",
             "83 states: 46 constant; 8 equal up to sign; 0 recovered; 0 unwatched; 29 integrated; 0 for outputs only",
         ]
     );

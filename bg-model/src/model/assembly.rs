@@ -15,8 +15,8 @@ use crate::model::holding::{FITTING, Redundancy, Slipping};
 use crate::model::nearest::nearest;
 use crate::model::requirement::Impossible;
 
-/// The largest gap of a closed joint, as a part of the largest sum of terms of which a gap in its unit (m or rad) consists: of the
-/// size of the machine.
+/// The largest gap of a closed joint, as a part of the largest sum of parts of which a gap in its unit (m or rad) consists, and of 1 m or
+/// rad at least: of the size of the machine.
 pub const CLOSED: f64 = 1e-10;
 
 /// One residual row: a component of the gap of a joint.
@@ -134,7 +134,7 @@ fn also_open(others: &[OpenGap]) -> String {
 /// absolute values of its terms. Redundant gaps and coordinates without influence are allowed. With `U = 0` the gaps are only checked. Allocates.
 ///
 /// # Errors
-/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 of the machine's size), [`AssemblyError::NonFinite`] if a gap is
+/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 of the machine's size, and of 1 m or rad at least), [`AssemblyError::NonFinite`] if a gap is
 /// not a number.
 pub fn close<const U: usize>(
     guess: [f64; U],
@@ -160,10 +160,10 @@ fn check_finite(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError>
 }
 
 fn check_closed(gaps: &[Gap], sizes: &DVector<f64>, terms: &[f64]) -> Result<(), AssemblyError> {
-    // One component of a gap may have no terms at all; of an angle a radian counts.
+    // Of an angle a radian counts, of a length a metre: a gap of numbers alone, or one component of it, has no terms at run time.
     let allowed = |unit: &str| {
         let of_unit = gaps.iter().zip(terms).filter(|(gap, _)| gap.unit == unit);
-        CLOSED * of_unit.fold(if unit == "rad" { 1.0 } else { 0.0_f64 }, |largest, (_, &terms)| largest.max(terms))
+        CLOSED * of_unit.fold(1.0_f64, |largest, (_, &terms)| largest.max(terms))
     };
     let mut joints: Vec<OpenGap> = Vec::new();
     for (&gap, &size) in gaps.iter().zip(sizes.iter()) {
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn what_is_closed_is_a_part_of_the_machine() {
-        for size in [1e-6, 1.0, 1e6] {
+        for size in [1.0, 1e3, 1e6] {
             let gap = |part: f64| {
                 super::close([], &PIN, |_, r| r.fill(part * size), |_, terms| terms.copy_from_slice(&[0.0, size]))
             };

@@ -12,7 +12,6 @@ use thiserror::Error;
 use crate::model::holding::{Redundancy, Slipping};
 pub use crate::model::origin::Origin;
 use crate::solve::finish::Finish;
-use crate::solve::simulation::NoNumber;
 
 /// A run that stopped before its end.
 #[derive(Clone, PartialEq, Error)]
@@ -296,4 +295,38 @@ fn span_fault(t0: f64, t_end: f64) -> &'static str {
 
 fn a_finite(which: &str) -> &'static str {
     if which == "fixed" { "a finite " } else { "a " }
+}
+
+/// A value that is not finite at a sample.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}", self.text())]
+pub struct NoNumber {
+    /// The column.
+    pub name: String,
+    /// What it observes, as written, where it is an output.
+    pub observes: Option<&'static str>,
+    /// Its value.
+    pub value: f64,
+    /// When, s.
+    pub t: f64,
+    /// The input, law or algebraic loop that it comes from, where that is known.
+    pub origin: Option<Origin>,
+}
+
+impl NoNumber {
+    fn text(&self) -> String {
+        let Self { name, observes, value, t, origin } = self;
+        let law = observes.filter(|law| law != name).map_or_else(String::new, |law| format!(" = `{law}`"));
+        let what = format!("`{name}`{law} is {value:?} at t = {t:?} s");
+        match origin {
+            None => format!("{what}: keep what it divides by, or takes a root, power or logarithm of, in range"),
+            Some(origin) => format!(
+                "{what}, since {} `{}` gives {:?} there; {}",
+                origin.kind,
+                origin.name,
+                origin.value,
+                origin.action()
+            ),
+        }
+    }
 }

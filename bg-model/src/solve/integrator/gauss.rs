@@ -119,6 +119,9 @@ impl<const N: usize> Method<N> for Gauss6<N> {
 /// The scale of a fixed step, whatever the tolerances.
 fn of_fixed<const N: usize>(scale: &Scale<N>) -> Scale<N> {
     let part = OF_FIXED / scale.relative;
-    let absolute = scale.absolute.map(|absolute| if absolute > f64::MIN_POSITIVE { absolute * part } else { UNKNOWN });
+    let absolute = scale.absolute.map(|absolute| {
+        let absolute = if absolute > f64::MIN_POSITIVE { absolute * part } else { 0.0 };
+        if absolute > f64::MIN_POSITIVE { absolute } else { UNKNOWN }
+    });
     Scale { relative: OF_FIXED, absolute, coarsest: OF_FIXED }
 }

@@ -23,12 +23,13 @@ use nalgebra::SVector;
 
 pub use observer::{EachSample, EachStep, Observer, Switching};
 pub use ongoing::Ongoing;
-pub use recording::{Column, MissingColumn, NoNumber, Part, Recorder, Recording};
+pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 pub use sizes::sizes;
 
 use crate::model::system::System;
 use crate::solve::event::{Condition, Located, Never};
+pub use crate::solve::failure::NoNumber;
 use crate::solve::failure::{Cause, Failure};
 pub use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Method, Point, Scale};

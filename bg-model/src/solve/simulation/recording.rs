@@ -14,8 +14,8 @@ use thiserror::Error;
 
 use super::Observer;
 use crate::model::description::Description;
-use crate::model::origin::Origin;
 use crate::model::system::{Model, Powers};
+use crate::solve::failure::NoNumber;
 
 /// What is recorded at each sample beside its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,40 +144,6 @@ pub struct Recorder<'a, Mo, const N: usize, const G: usize, const M: usize> {
     pub largest: SVector<f64, N>,
     /// The first value that could not be calculated: nothing is recorded from there on, and the run ends.
     pub fault: Option<NoNumber>,
-}
-
-/// A value that is not finite at a sample.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{}", self.text())]
-pub struct NoNumber {
-    /// The column.
-    pub name: String,
-    /// What it observes, as written, where it is an output.
-    pub observes: Option<&'static str>,
-    /// Its value.
-    pub value: f64,
-    /// When, s.
-    pub t: f64,
-    /// The input, law or algebraic loop that it comes from, where that is known.
-    pub origin: Option<Origin>,
-}
-
-impl NoNumber {
-    fn text(&self) -> String {
-        let Self { name, observes, value, t, origin } = self;
-        let law = observes.filter(|law| law != name).map_or_else(String::new, |law| format!(" = `{law}`"));
-        let what = format!("`{name}`{law} is {value:?} at t = {t:?} s");
-        match origin {
-            None => format!("{what}: keep what it divides by, or takes a root, power or logarithm of, in range"),
-            Some(origin) => format!(
-                "{what}, since {} `{}` gives {:?} there; {}",
-                origin.kind,
-                origin.name,
-                origin.value,
-                origin.action()
-            ),
-        }
-    }
 }
 
 impl<'a, Mo, const N: usize, const G: usize, const M: usize> Recorder<'a, Mo, N, G, M>
