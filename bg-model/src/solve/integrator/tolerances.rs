@@ -54,6 +54,9 @@ impl<const N: usize> Default for Tolerances<N> {
     }
 }
 
+/// The growth in a step that is out of all proportion.
+const GROWTH: f64 = 1e6;
+
 /// Tolerances, one for each state: what errors are divided by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale<const N: usize, S = f64> {
@@ -63,6 +66,9 @@ pub struct Scale<const N: usize, S = f64> {
     pub absolute: SVector<S, N>,
     /// The largest allowed error of a state in parts of its size, where sizes are known: else also in its unit.
     pub coarsest: f64,
+    /// By how much the end of a step may have outgrown its start for its value to excuse the step's error: without bound where absolute
+    /// tolerances are given, since a state may start from zero.
+    pub growth: f64,
 }
 
 impl<const N: usize> From<&Tolerances<N>> for Scale<N> {
@@ -76,7 +82,8 @@ impl<const N: usize> From<&Tolerances<N>> for Scale<N> {
             Absolute::OfSizes => tolerances.relative,
             Absolute::Scalar(_) | Absolute::PerState(_) => tolerances.relative.max(absolute.amax()),
         };
-        Self { relative: tolerances.relative, absolute, coarsest }
+        let growth = if tolerances.absolute == Absolute::OfSizes { GROWTH } else { f64::INFINITY };
+        Self { relative: tolerances.relative, absolute, coarsest, growth }
     }
 }
 
@@ -93,9 +100,8 @@ impl<const N: usize, S: Scalar> Scale<N, S> {
     #[inline(always)]
     #[must_use]
     pub fn allowed_between(&self, i: usize, from: S, to: S) -> S {
-        const GROWTH: f64 = 1e6;
         let (at_start, at_end) = (self.allowed(i, from), self.allowed(i, to));
-        at_start.larger(smaller(at_end, at_start.times(GROWTH)))
+        at_start.larger(smaller(at_end, at_start.times(self.growth)))
     }
 }
 
@@ -186,6 +192,7 @@ mod tests {
             Scale::from(&Tolerances::<2> { relative: 0.1, absolute: Absolute::PerState(SVector::from([1.0, 2.0])) });
         assert_eq!(scale.allowed(0, -30.0), 4.0);
         assert_eq!(scale.allowed_between(1, 0.0, -20.0), 4.0);
+        let scale = Scale { growth: 1e6, ..scale };
         assert_eq!(scale.allowed_between(0, 10.0, 1e60), 2e6);
         assert_eq!(scale.norm(&SVector::from([4.0, 1.0]), &SVector::from([10.0, 20.0])), 2.0);
     }

@@ -71,7 +71,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     /// Nobody yet; steps by `method` with the tolerances of this scale.
     pub fn new(method: AnyInLanes<V, N>, control: Control, scale: &Scale<N>) -> Self {
         let zero = Lanes::from_f64(0.0);
-        let Scale { relative, coarsest, .. } = *scale;
+        let Scale { relative, coarsest, growth, .. } = *scale;
         let absolute = scale.absolute.map(Lanes::from_f64);
         let none = [SVector::from([zero; N]); 2];
         Self {
@@ -87,7 +87,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             controllers: Controllers::new(control),
             led: 0,
             plain: 0,
-            scale: Scale { relative, absolute, coarsest },
+            scale: Scale { relative, absolute, coarsest, growth },
             limit: SVector::repeat(Lanes::from_f64(f64::INFINITY)),
             longest: Lanes::from_f64(f64::INFINITY),
             loops: None,
