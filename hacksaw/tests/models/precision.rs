@@ -10,7 +10,7 @@ use hacksaw::mechanism::Hacksaw;
 use hacksaw::precision::case::case;
 
 fn tolerance(rtol: f64) -> Setting {
-    Setting::Tolerance { rtol, atol: None }
+    Setting::Tolerance { rtol, atol: Some(0.1 * rtol) }
 }
 
 /// One run of the case called `name`.
