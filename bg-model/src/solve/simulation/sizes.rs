@@ -298,9 +298,6 @@ impl<const N: usize> SizeMonitor<N> {
             let alone = rate(&start.x);
             let there = rate(&(start.x + (start.rate + alone) * (0.5 * h)));
             let (depends, all) = (norm(&(there - alone)), larger(norm(&alone), norm(&start.rate)));
-            if all == 0.0 {
-                return None;
-            }
             let x = start.x + (start.rate + there) * (0.5 * h);
             if depends <= LINEAR * all && x.iter().all(|x| x.is_finite()) {
                 return Some(Point { t: start.t + h, x, rate: there });
