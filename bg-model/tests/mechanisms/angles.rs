@@ -53,7 +53,7 @@ bond_graph! {
         start impulse;
         observe { outer: rad = outer.angle; inner: rad = inner.angle; seen: rad = inner.direction }
     }
-    /// A controller of its own axis: the angle of a rod in the y-z plane, unwrapped by hand.
+    /// A controller of its own axis: the angle of a rod in the y-z plane, unwrapped in a hand-written expression.
     graph ByHand {
         body rod { mass 1; inertia [0.1, 0.1, 0.1]; start spin [4, 0, 0]; }
         let roll: rad = unwrapped(rod.y_axis.z, rod.y_axis.y, rod.angular_velocity.x);
