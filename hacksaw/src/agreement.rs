@@ -125,7 +125,7 @@ impl Job<'_> {
     ) -> Result<Run, Box<dyn Error>>
     where
         Mo: Model<f64, N, G, M>,
-        Me: Method<N>,
+        Me: Method,
     {
         // Larger than any error: what has it does not shorten a step.
         const NEVER: f64 = 1e300;
@@ -160,7 +160,7 @@ impl ModelVisitor<f64> for Job<'_> {
         Mo: Model<f64, N, G, M>,
     {
         // As in any run, so that it is compiled already.
-        let mut method: AnyMethod<N> = Dop853::new().into();
+        let mut method: AnyMethod = Dop853::new().into();
         self.run(model, &mut method)
     }
 }

@@ -78,7 +78,7 @@ impl Trial {
     {
         let (span, step) = (request.span, request.step);
         let run = move |integrator: Integrator| {
-            let mut method: AnyMethod<N> = integrator.method(request.step);
+            let mut method: AnyMethod = integrator.method(request.step);
             let (start, [t0, t_end]) = (SVector::from(request.start), request.span);
             let outcome = integrate(&system, &mut method, &start, Span { t0, t_end }, &request.settings, &mut ());
             let (last, cause) = match outcome {

@@ -22,7 +22,7 @@ fn departure<Mo, M, const N: usize, const G: usize, const P: usize>(
 ) -> Result<f64, String>
 where
     Mo: Model<f64, N, G, P>,
-    M: Method<N>,
+    M: Method,
 {
     let start = model.start().expect("the mechanism closes");
     let mut recorder = Recorder::new(model, &[Part::Outputs]);

@@ -31,7 +31,7 @@ pub fn methods(out: &mut impl Write) -> Result<(), Fault> {
     run(out, Auto::new())
 }
 
-fn run(out: &mut impl Write, mut method: impl Method<{ Drive::STATES }>) -> Result<(), Fault> {
+fn run(out: &mut impl Write, mut method: impl Method) -> Result<(), Fault> {
     let inputs = DriveInputs { voltage: Input::constant(12.0), ..DriveInputs::default() };
     let model = Drive::new(DriveParameters::default(), inputs)?;
     let settings = Settings { tolerances: Tolerances::new(1e-8, 1e-10), ..Settings::default() };

@@ -109,7 +109,7 @@ where
     Mo: Model<f64, N, G, M>,
 {
     let settings = Settings { tolerances: Tolerances::new(1e-10, 1e-11), ..Settings::default() };
-    let (mut method, mut events): (AnyMethod<N>, _) = (integrator.method(1e-3), Events::default());
+    let (mut method, mut events): (AnyMethod, _) = (integrator.method(1e-3), Events::default());
     let start = model.start().expect("a start");
     let span = Span { t0: 0.0, t_end: end };
     let finish = integrate(model, &mut method, &start, span, &settings, &mut events);

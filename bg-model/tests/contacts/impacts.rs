@@ -178,7 +178,7 @@ where
 {
     let tolerances = Tolerances::new(1e-10, 1e-11);
     let settings = Settings { tolerances, step_limit: 100_000, ..Settings::default() };
-    let mut method: AnyMethod<N> = integrator.method(1e-3);
+    let mut method: AnyMethod = integrator.method(1e-3);
     let mut events = Events { model, last: Vec::new(), found: Vec::new() };
     let start = model.start().expect("a start");
     let span = Span { t0: 0.0, t_end: end };

@@ -58,7 +58,7 @@ bond_graph! {
     }
 }
 
-fn methods<const N: usize>() -> [AnyMethod<N>; 8] {
+fn methods() -> [AnyMethod; 8] {
     [
         Radau5::new().into(),
         Radau9::new().into(),
@@ -71,11 +71,11 @@ fn methods<const N: usize>() -> [AnyMethod<N>; 8] {
     ]
 }
 
-fn fixed_steps() -> [AnyMethod<1>; 2] {
+fn fixed_steps() -> [AnyMethod; 2] {
     [Gauss6::new(0.01).into(), Ros2::new(0.01).into()]
 }
 
-fn name<const N: usize>(method: &AnyMethod<N>) -> String {
+fn name(method: &AnyMethod) -> String {
     let shown = format!("{method:?}");
     shown.split('(').next().unwrap_or_default().to_owned()
 }
@@ -83,7 +83,7 @@ fn name<const N: usize>(method: &AnyMethod<N>) -> String {
 /// A run from 0 to `t_end` (s) with ten samples a second, from an empty tank.
 fn run<Sys: System<f64, N, G>, const N: usize, const G: usize>(
     system: &Sys,
-    mut method: AnyMethod<N>,
+    mut method: AnyMethod,
     t_end: f64,
     tolerance: f64,
 ) -> (Record<N, G>, Statistics) {

@@ -167,7 +167,7 @@ fn hinges_that_hold_each_their_own_carry_the_door_s_weight() {
 }
 
 /// The cranks turn at a constant speed, and the coupler does not turn; the links lie in one line at known times.
-fn through_flat_poses(method: &mut impl Method<{ RigidParallelogram::STATES }>, rtol: f64) {
+fn through_flat_poses(method: &mut impl Method, rtol: f64) {
     let model: RigidParallelogram = RigidParallelogram::new(RigidParallelogramParameters::default()).unwrap();
     let start = model.start().unwrap();
     let settings =

@@ -12,7 +12,7 @@ fn order(coarse: (f64, f64), fine: (f64, f64)) -> f64 {
 }
 
 /// The errors at t = 2 of x' = x cos t, x(0) = 1, for both steps.
-fn errors<M: Method<1>>(method: impl Fn(f64) -> M, steps: [f64; 2]) -> [(f64, f64); 2] {
+fn errors<M: Method>(method: impl Fn(f64) -> M, steps: [f64; 2]) -> [(f64, f64); 2] {
     let system = smooth(|t: f64, x: &SVector<f64, 1>, _: &[bool; 0]| [x[0] * libm::cos(t)]);
     steps.map(|step| {
         let (finish, _) = run(&system, method(step), [1.0], 2.0, &fixed(step));
@@ -35,7 +35,7 @@ fn dop853_has_order_8_with_time_in_the_rate() {
 }
 
 /// The error at the end of one turn on a circle, for both steps.
-fn circle_errors<M: Method<4>>(method: impl Fn(f64) -> M, parts: [f64; 2]) -> [(f64, f64); 2] {
+fn circle_errors<M: Method>(method: impl Fn(f64) -> M, parts: [f64; 2]) -> [(f64, f64); 2] {
     let turn = 2.0 * std::f64::consts::PI;
     let start = SVector::from([1.0, 0.0, 0.0, 1.0]);
     parts.map(|parts| {
@@ -54,7 +54,7 @@ fn both_have_their_order_on_a_nonlinear_system() {
 }
 
 /// The largest error inside a single step of the oscillator, for both steps.
-fn dense_errors<M: Method<2>>(method: impl Fn(f64) -> M, steps: [f64; 2]) -> [(f64, f64); 2] {
+fn dense_errors<M: Method>(method: impl Fn(f64) -> M, steps: [f64; 2]) -> [(f64, f64); 2] {
     let system = smooth(|_, x: &SVector<f64, 2>, _: &[bool; 0]| [x[1], -x[0]]);
     steps.map(|step| {
         let settings = Settings { samples: Samples::Every(step / 32.0), ..fixed(step) };
@@ -142,7 +142,7 @@ impl System<f64, 9, 0> for Turning {
     }
 }
 
-fn drift<M: Method<9>>(is_projected: bool, method: M, samples: Samples) -> f64 {
+fn drift<M: Method>(is_projected: bool, method: M, samples: Samples) -> f64 {
     let start = SVector::from([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
     let (_, record) = run(&Turning { is_projected }, method, start, 20.0, &Settings { samples, ..settings(1e-6) });
     let of = |x: &SVector<f64, 9>| {

@@ -18,7 +18,7 @@ fn chosen<const N: usize>(
     start: [f64; N],
     t_end: f64,
 ) -> (Finish<N, 0>, Vec<(f64, &'static str)>) {
-    let mut method = Auto::<N>::new();
+    let mut method = Auto::new();
     let span = Span { t0: 0.0, t_end };
     let finish = integrate(system, &mut method, &SVector::from(start), span, &settings(1e-6), &mut ()).unwrap();
     (finish, method.changes().iter().map(|change| (change.t, change.method)).collect())
@@ -40,7 +40,7 @@ fn oscillator() -> Flow<Rate<4, 0>, 0> {
 
 /// The rates of a run to `t_end` (s) with each method, and the explicit method that `auto` has at the end.
 fn race(system: &Flow<Rate<4, 0>, 0>, t_end: f64, tolerance: f64) -> ([u64; 3], &'static str) {
-    fn rates<M: Method<4>>(system: &Flow<Rate<4, 0>, 0>, method: &mut M, t_end: f64, tolerance: f64) -> u64 {
+    fn rates<M: Method>(system: &Flow<Rate<4, 0>, 0>, method: &mut M, t_end: f64, tolerance: f64) -> u64 {
         let span = Span { t0: 0.0, t_end };
         let finish = integrate(system, method, &kepler_start(), span, &settings(tolerance), &mut ()).unwrap();
         finish.statistics.rate_evaluations
@@ -165,7 +165,7 @@ fn ringing() -> Flow<Rate<2, 1>, 1> {
 fn steps_cut_by_events_or_by_the_end_are_no_measure_of_stiffness() {
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
         for t_end in [1.0, 1.000_01, 1.1, 1.234_567] {
-            let mut method = Auto::<2>::new();
+            let mut method = Auto::new();
             let span = Span { t0: 0.0, t_end };
             let start = SVector::from([1e-3, 0.0]);
             let mut settings = settings(tolerance);
@@ -186,7 +186,7 @@ fn steps_that_rounding_shortens_are_no_stiffness_and_are_counted() {
         [x[2], x[3], -force, force]
     };
     let steps = |tolerance: f64| {
-        let mut method = Auto::<4>::new();
+        let mut method = Auto::new();
         let settings = Settings { tolerances: Tolerances::new(tolerance, 1e-4 * tolerance), ..Settings::default() };
         let start = SVector::from([1.0, 1.0 + 1e-7, 0.0, 0.0]);
         let finish =
@@ -217,7 +217,7 @@ fn an_explicit_step_without_a_number_is_no_success() {
 fn a_law_too_stiff_for_a_single_explicit_step_is_handed_over() {
     for stiffness in [1e20, 1e60] {
         let rate = move |t: f64, x: &SVector<f64, 1>, _: &[bool; 0]| [-stiffness * (x[0] - t.cos())];
-        let mut method = Auto::<1>::new();
+        let mut method = Auto::new();
         let span = Span { t0: 0.0, t_end: 1.0 };
         let finish =
             integrate(&smooth(rate), &mut method, &SVector::from([1.0]), span, &settings(1e-6), &mut ()).unwrap();
@@ -234,7 +234,7 @@ fn explicit_steps_at_the_limit_of_stability_that_switch_each_time_are_left() {
         let resistance = if negative[0] { 1e12 } else { 5e11 };
         [-resistance * x[0] + (3.0 * t).sin(), -x[1] + x[0]]
     };
-    let mut method = Auto::<2>::new();
+    let mut method = Auto::new();
     let span = Span { t0: 0.0, t_end: 2.0 };
     let limited = Settings { step_limit: 20_000, ..settings(1e-6) };
     let start = SVector::from([1.0, 1.0]);

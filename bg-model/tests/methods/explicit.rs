@@ -12,7 +12,7 @@ fn order(errors: [f64; 2]) -> f64 {
 }
 
 /// The errors at t = 2 of x' = x cos t, x(0) = 1, with a step and half of it.
-fn errors<M: Method<1>>(method: impl Fn() -> M, step: f64) -> [f64; 2] {
+fn errors<M: Method>(method: impl Fn() -> M, step: f64) -> [f64; 2] {
     let system = smooth(|t: f64, x: &SVector<f64, 1>, _: &[bool; 0]| [x[0] * libm::cos(t)]);
     [step, 0.5 * step].map(|step| {
         let (finish, _) = run(&system, method(), [1.0], 2.0, &fixed(step));
@@ -21,14 +21,14 @@ fn errors<M: Method<1>>(method: impl Fn() -> M, step: f64) -> [f64; 2] {
 }
 
 /// The errors at the end of one turn on a circle, in a number of steps and in twice as many.
-fn circle_errors<M: Method<4>>(method: impl Fn() -> M, parts: f64) -> [f64; 2] {
+fn circle_errors<M: Method>(method: impl Fn() -> M, parts: f64) -> [f64; 2] {
     let turn = 2.0 * std::f64::consts::PI;
     let start = SVector::from([1.0, 0.0, 0.0, 1.0]);
     [parts, 2.0 * parts].map(|parts| (run(&kepler(), method(), start, turn, &fixed(turn / parts)).0.x - start).norm())
 }
 
 /// The largest errors inside a single step of x' = x cos t from t = 0, for a step and half of it.
-fn dense_errors<M: Method<1>>(method: impl Fn() -> M, step: f64) -> [f64; 2] {
+fn dense_errors<M: Method>(method: impl Fn() -> M, step: f64) -> [f64; 2] {
     let system = smooth(|t: f64, x: &SVector<f64, 1>, _: &[bool; 0]| [x[0] * libm::cos(t)]);
     [step, 0.5 * step].map(|step| {
         let settings = Settings { samples: Samples::Every(step / 32.0), ..fixed(step) };
@@ -58,7 +58,7 @@ fn a_steps_dense_output_falls_with_the_power_6() {
     assert!(orders.iter().all(|order| (5.7..6.4).contains(order)), "{orders:?}");
 }
 
-fn ratios<M: Method<4>>(method: impl Fn() -> M) -> Vec<f64> {
+fn ratios<M: Method>(method: impl Fn() -> M) -> Vec<f64> {
     let ratio = |exponent| {
         let tolerance = 10.0_f64.powi(exponent);
         let (finish, _) = run(&kepler(), method(), kepler_start(), 20.0, &settings(tolerance));
@@ -90,7 +90,7 @@ fn bs5_sees_jumps_at_any_place_of_a_step() {
 
 #[test]
 fn dop853_does_not_add_up_the_rounding_of_its_steps() {
-    fn error(method: impl Method<1>) -> f64 {
+    fn error(method: impl Method) -> f64 {
         let system = smooth(|_, _: &SVector<f64, 1>, _: &[bool; 0]| [1.0 / 3.0]);
         let (finish, _) = run(&system, method, [0.1], 1e4, &fixed(0.1));
         assert_eq!(finish.statistics.steps, 100_000);
@@ -101,7 +101,7 @@ fn dop853_does_not_add_up_the_rounding_of_its_steps() {
 }
 
 /// Rates for ten seconds of an oscillation of 1000 rad/s, damped to 1.8 % of it, driven slowly.
-fn rates_at_the_limit<M: Method<2>>(method: M) -> u64 {
+fn rates_at_the_limit<M: Method>(method: M) -> u64 {
     let system = smooth(|t: f64, x: &SVector<f64, 2>, _: &[bool; 0]| [x[1], 1e6 * (libm::sin(t) - x[0]) - 36.0 * x[1]]);
     let (finish, _) = run(&system, method, [0.0, 1.0], 10.0, &settings(1e-4));
     assert!((finish.x[0] - 10.0_f64.sin()).abs() < 1e-3);

@@ -64,7 +64,7 @@ impl SecondOrder<f64, 4, 0> for Pendulum {
     forces!(4, 0);
 }
 
-fn ends<M: Method<4>>(pendulum: &Pendulum, method: M, settings: &Settings<4>) -> (SVector<f64, 4>, Statistics) {
+fn ends<M: Method>(pendulum: &Pendulum, method: M, settings: &Settings<4>) -> (SVector<f64, 4>, Statistics) {
     let (finish, _) = run(pendulum, method, [1.0, 0.0, 0.0, 0.0], 2.0, settings);
     (finish.x, finish.statistics)
 }
@@ -220,7 +220,7 @@ impl SecondOrder<f64, 2, 0> for Forced {
 
 /// The largest error over the tolerance, for tolerances from 1e-2 to 1e-9, of all states over ten seconds.
 fn largest_ratio<const N: usize>(system: &impl System<f64, N, 0>, start: [f64; N]) -> f64 {
-    let sampled = |method: AnyMethod<N>, tolerance: f64| {
+    let sampled = |method: AnyMethod, tolerance: f64| {
         let settings = Settings { samples: Samples::Every(0.1), ..settings(tolerance) };
         run(system, method, start, 10.0, &settings).1.samples
     };

@@ -6,7 +6,7 @@ use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
 
 /// The errors at t = 2 of x' = x cos t, x(0) = 1.
-fn smooth_errors<M: Method<1>>(method: impl Fn(f64) -> M, steps: &[f64]) -> Vec<f64> {
+fn smooth_errors<M: Method>(method: impl Fn(f64) -> M, steps: &[f64]) -> Vec<f64> {
     let system = smooth(|t: f64, x: &SVector<f64, 1>, _: &[bool; 0]| [x[0] * libm::cos(t)]);
     let error = |step: &f64| {
         let (finish, _) = run(&system, method(*step), [1.0], 2.0, &fixed(*step));
@@ -36,7 +36,7 @@ fn both_have_their_order_on_a_nonlinear_system() {
 }
 
 /// The errors at t = 1 of Prothero and Robinson's x' = lambda (x - cos t) - sin t with lambda = -1e6: solution cos t.
-fn prothero_robinson<M: Method<1>>(method: impl Fn(f64) -> M, steps: &[f64]) -> Vec<f64> {
+fn prothero_robinson<M: Method>(method: impl Fn(f64) -> M, steps: &[f64]) -> Vec<f64> {
     let rate = |t: f64, x: &SVector<f64, 1>, _: &[bool; 0]| [-1e6 * (x[0] - libm::cos(t)) - libm::sin(t)];
     let error = |step: &f64| {
         let (finish, _) = run(&smooth(rate), method(*step), [1.0], 1.0, &fixed(*step));

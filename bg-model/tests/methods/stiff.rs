@@ -25,7 +25,7 @@ const ROBERTSON: [(f64, [f64; 3]); 3] = [
 ];
 
 /// The largest relative error at the instants of `reference`, and the counts.
-fn errors<M: Method<N>, const N: usize>(
+fn errors<M: Method, const N: usize>(
     system: &Flow<Rate<N, 0>, 0>,
     method: M,
     start: [f64; N],
@@ -40,12 +40,12 @@ fn errors<M: Method<N>, const N: usize>(
     (relative.fold(0.0, f64::max), finish.statistics)
 }
 
-fn van_der_pols_errors<M: Method<2>>(method: M, tolerance: f64) -> (f64, Statistics) {
+fn van_der_pols_errors<M: Method>(method: M, tolerance: f64) -> (f64, Statistics) {
     let tolerances = Tolerances::new(tolerance, tolerance);
     errors(&van_der_pol(), method, VAN_DER_POL_START, &VAN_DER_POL, tolerances)
 }
 
-fn robertson<M: Method<3>>(method: M, tolerance: f64) -> (f64, Statistics) {
+fn robertson<M: Method>(method: M, tolerance: f64) -> (f64, Statistics) {
     let rate: Rate<3, 0> = |_, x, _| {
         let [first, second, third] = [0.04 * x[0], 1e4 * x[1] * x[2], 3e7 * x[1] * x[1]];
         [second - first, first - second - third, third]

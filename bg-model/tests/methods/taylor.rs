@@ -72,7 +72,7 @@ fn kinked() -> BySeries<2, 0, 1> {
     BySeries { order: |rows, k, _, x| [x[1], -2.0 * x[0] - series::abs(rows, k, 0, x[0])] }
 }
 
-fn error_of_growth(method: Taylor<1>, step: f64) -> f64 {
+fn error_of_growth(method: Taylor, step: f64) -> f64 {
     let settings = Settings { first_step: Some(step), largest_step: step, ..settings(1.0) };
     let (finish, _) = run(&growth(), method, [1.0], 2.0, &settings);
     assert_eq!((finish.statistics.steps as f64, finish.statistics.rejected), (2.0 / step, 0));
@@ -172,6 +172,6 @@ fn a_system_without_a_series_is_refused() {
     let mut recorder = Record::default();
     let failure =
         integrate(&kepler(), &mut Taylor::new(), &kepler_start(), span, &settings(1e-6), &mut recorder).unwrap_err();
-    assert_eq!(failure.cause, Cause::BadInput(BadInput::NoSeries { method: Method::<4>::name(&Taylor::new()) }));
+    assert_eq!(failure.cause, Cause::BadInput(BadInput::NoSeries { method: Method::name(&Taylor::new()) }));
     assert!(failure.to_string().starts_with("the integrator Taylor needs the system's Taylor series"), "{failure}");
 }

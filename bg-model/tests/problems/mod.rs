@@ -164,7 +164,7 @@ pub fn run<Sys, M, const N: usize, const G: usize>(
 ) -> (Finish<N, G>, Record<N, G>)
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
 {
     let mut record = Record::default();
     let span = Span { t0: 0.0, t_end };

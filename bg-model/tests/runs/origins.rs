@@ -43,7 +43,7 @@ bond_graph! {
 fn stopped<Sys, const N: usize, const G: usize>(
     system: &Sys,
     start: &SVector<f64, N>,
-    method: &mut impl Method<N>,
+    method: &mut impl Method,
 ) -> String
 where
     Sys: System<f64, N, G>,

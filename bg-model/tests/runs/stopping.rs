@@ -22,7 +22,7 @@ fn until<Sys, M, C, const N: usize, const G: usize>(
 ) -> (Result<Finish<N, G>, Failure<N, G>>, Record<N, G>)
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
     C: FnMut(f64, &SVector<f64, N>, &[bool; G]) -> f64,
 {
     let (mut record, span) = (Record::default(), Span { t0: 0.0, t_end });

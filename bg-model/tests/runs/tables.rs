@@ -59,7 +59,7 @@ fn closed_form<S: Scalar>(t: f64) -> [S; 2] {
 /// A run from rest at t = 0, with the steps it made.
 fn run<Sys, const N: usize, const G: usize>(
     model: &Sys,
-    mut method: AnyMethod<N>,
+    mut method: AnyMethod,
     t_end: f64,
     settings: &Settings<N>,
 ) -> (Finish<N, G>, Record<N, G>)

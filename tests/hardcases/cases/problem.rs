@@ -150,7 +150,7 @@ where
         samples: Samples,
         each: &mut dyn FnMut(f64, Vec<f64>),
     ) -> Followed {
-        let mut method: AnyMethod<N> = integrator.method(request.fixed_step);
+        let mut method: AnyMethod = integrator.method(request.fixed_step);
         let settings = Settings {
             tolerances: Tolerances::new(request.relative, request.absolute),
             first_step: request.forced_step,

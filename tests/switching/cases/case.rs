@@ -123,7 +123,7 @@ where
     Sys: System<f64, N, G>,
 {
     fn run(&self, integrator: Integrator, request: &Request) -> Run {
-        let mut method: AnyMethod<N> = integrator.method(request.fixed_step);
+        let mut method: AnyMethod = integrator.method(request.fixed_step);
         let settings = Settings {
             tolerances: Tolerances::new(request.tolerance, request.tolerance),
             first_step: request.first_step,

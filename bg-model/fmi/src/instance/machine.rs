@@ -110,7 +110,7 @@ struct Stood<Mo, const N: usize, const G: usize, const M: usize> {
 
 #[derive(Clone)]
 struct Run<const N: usize, const G: usize> {
-    method: AnyMethod<N>,
+    method: AnyMethod,
     ongoing: Ongoing<N, G>,
 }
 

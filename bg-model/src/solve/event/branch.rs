@@ -26,7 +26,7 @@ impl<const G: usize> EventMonitor<G> {
     ) -> [bool; G]
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         if G == 0 {
             return [false; G];
@@ -53,7 +53,7 @@ impl<const G: usize> EventMonitor<G> {
         step: f64,
     ) where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let undecided: [bool; G] = core::array::from_fn(|k| self.start.value[k] == 0.0 && !known[k]);
         if undecided.contains(&true) {
@@ -73,7 +73,7 @@ impl<const G: usize> EventMonitor<G> {
         step: f64,
     ) where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let settled = self.follow(stepper, switches, step);
         let remembers = stepper.system.first_branches();
@@ -95,7 +95,7 @@ impl<const G: usize> EventMonitor<G> {
     ) -> [bool; G]
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let flipped = core::array::from_fn(|k| stepper.negative[k] != switches[k]);
         self.choose(stepper, &switches, flipped, step);
@@ -124,7 +124,7 @@ impl<const G: usize> EventMonitor<G> {
         step: f64,
     ) where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         for k in 0..G {
             if switches[k] {
@@ -153,9 +153,9 @@ impl<const G: usize> EventMonitor<G> {
     ) -> [bool; G]
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
-        if !is_finite(&stepper.start.rate) {
+        if !is_finite(stepper.start.rate.as_slice()) {
             return *switches;
         }
         if self.agree(stepper, switches, step) {
@@ -175,7 +175,7 @@ impl<const G: usize> EventMonitor<G> {
     ) -> bool
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let (start, h) = (stepper.start, small(PROBES[0], reach, stepper.start.t));
         stepper.take_over(h, Point::at(start.t + h, start.x + start.rate * h));

@@ -29,7 +29,7 @@ pub(crate) trait Condition<const N: usize, const G: usize> {
     fn begin<Sys, M>(&mut self, _stepper: &mut Stepper<'_, Sys, M, N, G>, _reach: f64) -> Result<(), f64>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         Ok(())
     }
@@ -43,7 +43,7 @@ pub(crate) trait Condition<const N: usize, const G: usize> {
     ) -> Result<Option<Stop>, f64>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         Ok(None)
     }
@@ -55,7 +55,7 @@ pub(crate) trait Condition<const N: usize, const G: usize> {
     fn jumps<Sys, M>(&mut self, _stepper: &mut Stepper<'_, Sys, M, N, G>, _reach: f64) -> Result<bool, f64>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         Ok(false)
     }
@@ -98,7 +98,7 @@ where
     fn begin<Sys, M>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, reach: f64) -> Result<(), f64>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let (monitor, mut step) = self.on(stepper);
         monitor.read_start(&mut step, reach);
@@ -121,7 +121,7 @@ where
     ) -> Result<Option<Stop>, f64>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let is_undecided = self.side.is_none();
         let (monitor, mut step) = self.on(stepper);
@@ -148,7 +148,7 @@ where
     fn jumps<Sys, M>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, reach: f64) -> Result<bool, f64>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let side = self.side;
         let (monitor, mut step) = self.on(stepper);
@@ -192,7 +192,7 @@ struct Conditional<'s, 'a, Sys, M, C, const N: usize, const G: usize> {
 impl<Sys, M, C, const N: usize, const G: usize> Guarded<N, 1> for Conditional<'_, '_, Sys, M, C, N, G>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
     C: FnMut(f64, &SVector<f64, N>, &[bool; G]) -> f64,
 {
     fn start(&self) -> &Point<N> {

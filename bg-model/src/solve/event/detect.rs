@@ -109,8 +109,8 @@ impl<const G: usize> EventMonitor<G> {
         let (end, h) = (*step.end(), step.size());
         self.end = read(step, end.t, &end.x, &end.rate, h);
         check_finite(&self.end.value)?;
-        let mut x = SVector::zeros();
-        hermite(step.start(), h, &end, 0.5, &mut x);
+        let mut x = SVector::<f64, N>::zeros();
+        hermite(step.start().borrowed(), h, end.borrowed(), 0.5, x.as_mut_slice());
         let middle = step.start().t + 0.5 * h;
         let middle = step.guards(middle, &x);
         // As long as the noise is not known it counts as none: there are only more suspects.

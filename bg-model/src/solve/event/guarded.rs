@@ -47,7 +47,7 @@ pub(crate) trait Guarded<const N: usize, const G: usize> {
 impl<Sys, M, const N: usize, const G: usize> Guarded<N, G> for Stepper<'_, Sys, M, N, G>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
 {
     fn start(&self) -> &Point<N> {
         &self.start

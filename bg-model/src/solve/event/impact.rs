@@ -44,7 +44,7 @@ impl<const G: usize> EventMonitor<G> {
     ) -> Struck<G>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let negative = stepper.negative;
         let none = Struck { switches, rebounds: [false; G], jumps: false };
@@ -73,7 +73,7 @@ impl<const G: usize> EventMonitor<G> {
     ) -> [bool; G]
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let mut clear = [false; G];
         let Some(collision) = collision else { return clear };
@@ -90,7 +90,7 @@ impl<const G: usize> EventMonitor<G> {
     fn rest<Sys, M, const N: usize>(&self, stepper: &mut Stepper<'_, Sys, M, N, G>, collision: &mut Collision<f64>)
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let system = stepper.system;
         let Some(impacts) = system.impacts() else { return };
@@ -119,7 +119,7 @@ impl<const G: usize> EventMonitor<G> {
     ) -> bool
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let system = stepper.system;
         let Some(impacts) = system.impacts() else { return false };
@@ -166,7 +166,7 @@ fn allowed<Sys, M, const N: usize, const G: usize>(
 ) -> [f64; G]
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
 {
     let start = stepper.start;
     let off = SVector::from_fn(|i, _| start.x[i] + stepper.scale.allowed(i, start.x[i]));

@@ -50,7 +50,7 @@ impl<V: Vector, const G: usize> Readings<V, G> {
 
     /// Reads the guards in steps; gives the places at which they are clear.
     #[inline(always)]
-    pub fn read<Sys, const N: usize>(&mut self, side: &Side<'_, Sys, V, G>, steps: &Steps<'_, V, N>) -> V::Mask
+    pub fn read<Sys, const N: usize>(&mut self, side: &Side<'_, Sys, V, N, G>, steps: &Steps<'_, V, N>) -> V::Mask
     where
         Sys: System<Lanes<V>, N, G>,
     {

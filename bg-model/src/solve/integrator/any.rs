@@ -5,13 +5,11 @@
 
 use alloc::boxed::Box;
 
-use nalgebra::SVector;
-
 use super::hand_on::hand_on;
 #[cfg(feature = "std")]
 use super::lanes::OfOne;
 use super::{
-    Ark5, Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, Point, Radau5, Radau9, Rk4, Rodas5p, Ros2,
+    Ark5, Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, PointRef, Radau5, Radau9, Rk4, Rodas5p, Ros2,
     Scale, StepControl, Taylor,
 };
 
@@ -20,12 +18,12 @@ macro_rules! any {
         /// One of the methods of this crate.
         #[derive(Clone, Debug)]
         #[allow(missing_docs, reason = "the variants have the methods' names")]
-        pub enum AnyMethod<const N: usize> {
-            $($name(Box<$name<N>>),)*
+        pub enum AnyMethod {
+            $($name(Box<$name>),)*
         }
 
-        $(impl<const N: usize> From<$name<N>> for AnyMethod<N> {
-            fn from(method: $name<N>) -> Self {
+        $(impl From<$name> for AnyMethod {
+            fn from(method: $name) -> Self {
                 Self::$name(Box::new(method))
             }
         })*
@@ -55,10 +53,10 @@ macro_rules! inside {
     };
 }
 
-impl<const N: usize> AnyMethod<N> {
+impl AnyMethod {
     /// The method of one of several runs side by side; none of a method whose runs cannot be.
     #[cfg(feature = "std")]
-    pub(crate) fn of_one(&mut self) -> Option<&mut dyn OfOne<N>> {
+    pub(crate) fn of_one(&mut self) -> Option<&mut dyn OfOne> {
         match self {
             Self::Cfmr7(method) => Some(&mut **method),
             Self::Dop853(method) => Some(&mut **method),
@@ -68,22 +66,34 @@ impl<const N: usize> AnyMethod<N> {
     }
 }
 
-impl<const N: usize> Method<N> for AnyMethod<N> {
+impl Method for AnyMethod {
     hand_on!(inside);
 
     fn needs_series(&self) -> bool {
         inside!((&) self, method => method.needs_series())
     }
 
+    fn fit(&mut self, states: usize) {
+        inside!((&mut) self, method => method.fit(states));
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         inside!((&mut) self, method => method.attempt(flow, start, h, scale, end))
+    }
+
+    fn attempt_any(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+        self.attempt(flow, start, h, scale, end)
+    }
+
+    fn prepare_dense_any(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        self.prepare_dense(flow, start, h, end);
     }
 
     fn advance(&mut self) {

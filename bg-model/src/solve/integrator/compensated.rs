@@ -3,38 +3,39 @@
 //! In: a state and its change in a step. Out: their sum. Without it the momenta of long runs drift by a random walk. Source:
 //! W. Kahan, Communications of the ACM 8 (1965); Hairer, Lubich, Wanner, section VIII.5.
 
-use nalgebra::SVector;
+use alloc::vec;
+use alloc::vec::Vec;
 
 use crate::model::scalar::Scalar;
 
 /// What rounding has kept from the states.
 #[derive(Clone, Debug)]
-pub(super) struct CompensatedSum<S, const N: usize> {
+pub(super) struct CompensatedSum<S> {
     /// At the start of the step.
-    pub start: SVector<S, N>,
+    pub start: Vec<S>,
     /// At the end of the step that was tried last.
-    pub end: SVector<S, N>,
+    pub end: Vec<S>,
 }
 
-impl<S: Scalar, const N: usize> CompensatedSum<S, N> {
+impl<S: Scalar> CompensatedSum<S> {
     /// Nothing yet.
-    pub fn new() -> Self {
-        let nothing = SVector::from([S::from_f64(0.0); N]);
-        Self { start: nothing, end: nothing }
+    pub fn new(states: usize) -> Self {
+        let nothing = vec![S::from_f64(0.0); states];
+        Self { start: nothing.clone(), end: nothing }
     }
 
     /// State `i` after a step that starts at `from` and changes it by `change`.
     #[inline(always)]
     pub fn add(&mut self, i: usize, from: S, change: S) -> S {
-        let change = change + self.start.data.0[0][i];
+        let change = change + self.start[i];
         let to = from + change;
-        self.end.data.0[0][i] = change - (to - from);
+        self.end[i] = change - (to - from);
         to
     }
 
     /// The step that was tried last was accepted.
     pub fn advance(&mut self) {
-        self.start = self.end;
+        self.start.copy_from_slice(&self.end);
     }
 
     /// Nothing is added to the next step.

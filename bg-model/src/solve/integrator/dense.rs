@@ -7,10 +7,11 @@
 //!
 //! Numbers of states are slices in here: what calculates is compiled once, for all models and methods, in the machine's vectors.
 
-use nalgebra::SVector;
+use alloc::vec::Vec;
+
 use pulp::NullaryFnOnce;
 
-use super::Point;
+use super::PointRef;
 use crate::model::scalar::machine::Arch;
 
 /// The coefficients that follow from the states and rates at both ends.
@@ -18,40 +19,45 @@ pub(super) const FROM_ENDS: usize = 3;
 
 /// The polynomials of all states, with `C` coefficients each.
 #[derive(Clone, Debug)]
-pub(super) struct Polynomial<const N: usize, const C: usize> {
-    coefficients: [[f64; N]; C],
+pub(super) struct Polynomial<const C: usize> {
+    coefficients: [Vec<f64>; C],
 }
 
-impl<const N: usize, const C: usize> Polynomial<N, C> {
-    pub fn zero() -> Self {
-        Self { coefficients: [[0.0; N]; C] }
+impl<const C: usize> Polynomial<C> {
+    pub fn new() -> Self {
+        Self { coefficients: [const { Vec::new() }; C] }
+    }
+
+    /// Makes room for so many states.
+    pub fn fit(&mut self, states: usize) {
+        self.coefficients.iter_mut().for_each(|coefficient| coefficient.resize(states, 0.0));
     }
 
     /// Sets the coefficients that follow from the ends of the step, and those after them to what `write` writes: it gets the
     /// coefficients of the ends and the count of the one to be written, from the first after them.
     pub fn set(
         &mut self,
-        start: &Point<N>,
+        start: PointRef<'_>,
         h: f64,
-        end: &Point<N>,
-        write: impl Fn(usize, &[[f64; N]; FROM_ENDS], &mut [f64; N]),
+        end: PointRef<'_>,
+        write: impl Fn(usize, &[Vec<f64>; FROM_ENDS], &mut [f64]),
     ) {
         let (ends, behind) = self.coefficients.split_first_chunk_mut().expect("coefficients of the ends");
         let [chord, at_start, at_end] = &mut *ends;
-        chord.copy_from_slice(start.x.as_slice());
-        at_start.copy_from_slice(start.rate.as_slice());
-        at_end.copy_from_slice(end.rate.as_slice());
-        follow_from_ends(h, end.x.as_slice(), chord, at_start, at_end);
+        chord.copy_from_slice(start.x);
+        at_start.copy_from_slice(start.rate);
+        at_end.copy_from_slice(end.rate);
+        follow_from_ends(h, end.x, chord, at_start, at_end);
         for (m, coefficient) in behind.iter_mut().enumerate() {
             write(m, ends, coefficient);
         }
     }
 
     /// Writes the state at the part `theta` of the step, of the first `count` coefficients, into `x`: in the vectors `arch`.
-    pub fn evaluate(&self, arch: Arch, count: usize, start: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    pub fn evaluate(&self, arch: Arch, count: usize, start: PointRef<'_>, theta: f64, x: &mut [f64]) {
         let coefficients = self.coefficients.each_ref().map(|coefficient| &coefficient[..]);
-        let polynomials = Polynomials { coefficients: &coefficients[..count], start: start.x.as_slice(), theta };
-        polynomials.write(arch, x.as_mut_slice());
+        let polynomials = Polynomials { coefficients: &coefficients[..count], start: start.x, theta };
+        polynomials.write(arch, x);
     }
 }
 
@@ -135,15 +141,10 @@ impl OfEach for Polynomials<'_> {
 const TERMS: usize = 16;
 
 /// Writes `h` times a sum of rates, each with its weight, in their order: in the vectors `arch`.
-pub(super) fn write_sum<'a, const N: usize>(
-    arch: Arch,
-    h: f64,
-    terms: impl Iterator<Item = (f64, &'a SVector<f64, N>)>,
-    out: &mut [f64; N],
-) {
+pub(super) fn write_sum<'a>(arch: Arch, h: f64, terms: impl Iterator<Item = (f64, &'a [f64])>, out: &mut [f64]) {
     let (mut all, mut count) = ([(0.0, &[][..]); TERMS], 0);
-    for (weight, rate) in terms {
-        all[count] = (weight, rate.as_slice());
+    for term in terms {
+        all[count] = term;
         count += 1;
     }
     Sums { h, terms: &all[..count] }.write(arch, out);

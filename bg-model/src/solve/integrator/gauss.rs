@@ -6,10 +6,10 @@
 //! fixed. Every step is solved to rounding for that. Source: see `collocation`; Hairer, Lubich, Wanner, Geometric
 //! Numerical Integration, 2nd edition, sections IV.2 and VIII.6.
 
-use nalgebra::SVector;
+use alloc::vec::Vec;
 
 use super::collocation::{Collocation, GAUSS6};
-use super::{Flow, Method, Point, Scale, StepControl};
+use super::{Flow, Method, PointRef, Scale, StepControl};
 
 /// What corrections of a fixed step are measured by in place of tolerances, which it has none of: a part of the sizes of the states, and
 /// this number in SI units where nothing is known of these.
@@ -21,12 +21,16 @@ const LOST: f64 = 1e-3;
 /// Gauss with three stages, of order 6 at the ends of steps. Samples between them are of order 4 only: to watch an energy take
 /// [`Samples::Steps`](crate::simulation::Samples::Steps), or instants that are ends of steps.
 #[derive(Clone, Debug)]
-pub struct Gauss6<const N: usize> {
-    pub(super) core: Collocation<N, 3, 1>,
+pub struct Gauss6 {
+    pub(super) core: Collocation<3, 1>,
     control: StepControl,
+    /// What a fixed step is measured by.
+    own: Scale,
+    /// The state at the end of the step by the polynomial.
+    by_polynomial: Vec<f64>,
 }
 
-impl<const N: usize> Gauss6<N> {
+impl Gauss6 {
     /// The method with steps of `step` (s); the driver refuses a step that is not positive and finite.
     #[must_use]
     pub fn new(step: f64) -> Self {
@@ -40,20 +44,45 @@ impl<const N: usize> Gauss6<N> {
     }
 
     fn with(control: StepControl) -> Self {
-        Self { core: Collocation::new(&GAUSS6, true), control }
+        Self { core: Collocation::new(&GAUSS6, true), control, own: NOTHING, by_polynomial: Vec::new() }
     }
 
     /// Whether the quadrature disagrees with the polynomial, by a thousandth of the state and more than the tolerances: where
     /// h J is so large that the rates at the stages are rounding errors, the equations have no solution in `f64`.
-    fn is_lost(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> bool {
-        let mut polynomial = SVector::zeros();
-        self.core.dense(start, 1.0, &mut polynomial);
+    fn is_lost(&mut self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> bool {
+        let polynomial = &mut self.by_polynomial;
+        self.core.dense(start, 1.0, polynomial);
         let size = |i: usize| if end[i].abs() > start.x[i].abs() { end[i].abs() } else { start.x[i].abs() };
-        (0..N).any(|i| (end[i] - polynomial[i]).abs() > scale.allowed(i, start.x[i]) + LOST * size(i))
+        let is_off = |i: usize| (end[i] - polynomial[i]).abs() > scale.allowed(i, start.x[i]) + LOST * size(i);
+        (0..end.len()).any(is_off)
+    }
+
+    /// Tries a step as [`Method::attempt`] does, by this scale.
+    fn step(
+        &mut self,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
+        h: f64,
+        scale: &Scale,
+        end: &mut [f64],
+    ) -> f64 {
+        if let Err(error) = self.core.solve(flow, start, h, scale) {
+            return error;
+        }
+        for (i, end) in end.iter_mut().enumerate() {
+            *end = start.x[i] + self.core.quadrature(i, h);
+        }
+        if self.is_lost(start, scale, end) {
+            return f64::INFINITY;
+        }
+        match self.control {
+            StepControl::Fixed { .. } => 0.0,
+            _ => self.core.estimate(flow, start, h, scale, end),
+        }
     }
 }
 
-impl<const N: usize> Method<N> for Gauss6<N> {
+impl Method for Gauss6 {
     fn name(&self) -> &'static str {
         "Gauss 6"
     }
@@ -66,31 +95,27 @@ impl<const N: usize> Method<N> for Gauss6<N> {
         true
     }
 
+    fn fit(&mut self, states: usize) {
+        self.core.fit(states);
+        self.by_polynomial.resize(states, 0.0);
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
-        let own;
-        let scale = if let StepControl::Fixed { .. } = self.control {
-            own = of_fixed(scale);
-            &own
+        let error = if let StepControl::Fixed { .. } = self.control {
+            let mut own = core::mem::replace(&mut self.own, NOTHING);
+            of_fixed(scale, &mut own);
+            let error = self.step(flow, start, h, &own, end);
+            self.own = own;
+            error
         } else {
-            scale
-        };
-        let error = match self.core.solve(flow, start, h, scale) {
-            Ok(()) => {
-                *end = SVector::from_fn(|i, _| start.x[i] + self.core.quadrature(i, h));
-                match self.control {
-                    _ if self.is_lost(start, scale, end) => f64::INFINITY,
-                    StepControl::Fixed { .. } => 0.0,
-                    _ => self.core.estimate(flow, start, h, scale, end),
-                }
-            }
-            Err(error) => error,
+            self.step(flow, start, h, scale, end)
         };
         self.core.conclude(error)
     }
@@ -103,7 +128,7 @@ impl<const N: usize> Method<N> for Gauss6<N> {
         self.core.restart();
     }
 
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+    fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
         self.core.largest_error(start, scale, end)
     }
 
@@ -111,17 +136,21 @@ impl<const N: usize> Method<N> for Gauss6<N> {
         self.core.faulty_rate()
     }
 
-    fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn dense(&self, start: PointRef<'_>, _h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         self.core.dense(start, theta, x);
     }
 }
 
-/// The scale of a fixed step, whatever the tolerances.
-fn of_fixed<const N: usize>(scale: &Scale<N>) -> Scale<N> {
+/// A scale of no states.
+const NOTHING: Scale = Scale { relative: OF_FIXED, absolute: Vec::new(), coarsest: OF_FIXED, growth: f64::INFINITY };
+
+/// Makes `own` the scale of a fixed step, whatever the tolerances.
+fn of_fixed(scale: &Scale, own: &mut Scale) {
     let part = OF_FIXED / scale.relative;
-    let absolute = scale.absolute.map(|absolute| {
+    own.growth = scale.growth;
+    own.absolute.clear();
+    own.absolute.extend(scale.absolute.iter().map(|&absolute| {
         let absolute = if absolute > f64::MIN_POSITIVE { absolute * part } else { 0.0 };
         if absolute > f64::MIN_POSITIVE { absolute } else { UNKNOWN }
-    });
-    Scale { relative: OF_FIXED, absolute, coarsest: OF_FIXED, growth: scale.growth }
+    }));
 }

@@ -18,17 +18,17 @@ macro_rules! hand_on {
 
         fn error_after(
             &mut self,
-            flow: &impl Flow<N>,
-            start: &Point<N>,
+            flow: &dyn Flow,
+            start: PointRef<'_>,
             h: f64,
-            scale: &Scale<N>,
-            end: &SVector<f64, N>,
-            project: impl Fn(&mut SVector<f64, N>),
+            scale: &Scale,
+            end: &[f64],
+            project: &dyn Fn(&mut [f64]),
         ) -> Option<f64> {
             $present!((&mut) self, method => method.error_after(flow, start, h, scale, end, project))
         }
 
-        fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+        fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
             $present!((&) self, method => method.largest_error(start, scale, end))
         }
 
@@ -36,11 +36,11 @@ macro_rules! hand_on {
             $present!((&) self, method => method.faulty_rate())
         }
 
-        fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+        fn prepare_dense(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, end: PointRef<'_>) {
             $present!((&mut) self, method => method.prepare_dense(flow, start, h, end));
         }
 
-        fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+        fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
             $present!((&) self, method => method.dense(start, h, end, theta, x));
         }
     };

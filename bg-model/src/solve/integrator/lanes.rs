@@ -14,12 +14,12 @@ use super::steps::{Begin, Forces, Rates};
 use super::{AnyMethod, Scale};
 use crate::model::capability::SecondOrder;
 use crate::model::scalar::Scalar;
-use crate::model::scalar::lanes::{Lanes, Vector, at};
+use crate::model::scalar::lanes::{Lanes, Vector, take};
 use crate::model::system::System;
 
 /// A system side by side, its switches frozen.
 #[derive(Debug)]
-pub(crate) struct Side<'a, Sys, V: Vector, const G: usize> {
+pub(crate) struct Side<'a, Sys, V: Vector, const N: usize, const G: usize> {
     /// The system.
     pub system: &'a Sys,
     /// Where the guard of each switch is negative.
@@ -27,10 +27,10 @@ pub(crate) struct Side<'a, Sys, V: Vector, const G: usize> {
 }
 
 struct Rate<'a, Sys, V: Vector, const N: usize, const G: usize> {
-    side: &'a Side<'a, Sys, V, G>,
+    side: &'a Side<'a, Sys, V, N, G>,
     t: Lanes<V>,
-    x: &'a SVector<Lanes<V>, N>,
-    dx: &'a mut SVector<Lanes<V>, N>,
+    x: &'a [Lanes<V>],
+    dx: &'a mut [Lanes<V>],
 }
 
 impl<Sys, V: Vector, const N: usize, const G: usize> NullaryFnOnce for Rate<'_, Sys, V, N, G>
@@ -46,22 +46,35 @@ where
     }
 }
 
-impl<Sys, V: Vector, const N: usize, const G: usize> Rates<Lanes<V>, N> for Side<'_, Sys, V, G>
+/// The numbers of all states as the system takes them.
+#[inline(always)]
+fn whole<V: Vector, const N: usize>(of: &[Lanes<V>]) -> SVector<Lanes<V>, N> {
+    SVector::from(*of.first_chunk().expect("there is a number for each state"))
+}
+
+impl<Sys, V: Vector, const N: usize, const G: usize> Rates<Lanes<V>> for Side<'_, Sys, V, N, G>
 where
     Sys: System<Lanes<V>, N, G>,
 {
+    #[inline(always)]
+    fn states(&self) -> usize {
+        N
+    }
+
     #[inline(never)]
-    fn rate(&self, t: Lanes<V>, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>) {
+    fn rate(&self, t: Lanes<V>, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
         V::vectorized(Rate { side: self, t, x, dx });
     }
 
     #[inline(always)]
-    fn inlined_rate(&self, t: Lanes<V>, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>) {
-        self.system.always_inlined_rate(t, x, self.negative, dx);
+    fn inlined_rate(&self, t: Lanes<V>, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
+        let mut rate = SVector::from([t; N]);
+        self.system.always_inlined_rate(t, &whole(x), self.negative, &mut rate);
+        dx.copy_from_slice(&rate.data.0[0]);
     }
 }
 
-impl<Sys, V: Vector, const N: usize, const G: usize> Forces<Lanes<V>, N> for Side<'_, Sys, V, G>
+impl<Sys, V: Vector, const N: usize, const G: usize> Forces<Lanes<V>> for Side<'_, Sys, V, N, G>
 where
     Sys: System<Lanes<V>, N, G>,
 {
@@ -71,28 +84,35 @@ where
     }
 
     #[inline(always)]
-    fn at_start(&self, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>) {
+    fn at_start(&self, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
         if let Some(second) = self.system.second_order() {
-            second.second_derivatives(x, dx);
+            let mut rate = whole(dx);
+            second.second_derivatives(&whole(x), &mut rate);
+            dx.copy_from_slice(&rate.data.0[0]);
         }
     }
 
     #[inline(always)]
-    fn at_stage(&self, t: Lanes<V>, x: &SVector<Lanes<V>, N>, dx: &mut SVector<Lanes<V>, N>) {
+    fn at_stage(&self, t: Lanes<V>, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
         match self.system.second_order() {
-            Some(second) => second.forces(t, x, self.negative, dx),
+            Some(second) => {
+                let mut rate = SVector::from([t; N]);
+                second.forces(t, &whole(x), self.negative, &mut rate);
+                dx.copy_from_slice(&rate.data.0[0]);
+            }
             None => self.inlined_rate(t, x, dx),
         }
     }
 }
 
 /// What a run's own method tells where runs are side by side, and is told.
-pub(crate) trait OfOne<const N: usize> {
+pub(crate) trait OfOne {
     /// What it carries over from step to step, state by state.
-    fn compensation(&mut self) -> &mut SVector<f64, N>;
+    fn compensation(&mut self) -> &mut [f64];
 
-    /// Takes over what it would keep of an attempt for its compensated sum, and the rates of the attempt's stages, of which `stage` gives each.
-    fn keep(&mut self, compensation: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>);
+    /// Takes over what it would keep of an attempt for its compensated sum, which `compensation` writes, and the rates of the attempt's stages,
+    /// of which `stage` writes each.
+    fn keep(&mut self, compensation: &dyn Fn(&mut [f64]), stage: &dyn Fn(usize, &mut [f64]));
 
     /// The rates of an attempt, without that at its start.
     fn rates(&self) -> u64;
@@ -126,19 +146,19 @@ pub(crate) trait OfOne<const N: usize> {
 
 /// One of the methods for runs side by side.
 #[derive(Debug)]
-pub(crate) enum AnyInLanes<V, const N: usize> {
-    Cfmr7(Box<ExplicitInLanes<CalvoFrancoMontijanoRandez, V, N>>),
-    Dop853(Box<ExplicitInLanes<DormandPrince, V, N>>),
-    Nystrom(Box<NystromInLanes<V, N>>),
+pub(crate) enum AnyInLanes<V> {
+    Cfmr7(Box<ExplicitInLanes<CalvoFrancoMontijanoRandez, V>>),
+    Dop853(Box<ExplicitInLanes<DormandPrince, V>>),
+    Nystrom(Box<NystromInLanes<V>>),
 }
 
-impl<V: Vector, const N: usize> AnyInLanes<V, N> {
-    /// That of runs by `method`, its work space empty; none of a method whose runs cannot be side by side.
-    pub fn of(method: &AnyMethod<N>) -> Option<Self> {
+impl<V: Vector> AnyInLanes<V> {
+    /// That of runs of so many states by `method`, its work space empty; none of a method whose runs cannot be side by side.
+    pub fn of(method: &AnyMethod, states: usize) -> Option<Self> {
         match method {
-            AnyMethod::Cfmr7(_) => Some(Self::Cfmr7(Box::new(ExplicitInLanes::new()))),
-            AnyMethod::Dop853(_) => Some(Self::Dop853(Box::new(ExplicitInLanes::new()))),
-            AnyMethod::Nystrom(_) => Some(Self::Nystrom(Box::new(NystromInLanes::new()))),
+            AnyMethod::Cfmr7(_) => Some(Self::Cfmr7(Box::new(ExplicitInLanes::new(states)))),
+            AnyMethod::Dop853(_) => Some(Self::Dop853(Box::new(ExplicitInLanes::new(states)))),
+            AnyMethod::Nystrom(_) => Some(Self::Nystrom(Box::new(NystromInLanes::new(states)))),
             _ => None,
         }
     }
@@ -148,12 +168,12 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         match self {
             Self::Cfmr7(_) => CalvoFrancoMontijanoRandez::ERROR_ORDER,
             Self::Dop853(_) => DormandPrince::ERROR_ORDER,
-            Self::Nystrom(_) => NystromInLanes::<V, N>::ORDER,
+            Self::Nystrom(_) => NystromInLanes::<V>::ORDER,
         }
     }
 
     /// What each run's method carries over from step to step.
-    pub fn compensation(&mut self) -> &mut SVector<Lanes<V>, N> {
+    pub fn compensation(&mut self) -> &mut [Lanes<V>] {
         match self {
             Self::Cfmr7(method) => method.compensation(),
             Self::Dop853(method) => method.compensation(),
@@ -162,7 +182,7 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
     }
 
     /// What each run's method would keep of its attempt for its compensated sum.
-    fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
+    fn to_be_carried(&self) -> &[Lanes<V>] {
         match self {
             Self::Cfmr7(method) => method.to_be_carried(),
             Self::Dop853(method) => method.to_be_carried(),
@@ -171,7 +191,7 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
     }
 
     /// The rates of a stage of the last attempts.
-    fn stage(&self, stage: usize) -> &SVector<Lanes<V>, N> {
+    fn stage(&self, stage: usize) -> &[Lanes<V>] {
         match self {
             Self::Cfmr7(method) => method.stage(stage),
             Self::Dop853(method) => method.stage(stage),
@@ -180,46 +200,40 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
     }
 
     /// Hands the attempt at a place over to its run's own `method`.
-    pub fn hand_over(&self, lane: usize, method: &mut dyn OfOne<N>) {
-        method.keep(at(lane, self.to_be_carried()), &|stage| at(lane, self.stage(stage)));
+    pub fn hand_over(&self, lane: usize, method: &mut dyn OfOne) {
+        method.keep(&|to| take(lane, self.to_be_carried(), to), &|stage, to| take(lane, self.stage(stage), to));
     }
 
     /// Iterates towards the fastest oscillations at the places of `due`, from states `x` with rates `rate` at time `t` (s); gives their
     /// stiffnesses. For Nystrom's method.
     #[inline(always)]
-    pub fn follow<Sys, const G: usize>(
+    pub fn follow(
         &mut self,
-        side: &Side<'_, Sys, V, G>,
+        forces: &impl Forces<Lanes<V>>,
         due: V::Mask,
         t: Lanes<V>,
-        x: &SVector<Lanes<V>, N>,
-        rate: &SVector<Lanes<V>, N>,
-    ) -> Lanes<V>
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
+        x: &[Lanes<V>],
+        rate: &[Lanes<V>],
+    ) -> Lanes<V> {
         match self {
             Self::Cfmr7(_) | Self::Dop853(_) => t.alike(0.0),
-            Self::Nystrom(method) => method.follow(side, due, t, x, rate),
+            Self::Nystrom(method) => method.follow(forces, due, t, x, rate),
         }
     }
 
     /// Tries a step at each place; gives the norms of the error estimates.
     #[inline(always)]
-    pub fn attempt<Sys, const G: usize>(
+    pub fn attempt(
         &mut self,
-        side: &Side<'_, Sys, V, G>,
-        begin: &Begin<'_, Lanes<V>, N>,
-        scale: &Scale<N, Lanes<V>>,
-        end: &mut SVector<Lanes<V>, N>,
-    ) -> Lanes<V>
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
+        forces: &impl Forces<Lanes<V>>,
+        begin: &Begin<'_, Lanes<V>>,
+        scale: &Scale<Lanes<V>>,
+        end: &mut [Lanes<V>],
+    ) -> Lanes<V> {
         match self {
-            Self::Cfmr7(method) => method.attempt(side, begin, scale, end),
-            Self::Dop853(method) => method.attempt(side, begin, scale, end),
-            Self::Nystrom(method) => method.attempt(side, begin, scale, end),
+            Self::Cfmr7(method) => method.attempt(forces, begin, scale, end),
+            Self::Dop853(method) => method.attempt(forces, begin, scale, end),
+            Self::Nystrom(method) => method.attempt(forces, begin, scale, end),
         }
     }
 

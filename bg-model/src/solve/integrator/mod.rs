@@ -30,9 +30,12 @@ mod taylor;
 mod tolerances;
 mod vectors;
 
-use nalgebra::SVector;
+use alloc::vec;
+use core::ops::Range;
 
-use crate::model::capability::{Absent, Elimination, SecondOrder, Series};
+use nalgebra::{Complex, SVector};
+
+use crate::model::capability::Operations;
 use crate::model::linear::{Sparsity, differences};
 pub use any::AnyMethod;
 pub use auto::{Auto, Change, Reason};
@@ -60,15 +63,19 @@ pub use tolerances::{Absolute, Scale, Tolerances};
 pub(crate) use tolerances::{displaced, rounding, smaller};
 pub(crate) use vectors::{Arch, rate_in};
 
-/// A smooth flow: a system with its switches frozen. Only the rate has to be written; capabilities are those of a system
-/// without switches.
-pub trait Flow<const N: usize> {
+/// A smooth flow: a system with its switches frozen. Only the number of its states and the rate have to be written; what else it knows of
+/// itself it may say. States, and all that there is one of for each of them, are slices: methods are compiled once for `dyn Flow`, and
+/// again for a flow whose type is known, of which [`Flow::states`] is then a constant.
+pub trait Flow {
+    /// The number of states.
+    fn states(&self) -> usize;
+
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`.
-    fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>);
+    fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]);
 
     /// As [`Flow::rate`], to be inlined into the stages of a step.
     #[inline(always)]
-    fn inlined_rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+    fn inlined_rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.rate(t, x, dx);
     }
 
@@ -77,9 +84,10 @@ pub trait Flow<const N: usize> {
         Sparsity::Full
     }
 
-    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`; by default by differences.
-    fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
-        differences(|t, x: &SVector<f64, N>, dx: &mut SVector<f64, N>| self.rate(t, x, dx), t, x, entries, slope);
+    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`; by default by differences, for which room
+    /// is allocated.
+    fn jacobian(&self, t: f64, x: &[f64], entries: &mut [f64], slope: &mut [f64]) {
+        differences(|t, x, dx| self.rate(t, x, dx), t, x, entries, slope, &mut vec![0.0; x.len()]);
     }
 
     /// Where [`Flow::damping`] can differ from zero.
@@ -88,25 +96,62 @@ pub trait Flow<const N: usize> {
     }
 
     /// Writes at least the entries of df/dx among states that are not of second order, in the order of [`Flow::damping_sparsity`],
-    /// into `entries`; by default all.
-    fn damping(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64]) {
-        self.jacobian(t, x, entries, &mut SVector::zeros());
+    /// into `entries`; by default all, with room for what [`Flow::jacobian`] gives beside.
+    fn damping(&self, t: f64, x: &[f64], entries: &mut [f64]) {
+        self.jacobian(t, x, entries, &mut vec![0.0; x.len()]);
     }
 
-    /// The elimination made for the sparsity.
-    fn elimination(&self) -> Option<&impl Elimination<f64, N>> {
-        None::<&Absent>
+    /// How many numbers the factors of I - c J are, along an elimination made for the sparsity; none where there is no such one.
+    fn factors(&self) -> Option<usize> {
+        None
     }
 
-    /// The states of second order.
-    fn second_order(&self) -> Option<impl SecondOrder<f64, N, 0>> {
-        None::<Absent>
+    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it did: not where a pivot
+    /// is too small, and by default.
+    fn eliminate(&self, _c: f64, _entries: &[f64], _factors: &mut [f64]) -> bool {
+        false
     }
 
-    /// The Taylor series of the states.
-    fn series(&self) -> Option<impl Series<f64, N, 0>> {
-        None::<Absent>
+    /// The same with a complex `c`.
+    fn eliminate_complex(&self, _c: Complex<f64>, _entries: &[f64], _factors: &mut [Complex<f64>]) -> bool {
+        false
     }
+
+    /// Replaces `b` by the solution y of (I - c J) y = b, with the `factors` of I - c J.
+    fn substitute(&self, _factors: &[f64], _b: &mut [f64]) {}
+
+    /// The same with a complex c.
+    fn substitute_complex(&self, _factors: &[Complex<f64>], _b: &mut [Complex<f64>]) {}
+
+    /// The states of second order, side by side; an empty range where there are none.
+    fn second(&self) -> Range<usize> {
+        0..0
+    }
+
+    /// Replaces the rates `dx` of the states of second order at state `x` by their second derivatives with respect to time, per s^2.
+    fn second_derivatives(&self, _x: &[f64], _dx: &mut [f64]) {}
+
+    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second derivatives.
+    #[inline(always)]
+    fn forces(&self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.inlined_rate(t, x, dx);
+        self.second_derivatives(x, dx);
+    }
+
+    /// The operations of a rate and of [`Flow::forces`], where they have been counted.
+    fn operations_of_forces(&self) -> Option<[u32; 2]> {
+        None
+    }
+
+    /// What a Taylor series of the states takes; none where there is no series.
+    fn series(&self) -> Option<SeriesSize> {
+        None
+    }
+
+    /// Writes the Taylor series of the states from time `t` (s) on: order by order, of each all states. Those of order 0 are the state there;
+    /// those of order k become the coefficients of the k-th power of the time passed in parts of `h` (s). `rows` is work space, of as many
+    /// numbers for each order but the first as the series is wide.
+    fn expand(&self, _t: f64, _h: f64, _rows: &mut [f64], _series: &mut [f64]) {}
 
     /// Whether joints hold motions, so that the end of each step is moved back onto them.
     fn is_held(&self) -> bool {
@@ -115,6 +160,15 @@ pub trait Flow<const N: usize> {
 
     /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small pivot.
     fn count_factorisation(&self, _is_fallback: bool) {}
+}
+
+/// What a Taylor series takes.
+#[derive(Clone, Copy, Debug)]
+pub struct SeriesSize {
+    /// How many numbers each order takes as work space.
+    pub width: usize,
+    /// What a series costs beside a rate, where that has been counted.
+    pub operations: Option<Operations>,
 }
 
 /// A point of a trajectory.
@@ -134,6 +188,24 @@ impl<const N: usize> Point<N> {
     pub fn at(t: f64, x: SVector<f64, N>) -> Self {
         Self { t, x, rate: SVector::zeros() }
     }
+
+    /// The same for a method.
+    #[inline(always)]
+    #[must_use]
+    pub fn borrowed(&self) -> PointRef<'_> {
+        PointRef { t: self.t, x: self.x.as_slice(), rate: self.rate.as_slice() }
+    }
+}
+
+/// A point of a trajectory, its state and rate being those of another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointRef<'a> {
+    /// Time, s.
+    pub t: f64,
+    /// State.
+    pub x: &'a [f64],
+    /// dx/dt at `t` and `x`.
+    pub rate: &'a [f64],
 }
 
 /// How a method's steps are chosen.
@@ -175,7 +247,7 @@ impl StepControl {
 }
 
 /// A one-step method with its work space. It holds the stages of the last attempt; a step allocates nothing.
-pub trait Method<const N: usize> {
+pub trait Method {
     /// The method's name.
     fn name(&self) -> &'static str;
 
@@ -192,29 +264,37 @@ pub trait Method<const N: usize> {
         false
     }
 
+    /// Makes room for so many states. To be called before the first attempt; changes nothing where there is room already.
+    fn fit(&mut self, states: usize);
+
     /// Tries a step of size `h` (s) from `start`, whose rate is known, and writes the state reached into `end`.
     ///
     /// Gives the norm of the error estimate: up to 1 the step satisfies the tolerances. A fixed-step method gives 0. Not
     /// a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64;
+
+    /// As [`Method::attempt`], of any flow: of this crate's methods compiled once, in this crate.
+    fn attempt_any(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+        self.attempt(flow, start, h, scale, end)
+    }
 
     /// The norm of what `project` leaves of the last attempt's error estimate; none where the method does not say. Joints that
     /// hold a motion take away what a step errs in it.
     fn error_after(
         &mut self,
-        _flow: &impl Flow<N>,
-        _start: &Point<N>,
+        _flow: &dyn Flow,
+        _start: PointRef<'_>,
         _h: f64,
-        _scale: &Scale<N>,
-        _end: &SVector<f64, N>,
-        _project: impl Fn(&mut SVector<f64, N>),
+        _scale: &Scale,
+        _end: &[f64],
+        _project: &dyn Fn(&mut [f64]),
     ) -> Option<f64> {
         None
     }
@@ -231,7 +311,7 @@ pub trait Method<const N: usize> {
     }
 
     /// The state with the largest error in the last attempt; the first one where there is no estimate.
-    fn largest_error(&self, _start: &Point<N>, _scale: &Scale<N>, _end: &SVector<f64, N>) -> usize {
+    fn largest_error(&self, _start: PointRef<'_>, _scale: &Scale, _end: &[f64]) -> usize {
         0
     }
 
@@ -241,32 +321,26 @@ pub trait Method<const N: usize> {
     /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
     /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be nothing to
     /// prepare.
-    fn prepare_dense(&mut self, _flow: &impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {}
+    fn prepare_dense(&mut self, _flow: &(impl Flow + ?Sized), _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {}
+
+    /// As [`Method::prepare_dense`], of any flow: of this crate's methods compiled once, in this crate.
+    fn prepare_dense_any(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        self.prepare_dense(flow, start, h, end);
+    }
 
     /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
-    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>);
+    fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]);
 }
 
-/// The first entry that is not finite, and its value.
-pub(crate) fn first_not_finite<const N: usize>(x: &SVector<f64, N>) -> Option<(usize, f64)> {
-    first_in(x.as_slice())
-}
-
-/// The same of any numbers.
+/// The first number that is not finite, with its place.
 #[inline(never)]
-pub(crate) fn first_in(numbers: &[f64]) -> Option<(usize, f64)> {
+pub(crate) fn first_not_finite(numbers: &[f64]) -> Option<(usize, f64)> {
     numbers.iter().copied().enumerate().find(|(_, value)| !value.is_finite())
 }
 
-/// Whether all entries are finite.
+/// Whether all numbers are finite.
 #[inline(always)]
-pub(crate) fn is_finite<const N: usize>(x: &SVector<f64, N>) -> bool {
-    all_finite(&x.data.0[0])
-}
-
-/// The same of other numbers.
-#[inline(always)]
-fn all_finite(numbers: &[f64]) -> bool {
+pub(crate) fn is_finite(numbers: &[f64]) -> bool {
     // What is finite times 0 is 0, all of whose bits are 0; anything else times 0 is no number. Vectors do this side by side.
     numbers.iter().fold(0, |bits, value| bits | (value.abs() * 0.0).to_bits()) == 0
 }

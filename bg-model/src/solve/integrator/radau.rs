@@ -4,23 +4,21 @@
 //! stiffly accurate: the last stage is the end of the step. For systems whose Jacobian is cheap beside the steps that an
 //! explicit method would need. Source: see `collocation`.
 
-use nalgebra::SVector;
-
 use super::collocation::{Collocation, RADAU5, RADAU9};
-use super::{Flow, Method, Point, Scale, StepControl};
+use super::{Flow, Method, PointRef, Scale, StepControl};
 
 /// Radau IIA with `S` stages and `P` = (S - 1) / 2 complex systems in each correction.
 #[derive(Clone, Debug)]
-pub struct Radau<const N: usize, const S: usize, const P: usize> {
-    pub(super) core: Collocation<N, S, P>,
+pub struct Radau<const S: usize, const P: usize> {
+    pub(super) core: Collocation<S, P>,
 }
 
 /// Radau IIA of order 5.
-pub type Radau5<const N: usize> = Radau<N, 3, 1>;
+pub type Radau5 = Radau<3, 1>;
 /// Radau IIA of order 9: on the hacksaw with the rod off cheaper than order 5 from a pose error of 1e-5 down.
-pub type Radau9<const N: usize> = Radau<N, 5, 2>;
+pub type Radau9 = Radau<5, 2>;
 
-impl<const N: usize> Radau<N, 3, 1> {
+impl Radau<3, 1> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
@@ -28,7 +26,7 @@ impl<const N: usize> Radau<N, 3, 1> {
     }
 }
 
-impl<const N: usize> Radau<N, 5, 2> {
+impl Radau<5, 2> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
@@ -36,19 +34,19 @@ impl<const N: usize> Radau<N, 5, 2> {
     }
 }
 
-impl<const N: usize> Default for Radau<N, 3, 1> {
+impl Default for Radau<3, 1> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<const N: usize> Default for Radau<N, 5, 2> {
+impl Default for Radau<5, 2> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<const N: usize, const S: usize, const P: usize> Method<N> for Radau<N, S, P> {
+impl<const S: usize, const P: usize> Method for Radau<S, P> {
     fn name(&self) -> &'static str {
         if S == 3 { "Radau IIA 5" } else { "Radau IIA 9" }
     }
@@ -57,17 +55,24 @@ impl<const N: usize, const S: usize, const P: usize> Method<N> for Radau<N, S, P
         StepControl::Predictive { order: (S + 1) as f64 }
     }
 
+    fn fit(&mut self, states: usize) {
+        self.core.fit(states);
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         let error = match self.core.solve(flow, start, h, scale) {
             Ok(()) => {
-                *end = start.x + self.core.last_increment();
+                let increments = self.core.last_increment();
+                for ((end, from), increment) in end.iter_mut().zip(start.x).zip(increments) {
+                    *end = from + increment;
+                }
                 self.core.estimate(flow, start, h, scale, end)
             }
             Err(error) => error,
@@ -83,7 +88,7 @@ impl<const N: usize, const S: usize, const P: usize> Method<N> for Radau<N, S, P
         self.core.restart();
     }
 
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+    fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
         self.core.largest_error(start, scale, end)
     }
 
@@ -91,7 +96,7 @@ impl<const N: usize, const S: usize, const P: usize> Method<N> for Radau<N, S, P
         self.core.faulty_rate()
     }
 
-    fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn dense(&self, start: PointRef<'_>, _h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         self.core.dense(start, theta, x);
     }
 }

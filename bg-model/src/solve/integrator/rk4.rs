@@ -3,9 +3,11 @@
 //! In: the step. Out: the state after it; in between the cubic Hermite polynomial, whose error is of the same order as
 //! the method's. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, table II.1.2.
 
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
-use super::{Flow, Method, Point, Scale, StepControl, first_not_finite, hermite};
+use super::{Flow, Method, PointRef, Scale, StepControl, first_not_finite, hermite};
 use crate::model::description::OperationCount;
 use crate::model::scalar::Scalar;
 
@@ -14,10 +16,12 @@ pub(crate) const RATES: usize = 4;
 
 /// Kutta's method of order 4; four rates a step, no error estimate.
 #[derive(Clone, Debug)]
-pub struct Rk4<const N: usize> {
+pub struct Rk4 {
     step: f64,
     /// The rates of the last attempt.
-    rates: [SVector<f64, N>; RATES],
+    rates: [Vec<f64>; RATES],
+    /// The state of a stage.
+    x: Vec<f64>,
 }
 
 /// Instants of the second to the fourth stage and the weight of the stage before in each.
@@ -36,15 +40,27 @@ pub(crate) fn step<S: Scalar, const N: usize>(
     rates: &mut [SVector<S, N>; RATES],
     end: &mut SVector<S, N>,
 ) {
-    let [x] = &x.data.0;
+    let mut moved = *x;
     for (stage, c) in C.into_iter().enumerate() {
-        let before = rates[stage].data.0[0];
-        let moved = core::array::from_fn(|i| x[i] + h * before[i].times(c));
-        rate(t + h.times(c), &SVector::from(moved), &mut rates[stage + 1]);
+        reach(c, x.as_slice(), h, rates[stage].as_slice(), moved.as_mut_slice());
+        rate(t + h.times(c), &moved, &mut rates[stage + 1]);
     }
-    let [k0, k1, k2, k3] = rates.each_ref().map(|rate| &rate.data.0[0]);
-    for (i, end) in end.data.0[0].iter_mut().enumerate() {
-        *end = x[i] + h * (k0[i].times(B[0]) + k1[i].times(B[1]) + k2[i].times(B[2]) + k3[i].times(B[3]));
+    arrive(x.as_slice(), h, rates.each_ref().map(|rate| rate.as_slice()), end.as_mut_slice());
+}
+
+/// Writes the state of a stage from the rate of the one before.
+#[inline(always)]
+fn reach<S: Scalar>(c: f64, start: &[S], h: S, before: &[S], x: &mut [S]) {
+    for ((x, start), before) in x.iter_mut().zip(start).zip(before) {
+        *x = *start + h * before.times(c);
+    }
+}
+
+/// Writes the state at the end of a step.
+#[inline(always)]
+fn arrive<S: Scalar>(start: &[S], h: S, [k0, k1, k2, k3]: [&[S]; RATES], end: &mut [S]) {
+    for (i, end) in end.iter_mut().enumerate() {
+        *end = start[i] + h * (k0[i].times(B[0]) + k1[i].times(B[1]) + k2[i].times(B[2]) + k3[i].times(B[3]));
     }
 }
 
@@ -56,15 +72,15 @@ pub(crate) const fn sums(states: usize) -> OperationCount {
     before_each_stage.times(C.len()).plus(at_the_end)
 }
 
-impl<const N: usize> Rk4<N> {
+impl Rk4 {
     /// The method with steps of `step` (s); the driver refuses a step that is not positive and finite.
     #[must_use]
     pub fn new(step: f64) -> Self {
-        Self { step, rates: [SVector::zeros(); RATES] }
+        Self { step, rates: [const { Vec::new() }; RATES], x: Vec::new() }
     }
 }
 
-impl<const N: usize> Method<N> for Rk4<N> {
+impl Method for Rk4 {
     fn name(&self) -> &'static str {
         "RK4"
     }
@@ -73,25 +89,33 @@ impl<const N: usize> Method<N> for Rk4<N> {
         StepControl::Fixed { step: self.step }
     }
 
+    fn fit(&mut self, states: usize) {
+        self.rates.iter_mut().chain([&mut self.x]).for_each(|room| room.resize(states, 0.0));
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        _scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        _scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
-        self.rates[0] = start.rate;
-        let rate = |t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>| flow.rate(t, x, dx);
-        step(rate, start.t, &start.x, h, &mut self.rates, end);
+        let Self { rates, x, .. } = self;
+        rates[0].copy_from_slice(start.rate);
+        for (stage, c) in C.into_iter().enumerate() {
+            reach(c, start.x, h, &rates[stage], x);
+            flow.rate(start.t + h * c, x, &mut rates[stage + 1]);
+        }
+        arrive(start.x, h, rates.each_ref().map(|rate| &rate[..]), end);
         0.0
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
-        self.rates[1..].iter().find_map(first_not_finite)
+        self.rates[1..].iter().find_map(|rate| first_not_finite(rate))
     }
 
-    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         hermite(start, h, end, theta, x);
     }
 }

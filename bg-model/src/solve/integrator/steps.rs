@@ -5,78 +5,86 @@
 
 use core::ops::Range;
 
-use nalgebra::SVector;
-
-use super::Flow;
-use crate::model::capability::SecondOrder;
+use super::{Flow, PointRef};
 
 /// The start of a step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Begin<'a, S, const N: usize> {
+pub(crate) struct Begin<'a, S> {
     /// Time, s.
     pub t: S,
     /// The step, s.
     pub h: S,
     /// State.
-    pub x: &'a SVector<S, N>,
+    pub x: &'a [S],
     /// Its rate.
-    pub rate: &'a SVector<S, N>,
+    pub rate: &'a [S],
 }
 
 /// What stages of first order are evaluated of.
-pub(crate) trait Rates<S, const N: usize> {
+pub(crate) trait Rates<S> {
+    /// The number of states.
+    fn states(&self) -> usize;
+
     /// Writes the rates at time `t` (s) and state `x` into `dx`. Compiled once.
-    fn rate(&self, t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>);
+    fn rate(&self, t: S, x: &[S], dx: &mut [S]);
 
     /// The same, to be inlined into the stages of a step.
-    fn inlined_rate(&self, t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>);
+    fn inlined_rate(&self, t: S, x: &[S], dx: &mut [S]);
 }
 
 /// What stages of second order are evaluated of.
-pub(crate) trait Forces<S, const N: usize>: Rates<S, N> {
+pub(crate) trait Forces<S>: Rates<S> {
     /// The states of second order; an empty range where there are none.
     fn second(&self) -> Range<usize>;
 
     /// Replaces the rates `dx` of the states of second order at state `x` by their second derivatives.
-    fn at_start(&self, x: &SVector<S, N>, dx: &mut SVector<S, N>);
+    fn at_start(&self, x: &[S], dx: &mut [S]);
 
     /// Writes the rates at time `t` (s) and state `x` into `dx`, of the states of second order their second derivatives.
-    fn at_stage(&self, t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>);
+    fn at_stage(&self, t: S, x: &[S], dx: &mut [S]);
 }
 
 /// Those of a flow.
-pub(super) struct OfFlow<'a, F>(pub &'a F);
+pub(super) struct OfFlow<'a, F: ?Sized>(pub &'a F);
 
-impl<F: Flow<N>, const N: usize> Rates<f64, N> for OfFlow<'_, F> {
+impl<'a> Begin<'a, f64> {
+    /// The start of a step of size `h` (s).
+    pub fn of(start: PointRef<'a>, h: f64) -> Self {
+        let PointRef { t, x, rate } = start;
+        Self { t, h, x, rate }
+    }
+}
+
+impl<F: Flow + ?Sized> Rates<f64> for OfFlow<'_, F> {
     #[inline(always)]
-    fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+    fn states(&self) -> usize {
+        self.0.states()
+    }
+
+    #[inline(always)]
+    fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.0.rate(t, x, dx);
     }
 
     #[inline(always)]
-    fn inlined_rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+    fn inlined_rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.0.inlined_rate(t, x, dx);
     }
 }
 
-impl<F: Flow<N>, const N: usize> Forces<f64, N> for OfFlow<'_, F> {
+impl<F: Flow + ?Sized> Forces<f64> for OfFlow<'_, F> {
     #[inline(always)]
     fn second(&self) -> Range<usize> {
-        self.0.second_order().map_or(0..0, |second| second.states())
+        self.0.second()
     }
 
     #[inline(always)]
-    fn at_start(&self, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        if let Some(second) = self.0.second_order() {
-            second.second_derivatives(x, dx);
-        }
+    fn at_start(&self, x: &[f64], dx: &mut [f64]) {
+        self.0.second_derivatives(x, dx);
     }
 
     #[inline(always)]
-    fn at_stage(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        match self.0.second_order() {
-            Some(second) => second.forces(t, x, &[], dx),
-            None => self.0.inlined_rate(t, x, dx),
-        }
+    fn at_stage(&self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.0.forces(t, x, dx);
     }
 }

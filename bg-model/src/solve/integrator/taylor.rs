@@ -10,14 +10,10 @@
 
 use alloc::vec::Vec;
 
-use crate::solve::integrator::Arch;
-use nalgebra::SVector;
-
 use super::compensated::CompensatedSum;
 use super::tolerances::{index_of_largest, largest};
 use super::vectors::{Vectorised, attempt_in, rate_in};
-use super::{Bs5, Flow, Method, Point, Scale, StepControl, first_not_finite, is_finite};
-use crate::model::capability::Series;
+use super::{Arch, Bs5, Flow, Method, PointRef, Scale, StepControl, first_not_finite, is_finite};
 
 /// The highest order.
 const HIGHEST: usize = 30;
@@ -27,11 +23,13 @@ const LINE: usize = 8;
 
 /// The Taylor series method.
 #[derive(Clone, Debug)]
-pub struct Taylor<const N: usize> {
+pub struct Taylor {
     /// The order that is asked for; else it follows from the tolerance.
     asked: Option<usize>,
-    /// The coefficients from the state at the start on, in units of `unit`; the order is one less than their number.
-    series: Vec<SVector<f64, N>>,
+    /// The coefficients from the state at the start on, order by order, in units of `unit`.
+    series: Vec<f64>,
+    /// The order of the series; 0 where there is none yet.
+    order: usize,
     /// The work space of the series.
     rows: Vec<f64>,
     /// The unit of time of the coefficients, s: the step that was tried first.
@@ -39,25 +37,29 @@ pub struct Taylor<const N: usize> {
     /// Whether the series is that of the present start.
     is_current: bool,
     /// What rounding has kept from the states.
-    sum: CompensatedSum<f64, N>,
+    sum: CompensatedSum<f64>,
+    /// Of each state: its change in the step, its slope at the end, the weight of its error, an error or a rate.
+    room: [Vec<f64>; 4],
     /// The method that makes the step where the series is not of numbers, and whether it does.
-    other: Bs5<N>,
+    other: Bs5,
     is_by_other: bool,
     /// The machine's vectors.
     pub(super) arch: Arch,
 }
 
-impl<const N: usize> Taylor<N> {
+impl Taylor {
     /// The method, its order chosen by the relative tolerance.
     #[must_use]
     pub fn new() -> Self {
         Self {
             asked: None,
             series: Vec::new(),
+            order: 0,
             rows: Vec::new(),
             unit: 0.0,
             is_current: false,
-            sum: CompensatedSum::new(),
+            sum: CompensatedSum::new(0),
+            room: [const { Vec::new() }; 4],
             other: Bs5::new(),
             is_by_other: false,
             arch: Arch::new(),
@@ -70,57 +72,72 @@ impl<const N: usize> Taylor<N> {
         Self { asked: Some(order.clamp(2, HIGHEST)), ..Self::new() }
     }
 
-    /// The order.
-    fn order(&self) -> usize {
-        self.series.len() - 1
-    }
-
     /// Expands the flow from `start` to the order that `relative` calls for, with the unit of time `h` (s). Without a
     /// series, which the driver refuses, the other method makes the step.
     #[inline(always)]
-    fn expand(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, relative: f64) {
-        let series = flow.series();
+    fn expand(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, relative: f64) {
+        let size = flow.series();
         self.is_current = true;
-        self.is_by_other = series.is_none();
-        let Some(series) = series else { return };
-        let order = self.asked.unwrap_or_else(|| order_for(relative));
-        self.series.resize(order + 1, SVector::zeros());
-        self.rows.resize(order * series.width() + LINE - 1, 0.0);
+        self.is_by_other = size.is_none();
+        let Some(size) = size else { return };
+        self.order = self.asked.unwrap_or_else(|| order_for(relative));
+        self.series.resize((self.order + 1) * start.x.len(), 0.0);
+        self.rows.resize(self.order * size.width + LINE - 1, 0.0);
         let first = self.rows.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE - 1);
         self.unit = h;
-        self.series[0] = start.x;
-        series.expand(start.t, h, &[], &mut self.rows[first..], &mut self.series);
+        self.series[..start.x.len()].copy_from_slice(start.x);
+        flow.expand(start.t, h, &mut self.rows[first..], &mut self.series);
     }
 
-    /// At the part `theta` of the unit: the state less that at the start, and the slope of the series, in the state's unit.
+    /// The coefficients of order `k` of `n` states.
     #[inline(always)]
-    fn sums(&self, theta: f64) -> ([f64; N], [f64; N]) {
-        let (mut change, mut slope) = ([0.0; N], [0.0; N]);
-        for coefficients in self.series[1..].iter().rev() {
-            for (i, coefficient) in coefficients.data.0[0].iter().enumerate() {
-                let sum = change[i] + coefficient;
-                slope[i] = slope[i] * theta + sum;
-                change[i] = sum * theta;
-            }
-        }
-        (change, slope)
-    }
-
-    /// The largest term of order `k` at the part `theta` of the unit; each state in parts of what is allowed, by `weights`.
-    #[inline(always)]
-    fn term(&self, k: usize, theta: f64, weights: &[f64; N]) -> f64 {
-        let power = if theta == 1.0 { 1.0 } else { libm::pow(theta, k as f64) };
-        power * largest::<f64, N>(&core::array::from_fn(|i| (self.series[k].data.0[0][i] * weights[i]).abs()))
+    fn coefficients(&self, k: usize, n: usize) -> &[f64] {
+        &self.series[k * n..][..n]
     }
 
     /// The error of a step of the series of `h` (s) from `start`, in parts of the tolerances; infinite where there is none. The method
-    /// begins anew after it.
-    pub(super) fn error(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
-        let mut end = start.x;
-        let norm = self.attempt(flow, start, h, scale, &mut end);
+    /// begins anew after it. The state that the step leads to becomes `end`.
+    pub(super) fn error(
+        &mut self,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
+        h: f64,
+        scale: &Scale,
+        end: &mut [f64],
+    ) -> f64 {
+        end.copy_from_slice(start.x);
+        let norm = self.attempt(flow, start, h, scale, end);
         self.restart();
-        if self.is_by_other || !is_finite(&end) { f64::INFINITY } else { norm }
+        if self.is_by_other || !is_finite(end) { f64::INFINITY } else { norm }
     }
+}
+
+/// Writes of the `series` at the part `theta` of the unit: the state less that at the start, and the slope of the series, in the state's unit.
+#[inline(always)]
+fn sums(series: &[f64], theta: f64, change: &mut [f64], slope: &mut [f64]) {
+    let n = change.len();
+    let slope = &mut slope[..n];
+    change.fill(0.0);
+    slope.fill(0.0);
+    for coefficients in series[n..].chunks_exact(n.max(1)).rev() {
+        let coefficients = &coefficients[..n];
+        for i in 0..n {
+            let sum = change[i] + coefficients[i];
+            slope[i] = slope[i] * theta + sum;
+            change[i] = sum * theta;
+        }
+    }
+}
+
+/// The largest of these coefficients of order `k`, each in parts of what is allowed, by `weights`, at the part `theta` of the unit.
+/// `errors` is work space.
+#[inline(always)]
+fn term(k: usize, coefficients: &[f64], theta: f64, weights: &[f64], errors: &mut [f64]) -> f64 {
+    let power = if theta == 1.0 { 1.0 } else { libm::pow(theta, k as f64) };
+    for ((error, coefficient), weight) in errors.iter_mut().zip(coefficients).zip(weights) {
+        *error = (coefficient * weight).abs();
+    }
+    power * largest(errors)
 }
 
 /// The order for a relative tolerance, even: by measurement on the hacksaw, where two more or less cost some percent.
@@ -139,22 +156,22 @@ fn slack(relative: f64) -> f64 {
     if relative < ROUNDING { SMOOTH * ROUNDING / relative } else { SMOOTH }
 }
 
-impl<const N: usize> Default for Taylor<N> {
+impl Default for Taylor {
     fn default() -> Self {
         Self::new()
     }
 }
 
 /// Of a step that the other method makes, the norm is none.
-impl<const N: usize> Vectorised<N> for Taylor<N> {
+impl Vectorised for Taylor {
     #[inline(always)]
     fn attempt_inlined(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         if !self.is_current {
             self.expand(flow, start, h, scale.relative);
@@ -162,22 +179,24 @@ impl<const N: usize> Vectorised<N> for Taylor<N> {
         if self.is_by_other {
             return f64::NAN;
         }
-        let theta = h / self.unit;
-        let (change, slope) = self.sums(theta);
-        let mut weights = [0.0; N];
-        for i in 0..N {
-            let from = start.x.data.0[0][i];
-            let to = self.sum.add(i, from, change[i]);
-            end.data.0[0][i] = to;
+        let (theta, n, order) = (h / self.unit, flow.states(), self.order);
+        let Self { series, room: [change, slope, weights, errors], sum, .. } = self;
+        let (change, slope, weights, errors) =
+            (&mut change[..n], &mut slope[..n], &mut weights[..n], &mut errors[..n]);
+        sums(series, theta, change, slope);
+        for i in 0..n {
+            let from = start.x[i];
+            let to = sum.add(i, from, change[i]);
+            end[i] = to;
             weights[i] = 1.0 / scale.allowed_between(i, from, to);
         }
         // A coefficient that is no number leaves none at the end, so a step of numbers costs no more than this look.
-        if !is_finite(end) && self.series.iter().any(|coefficients| !is_finite(coefficients)) {
+        if !is_finite(end) && !is_finite(series) {
             self.is_by_other = true;
             return f64::NAN;
         }
-        let order = self.order();
-        let (last, before) = (self.term(order, theta, &weights), self.term(order - 1, theta, &weights));
+        let mut term = |k: usize| term(k, &series[k * n..][..n], theta, weights, errors);
+        let (last, before) = (term(order), term(order - 1));
         // The power only matters where the term before the last is larger.
         let norm = if before > last {
             let before = libm::pow(before, order as f64 / (order - 1) as f64);
@@ -188,17 +207,17 @@ impl<const N: usize> Vectorised<N> for Taylor<N> {
         if norm > 1.0 || norm.is_nan() {
             return norm;
         }
-        let mut rate = SVector::zeros();
-        rate_in(self.arch, flow, start.t + h, end, &mut rate);
-        let unit = self.unit;
-        let defect = theta
-            * largest::<f64, N>(&core::array::from_fn(|i| ((unit * rate.data.0[0][i] - slope[i]) * weights[i]).abs()))
-            / slack(scale.relative);
+        let (rate, unit) = (errors, self.unit);
+        rate_in(self.arch, flow, start.t + h, end, rate);
+        for i in 0..n {
+            rate[i] = ((unit * rate[i] - slope[i]) * weights[i]).abs();
+        }
+        let defect = theta * largest(rate) / slack(scale.relative);
         if defect > 1.0 { defect } else { norm }
     }
 }
 
-impl<const N: usize> Method<N> for Taylor<N> {
+impl Method for Taylor {
     fn name(&self) -> &'static str {
         "Taylor"
     }
@@ -207,20 +226,28 @@ impl<const N: usize> Method<N> for Taylor<N> {
         if self.is_by_other {
             return self.other.control();
         }
-        StepControl::Stabilised { order: if self.series.is_empty() { 16.0 } else { self.order() as f64 } }
+        StepControl::Stabilised { order: if self.order == 0 { 16.0 } else { self.order as f64 } }
     }
 
     fn needs_series(&self) -> bool {
         true
     }
 
+    fn fit(&mut self, states: usize) {
+        if self.room[0].len() != states {
+            self.sum = CompensatedSum::new(states);
+            self.room.iter_mut().for_each(|room| room.resize(states, 0.0));
+            self.other.fit(states);
+        }
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
         if self.is_by_other { self.other.attempt(flow, start, h, scale, end) } else { norm }
@@ -240,36 +267,37 @@ impl<const N: usize> Method<N> for Taylor<N> {
         self.sum.restart();
     }
 
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
+    fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
         if self.is_by_other {
             return self.other.largest_error(start, scale, end);
         }
-        let last = &self.series[self.order()];
-        index_of_largest::<N>(|i| last[i].abs() / scale.allowed_between(i, start.x[i], end[i]))
+        let last = self.coefficients(self.order, end.len());
+        index_of_largest(end.len(), |i| last[i].abs() / scale.allowed_between(i, start.x[i], end[i]))
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
         if self.is_by_other {
             return self.other.faulty_rate();
         }
-        self.series.iter().skip(1).find_map(first_not_finite)
+        let n = self.room[0].len();
+        self.series.chunks_exact(n.max(1)).skip(1).find_map(first_not_finite)
     }
 
-    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
+    fn prepare_dense(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, end: PointRef<'_>) {
         if self.is_by_other {
             self.other.prepare_dense(flow, start, h, end);
         }
     }
 
-    /// Compiled once, not again for each choice of methods.
-    #[inline(never)]
-    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         if self.is_by_other {
             return self.other.dense(start, h, end, theta, x);
         }
-        let (change, _) = self.sums(theta * h / self.unit);
-        for (i, x) in x.iter_mut().enumerate() {
-            *x = start.x[i] + change[i];
+        let (n, theta) = (x.len(), theta * h / self.unit);
+        x.fill(0.0);
+        for coefficients in self.series[n..].chunks_exact(n.max(1)).rev() {
+            x.iter_mut().zip(coefficients).for_each(|(change, coefficient)| *change = (*change + coefficient) * theta);
         }
+        x.iter_mut().zip(start.x).for_each(|(x, start)| *x = start + *x);
     }
 }

@@ -2,9 +2,12 @@
 //!
 //! In: what the user asks for. Out: the scale that every state's error is measured by, and norms by that scale.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use nalgebra::SVector;
 
-use super::{Flow, Point};
+use super::{Flow, PointRef};
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::fraction;
 
@@ -59,11 +62,11 @@ const GROWTH: f64 = 1e6;
 
 /// Tolerances, one for each state: what errors are divided by.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scale<const N: usize, S = f64> {
+pub struct Scale<S = f64> {
     /// The relative tolerance.
     pub relative: f64,
     /// The absolute tolerance of every state.
-    pub absolute: SVector<S, N>,
+    pub absolute: Vec<S>,
     /// The largest allowed error of a state in parts of its size, where sizes are known: else also in its unit.
     pub coarsest: f64,
     /// By how much the end of a step may have outgrown its start for its value to excuse the step's error: without bound where absolute
@@ -71,28 +74,30 @@ pub struct Scale<const N: usize, S = f64> {
     pub growth: f64,
 }
 
-impl<const N: usize> From<&Tolerances<N>> for Scale<N> {
+impl<const N: usize> From<&Tolerances<N>> for Scale {
     fn from(tolerances: &Tolerances<N>) -> Self {
         let absolute = match &tolerances.absolute {
-            Absolute::OfSizes => SVector::repeat(f64::MIN_POSITIVE),
-            Absolute::Scalar(absolute) => SVector::repeat(*absolute),
-            Absolute::PerState(absolute) => *absolute,
+            Absolute::OfSizes => vec![f64::MIN_POSITIVE; N],
+            Absolute::Scalar(absolute) => vec![*absolute; N],
+            Absolute::PerState(absolute) => absolute.as_slice().to_vec(),
         };
         let coarsest = match &tolerances.absolute {
             Absolute::OfSizes => tolerances.relative,
-            Absolute::Scalar(_) | Absolute::PerState(_) => tolerances.relative.max(absolute.amax()),
+            Absolute::Scalar(_) | Absolute::PerState(_) => {
+                absolute.iter().fold(tolerances.relative, |most, absolute| most.max(*absolute))
+            }
         };
         let growth = if tolerances.absolute == Absolute::OfSizes { GROWTH } else { f64::INFINITY };
         Self { relative: tolerances.relative, absolute, coarsest, growth }
     }
 }
 
-impl<const N: usize, S: Scalar> Scale<N, S> {
+impl<S: Scalar> Scale<S> {
     /// The allowed error of state `i` where it has this value.
     #[inline(always)]
     #[must_use]
     pub fn allowed(&self, i: usize, value: S) -> S {
-        self.absolute.data.0[0][i] + value.abs().times(self.relative)
+        self.absolute[i] + value.abs().times(self.relative)
     }
 
     /// The same in a step between two values: by the larger one, but not by an end that has grown out of all proportion. Of a step far
@@ -105,17 +110,22 @@ impl<const N: usize, S: Scalar> Scale<N, S> {
     }
 }
 
-impl<const N: usize> Scale<N> {
+impl Scale {
     /// The state at `start` whose rate is the largest part of its allowed error.
-    pub(crate) fn fastest(&self, start: &Point<N>) -> usize {
-        index_of_largest::<N>(|i| start.rate[i].abs() / self.allowed(i, start.x[i]))
+    pub(crate) fn fastest(&self, start: PointRef<'_>) -> usize {
+        index_of_largest(start.x.len(), |i| start.rate[i].abs() / self.allowed(i, start.x[i]))
     }
 
     /// The largest `|v_i|` divided by the allowed error at state `x`.
     #[must_use]
-    #[inline(never)]
-    pub fn norm(&self, v: &SVector<f64, N>, x: &SVector<f64, N>) -> f64 {
-        largest::<f64, N>(&core::array::from_fn(|i| v.data.0[0][i].abs() / self.allowed(i, x.data.0[0][i])))
+    pub fn norm(&self, v: &[f64], x: &[f64]) -> f64 {
+        self.norm_of(x, |i| v[i])
+    }
+
+    /// The same of numbers that `v` gives.
+    #[must_use]
+    pub fn norm_of(&self, x: &[f64], v: impl Fn(usize) -> f64) -> f64 {
+        largest_of(x.len(), |i| v(i).abs() / self.allowed(i, x[i]))
     }
 }
 
@@ -129,7 +139,7 @@ pub(crate) fn smaller<S: Scalar>(a: S, b: S) -> S {
 ///
 /// The maximum norm, and not a mean, so that states which repeat others or stay constant do not change the steps.
 #[inline(always)]
-pub(super) fn largest<S: Scalar, const N: usize>(of: &[S; N]) -> S {
+pub(super) fn largest<S: Scalar>(of: &[S]) -> S {
     // Several maxima side by side, for none to wait for another; of all orders the result is the same.
     const SIDE_BY_SIDE: usize = 8;
     let Some(nothing) = of.first().map(|first| first.alike(0.0)) else { return S::from_f64(0.0) };
@@ -150,36 +160,47 @@ pub(super) fn largest<S: Scalar, const N: usize>(of: &[S; N]) -> S {
     largest
 }
 
-/// The largest change of each rate at `start` where every state is rounded up or down, in some patterns: what rounding may add to the
-/// rates. Not negative. Takes four rates.
-pub(crate) fn rounding<const N: usize>(flow: &impl Flow<N>, start: &Point<N>) -> SVector<f64, N> {
-    displaced(flow, start, &(start.x * f64::EPSILON))
+/// The same of so many numbers that are calculated one after the other.
+pub(super) fn largest_of(count: usize, value: impl Fn(usize) -> f64) -> f64 {
+    (0..count).fold(0.0, |largest, i| value(i).larger(largest))
+}
+
+/// What [`displaced`] works with: a state, its rate, and the result. Each has a number for each state.
+pub(crate) type Displaced<'a> = [&'a mut [f64]; 3];
+
+/// Writes the largest change of each rate at `start` where every state is rounded up or down, in some patterns, into the last of `work`: what
+/// rounding may add to the rates. Not negative. Takes four rates.
+pub(crate) fn rounding(flow: &(impl Flow + ?Sized), start: PointRef<'_>, work: Displaced<'_>) {
+    displaced(flow, start, |i| start.x[i] * f64::EPSILON, work);
 }
 
 /// The same where every state is displaced up or down by this much.
 #[inline(never)]
-pub(crate) fn displaced<const N: usize>(
-    flow: &impl Flow<N>,
-    start: &Point<N>,
-    by: &SVector<f64, N>,
-) -> SVector<f64, N> {
+pub(crate) fn displaced(
+    flow: &(impl Flow + ?Sized),
+    start: PointRef<'_>,
+    by: impl Fn(usize) -> f64,
+    [there, rate, largest]: Displaced<'_>,
+) {
     const PATTERNS: usize = 4;
     // Up or down without a pattern that states of one kind might share: the multiples of the golden ratio lie evenly.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let mut largest = SVector::zeros();
+    largest.fill(0.0);
     for pattern in 0..PATTERNS {
         let sign = |i: usize| if fraction(GOLDEN * (PATTERNS * i + pattern) as f64) < 0.5 { 1.0 } else { -1.0 };
-        let there = SVector::from_fn(|i, _| start.x[i] + sign(i) * by[i]);
-        let mut rate = SVector::zeros();
-        flow.rate(start.t, &there, &mut rate);
-        largest = (rate - start.rate).abs().sup(&largest);
+        for (i, there) in there.iter_mut().enumerate() {
+            *there = start.x[i] + sign(i) * by(i);
+        }
+        flow.rate(start.t, there, rate);
+        for (i, largest) in largest.iter_mut().enumerate() {
+            *largest = (rate[i] - start.rate[i]).abs().larger(*largest);
+        }
     }
-    largest
 }
 
-/// The index below `N` with the largest error, of equal ones the first.
-pub(super) fn index_of_largest<const N: usize>(error: impl Fn(usize) -> f64) -> usize {
-    (0..N).fold(0, |largest, i| if error(i) > error(largest) { i } else { largest })
+/// The index below `count` with the largest error, of equal ones the first.
+pub(super) fn index_of_largest(count: usize, error: impl Fn(usize) -> f64) -> usize {
+    (0..count).fold(0, |largest, i| if error(i) > error(largest) { i } else { largest })
 }
 
 #[cfg(test)]
@@ -194,6 +215,6 @@ mod tests {
         assert_eq!(scale.allowed_between(1, 0.0, -20.0), 4.0);
         let scale = Scale { growth: 1e6, ..scale };
         assert_eq!(scale.allowed_between(0, 10.0, 1e60), 2e6);
-        assert_eq!(scale.norm(&SVector::from([4.0, 1.0]), &SVector::from([10.0, 20.0])), 2.0);
+        assert_eq!(scale.norm(&[4.0, 1.0], &[10.0, 20.0]), 2.0);
     }
 }

@@ -56,7 +56,7 @@ pub trait Ending {
     ) -> Result<Finish<N, G>, Failure<N, G>>
     where
         Mo: Model<f64, N, G, M>,
-        Me: Method<N>,
+        Me: Method,
         O: Observer<N, G>;
 }
 
@@ -76,7 +76,7 @@ impl Ending for Unconditional {
     ) -> Result<Finish<N, G>, Failure<N, G>>
     where
         Mo: Model<f64, N, G, M>,
-        Me: Method<N>,
+        Me: Method,
         O: Observer<N, G>,
     {
         make(model, method, start, span, settings, Never, observer)
@@ -99,7 +99,7 @@ impl<F: FnMut(&Sample<'_>) -> f64> Ending for When<F> {
     ) -> Result<Finish<N, G>, Failure<N, G>>
     where
         Mo: Model<f64, N, G, M>,
-        Me: Method<N>,
+        Me: Method,
         O: Observer<N, G>,
     {
         let infos = model.description().outputs;

@@ -95,9 +95,9 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
         Ot: Model<Lanes<V>, N, G, M>,
     {
         let settings = self.request.settings(0.0);
-        let method: AnyMethod<N> = self.request.method.method(self.request.fixed_step);
+        let method: AnyMethod = self.request.method.method(self.request.fixed_step);
         let span = Span { t0: 0.0, t_end: self.request.t_end };
-        let Some(together) = AnyInLanes::of(&method).filter(|_| lanes::fits(model, span, &settings)) else {
+        let Some(together) = AnyInLanes::of(&method, N).filter(|_| lanes::fits(model, span, &settings)) else {
             return self.all_alone();
         };
         let clock = Clock::started();
@@ -107,7 +107,7 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
             let start: SVector<f64, N> = model.start().ok()?;
             Some((model, start, method.clone()))
         };
-        let mut own: Vec<Option<(Mo, SVector<f64, N>, AnyMethod<N>)>> = self.values.iter().map(made).collect();
+        let mut own: Vec<Option<(Mo, SVector<f64, N>, AnyMethod)>> = self.values.iter().map(made).collect();
         // What a start pose decides is one number for all lanes.
         let decided = own.iter().flatten().next().map(|(model, ..)| model.decided());
         for own in &mut own {

@@ -275,7 +275,7 @@ impl<E: Ending> Integration<'_, E> {
         let Self { request, start, each_step, ending } = self;
         let clock = Clock::started();
         let (t0, Vectors { x, largest, negative }) = Start { start: start.as_ref() }.vectors(model)?;
-        let mut method: AnyMethod<N> = request.method.method(request.fixed_step);
+        let mut method: AnyMethod = request.method.method(request.fixed_step);
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
         let mut observer = observer(model, &request.parts, each_step, another);
@@ -407,7 +407,7 @@ impl<const N: usize, const G: usize> Observer<N, G> for Another<'_, N, G> {
         }
     }
 
-    fn measured(&mut self, scale: &Scale<N>) {
+    fn measured(&mut self, scale: &Scale) {
         if let Some(another) = &mut self.0 {
             another.measured(scale);
         }

@@ -153,7 +153,7 @@ where
         }
     }
 
-    fn measured(&mut self, scale: &Scale<N>) {
+    fn measured(&mut self, scale: &Scale) {
         self.steps.measure(scale);
     }
 

@@ -269,7 +269,7 @@ impl Following<'_> {
         Li: Model<Gradient, N, G, M>,
     {
         let start = model.start()?;
-        let scale = Scale::<N>::from(&self.request.tolerances());
+        let scale = Scale::from(&self.request.tolerances::<N>());
         let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
         let follower = |directions: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
             let systems = directions.chunks(WIDTH).map(system).collect::<Result<Vec<_>, _>>()?;
@@ -291,7 +291,7 @@ impl Following<'_> {
 }
 
 /// Makes steps of the systems that have a few directions each, measured by the scale of the states and the size of each direction.
-type MakesSteps<'a, Li, const N: usize, const G: usize> = dyn Fn(&[&Li], Scale<N>, &[f64]) -> Box<dyn Steps<N, G>> + 'a;
+type MakesSteps<'a, Li, const N: usize, const G: usize> = dyn Fn(&[&Li], Scale, &[f64]) -> Box<dyn Steps<N, G>> + 'a;
 
 /// Several observers of one kind.
 struct Followers<O>(Vec<O>);
@@ -301,7 +301,7 @@ impl<O: Observer<N, G>, const N: usize, const G: usize> Observer<N, G> for Follo
         self.0.iter_mut().for_each(|each| each.sample(t, x, negative));
     }
 
-    fn measured(&mut self, scale: &Scale<N>) {
+    fn measured(&mut self, scale: &Scale) {
         self.0.iter_mut().for_each(|each| each.measured(scale));
     }
 

@@ -44,7 +44,7 @@ pub(super) trait Steps<const N: usize, const G: usize> {
     fn set(&mut self, part: usize, x: &Sloped<N>);
 
     /// What is allowed of a state from here on.
-    fn measure(&mut self, scale: &Scale<N>);
+    fn measure(&mut self, scale: &Scale);
 
     /// The state `x` with the slopes of this part where it has come to.
     fn now(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N>;
@@ -80,7 +80,7 @@ struct Work<V, const N: usize> {
     /// Whether errors are estimated: not where the run's steps are of the same method.
     is_estimated: bool,
     /// What is allowed of a state.
-    scale: Scale<N>,
+    scale: Scale,
     /// The size of each direction, in its unit.
     sizes: V,
 }
@@ -94,7 +94,7 @@ struct Stages<V, const N: usize> {
 
 impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
     /// Steps of this system. Errors, where they are estimated, are measured with the scale of the states and the size of each direction.
-    pub fn new(system: Box<Sys>, is_estimated: bool, (scale, of_each): (Scale<N>, &[f64])) -> Self {
+    pub fn new(system: Box<Sys>, is_estimated: bool, (scale, of_each): (Scale, &[f64])) -> Self {
         let nothing: Box<SlopedIn<V, N>> = Box::new(SVector::repeat(GradientIn::from_f64(0.0)));
         let k = Box::new(Stages { values: [[0.0; N]; STAGES], slopes: [[V::filled(0.0); N]; STAGES] });
         let mut sizes = V::filled(1.0).numbers();
@@ -131,7 +131,7 @@ where
         }
     }
 
-    fn measure(&mut self, scale: &Scale<N>) {
+    fn measure(&mut self, scale: &Scale) {
         self.work.scale = scale.clone();
     }
 
@@ -296,7 +296,7 @@ impl<V: Slopes, const N: usize> Work<V, N> {
             // The step's own mean slope, less that of the method of order 3.
             let other = to.slopes.minus(from.slopes).minus(self.k.slope(DormandPrince::SECOND, i).scaled(h));
             let changed = from.slopes.abs().larger(to.slopes.abs()).times(self.sizes);
-            let (absolute, relative) = (self.scale.absolute.data.0[0][i], self.scale.relative);
+            let (absolute, relative) = (self.scale.absolute[i], self.scale.relative);
             let size = changed.larger(none.alike(to.value.abs())).scaled(relative);
             let part = self.sizes.over(none.alike(absolute).plus(size));
             first = first.larger(error.abs().times(part));

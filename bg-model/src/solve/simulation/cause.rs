@@ -13,12 +13,12 @@ use crate::solve::stepper::Stepper;
 impl<Sys, M, C, const N: usize, const G: usize> Run<'_, Sys, M, C, N, G>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
     C: Condition<N, G>,
 {
     /// Fails where a rate or a guard at the start of the next step is not finite.
     pub fn check_start(&self) -> Result<(), Cause> {
-        match first_not_finite(&self.stepper.start.rate) {
+        match first_not_finite(self.stepper.start.rate.as_slice()) {
             Some(fault) => Err(self.not_finite(Quantity::Rate, fault, 0.0)),
             None => self.monitor.check_start().map_err(|guard| self.not_finite_monitored(Faulty::Guard(guard), 0.0)),
         }
@@ -34,10 +34,10 @@ where
             if let Some(fault) = method.faulty_rate() {
                 return self.not_finite(Quantity::Rate, fault, *h);
             }
-            if let Some(fault) = first_not_finite(&end.x) {
+            if let Some(fault) = first_not_finite(end.x.as_slice()) {
                 return self.not_finite(Quantity::State, fault, *h);
             }
-            if let Some(fault) = first_not_finite(&end.rate) {
+            if let Some(fault) = first_not_finite(end.rate.as_slice()) {
                 return self.not_finite(Quantity::Rate, fault, *h);
             }
             if let Some(fault) = self.stepper.faulty_derivative() {
@@ -47,7 +47,7 @@ where
                 return Cause::NotSolved { t: start.t, h: *h };
             }
         }
-        let index = if error.is_finite() { method.largest_error(start, scale, &end.x) } else { scale.fastest(start) };
+        let index = if error.is_finite() { method.largest_error(start.borrowed(), scale, end.x.as_slice()) } else { scale.fastest(start.borrowed()) };
         let state = self.stepper.system.state_name(index);
         Cause::StepTooSmall { state, index, value: start.x[index], t: start.t, h: self.controller.step() }
     }

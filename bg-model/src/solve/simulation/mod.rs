@@ -54,7 +54,7 @@ pub fn integrate<Sys, M, O, const N: usize, const G: usize>(
 ) -> Result<Finish<N, G>, Failure<N, G>>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
     O: Observer<N, G>,
 {
     make(system, method, (start, None), span, settings, Never, observer)
@@ -106,7 +106,7 @@ pub fn integrate_until<Sys, M, C, O, const N: usize, const G: usize>(
 ) -> Result<Finish<N, G>, Failure<N, G>>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
     C: FnMut(f64, &SVector<f64, N>, &[bool; G]) -> f64,
     O: Observer<N, G>,
 {
@@ -125,7 +125,7 @@ pub(crate) fn make<Sys, M, C, O, const N: usize, const G: usize>(
 ) -> Result<Finish<N, G>, Failure<N, G>>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
     C: Condition<N, G>,
     O: Observer<N, G>,
 {

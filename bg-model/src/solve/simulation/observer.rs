@@ -31,7 +31,7 @@ pub trait Observer<const N: usize, const G: usize> {
     fn sample(&mut self, _t: f64, _x: &SVector<f64, N>, _negative: &[bool; G]) {}
 
     /// What errors are measured by from here on: told at the start, and before a step whose end has outgrown the sizes of the states.
-    fn measured(&mut self, _scale: &Scale<N>) {}
+    fn measured(&mut self, _scale: &Scale) {}
 
     /// A step was accepted, from `start` to `end` in the branches `negative`: told before the samples in it and before what happens
     /// at its end. The rates at both ends are those of these branches.
@@ -66,7 +66,7 @@ where
         self.1.sample(t, x, negative);
     }
 
-    fn measured(&mut self, scale: &Scale<N>) {
+    fn measured(&mut self, scale: &Scale) {
         self.0.measured(scale);
         self.1.measured(scale);
     }

@@ -141,7 +141,7 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
     ) -> Result<Ended, Failure<N, G>>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
         O: Observer<N, G>,
     {
         let span = Span { t0: self.start.t, t_end };

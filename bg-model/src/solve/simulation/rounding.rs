@@ -36,13 +36,16 @@ impl RoundingMonitor {
         sizes: &SizeMonitor<N>,
     ) where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         if stepper.statistics.steps.is_multiple_of(WAIT) {
             self.is_above = is_exposed(stepper.method) && {
-                let (scale, h) = (sizes.without_noise(&stepper.scale), stepper.h);
-                let (_, flow, start, ..) = stepper.split();
-                scale.norm(&(rounding(&flow, start) * (ESTIMATE * h)), &start.x) > 1.0
+                let h = stepper.h;
+                let (_, flow, start, _, scale) = stepper.split();
+                let [mut there, mut rate, mut changes] = [[0.0; N]; 3];
+                rounding(&flow, start.borrowed(), [&mut there, &mut rate, &mut changes]);
+                let allowed = |i| sizes.without_noise(i, scale) + scale.relative * start.x[i].abs();
+                (0..N).any(|i| (changes[i] * (ESTIMATE * h)).abs() / allowed(i) > 1.0)
             };
         }
         stepper.statistics.rounded += u64::from(self.is_above);
@@ -55,6 +58,6 @@ pub(super) fn may_matter(relative: f64) -> bool {
 }
 
 /// An implicit method damps what rounding does, and Taylor series take no differences of rates.
-pub(super) fn is_exposed<const N: usize>(method: &impl Method<N>) -> bool {
+pub(super) fn is_exposed(method: &impl Method) -> bool {
     matches!(method.control(), StepControl::Stabilised { .. }) && !method.needs_series()
 }

@@ -63,7 +63,7 @@ pub(super) enum Faulty {
 impl<'a, Sys, M, C, const N: usize, const G: usize> Run<'a, Sys, M, C, N, G>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
     C: Condition<N, G>,
 {
     pub fn new(
@@ -225,13 +225,13 @@ where
             if error > 1.0 && self.is_around_singular() {
                 error = self.stepper.error_after_projection().unwrap_or(error);
             }
-            if error <= 1.0 && is_finite(&self.stepper.end.x) {
+            if error <= 1.0 && is_finite(self.stepper.end.x.as_slice()) {
                 let is_near = self.project() || !self.controller.is_adaptive();
                 // Ahead of the rate, for neither to wait for the other.
                 let mut next = self.controller.clone();
                 next.accept(t_new, h, error);
                 self.stepper.evaluate_end();
-                if is_near && is_finite(&self.stepper.end.x) && is_finite(&self.stepper.end.rate) {
+                if is_near && is_finite(self.stepper.end.x.as_slice()) && is_finite(self.stepper.end.rate.as_slice()) {
                     self.controller = next;
                     return Ok(());
                 }

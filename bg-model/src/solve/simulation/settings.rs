@@ -7,7 +7,7 @@ use nalgebra::SVector;
 use crate::model::scalar::Scalar;
 use crate::model::system::System;
 use crate::solve::failure::BadInput;
-use crate::solve::integrator::{Scale, StepControl, Tolerances};
+use crate::solve::integrator::{Absolute, StepControl, Tolerances};
 
 /// The time that a run covers, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +85,7 @@ where
         return Err(BadInput::Span { t0, t_end });
     }
     check_tolerances(system, &settings.tolerances)?;
-    if let Some((index, value)) = crate::solve::integrator::first_not_finite(start) {
+    if let Some((index, value)) = crate::solve::integrator::first_not_finite(start.as_slice()) {
         return Err(BadInput::Start { state: system.state_name(index), value });
     }
     let smallest = span.resolution();
@@ -129,11 +129,16 @@ where
     if !(value.is_finite() && value >= smallest) {
         return Err(BadInput::RelativeTolerance { value, smallest });
     }
-    let absolute = Scale::from(tolerances).absolute;
-    match absolute.iter().position(|value| !(value.is_finite() && *value >= f64::MIN_POSITIVE)) {
-        Some(index) => Err(BadInput::AbsoluteTolerance { state: system.state_name(index), value: absolute[index] }),
-        None => Ok(()),
-    }
+    let faulty = |value: f64| !(value.is_finite() && value >= f64::MIN_POSITIVE);
+    let (index, value) = match &tolerances.absolute {
+        Absolute::Scalar(value) if N > 0 && faulty(*value) => (0, *value),
+        Absolute::PerState(values) => match values.iter().position(|value| faulty(*value)) {
+            Some(index) => (index, values[index]),
+            None => return Ok(()),
+        },
+        Absolute::Scalar(_) | Absolute::OfSizes => return Ok(()),
+    };
+    Err(BadInput::AbsoluteTolerance { state: system.state_name(index), value })
 }
 
 fn check_samples(span: Span, samples: &Samples) -> Result<(), BadInput> {

@@ -97,7 +97,7 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// Goes on with the tolerances of another one.
-    pub fn go_on(&mut self, other: &Self, scale: &mut Scale<N>) {
+    pub fn go_on(&mut self, other: &Self, scale: &mut Scale) {
         (self.relative, self.is_leading) = (other.relative, other.is_leading);
         self.lead(scale);
     }
@@ -106,7 +106,7 @@ impl<const N: usize> SizeMonitor<N> {
     pub fn start<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         self.largest = stepper.start.x.abs();
         self.measure(stepper.system, &stepper.start, &stepper.negative);
@@ -117,7 +117,7 @@ impl<const N: usize> SizeMonitor<N> {
     pub fn begin<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         if !self.is_leading {
             return;
@@ -141,7 +141,7 @@ impl<const N: usize> SizeMonitor<N> {
     pub fn look_ahead<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, longest: f64)
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         if !self.is_leading || !stepper.method.measures() {
             return;
@@ -159,7 +159,7 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// Takes the sizes of states of which none is known from an attempt that was rejected.
-    pub fn guess(&mut self, end: &SVector<f64, N>, scale: &mut Scale<N>) {
+    pub fn guess(&mut self, end: &SVector<f64, N>, scale: &mut Scale) {
         for i in 0..N {
             if self.is_leading && scale.absolute[i] == f64::MIN_POSITIVE {
                 scale.absolute[i] = larger(self.relative * OWN * end[i].abs(), f64::MIN_POSITIVE);
@@ -171,7 +171,7 @@ impl<const N: usize> SizeMonitor<N> {
     pub fn follow<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>) -> bool
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         self.largest = self.largest.sup(&stepper.end.x.abs());
         let is_outgrown = self.is_leading && (self.is_outgrown(&stepper.end.x) || stepper.h > self.longest);
@@ -194,17 +194,16 @@ impl<const N: usize> SizeMonitor<N> {
         if self.is_leading { (self.limit, self.longest) } else { (SVector::repeat(f64::INFINITY), f64::INFINITY) }
     }
 
-    /// The scale of a run as it would be without noise.
-    pub fn without_noise(&self, scale: &Scale<N>) -> Scale<N> {
-        let size = |i: usize| larger(self.relative * self.size(i), f64::MIN_POSITIVE);
-        if self.is_leading { Scale { absolute: SVector::from_fn(|i, _| size(i)), ..*scale } } else { scale.clone() }
+    /// The absolute tolerance of state `i` in a run of this scale as it would be without noise.
+    pub fn without_noise(&self, i: usize, scale: &Scale) -> f64 {
+        if self.is_leading { larger(self.relative * self.size(i), f64::MIN_POSITIVE) } else { scale.absolute[i] }
     }
 
     /// Takes the sizes at the end of the step.
     pub fn renew<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         if let Some(before) = self.before.take() {
             self.sizes = before;
@@ -224,7 +223,7 @@ impl<const N: usize> SizeMonitor<N> {
 
     /// States whose errors were never controlled, with the tolerances of this scale: above rounding, and below their tolerance all the
     /// time.
-    pub fn uncontrolled(&self, scale: &Scale<N>) -> [bool; N] {
+    pub fn uncontrolled(&self, scale: &Scale) -> [bool; N] {
         core::array::from_fn(|i| {
             let rounding = ROUNDING * larger(self.sizes.beside[i], f64::MIN_POSITIVE);
             self.largest[i] > rounding && self.largest[i] < scale.absolute[i]
@@ -285,7 +284,7 @@ impl<const N: usize> SizeMonitor<N> {
     ) -> Option<Point<N>>
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         const TRIES: usize = 100;
         const SHORTER: [f64; 2] = [1e-6, 0.5];
@@ -312,7 +311,7 @@ impl<const N: usize> SizeMonitor<N> {
     fn drift<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, point: &Point<N>, elapsed: f64)
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let Some(storages) = stepper.system.storages() else { return };
         let states = storages.states();
@@ -335,13 +334,16 @@ impl<const N: usize> SizeMonitor<N> {
     fn listen<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, point: &Point<N>, h: f64)
     where
         Sys: System<f64, N, G>,
-        M: Method<N>,
+        M: Method,
     {
         let (is_exposed, mixed) = (is_exposed(stepper.method), self.mixed(stepper.system));
         let (_, flow, ..) = stepper.split();
-        let own = rounding(&flow, point) * (NOISE * h);
+        let [mut there, mut rate, mut own, mut in_turn] = [[0.0; N]; 4];
+        rounding(&flow, point.borrowed(), [&mut there, &mut rate, &mut own]);
+        let own = SVector::from(own) * (NOISE * h);
         // What that moves in turn, as a position that follows a momentum.
-        let noise = own.sup(&(displaced(&flow, point, &own) * h));
+        displaced(&flow, point.borrowed(), |i| own[i], [&mut there, &mut rate, &mut in_turn]);
+        let noise = own.sup(&(SVector::from(in_turn) * h));
         let noise = noise.zip_map(&self.sizes.beside, |noise, beside| {
             if is_exposed || beside == 0.0 { noise } else { noise.min(DAMPED * beside) }
         });
@@ -360,13 +362,12 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// The absolute tolerances and limits of these sizes.
-    fn lead(&mut self, scale: &mut Scale<N>) {
+    fn lead(&mut self, scale: &mut Scale) {
         if !self.is_leading {
             return;
         }
-        *scale = self.without_noise(scale);
         for i in 0..N {
-            scale.absolute[i] = larger(self.noise[i], scale.absolute[i]);
+            scale.absolute[i] = larger(self.noise[i], self.without_noise(i, scale));
             self.limit[i] = OUTGROWN / OWN * self.size(i);
         }
     }
@@ -407,7 +408,7 @@ fn length<const N: usize>(kinds: impl Iterator<Item = StateKind>, own: &SVector<
 fn weights<Sys, M, const N: usize, const G: usize>(stepper: &Stepper<'_, Sys, M, N, G>) -> SVector<f64, N>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
 {
     let Some(storages) = stepper.system.storages() else { return SVector::repeat(1.0) };
     let (Point { t, x, .. }, mut curvatures) = (stepper.start, SVector::zeros());

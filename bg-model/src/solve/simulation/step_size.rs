@@ -316,22 +316,22 @@ pub(super) fn noted<S: Scalar>(logarithm: S) -> S {
 
 /// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.
 pub(super) fn first_step<const N: usize>(
-    flow: &impl Flow<N>,
+    flow: &dyn Flow,
     start: &Point<N>,
-    scale: &Scale<N>,
+    scale: &Scale,
     order: f64,
     longest: f64,
 ) -> f64 {
     // The factors are those of HINIT; where it takes 1e-6 for a state at rest, this part of the longest step is taken.
     const AT_REST: f64 = 1e-6;
-    let rates = scale.norm(&start.rate, &start.x);
-    let states = scale.norm(&start.x, &start.x);
+    let rates = scale.norm(start.rate.as_slice(), start.x.as_slice());
+    let states = scale.norm(start.x.as_slice(), start.x.as_slice());
     let is_at_rest = rates <= 1e-5 || states <= 1e-5;
     let guess = if is_at_rest { AT_REST * longest } else { states / rates * 0.01 }.min(longest);
     let ahead = start.x + start.rate * guess;
     let mut rate: SVector<f64, N> = SVector::zeros();
-    flow.rate(start.t + guess, &ahead, &mut rate);
-    let bend = scale.norm(&(rate - start.rate), &start.x) / guess;
+    flow.rate(start.t + guess, ahead.as_slice(), rate.as_mut_slice());
+    let bend = scale.norm((rate - start.rate).as_slice(), start.x.as_slice()) / guess;
     let steepest = bend.max(rates);
     let step =
         if steepest <= 1e-15 { (AT_REST * longest).max(guess * 1e-3) } else { libm::pow(0.01 / steepest, 1.0 / order) };

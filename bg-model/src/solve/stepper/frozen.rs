@@ -6,12 +6,12 @@
 use core::cell::Cell;
 use core::ops::Range;
 
-use nalgebra::SVector;
+use nalgebra::{Complex, SVector};
 
-use crate::model::capability::{Elimination, Linearised, Operations, SecondOrder, Series};
-use crate::model::linear::{Sparsity, differences};
+use crate::model::capability::{Elimination, Linearised, SecondOrder, Series};
+use crate::model::linear::{Field, Sparsity, differences};
 use crate::model::system::System;
-use crate::solve::integrator::Flow;
+use crate::solve::integrator::{Flow, SeriesSize};
 use crate::solve::statistics::Statistics;
 
 /// The counters of a run.
@@ -44,49 +44,87 @@ fn count(counter: &Cell<u64>, more: u64) {
 
 /// A system with its switches frozen, counting its evaluations.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frozen<'a, Sys, const G: usize> {
+pub(crate) struct Frozen<'a, Sys, const N: usize, const G: usize> {
     system: &'a Sys,
     negative: &'a [bool; G],
     counters: Counters<'a>,
 }
 
-impl<'a, Sys, const G: usize> Frozen<'a, Sys, G> {
+impl<'a, Sys, const N: usize, const G: usize> Frozen<'a, Sys, N, G>
+where
+    Sys: System<f64, N, G>,
+{
     pub fn new(system: &'a Sys, negative: &'a [bool; G], statistics: &'a mut Statistics) -> Self {
         Self { system, negative, counters: Counters::from(statistics) }
     }
 
-    /// A capability of the system in the same branches.
+    /// The elimination made for the system's sparsity.
     #[inline(always)]
-    fn of<C>(&self, system: &'a C) -> Frozen<'a, C, G> {
-        Frozen { system, negative: self.negative, counters: self.counters }
+    fn elimination(&self) -> Option<&'a impl Elimination<f64, N>> {
+        self.system.linearised().and_then(Linearised::elimination)
+    }
+
+    #[inline(always)]
+    fn eliminated<F: Field<f64>>(&self, c: F, entries: &[f64], factors: &mut [F]) -> bool {
+        self.elimination().is_some_and(|elimination| elimination.eliminate(c, entries, factors))
+    }
+
+    #[inline(always)]
+    fn substituted<F: Field<f64>>(&self, factors: &[F], b: &mut [F]) {
+        if let Some(elimination) = self.elimination() {
+            elimination.substitute(factors, b.first_chunk_mut().expect("there is a number for each state"));
+        }
     }
 }
 
-impl<Sys, const N: usize, const G: usize> Flow<N> for Frozen<'_, Sys, G>
+/// The numbers of all states as a system takes them.
+#[inline(always)]
+fn whole<const N: usize>(of: &[f64]) -> &SVector<f64, N> {
+    bytemuck::from_bytes(bytemuck::cast_slice(of))
+}
+
+#[inline(always)]
+fn whole_mut<const N: usize>(of: &mut [f64]) -> &mut SVector<f64, N> {
+    bytemuck::from_bytes_mut(bytemuck::cast_slice_mut(of))
+}
+
+impl<Sys, const N: usize, const G: usize> Flow for Frozen<'_, Sys, N, G>
 where
     Sys: System<f64, N, G>,
 {
     #[inline(always)]
-    fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        count(self.counters.rates, 1);
-        self.system.rate(t, x, self.negative, dx);
+    fn states(&self) -> usize {
+        N
     }
 
     #[inline(always)]
-    fn inlined_rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+    fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         count(self.counters.rates, 1);
-        self.system.inlined_rate(t, x, self.negative, dx);
+        self.system.rate(t, whole(x), self.negative, whole_mut(dx));
+    }
+
+    #[inline(always)]
+    fn inlined_rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
+        if Sys::HAS_INLINED_STEPS {
+            count(self.counters.rates, 1);
+            self.system.inlined_rate(t, whole(x), self.negative, whole_mut(dx));
+        } else {
+            self.rate(t, x, dx);
+        }
     }
 
     fn sparsity(&self) -> Sparsity {
         self.system.linearised().map_or(Sparsity::Full, Linearised::sparsity)
     }
 
-    fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
+    fn jacobian(&self, t: f64, x: &[f64], entries: &mut [f64], slope: &mut [f64]) {
         count(self.counters.jacobians, 1);
         match self.system.linearised() {
-            Some(linearised) => linearised.jacobian(t, x, self.negative, entries, slope),
-            None => differences(|t, x, dx| self.system.rate(t, x, self.negative, dx), t, x, entries, slope),
+            Some(linearised) => linearised.jacobian(t, whole(x), self.negative, entries, whole_mut(slope)),
+            None => {
+                let rate = |t, x: &[f64], dx: &mut [f64]| self.system.rate(t, whole(x), self.negative, whole_mut(dx));
+                differences(rate, t, x, entries, slope, &mut [0.0; N]);
+            }
         }
     }
 
@@ -94,28 +132,78 @@ where
         self.system.linearised().map_or(Sparsity::Full, Linearised::damping_sparsity)
     }
 
-    fn damping(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64]) {
+    fn damping(&self, t: f64, x: &[f64], entries: &mut [f64]) {
         match self.system.linearised() {
             Some(linearised) => {
                 count(self.counters.jacobians, 1);
-                linearised.damping(t, x, self.negative, entries);
+                linearised.damping(t, whole(x), self.negative, entries);
             }
-            None => self.jacobian(t, x, entries, &mut SVector::zeros()),
+            None => self.jacobian(t, x, entries, &mut [0.0; N]),
         }
     }
 
-    fn elimination(&self) -> Option<&impl Elimination<f64, N>> {
-        self.system.linearised().and_then(Linearised::elimination)
+    fn factors(&self) -> Option<usize> {
+        self.elimination().map(Elimination::factors)
     }
 
     #[inline(always)]
-    fn second_order(&self) -> Option<impl SecondOrder<f64, N, 0>> {
-        self.system.second_order().map(|second_order| self.of(second_order))
+    fn eliminate(&self, c: f64, entries: &[f64], factors: &mut [f64]) -> bool {
+        self.eliminated(c, entries, factors)
     }
 
     #[inline(always)]
-    fn series(&self) -> Option<impl Series<f64, N, 0>> {
-        self.system.series().map(|series| self.of(series))
+    fn eliminate_complex(&self, c: Complex<f64>, entries: &[f64], factors: &mut [Complex<f64>]) -> bool {
+        self.eliminated(c, entries, factors)
+    }
+
+    #[inline(always)]
+    fn substitute(&self, factors: &[f64], b: &mut [f64]) {
+        self.substituted(factors, b);
+    }
+
+    #[inline(always)]
+    fn substitute_complex(&self, factors: &[Complex<f64>], b: &mut [Complex<f64>]) {
+        self.substituted(factors, b);
+    }
+
+    #[inline(always)]
+    fn second(&self) -> Range<usize> {
+        self.system.second_order().map_or(0..0, |second| second.states())
+    }
+
+    #[inline(always)]
+    fn second_derivatives(&self, x: &[f64], dx: &mut [f64]) {
+        if let Some(second) = self.system.second_order() {
+            second.second_derivatives(whole(x), whole_mut(dx));
+        }
+    }
+
+    #[inline(always)]
+    fn forces(&self, t: f64, x: &[f64], dx: &mut [f64]) {
+        match self.system.second_order() {
+            Some(second) => {
+                count(self.counters.rates, 1);
+                second.forces(t, whole(x), self.negative, whole_mut(dx));
+            }
+            None => self.inlined_rate(t, x, dx),
+        }
+    }
+
+    fn operations_of_forces(&self) -> Option<[u32; 2]> {
+        self.system.second_order()?.operations()
+    }
+
+    fn series(&self) -> Option<SeriesSize> {
+        self.system.series().map(|series| SeriesSize { width: series.width(), operations: series.operations() })
+    }
+
+    #[inline(always)]
+    fn expand(&self, t: f64, h: f64, rows: &mut [f64], series: &mut [f64]) {
+        let series: &mut [SVector<f64, N>] = bytemuck::cast_slice_mut(series);
+        if let Some(expansion) = self.system.series().filter(|_| !series.is_empty()) {
+            count(self.counters.series_orders, (series.len() - 1) as u64);
+            expansion.expand(t, h, self.negative, rows, series);
+        }
     }
 
     fn is_held(&self) -> bool {
@@ -125,49 +213,5 @@ where
     fn count_factorisation(&self, is_fallback: bool) {
         count(self.counters.factorisations, 1);
         count(self.counters.pivoted, u64::from(is_fallback));
-    }
-}
-
-impl<C, const N: usize, const G: usize> SecondOrder<f64, N, 0> for Frozen<'_, C, G>
-where
-    C: SecondOrder<f64, N, G>,
-{
-    #[inline(always)]
-    fn states(&self) -> Range<usize> {
-        self.system.states()
-    }
-
-    #[inline(always)]
-    fn second_derivatives(&self, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
-        self.system.second_derivatives(x, dx);
-    }
-
-    #[inline(always)]
-    fn forces(&self, t: f64, x: &SVector<f64, N>, _: &[bool; 0], dx: &mut SVector<f64, N>) {
-        count(self.counters.rates, 1);
-        self.system.forces(t, x, self.negative, dx);
-    }
-
-    fn operations(&self) -> Option<[u32; 2]> {
-        self.system.operations()
-    }
-}
-
-impl<C, const N: usize, const G: usize> Series<f64, N, 0> for Frozen<'_, C, G>
-where
-    C: Series<f64, N, G>,
-{
-    fn width(&self) -> usize {
-        self.system.width()
-    }
-
-    fn operations(&self) -> Option<Operations> {
-        self.system.operations()
-    }
-
-    #[inline(always)]
-    fn expand(&self, t: f64, h: f64, _: &[bool; 0], rows: &mut [f64], series: &mut [SVector<f64, N>]) {
-        count(self.counters.series_orders, (series.len() - 1) as u64);
-        self.system.expand(t, h, self.negative, rows, series);
     }
 }

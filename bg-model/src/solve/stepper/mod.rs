@@ -24,7 +24,7 @@ const ROUNDING: f64 = 10.0;
 pub(crate) struct Stepper<'a, Sys, M, const N: usize, const G: usize> {
     pub system: &'a Sys,
     pub method: &'a mut M,
-    pub scale: Scale<N>,
+    pub scale: Scale,
     /// The branches that hold during the step.
     pub negative: [bool; G],
     pub statistics: Statistics,
@@ -42,17 +42,18 @@ pub(crate) struct Stepper<'a, Sys, M, const N: usize, const G: usize> {
 impl<'a, Sys, M, const N: usize, const G: usize> Stepper<'a, Sys, M, N, G>
 where
     Sys: System<f64, N, G>,
-    M: Method<N>,
+    M: Method,
 {
-    pub fn new(system: &'a Sys, method: &'a mut M, scale: Scale<N>, start: Point<N>) -> Self {
+    pub fn new(system: &'a Sys, method: &'a mut M, scale: Scale, start: Point<N>) -> Self {
         let statistics = Statistics::default();
         let negative = [false; G];
         let arch = Arch::new();
+        method.fit(N);
         Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false, arch }
     }
 
     /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
-    pub fn split(&mut self) -> (&mut M, Frozen<'_, Sys, G>, &Point<N>, &mut Point<N>, &Scale<N>) {
+    pub fn split(&mut self) -> (&mut M, Frozen<'_, Sys, N, G>, &Point<N>, &mut Point<N>, &Scale) {
         let flow = Frozen::new(self.system, &self.negative, &mut self.statistics);
         (self.method, flow, &self.start, &mut self.end, &self.scale)
     }
@@ -63,7 +64,12 @@ where
         self.dense_is_ready = false;
         let (method, flow, start, end, scale) = self.split();
         end.t = start.t + h;
-        method.attempt(&flow, start, h, scale, &mut end.x)
+        let (start, end) = (start.borrowed(), end.x.as_mut_slice());
+        if Sys::HAS_INLINED_STEPS {
+            method.attempt(&flow, start, h, scale, end)
+        } else {
+            method.attempt_any(&flow, start, h, scale, end)
+        }
     }
 
     /// Takes over an attempt of size `h` (s) to `end`, which was made elsewhere. Its method is to know its stages.
@@ -81,7 +87,12 @@ where
             system.project(end.t, &negative, x);
             system.project(end.t, &negative, x);
         };
-        let error = method.error_after(&flow, start, h, scale, &end.x, project)?;
+        let project_slice = |x: &mut [f64]| {
+            let mut state = SVector::from_column_slice(x);
+            project(&mut state);
+            x.copy_from_slice(state.as_slice());
+        };
+        let error = method.error_after(&flow, start.borrowed(), h, scale, end.x.as_slice(), &project_slice)?;
         let mut reached = end.x;
         project(&mut reached);
         let rounding = self.rounding_of_projection(&reached);
@@ -131,7 +142,7 @@ where
             self.system.project(self.end.t, &self.negative, &mut x);
             x
         });
-        self.scale.norm(&(otherwise - projected), &projected)
+        self.scale.norm((otherwise - projected).as_slice(), projected.as_slice())
     }
 
     /// The rate at time `t` (s) and state `x` in the branches of the step.
@@ -147,7 +158,7 @@ where
         let arch = self.arch;
         let (_, flow, _, end, _) = self.split();
         let Point { t, x, rate } = end;
-        rate_in(arch, &flow, *t, x, rate);
+        rate_in(arch, &flow, *t, x.as_slice(), rate.as_mut_slice());
     }
 
     /// Evaluates the rate at the start of the step, whose branches may be new.
@@ -167,8 +178,8 @@ where
         }
         let flow = Frozen::new(self.system, &self.negative, &mut statistics);
         let sparsity = flow.sparsity();
-        let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], SVector::zeros());
-        flow.jacobian(self.start.t, &self.start.x, &mut entries, &mut slope);
+        let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], [0.0; N]);
+        flow.jacobian(self.start.t, self.start.x.as_slice(), &mut entries, &mut slope);
         let is_faulty = |(_, value): &(usize, f64)| !value.is_finite();
         let state = |k: usize| {
             let (row, column) = sparsity.place(k, N);
@@ -191,7 +202,7 @@ where
         let ahead = inside.chain(FURTHER).map(|part| way * part);
         let on_the_way = ahead.map(|ahead| (t + ahead, x + rate * ahead));
         let mut points = core::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
-        points.find_map(|(t, x)| is_finite(&x).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())
+        points.find_map(|(t, x)| is_finite(x.as_slice()).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())
     }
 
     /// The end of the step becomes the start of the next one.
@@ -206,12 +217,12 @@ where
             let before = self.statistics.rate_evaluations;
             let h = self.h;
             let (method, flow, start, end, _) = self.split();
-            method.prepare_dense(&flow, start, h, end);
+            method.prepare_dense_any(&flow, start.borrowed(), h, end.borrowed());
             self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
             self.dense_is_ready = true;
         }
-        let mut x = SVector::zeros();
-        self.method.dense(&self.start, self.h, &self.end, theta, &mut x);
+        let mut x = SVector::<f64, N>::zeros();
+        self.method.dense(self.start.borrowed(), self.h, self.end.borrowed(), theta, x.as_mut_slice());
         x
     }
 }
@@ -220,7 +231,7 @@ where
 #[inline(always)]
 fn project<const N: usize, const G: usize>(
     system: &impl System<f64, N, G>,
-    scale: &Scale<N>,
+    scale: &Scale,
     negative: &[bool; G],
     t: f64,
     x: &mut SVector<f64, N>,
@@ -234,11 +245,11 @@ fn project<const N: usize, const G: usize>(
 #[inline(always)]
 fn moved<const N: usize, const G: usize>(
     system: &impl System<f64, N, G>,
-    scale: &Scale<N>,
+    scale: &Scale,
     before: &SVector<f64, N>,
     after: &SVector<f64, N>,
 ) -> f64 {
-    if system.joints().is_some() { scale.norm(&(after - before), after) } else { 0.0 }
+    if system.joints().is_some() { scale.norm((after - before).as_slice(), after.as_slice()) } else { 0.0 }
 }
 
 /// A state with each number as the next rounding would have it, up or down.

@@ -46,7 +46,7 @@ pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
 }
 
 /// The poses of the scene's run with `method`.
-pub fn scene_poses(method: &mut impl Method<N>, tolerances: Tolerances<N>) -> Result<Poses, String> {
+pub fn scene_poses(method: &mut impl Method, tolerances: Tolerances<N>) -> Result<Poses, String> {
     run_scene(&paper(), method, tolerances).map(|run| run.poses)
 }
 
@@ -67,20 +67,20 @@ fn on_scene<Mo, Me, const N: usize, const M: usize>(
 ) -> Box<dyn Solver>
 where
     Mo: Model<f64, N, 1, M> + 'static,
-    Me: Method<N> + 'static,
+    Me: Method + 'static,
 {
     by_tolerance(source, name, true, exponents, move |rtol| {
         run_scene(&model(), &mut method(), Tolerances::new(rtol, SCENE_ABSOLUTE * rtol))
     })
 }
 
-fn on_scene_by_steps<Me: Method<N> + 'static>(name: &str, steps: &[f64], method: fn(f64) -> Me) -> Box<dyn Solver> {
+fn on_scene_by_steps<Me: Method + 'static>(name: &str, steps: &[f64], method: fn(f64) -> Me) -> Box<dyn Solver> {
     let line = Line { name: name.to_owned(), source: Source::Ours, locates_events: true, setting: Setting::Step };
     let run = move |step| run_scene(&paper(), &mut method(step), Tolerances::default());
     Box::new(Entry { line, settings: steps.to_vec(), run })
 }
 
-fn by_hand<'a, Me: Method<24> + 'static>(
+fn by_hand<'a, Me: Method + 'static>(
     name: &str,
     exponents: RangeInclusive<i32>,
     method: fn() -> Me,
@@ -100,7 +100,7 @@ fn run_scene<Mo, Me, const N: usize, const M: usize>(
 ) -> Result<Run, String>
 where
     Mo: Model<f64, N, 1, M>,
-    Me: Method<N>,
+    Me: Method,
 {
     let start = model.start().map_err(|fault| fault.to_string())?;
     let samples = run(model, method, &start, tolerances)?;
@@ -142,7 +142,7 @@ fn run<Sys, Me, const N: usize, const G: usize>(
 ) -> Result<Sampled<N, G>, String>
 where
     Sys: System<f64, N, G>,
-    Me: Method<N>,
+    Me: Method,
 {
     let settings = Settings { tolerances, samples: Samples::At(instants()), ..Settings::default() };
     let mut states = Vec::with_capacity(crate::problem::SAMPLES);

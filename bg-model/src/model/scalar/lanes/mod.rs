@@ -76,26 +76,32 @@ impl<V: Vector> Lanes<V> {
 
 /// Replaces numbers at the places of `mask`.
 #[inline(always)]
-pub fn replace<V: Vector, const N: usize>(to: &mut SVector<Lanes<V>, N>, mask: V::Mask, from: &SVector<Lanes<V>, N>) {
-    for i in 0..N {
-        to.data.0[0][i] = Lanes::select(mask, from.data.0[0][i], to.data.0[0][i]);
+pub fn replace<V: Vector>(to: &mut [Lanes<V>], mask: V::Mask, from: &[Lanes<V>]) {
+    for (to, from) in to.iter_mut().zip(from) {
+        *to = Lanes::select(mask, *from, *to);
+    }
+}
+
+/// Writes the numbers of all states at a place into `to`.
+#[inline]
+pub fn take<V: Vector>(place: usize, of: &[Lanes<V>], to: &mut [f64]) {
+    for (to, of) in to.iter_mut().zip(of) {
+        *to = *of.0.at(place);
     }
 }
 
 /// The numbers of all states at a place.
 #[inline]
-pub fn at<V: Vector, const N: usize>(place: usize, of: &SVector<Lanes<V>, N>) -> SVector<f64, N> {
-    let mut numbers = [0.0; N];
-    for (number, of) in numbers.iter_mut().zip(&of.data.0[0]) {
-        *number = *of.0.at(place);
-    }
-    SVector::from(numbers)
+pub fn at<V: Vector, const N: usize>(place: usize, of: &[Lanes<V>]) -> SVector<f64, N> {
+    let mut numbers = SVector::<f64, N>::zeros();
+    take(place, of, numbers.as_mut_slice());
+    numbers
 }
 
 /// Puts numbers of all states at a place.
 #[inline]
-pub fn put<V: Vector, const N: usize>(place: usize, to: &mut SVector<Lanes<V>, N>, numbers: &SVector<f64, N>) {
-    for (to, number) in to.data.0[0].iter_mut().zip(&numbers.data.0[0]) {
+pub fn put<V: Vector>(place: usize, to: &mut [Lanes<V>], numbers: &[f64]) {
+    for (to, number) in to.iter_mut().zip(numbers) {
         *to.0.at_mut(place) = *number;
     }
 }
@@ -501,7 +507,7 @@ mod tests {
                 assert_eq!(V::bits(V::mask(bits)), bits);
             }
             for lane in 0..V::LANES {
-                assert!(same(at(lane, &SVector::from([b, a]))[1], a.get(lane)));
+                assert!(same(at::<V, 2>(lane, &[b, a])[1], a.get(lane)));
             }
         }
         let (x, y) = (Lanes::<V>::each(|lane| 0.3 + 0.1 * lane as f64), Lanes::each(|lane| 0.9 - 0.1 * lane as f64));

@@ -13,12 +13,10 @@ mod race;
 
 use alloc::vec::Vec;
 
-use nalgebra::SVector;
-
 pub use self::change::{Change, Reason};
 use self::race::Race;
 use super::hand_on::hand_on;
-use super::{Ark5, Flow, Method, Point, Radau9, Scale, StepControl, is_finite, rounding};
+use super::{Ark5, Flow, Method, PointRef, Radau9, Scale, StepControl, is_finite, rounding};
 
 /// Steps before the first trial, and the most between two trials.
 const WAIT: [u32; 2] = [16, 4096];
@@ -120,10 +118,10 @@ impl Kind {
 
 /// Three methods, one of which makes the steps.
 #[derive(Clone, Debug)]
-pub struct Auto<const N: usize> {
-    explicit: Race<N>,
-    partitioned: Ark5<N>,
-    implicit: Radau9<N>,
+pub struct Auto {
+    explicit: Race,
+    partitioned: Ark5,
+    implicit: Radau9,
     kind: Kind,
     /// Whether the next attempt is the first from the end of an accepted step: after a restart, short steps are tried that
     /// only look for a guard's sign.
@@ -141,7 +139,14 @@ pub struct Auto<const N: usize> {
     /// The step under way, s.
     step: f64,
     /// Where the longer step led that is still to be confirmed.
-    claim: Option<Claim<N>>,
+    claim: Option<Claim>,
+    /// Its end, and the start of the step under way.
+    claimed: Vec<f64>,
+    before: Noted,
+    /// The start and the end of steps that are tried only, a rate.
+    trial: Noted,
+    end: Vec<f64>,
+    rate: Vec<f64>,
     /// The claims in succession that events have cut off.
     cut_off: u32,
     /// Accepted steps since the last restart, and the restarts in succession that came after few of them.
@@ -158,21 +163,43 @@ pub struct Auto<const N: usize> {
 
 /// A step of a more implicit method that satisfies the tolerances, with the steps of the present one under way to its end.
 #[derive(Clone, Debug)]
-struct Claim<const N: usize> {
+struct Claim {
     kind: Kind,
     /// How many times as long it is as the step that was in sight.
     longer: f64,
-    /// Its end.
+    /// The time of its end, s.
     t: f64,
-    x: SVector<f64, N>,
-    /// The start of the step under way.
-    start: Point<N>,
+}
+
+/// A point that is kept.
+#[derive(Clone, Debug, Default)]
+struct Noted {
+    t: f64,
+    x: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+impl Noted {
+    fn fit(&mut self, states: usize) {
+        self.x.resize(states, 0.0);
+        self.rate.resize(states, 0.0);
+    }
+
+    fn note(&mut self, PointRef { t, x, rate }: PointRef<'_>) {
+        self.t = t;
+        self.x.copy_from_slice(x);
+        self.rate.copy_from_slice(rate);
+    }
+
+    fn point(&self) -> PointRef<'_> {
+        PointRef { t: self.t, x: &self.x, rate: &self.rate }
+    }
 }
 
 /// The most changes that are remembered.
 const REMEMBERED: usize = 256;
 
-impl<const N: usize> Auto<N> {
+impl Auto {
     /// DOP853, CFMR7osc, Nystrom and Taylor series, `ARK5(4)8L[2]SAb`, Radau IIA 9; DOP853 begins, at loose
     /// tolerances where there are few states CFMR7osc.
     #[must_use]
@@ -193,6 +220,11 @@ impl<const N: usize> Auto<N> {
             recent: [0.0; RECENT],
             step: 0.0,
             claim: None,
+            claimed: Vec::new(),
+            before: Noted::default(),
+            trial: Noted::default(),
+            end: Vec::new(),
+            rate: Vec::new(),
             cut_off: 0,
             since_event: 0,
             hurried: 0,
@@ -227,12 +259,12 @@ impl<const N: usize> Auto<N> {
     }
 
     /// Tries the other methods.
-    fn try_others(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+    fn try_others(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) {
         self.since = 0;
         self.nearest = f64::INFINITY;
         self.tried = self.typical();
         let is_cut_off = self.cut_off >= CUT_OFF;
-        for kind in self.kind.others(scale.relative, N) {
+        for kind in self.kind.others(scale.relative, flow.states()) {
             if is_cut_off && kind == Kind::Partitioned {
                 continue;
             }
@@ -247,11 +279,12 @@ impl<const N: usize> Auto<N> {
     }
 
     /// Whether a step of a more implicit method meets the tolerances that is worth its cost. It takes over, or has to be confirmed.
-    fn reaches(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+    fn reaches(&mut self, kind: Kind, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         // Twice as long as it has to be where what it costs varies as much as what the present one does.
         let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
-        let longer = gain * kind.worth(self.kind, N) / self.dearness(self.kind);
-        let (h, mut x) = (longer * h, start.x);
+        let longer = gain * kind.worth(self.kind, flow.states()) / self.dearness(self.kind);
+        let (h, mut x) = (longer * h, core::mem::take(&mut self.claimed));
+        x.copy_from_slice(start.x);
         let error = of!((&mut) self, kind, method => {
             // Only the method that makes the steps has seen the last ones.
             method.restart();
@@ -259,46 +292,54 @@ impl<const N: usize> Auto<N> {
         });
         self.nearest = self.nearest.min(error);
         let is_met = error <= 1.0 && is_finite(&x);
+        self.claimed = x;
         if is_met && self.cut_off >= CUT_OFF {
             self.change(kind, start.t, Reason::Longer(longer));
         } else if is_met {
-            self.claim = Some(Claim { kind, longer, t: start.t + h, x, start: *start });
+            self.claim = Some(Claim { kind, longer, t: start.t + h });
+            self.before.note(start);
         }
         is_met
     }
 
     /// Whether steps of a less implicit method meet the tolerances from `start` over the step `h` (s) of the present one. Each of them is
     /// twice as long as it has to be to be worth a change, so that the choice does not swing.
-    fn succeeds(&mut self, kind: Kind, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
-        let h = 2.0 * h * self.dearness(kind) / self.kind.worth(kind, N);
-        let (mut point, mut end) = (*start, start.x);
+    fn succeeds(&mut self, kind: Kind, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+        let h = 2.0 * h * self.dearness(kind) / self.kind.worth(kind, flow.states());
+        let (mut from, mut end) = (core::mem::take(&mut self.trial), core::mem::take(&mut self.end));
+        from.note(start);
         of!((&mut) self, kind, method => method.restart());
-        (0..SUCCESSION).all(|_| {
-            let error = of!((&mut) self, kind, method => method.attempt(flow, &point, h, scale, &mut end));
+        let succeeds = (0..SUCCESSION).all(|_| {
+            let error = of!((&mut) self, kind, method => method.attempt(flow, from.point(), h, scale, &mut end));
             let is_met = error <= 1.0 && is_finite(&end);
             if is_met {
                 of!((&mut) self, kind, method => method.advance());
-                (point.t, point.x) = (point.t + h, end);
-                flow.rate(point.t, &end, &mut point.rate);
+                from.t += h;
+                from.x.copy_from_slice(&end);
+                flow.rate(from.t, &end, &mut from.rate);
             }
             is_met
-        })
+        });
+        (self.trial, self.end) = (from, end);
+        succeeds
     }
 
     /// Holds the longer step against the present method's, once these have come to its end.
-    fn confirm(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
+    fn confirm(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, scale: &Scale) {
         let Some(claim) = self.claim.take_if(|claim| claim.t <= start.t) else { return };
-        let (before, step) = (claim.start, self.step);
+        let (before, step) = (core::mem::take(&mut self.before), self.step);
         self.cut_off = 0;
-        let mut x = start.x;
+        let mut x = core::mem::take(&mut self.end);
+        let since = claim.t - before.t;
         present!((&mut) self, method => {
-            method.prepare_dense(flow, &before, step, start);
-            method.dense(&before, step, start, (claim.t - before.t) / step, &mut x);
+            method.prepare_dense(flow, before.point(), step, start);
+            method.dense(before.point(), step, start, since / step, &mut x);
         });
-        let agrees = scale.norm(&(claim.x - x), &x) <= AGREEMENT;
-        if agrees && scale.norm(&(rounding(flow, start) * self.typical()), &start.x) < NOISE {
+        let agrees = scale.norm_of(&x, |i| self.claimed[i] - x[i]) <= AGREEMENT;
+        (self.before, self.end) = (before, x);
+        if agrees && self.noise(flow, start, scale) < NOISE {
             let kind = if claim.kind == Kind::Partitioned
-                && self.is_stiff_throughout(flow, start, claim.t - before.t, scale)
+                && self.is_stiff_throughout(flow, start, since, scale)
             {
                 Kind::Implicit
             } else {
@@ -310,26 +351,34 @@ impl<const N: usize> Auto<N> {
         }
     }
 
+    /// What rounding makes of the error of a typical step, in parts of the tolerances.
+    fn noise(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, scale: &Scale) -> f64 {
+        let typical = self.typical();
+        let Self { end, rate, trial, .. } = self;
+        rounding(flow, start, [&mut trial.x, rate, end]);
+        scale.norm_of(start.x, |i| end[i] * typical)
+    }
+
     /// Whether from `start` a step meets the tolerances that is implicit in all states and worth more than the longest one that is
     /// implicit in some, from `h` (s) on.
-    fn is_stiff_throughout(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
-        let mut end = start.x;
-        self.partitioned.restart();
-        self.implicit.restart();
+    fn is_stiff_throughout(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+        let Self { partitioned, implicit, end, .. } = self;
+        partitioned.restart();
+        implicit.restart();
         let longer = core::iter::successors(Some(h), |h| Some(2.0 * h)).take(DOUBLINGS);
-        let is_met = |h: &f64| self.partitioned.attempt(flow, start, *h, scale, &mut end) <= 1.0 && is_finite(&end);
+        let is_met = |h: &f64| partitioned.attempt(flow, start, *h, scale, end) <= 1.0 && is_finite(end);
         let longest = longer.take_while(is_met).last().unwrap_or(h);
-        let h = Kind::Implicit.worth(Kind::Partitioned, N) * longest;
-        self.implicit.attempt(flow, start, h, scale, &mut end) <= 1.0 && is_finite(&end)
+        let h = Kind::Implicit.worth(Kind::Partitioned, flow.states()) * longest;
+        implicit.attempt(flow, start, h, scale, end) <= 1.0 && is_finite(end)
     }
 
     /// Whether an implicit step goes on where those of the present method fail.
-    fn goes_on(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+    fn goes_on(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         // Where it has just handed back it does not go on either.
         let has_gone_on = !self.changes.is_empty() && self.stint < STINT;
-        let mut end = start.x;
-        self.implicit.restart();
-        !has_gone_on && self.implicit.attempt(flow, start, h, scale, &mut end) <= 1.0 && is_finite(&end)
+        let Self { implicit, end, .. } = self;
+        implicit.restart();
+        !has_gone_on && implicit.attempt(flow, start, h, scale, end) <= 1.0 && is_finite(end)
     }
 
     /// The method stays: the next trial is later.
@@ -365,22 +414,33 @@ impl<const N: usize> Auto<N> {
     }
 }
 
-impl<const N: usize> Default for Auto<N> {
+impl Default for Auto {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<const N: usize> Method<N> for Auto<N> {
+impl Method for Auto {
     hand_on!(present);
+
+    fn fit(&mut self, states: usize) {
+        self.explicit.fit(states);
+        self.partitioned.fit(states);
+        self.implicit.fit(states);
+        self.before.fit(states);
+        self.trial.fit(states);
+        for room in [&mut self.claimed, &mut self.end, &mut self.rate] {
+            room.resize(states, 0.0);
+        }
+    }
 
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         if self.is_fresh {
             self.confirm(flow, start, scale);
@@ -393,8 +453,8 @@ impl<const N: usize> Method<N> for Auto<N> {
         }
         self.is_fresh = false;
         self.step = h;
-        if let Some(claim) = &mut self.claim {
-            claim.start = *start;
+        if self.claim.is_some() {
+            self.before.note(start);
         }
         let error = present!((&mut) self, method => method.attempt(flow, start, h, scale, end));
         if self.kind == Kind::Implicit {

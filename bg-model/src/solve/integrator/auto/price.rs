@@ -5,7 +5,7 @@
 
 use super::super::taylor::order_for;
 use super::race::STEP;
-use crate::model::capability::{Operations, SecondOrder, Series};
+use crate::model::capability::Operations;
 use crate::solve::integrator::Flow;
 
 /// The loosest relative tolerance at which the series is worth a trial: its lowest orders are dear for what they reach.
@@ -34,14 +34,15 @@ const BEYOND: f64 = 1.53;
 
 /// The price of a step at the relative tolerance `relative`, in rates; none without a series, where its operations are not known, and
 /// where the tolerance is loose.
-pub(super) fn of_step<const N: usize>(flow: &impl Flow<N>, relative: f64) -> Option<f64> {
-    let operations = flow.series().filter(|_| relative <= LOOSEST)?.operations()?;
-    Some(price(&operations, N, order_for(relative)))
+pub(super) fn of_step(flow: &(impl Flow + ?Sized), relative: f64) -> Option<f64> {
+    let operations = flow.series().filter(|_| relative <= LOOSEST)?.operations?;
+    Some(price(&operations, flow.states(), order_for(relative)))
 }
 
 /// The price of a rate that gives second derivatives; none where there are none.
-pub(super) fn of_forces<const N: usize>(flow: &impl Flow<N>) -> Option<f64> {
-    Some(flow.second_order()?.operations().map_or(OF_FORCES, |operations| forces(operations, N)))
+pub(super) fn of_forces(flow: &(impl Flow + ?Sized)) -> Option<f64> {
+    let price = || flow.operations_of_forces().map_or(OF_FORCES, |operations| forces(operations, flow.states()));
+    (!flow.second().is_empty()).then(price)
 }
 
 /// The price of a rate with second derivatives of a system with so many states, from the operations of a rate and of such a one.

@@ -6,11 +6,11 @@
 //! run, so there are several rounds, and who takes over has to be ahead in each: who is behind once is out. Only who has promised to be
 //! ahead where a step of it was tried since the last race takes part, so many rests end without a race.
 
-use nalgebra::SVector;
+use alloc::vec::Vec;
 
 use super::{MANY, price};
 use crate::solve::integrator::hand_on::hand_on;
-use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, Point, Scale, StepControl, Taylor, is_finite};
+use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, PointRef, Scale, StepControl, Taylor, is_finite};
 
 /// Accepted steps before the first race, and the most between two races.
 const REST: [u32; 2] = [16, 8192];
@@ -136,11 +136,13 @@ impl Stretch {
 
 /// The explicit methods, one of which makes the steps.
 #[derive(Clone, Debug)]
-pub(super) struct Race<const N: usize> {
-    dop853: Dop853<N>,
-    cfmr7: Cfmr7<N>,
-    nystrom: Nystrom<N>,
-    taylor: Taylor<N>,
+pub(super) struct Race {
+    dop853: Dop853,
+    cfmr7: Cfmr7,
+    nystrom: Nystrom,
+    taylor: Taylor,
+    /// Where a step leads that is tried only.
+    end: Vec<f64>,
     /// What a rate with second derivatives costs and a step of the Taylor series, in rates; none where they take no part.
     forces: Option<f64>,
     series: Option<f64>,
@@ -184,7 +186,7 @@ pub(super) struct Race<const N: usize> {
     h: f64,
 }
 
-impl<const N: usize> Race<N> {
+impl Race {
     /// DOP853 begins, or at loose tolerances CFMR7osc.
     pub fn new() -> Self {
         Self {
@@ -192,6 +194,7 @@ impl<const N: usize> Race<N> {
             cfmr7: Cfmr7::new(),
             nystrom: Nystrom::new(),
             taylor: Taylor::new(),
+            end: Vec::new(),
             forces: None,
             series: None,
             held: 0.0,
@@ -237,7 +240,7 @@ impl<const N: usize> Race<N> {
     }
 
     /// What a step of a method costs, in rates; none where it cannot take part.
-    fn price(&self, runner: Runner, flow: &impl Flow<N>, scale: &Scale<N>) -> Option<f64> {
+    fn price(&self, runner: Runner, flow: &(impl Flow + ?Sized), scale: &Scale) -> Option<f64> {
         let of_series = || (runner == Runner::Taylor).then(|| price::of_step(flow, scale.relative)).flatten();
         self.of_attempt(runner).or_else(of_series).map(|price| price + self.held)
     }
@@ -275,7 +278,7 @@ impl<const N: usize> Race<N> {
     }
 
     /// Passes on where a lap or a rest is over. Who has promised to be ahead takes part.
-    fn turn(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
+    fn turn(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, scale: &Scale) {
         let Some(round) = self.round else {
             self.look(flow, start, scale);
             if self.steps >= self.rest {
@@ -311,7 +314,7 @@ impl<const N: usize> Race<N> {
 
     /// Looks several times in a rest whether a step of another method from `start` would get further with its price than the last steps
     /// did with their rates. Who does so once takes part in the race.
-    fn look(&mut self, flow: &impl Flow<N>, start: &Point<N>, scale: &Scale<N>) {
+    fn look(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, scale: &Scale) {
         let next = BEGINNING + (self.looks + 1) * (self.rest - BEGINNING) / LOOKS;
         if self.looks == LOOKS || self.steps < next || self.counted.steps == 0 {
             return;
@@ -334,12 +337,13 @@ impl<const N: usize> Race<N> {
 
     /// The error of a step of this method, in parts of the tolerances, that is longer than `h` (s) by what it has to promise; infinite where
     /// its end is not finite.
-    fn error(&mut self, runner: Runner, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
+    fn error(&mut self, runner: Runner, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         if runner == Runner::Taylor {
             self.series = self.price(runner, flow, scale);
-            return self.taylor.error(flow, start, PROMISE_OF_SERIES * h, scale);
+            return self.taylor.error(flow, start, PROMISE_OF_SERIES * h, scale, &mut self.end);
         }
-        let mut end = start.x;
+        let mut end = core::mem::take(&mut self.end);
+        end.copy_from_slice(start.x);
         let present = core::mem::replace(&mut self.runner, runner);
         let error = present!((&mut) self, method => {
             method.restart();
@@ -348,14 +352,16 @@ impl<const N: usize> Race<N> {
             error
         });
         self.runner = present;
-        if is_finite(&end) { error } else { f64::INFINITY }
+        let is_met = is_finite(&end);
+        self.end = end;
+        if is_met { error } else { f64::INFINITY }
     }
 
     /// Before the first attempt: prices, and who makes it.
-    fn prepare(&mut self, flow: &impl Flow<N>, scale: &Scale<N>) {
+    fn prepare(&mut self, flow: &(impl Flow + ?Sized), scale: &Scale) {
         self.forces = price::of_forces(flow);
         self.held = if flow.is_held() { price::HELD } else { 0.0 };
-        if scale.relative >= LOOSE && N < MANY {
+        if scale.relative >= LOOSE && flow.states() < MANY {
             self.ahead = Runner::Cfmr7;
             self.begin(self.ahead);
         }
@@ -391,16 +397,24 @@ impl<const N: usize> Race<N> {
     }
 }
 
-impl<const N: usize> Method<N> for Race<N> {
+impl Method for Race {
     hand_on!(present);
+
+    fn fit(&mut self, states: usize) {
+        self.dop853.fit(states);
+        self.cfmr7.fit(states);
+        self.nystrom.fit(states);
+        self.taylor.fit(states);
+        self.end.resize(states, 0.0);
+    }
 
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         if !core::mem::replace(&mut self.has_begun, true) {
             self.prepare(flow, scale);

@@ -14,15 +14,16 @@ mod polynomial;
 mod radau9;
 mod tableau;
 
-use crate::solve::integrator::Arch;
-use nalgebra::{Complex, SVector};
+use alloc::vec::Vec;
+
+use nalgebra::Complex;
 
 use self::newton::{Convergence, Goal};
 pub(super) use self::radau9::RADAU9;
 pub(super) use self::tableau::{GAUSS6, RADAU5, Tableau};
-use super::tolerances::{index_of_largest, largest};
+use super::tolerances::{index_of_largest, largest_of};
 use super::vectors::rate_in;
-use super::{Flow, Point, Scale, first_not_finite};
+use super::{Arch, Flow, PointRef, Scale, first_not_finite, is_finite};
 use crate::solve::integrator::linear::{Factors, Jacobian};
 
 /// A Jacobian serves the next step as well if the corrections shrank at least by this factor (THET of `radau5.f`).
@@ -41,28 +42,33 @@ enum Attempts {
 
 /// A collocation method of `S` stages, of which `P` pairs have complex eigenvalues, with its work space.
 #[derive(Clone, Debug)]
-pub(super) struct Collocation<const N: usize, const S: usize, const P: usize> {
+pub(super) struct Collocation<const S: usize, const P: usize> {
     pub tableau: &'static Tableau<S, P>,
     /// Whether every step is solved to rounding.
     is_exact: bool,
     /// The increments of the stages and the rates there.
-    z: [SVector<f64, N>; S],
-    f: [SVector<f64, N>; S],
-    error: SVector<f64, N>,
+    z: [Vec<f64>; S],
+    f: [Vec<f64>; S],
+    error: Vec<f64>,
+    /// The state of a stage, and its rate; errors in parts of what is allowed.
+    room: [Vec<f64>; 2],
+    /// The right-hand sides of a correction.
+    real_side: Vec<f64>,
+    complex_sides: [Vec<Complex<f64>>; P],
     /// The increments of the step before and its size, s; zero where there is none.
-    before: [SVector<f64, N>; S],
+    before: [Vec<f64>; S],
     step_before: f64,
     /// The size of the last attempt, s.
     h: f64,
     attempts: Attempts,
-    jacobian: Jacobian<N>,
+    jacobian: Jacobian,
     has_jacobian: bool,
     /// Whether the Jacobian is that of the present start.
     is_fresh: bool,
     /// The step that the factors belong to, s; zero where there are none.
     factored: f64,
-    real: Factors<f64, N>,
-    complex: [Factors<Complex<f64>, N>; P],
+    real: Factors<f64>,
+    complex: [Factors<Complex<f64>>; P],
     /// The part by which the last corrections shrank, and that of the last one which the error left by it is. Other than
     /// in `radau5.f` the second holds for these factors only: one from a tiny step would end the next iteration at once.
     contraction: f64,
@@ -71,16 +77,18 @@ pub(super) struct Collocation<const N: usize, const S: usize, const P: usize> {
     pub arch: Arch,
 }
 
-impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
+impl<const S: usize, const P: usize> Collocation<S, P> {
     pub fn new(tableau: &'static Tableau<S, P>, is_exact: bool) -> Self {
-        let zero = SVector::zeros();
         Self {
             tableau,
             is_exact,
-            z: [zero; S],
-            f: [zero; S],
-            error: zero,
-            before: [zero; S],
+            z: [const { Vec::new() }; S],
+            f: [const { Vec::new() }; S],
+            error: Vec::new(),
+            room: [const { Vec::new() }; 2],
+            real_side: Vec::new(),
+            complex_sides: [const { Vec::new() }; P],
+            before: [const { Vec::new() }; S],
             step_before: 0.0,
             h: 0.0,
             attempts: Attempts::None,
@@ -94,6 +102,14 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
             remainder: 1.0,
             arch: Arch::new(),
         }
+    }
+
+    /// Makes room for so many states.
+    pub fn fit(&mut self, states: usize) {
+        let Self { z, f, error, room, real_side, complex_sides, before, .. } = self;
+        let real = z.iter_mut().chain(f).chain(before).chain(room).chain([error, real_side]);
+        real.for_each(|room| room.resize(states, 0.0));
+        complex_sides.iter_mut().for_each(|room| room.resize(states, Complex::ZERO));
     }
 
     /// Nothing is known any more.
@@ -119,7 +135,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     /// A step that satisfied the tolerances and is tried again with another size is part of a search for an event: it is
     /// solved to rounding, and like all attempts begins at the extrapolation of the step before, so its outcome depends
     /// on its size only.
-    pub fn solve(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> Result<(), f64> {
+    pub fn solve(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> Result<(), f64> {
         self.h = h;
         let goal = if self.is_exact || self.attempts == Attempts::Satisfied { Goal::Rounding } else { Goal::Tolerance };
         if !self.has_jacobian {
@@ -141,13 +157,13 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         }
     }
 
-    fn evaluate_jacobian(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
+    fn evaluate_jacobian(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) {
         self.jacobian.evaluate(flow, start, h, scale);
         (self.has_jacobian, self.is_fresh, self.factored) = (true, true, 0.0);
     }
 
     /// Makes the factors for a step of size `h` (s) where those at hand do not serve. Gives whether there are any.
-    fn factor(&mut self, flow: &impl Flow<N>, h: f64) -> bool {
+    fn factor(&mut self, flow: &(impl Flow + ?Sized), h: f64) -> bool {
         if self.factored != 0.0 && (h - self.factored).abs() <= NEARLY * h.abs() {
             return true;
         }
@@ -169,50 +185,52 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     /// more, with the rate at x0 and the estimate, because the first one is too large for stiff states.
     pub fn estimate(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &SVector<f64, N>,
+        scale: &Scale,
+        end: &[f64],
     ) -> f64 {
         let is_doubtful = self.attempts == Attempts::Rejected || self.step_before == 0.0;
-        let mut norm = self.filtered_defect(flow, start, h, scale, end, &start.rate);
+        let mut norm = self.filtered_defect(flow, start, h, scale, end, None);
         if norm > 1.0 && is_doubtful {
-            let mut rate = SVector::zeros();
-            rate_in(self.arch, flow, start.t, &(start.x + self.error), &mut rate);
-            norm = self.filtered_defect(flow, start, h, scale, end, &rate);
+            let Self { error, room: [x, rate], arch, .. } = self;
+            x.iter_mut().zip(start.x).zip(error).for_each(|((x, start), error)| *x = start + *error);
+            rate_in(*arch, flow, start.t, x, rate);
+            let rate = core::mem::take(rate);
+            norm = self.filtered_defect(flow, start, h, scale, end, Some(&rate));
+            self.room[1] = rate;
         }
         norm
     }
 
+    /// The same of the rate at the start where no other one is given.
     fn filtered_defect(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &SVector<f64, N>,
-        rate: &SVector<f64, N>,
+        scale: &Scale,
+        end: &[f64],
+        rate: Option<&[f64]>,
     ) -> f64 {
-        let Tableau { real, slope, .. } = self.tableau;
-        let mut defect = [0.0; N];
-        for (i, defect) in defect.iter_mut().enumerate() {
-            let mut sum = slope[0] * self.z[0].data.0[0][i];
+        let (Tableau { real, slope, .. }, rate) = (self.tableau, rate.unwrap_or(start.rate));
+        for (i, defect) in self.error.iter_mut().enumerate() {
+            let mut sum = slope[0] * self.z[0][i];
             for (weight, z) in slope.iter().zip(&self.z).skip(1) {
-                sum += weight * z.data.0[0][i];
+                sum += weight * z[i];
             }
-            *defect = real.value * (h * rate.data.0[0][i] - sum);
+            *defect = real.value * (h * rate[i] - sum);
         }
-        self.real.solve(self.arch, flow, &mut defect);
-        self.error = SVector::from(defect);
-        if !super::is_finite(&self.error) {
+        self.real.solve(self.arch, flow, &mut self.error);
+        if !is_finite(&self.error) {
             return f64::NAN;
         }
-        largest::<f64, N>(&core::array::from_fn(|i| self.scaled_error(i, start, scale, end)))
+        largest_of(end.len(), |i| self.scaled_error(i, start, scale, end))
     }
 
-    fn scaled_error(&self, i: usize, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> f64 {
-        self.error.data.0[0][i].abs() / scale.allowed_between(i, start.x.data.0[0][i], end.data.0[0][i])
+    fn scaled_error(&self, i: usize, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> f64 {
+        self.error[i].abs() / scale.allowed_between(i, start.x[i], end[i])
     }
 
     /// Takes note of the outcome of an attempt, its error norm.
@@ -222,26 +240,26 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     }
 
     /// The state with the largest error in the last attempt.
-    pub fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        index_of_largest::<N>(|i| self.scaled_error(i, start, scale, end))
+    pub fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
+        index_of_largest(end.len(), |i| self.scaled_error(i, start, scale, end))
     }
 
     /// The first state whose rate was not finite in a stage of the last attempt, and that rate.
     pub fn faulty_rate(&self) -> Option<(usize, f64)> {
-        self.f.iter().find_map(first_not_finite)
+        self.f.iter().find_map(|rate| first_not_finite(rate))
     }
 
     /// The increment of the last stage.
-    pub fn last_increment(&self) -> &SVector<f64, N> {
+    pub fn last_increment(&self) -> &[f64] {
         &self.z[S - 1]
     }
 
     /// The increment of the whole step by the quadrature, h times the sum of b f.
     pub fn quadrature(&self, i: usize, h: f64) -> f64 {
         let b = &self.tableau.b;
-        let mut sum = b[0] * self.f[0].data.0[0][i];
+        let mut sum = b[0] * self.f[0][i];
         for (weight, f) in b.iter().zip(&self.f).skip(1) {
-            sum += weight * f.data.0[0][i];
+            sum += weight * f[i];
         }
         h * sum
     }

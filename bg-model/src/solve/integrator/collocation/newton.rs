@@ -5,14 +5,14 @@
 //! real system and one complex system for each pair. Source: Hairer, Wanner II, section IV.8; the tests of convergence
 //! and their constants are those of `radau5.f`.
 
-use nalgebra::{Complex, SVector};
+use nalgebra::Complex;
 use pulp::NullaryFnOnce;
 
 use super::{Collocation, KEEP};
 use crate::model::scalar::double::root;
 use crate::solve::integrator::tolerances::largest;
 use crate::solve::integrator::vectors::rate_in;
-use crate::solve::integrator::{Flow, Point, Scale, is_finite};
+use crate::solve::integrator::{Flow, PointRef, Scale, is_finite};
 
 /// Corrections that shrink by less do not converge.
 const SLOWEST: f64 = 0.99;
@@ -45,15 +45,15 @@ fn allowance(relative: f64) -> f64 {
     if loosest > tightest { loosest } else { tightest }
 }
 
-struct Correction<'a, F, const N: usize, const S: usize, const P: usize> {
-    core: &'a mut Collocation<N, S, P>,
+struct Correction<'a, F: ?Sized, const S: usize, const P: usize> {
+    core: &'a mut Collocation<S, P>,
     flow: &'a F,
-    start: &'a Point<N>,
+    start: PointRef<'a>,
     h: f64,
-    scale: &'a Scale<N>,
+    scale: &'a Scale,
 }
 
-impl<F: Flow<N>, const N: usize, const S: usize, const P: usize> NullaryFnOnce for Correction<'_, F, N, S, P> {
+impl<F: Flow + ?Sized, const S: usize, const P: usize> NullaryFnOnce for Correction<'_, F, S, P> {
     type Output = f64;
 
     #[inline(always)]
@@ -63,17 +63,17 @@ impl<F: Flow<N>, const N: usize, const S: usize, const P: usize> NullaryFnOnce f
     }
 }
 
-impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
+impl<const S: usize, const P: usize> Collocation<S, P> {
     /// The most corrections: 7 for three stages, five more for every two stages more, as in Hairer's `radau.f`.
     const MOST: usize = 7 + 5 * (S - 3) / 2;
 
     /// Iterates from the increments at hand.
     pub(super) fn iterate(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
+        scale: &Scale,
         goal: Goal,
     ) -> Convergence {
         let allowance = allowance(scale.relative);
@@ -118,14 +118,12 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     }
 
     /// Evaluates the rates of all stages. Gives whether they are finite; stops at the first that is not.
-    fn evaluate_stages(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64) -> bool {
-        for (j, c) in self.tableau.c.iter().enumerate() {
-            let mut x = [0.0; N];
-            for (i, x) in x.iter_mut().enumerate() {
-                *x = start.x.data.0[0][i] + self.z[j].data.0[0][i];
-            }
-            rate_in(self.arch, flow, start.t + c * h, &SVector::from(x), &mut self.f[j]);
-            if !is_finite(&self.f[j]) {
+    fn evaluate_stages(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64) -> bool {
+        let Self { tableau, z, f, room: [x, _], arch, .. } = self;
+        for ((c, z), f) in tableau.c.iter().zip(z).zip(f) {
+            x.iter_mut().zip(start.x).zip(z).for_each(|((x, start), z)| *x = start + *z);
+            rate_in(*arch, flow, start.t + c * h, x, f);
+            if !is_finite(f) {
                 return false;
             }
         }
@@ -133,45 +131,46 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     }
 
     /// Corrects the increments once. Gives the norm of the correction.
-    fn correct(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
+    fn correct(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         let arch = self.arch;
         arch.dispatch(Correction { core: self, flow, start, h, scale })
     }
 
     #[inline(always)]
-    fn correct_inlined(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> f64 {
-        let tableau = self.tableau;
-        let mut real = [0.0; N];
-        let mut complex = [[Complex::new(0.0, 0.0); N]; P];
-        for i in 0..N {
-            let f: [f64; S] = core::array::from_fn(|j| h * self.f[j].data.0[0][i]);
-            let residual: [f64; S] = core::array::from_fn(|j| dot(&tableau.a[j], &f) - self.z[j].data.0[0][i]);
+    fn correct_inlined(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
+        let n = flow.states();
+        let Self { tableau, z, f, room: [_, sizes], real_side, complex_sides, .. } = self;
+        let (z, f) = (z.each_mut().map(|z| &mut z[..n]), f.each_ref().map(|f| &f[..n]));
+        let (real, sizes) = (&mut real_side[..n], &mut sizes[..n]);
+        let mut complex = complex_sides.each_mut().map(|side| &mut side[..n]);
+        for i in 0..n {
+            let f: [f64; S] = core::array::from_fn(|j| h * f[j][i]);
+            let residual: [f64; S] = core::array::from_fn(|j| dot(&tableau.a[j], &f) - z[j][i]);
             real[i] = dot(&tableau.real.left, &residual);
             for (complex, mode) in complex.iter_mut().zip(&tableau.pairs) {
                 complex[i] = Complex::new(dot(&mode.left[0], &residual), dot(&mode.left[1], &residual));
             }
         }
-        self.real.solve(self.arch, flow, &mut real);
+        self.real.solve(self.arch, flow, real);
         for (factors, complex) in self.complex.iter().zip(&mut complex) {
             factors.solve(self.arch, flow, complex);
         }
-        let mut sizes = [0.0; N];
-        for i in 0..N {
-            let allowed = scale.allowed(i, start.x.data.0[0][i]);
+        for i in 0..n {
+            let allowed = scale.allowed(i, start.x[i]);
             let mut size = 0.0;
             for j in 0..S {
                 let mut correction = tableau.real.right[j] * real[i];
                 for (complex, mode) in complex.iter().zip(&tableau.pairs) {
                     correction += mode.right[0][j] * complex[i].re - mode.right[1][j] * complex[i].im;
                 }
-                self.z[j].data.0[0][i] += correction;
+                z[j][i] += correction;
                 // A correction that is no number shows as an infinite one.
                 let correction = if correction.is_nan() { f64::INFINITY } else { correction.abs() };
                 size = if correction > size { correction } else { size };
             }
             sizes[i] = size / allowed;
         }
-        largest(&sizes)
+        largest(sizes)
     }
 }
 

@@ -3,11 +3,11 @@
 //! In: the increments at the nodes. Out: values of the polynomial of degree s through zero and them; its error falls with
 //! the power s + 1 of the step. Source: Hairer, Wanner II, section IV.8, equations (8.14) and (8.17).
 
-use nalgebra::SVector;
+use alloc::vec::Vec;
 
 use super::Collocation;
 use super::tableau::Tableau;
-use crate::solve::integrator::Point;
+use crate::solve::integrator::PointRef;
 
 /// The step over the one before up to which the polynomial is extrapolated: error control stays far below it.
 const FARTHEST: f64 = 100.0;
@@ -23,13 +23,12 @@ impl<const S: usize, const P: usize> Tableau<S, P> {
     }
 }
 
-impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
-    /// Writes the state at the part `theta` of the last attempt into `x`. Compiled once, not again for each choice of methods.
-    #[inline(never)]
-    pub fn dense(&self, start: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+impl<const S: usize, const P: usize> Collocation<S, P> {
+    /// Writes the state at the part `theta` of the last attempt into `x`.
+    pub fn dense(&self, start: PointRef<'_>, theta: f64, x: &mut [f64]) {
         let weights = self.tableau.weights(theta);
-        for i in 0..N {
-            x.data.0[0][i] = start.x.data.0[0][i] + combine(&weights, &self.z, i);
+        for (i, (x, start)) in x.iter_mut().zip(start.x).enumerate() {
+            *x = start + combine(&weights, &self.z, i);
         }
     }
 
@@ -37,7 +36,7 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
     /// was so short that nothing of it holds so far ahead.
     pub(super) fn extrapolate(&mut self, h: f64) {
         if self.step_before == 0.0 || h > FARTHEST * self.step_before {
-            self.z = [SVector::zeros(); S];
+            self.z.iter_mut().for_each(|z| z.fill(0.0));
             return;
         }
         let ratio = h / self.step_before;
@@ -45,8 +44,8 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
         for (j, c) in self.tableau.c.iter().enumerate() {
             let ahead = self.tableau.weights(1.0 + c * ratio);
             let weights = core::array::from_fn(|k| ahead[k] - end[k]);
-            for i in 0..N {
-                self.z[j].data.0[0][i] = combine(&weights, &self.before, i);
+            for (i, z) in self.z[j].iter_mut().enumerate() {
+                *z = combine(&weights, &self.before, i);
             }
         }
     }
@@ -54,10 +53,10 @@ impl<const N: usize, const S: usize, const P: usize> Collocation<N, S, P> {
 
 /// Entry `i` of a linear combination.
 #[inline(always)]
-fn combine<const N: usize, const S: usize>(weights: &[f64; S], of: &[SVector<f64, N>; S], i: usize) -> f64 {
-    let mut sum = weights[0] * of[0].data.0[0][i];
+fn combine<const S: usize>(weights: &[f64; S], of: &[Vec<f64>; S], i: usize) -> f64 {
+    let mut sum = weights[0] * of[0][i];
     for j in 1..S {
-        sum += weights[j] * of[j].data.0[0][i];
+        sum += weights[j] * of[j][i];
     }
     sum
 }

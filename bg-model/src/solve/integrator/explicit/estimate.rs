@@ -1,25 +1,28 @@
 //! The error norms of methods with two estimates, against their definitions.
 
-use nalgebra::SVector;
-
 use super::{BogackiShampine, Bs5, Dop853, DormandPrince, Row, Tableau};
-use crate::solve::integrator::{Flow, Method, Point, Scale};
+use crate::solve::integrator::{Flow, Method, PointRef, Scale};
 
 /// A rate that depends on time only: stage i has the value at c_i h.
 struct Clock<F>(F);
 
-impl<F: Fn(f64) -> f64> Flow<1> for Clock<F> {
-    fn rate(&self, t: f64, _: &SVector<f64, 1>, dx: &mut SVector<f64, 1>) {
+impl<F: Fn(f64) -> f64> Flow for Clock<F> {
+    fn states(&self) -> usize {
+        1
+    }
+
+    fn rate(&self, t: f64, _: &[f64], dx: &mut [f64]) {
         dx[0] = (self.0)(t);
     }
 }
 
 /// The norm of a step of size `h` (s) from 0 with an absolute tolerance of 1.
-fn norm(mut method: impl Method<1>, rate: impl Fn(f64) -> f64, h: f64) -> f64 {
-    let mut start = Point::at(0.0, SVector::from([0.0]));
-    start.rate[0] = rate(0.0);
-    let scale = Scale { relative: 0.0, absolute: SVector::from([1.0]), coarsest: 1.0, growth: f64::INFINITY };
-    method.attempt(&Clock(rate), &start, h, &scale, &mut SVector::from([0.0]))
+fn norm(mut method: impl Method, rate: impl Fn(f64) -> f64, h: f64) -> f64 {
+    let at_start = [rate(0.0)];
+    let start = PointRef { t: 0.0, x: &[0.0], rate: &at_start };
+    let scale = Scale { relative: 0.0, absolute: vec![1.0], coarsest: 1.0, growth: f64::INFINITY };
+    method.fit(1);
+    method.attempt(&Clock(rate), start, h, &scale, &mut [0.0])
 }
 
 /// The combination of the stages' rates.

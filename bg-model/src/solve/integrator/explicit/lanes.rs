@@ -2,8 +2,6 @@
 //!
 //! In: as [`Stages`]. Out: the steps that each run makes by itself, to the bit. Not for tableaus with a late estimate.
 
-use nalgebra::SVector;
-
 use super::stages::Stages;
 use super::{Explicit, Tableau, norm};
 use crate::model::scalar::lanes::{Lanes, Vector, replace};
@@ -14,30 +12,30 @@ use crate::solve::integrator::steps::{Begin, Rates};
 
 /// The method of tableau `T` for runs side by side.
 #[derive(Debug)]
-pub(crate) struct ExplicitInLanes<T, V, const N: usize> {
-    stages: Stages<T, Lanes<V>, N>,
-    sum: CompensatedSum<Lanes<V>, N>,
+pub(crate) struct ExplicitInLanes<T, V> {
+    stages: Stages<T, Lanes<V>>,
+    sum: CompensatedSum<Lanes<V>>,
 }
 
-impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
-    /// Its work space empty.
-    pub fn new() -> Self {
+impl<T: Tableau, V: Vector> ExplicitInLanes<T, V> {
+    /// Of so many states, its work space empty.
+    pub fn new(states: usize) -> Self {
         const { assert!(T::LATE.is_empty()) };
-        Self { stages: Stages::new(), sum: CompensatedSum::new() }
+        Self { stages: Stages::new(states), sum: CompensatedSum::new(states) }
     }
 
     /// What rounding has kept from the states at the starts of the steps.
-    pub fn compensation(&mut self) -> &mut SVector<Lanes<V>, N> {
+    pub fn compensation(&mut self) -> &mut [Lanes<V>] {
         &mut self.sum.start
     }
 
     /// What it has kept at their ends.
-    pub fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
+    pub fn to_be_carried(&self) -> &[Lanes<V>] {
         &self.sum.end
     }
 
     /// The rates of a stage.
-    pub fn stage(&self, stage: usize) -> &SVector<Lanes<V>, N> {
+    pub fn stage(&self, stage: usize) -> &[Lanes<V>] {
         &self.stages.k[stage]
     }
 
@@ -45,10 +43,10 @@ impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
     #[inline(always)]
     pub fn attempt(
         &mut self,
-        rates: &impl Rates<Lanes<V>, N>,
-        begin: &Begin<'_, Lanes<V>, N>,
-        scale: &Scale<N, Lanes<V>>,
-        end: &mut SVector<Lanes<V>, N>,
+        rates: &impl Rates<Lanes<V>>,
+        begin: &Begin<'_, Lanes<V>>,
+        scale: &Scale<Lanes<V>>,
+        end: &mut [Lanes<V>],
     ) -> Lanes<V> {
         norm::<T, _>(begin.h, self.stages.step(rates, begin, scale, &mut self.sum, end))
     }
@@ -62,14 +60,14 @@ impl<T: Tableau, V: Vector, const N: usize> ExplicitInLanes<T, V, N> {
     }
 }
 
-impl<T: Tableau, const N: usize> OfOne<N> for Explicit<T, N> {
-    fn compensation(&mut self) -> &mut SVector<f64, N> {
+impl<T: Tableau> OfOne for Explicit<T> {
+    fn compensation(&mut self) -> &mut [f64] {
         &mut self.sum.start
     }
 
-    fn keep(&mut self, compensation: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>) {
-        self.sum.end = compensation;
-        self.stages.k[..T::END].iter_mut().enumerate().for_each(|(index, k)| *k = stage(index));
+    fn keep(&mut self, compensation: &dyn Fn(&mut [f64]), stage: &dyn Fn(usize, &mut [f64])) {
+        compensation(&mut self.sum.end);
+        self.stages.k[..T::END].iter_mut().enumerate().for_each(|(index, k)| stage(index, k));
     }
 
     fn rates(&self) -> u64 {

@@ -17,8 +17,7 @@ mod stages;
 #[cfg(test)]
 mod vectors;
 
-use crate::solve::integrator::Arch;
-use nalgebra::SVector;
+use alloc::vec::Vec;
 
 pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
@@ -27,25 +26,25 @@ pub use dop853::DormandPrince;
 use super::compensated::CompensatedSum;
 use super::dense::{FROM_ENDS, Polynomial, write_sum};
 use super::steps::{Begin, OfFlow};
-use super::tolerances::{index_of_largest, largest, smaller};
+use super::tolerances::{index_of_largest, largest_of, smaller};
 use super::vectors::{Vectorised, attempt_in};
-use super::{Flow, Method, Point, Scale, StepControl, first_not_finite};
+use super::{Arch, Flow, Method, PointRef, Scale, StepControl, first_not_finite};
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
 pub(super) use lanes::ExplicitInLanes;
-pub(super) use stages::{Complete, Stages};
+pub(super) use stages::{Complete, Stages, write_row};
 
 /// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
 /// for.
-pub type Bs5<const N: usize> = Explicit<BogackiShampine, N>;
+pub type Bs5 = Explicit<BogackiShampine>;
 
 /// The method of order 7(5) for oscillating solutions of Calvo, Franco, Montijano and Randez: nine rates a step, none more
 /// for its dense output of order 5.
-pub type Cfmr7<const N: usize> = Explicit<CalvoFrancoMontijanoRandez, N>;
+pub type Cfmr7 = Explicit<CalvoFrancoMontijanoRandez>;
 
 /// The method of order 8(5,3) of Dormand and Prince: twelve rates a step, three more if its dense output of order 7 is
 /// asked for.
-pub type Dop853<const N: usize> = Explicit<DormandPrince, N>;
+pub type Dop853 = Explicit<DormandPrince>;
 
 /// The non-zero weights of a linear combination of stages: each with its stage, in ascending order.
 pub type Row = &'static [(usize, f64)];
@@ -90,34 +89,59 @@ const COEFFICIENTS: usize = 7;
 
 /// The explicit method of tableau `T`.
 #[derive(Clone, Debug)]
-pub struct Explicit<T, const N: usize> {
-    pub(super) stages: Stages<T, f64, N>,
+pub struct Explicit<T> {
+    pub(super) stages: Stages<T, f64>,
     /// The dense output's coefficients.
-    polynomial: Polynomial<N, COEFFICIENTS>,
+    polynomial: Polynomial<COEFFICIENTS>,
     /// What rounding has kept from the states.
-    sum: CompensatedSum<f64, N>,
+    sum: CompensatedSum<f64>,
+    /// States at the end of a step, as they are and moved by a difference, after their projection.
+    projected: [Vec<f64>; 2],
     /// The machine's vectors.
     arch: Arch,
 }
 
-impl<T: Tableau, const N: usize> Explicit<T, N> {
+impl<T: Tableau> Explicit<T> {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        Self { stages: Stages::new(), polynomial: Polynomial::zero(), sum: CompensatedSum::new(), arch: Arch::new() }
+        Self {
+            stages: Stages::new(0),
+            polynomial: Polynomial::new(),
+            sum: CompensatedSum::new(0),
+            projected: [const { Vec::new() }; 2],
+            arch: Arch::new(),
+        }
     }
 }
 
-impl<T: Tableau, const N: usize> Default for Explicit<T, N> {
+impl<T: Tableau> Default for Explicit<T> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T: Tableau, const N: usize> Explicit<T, N> {
-    /// The magnitudes of the differences `row` to an embedded method, in parts of what is allowed.
-    fn errors(&self, row: Row, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
-        core::array::from_fn(|i| (self.stages.combine(row, i) / scale.allowed_between(i, start.x[i], end[i])).abs())
+impl<T: Tableau> Explicit<T> {
+    /// The magnitude of the difference `row` to an embedded method in state `i`, in parts of what is allowed.
+    fn error(&self, row: Row, i: usize, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> f64 {
+        (self.stages.combine(row, i) / scale.allowed_between(i, start.x[i], end[i])).abs()
+    }
+
+    /// What is left of the end of a step less h times a difference after the projection, in parts of what is allowed.
+    fn left(
+        &mut self,
+        start: PointRef<'_>,
+        scale: &Scale,
+        end: &[f64],
+        project: &dyn Fn(&mut [f64]),
+        moved: impl Fn(&Stages<T, f64>, usize) -> f64,
+    ) -> f64 {
+        let Self { stages, projected: [reached, other], .. } = self;
+        for (i, other) in other.iter_mut().enumerate() {
+            *other = end[i] - moved(stages, i);
+        }
+        project(other);
+        largest_of(end.len(), |i| (reached[i] - other[i]).abs() / scale.allowed_between(i, start.x[i], end[i]))
     }
 }
 
@@ -140,22 +164,21 @@ pub(crate) fn both<S: Scalar>(scale: S, first: S, second: S) -> S {
     scale * first * first / both.alike(f64::MIN_POSITIVE).larger(both.sqrt())
 }
 
-impl<T: Tableau, const N: usize> Vectorised<N> for Explicit<T, N> {
+impl<T: Tableau> Vectorised for Explicit<T> {
     #[inline(always)]
     fn attempt_inlined(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
-        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
-        norm::<T, _>(h, self.stages.step(&OfFlow(flow), &from, scale, &mut self.sum, end))
+        norm::<T, _>(h, self.stages.step(&OfFlow(flow), &Begin::of(start, h), scale, &mut self.sum, end))
     }
 }
 
-impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
+impl<T: Tableau> Method for Explicit<T> {
     fn name(&self) -> &'static str {
         T::NAME
     }
@@ -164,51 +187,53 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         StepControl::Stabilised { order: T::ERROR_ORDER }
     }
 
+    fn fit(&mut self, states: usize) {
+        if self.stages.states() != states {
+            (self.stages, self.sum) = (Stages::new(states), CompensatedSum::new(states));
+            self.polynomial.fit(states);
+            self.projected.iter_mut().for_each(|projected| projected.resize(states, 0.0));
+        }
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
         if T::LATE.is_empty() || norm > 1.0 {
             return norm;
         }
         flow.rate(start.t + h, end, &mut self.stages.k[T::END]);
-        let late = h.abs() * largest(&self.errors(T::LATE, start, scale, end));
+        let late = h.abs() * largest_of(end.len(), |i| self.error(T::LATE, i, start, scale, end));
         if late > norm { late } else { norm }
     }
 
     fn error_after(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &dyn Flow,
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &SVector<f64, N>,
-        project: impl Fn(&mut SVector<f64, N>),
+        scale: &Scale,
+        end: &[f64],
+        project: &dyn Fn(&mut [f64]),
     ) -> Option<f64> {
-        let mut reached = *end;
-        project(&mut reached);
-        let left = |difference: &dyn Fn(usize) -> f64| {
-            let mut other = SVector::from_fn(|i, _| end[i] - h * difference(i));
-            project(&mut other);
-            largest::<f64, N>(&core::array::from_fn(|i| {
-                (reached[i] - other[i]).abs() / scale.allowed_between(i, start.x[i], end[i])
-            }))
-        };
-        let first = left(&|i| self.stages.combine(T::ERROR, i));
+        self.projected[0].copy_from_slice(end);
+        project(&mut self.projected[0]);
+        let first = self.left(start, scale, end, project, |stages, i| h * stages.combine(T::ERROR, i));
         if !T::SECOND.is_empty() {
-            let second = left(&|i| self.stages.combine(T::B, i) - self.stages.combine(T::SECOND, i));
+            let difference = |stages: &Stages<T, f64>, i| stages.combine(T::B, i) - stages.combine(T::SECOND, i);
+            let second = self.left(start, scale, end, project, |stages, i| h * difference(stages, i));
             return Some(both(1.0, first, second));
         }
         if T::LATE.is_empty() || first > 1.0 {
             return Some(first);
         }
         flow.rate(start.t + h, end, &mut self.stages.k[T::END]);
-        Some(first.max(left(&|i| self.stages.combine(T::LATE, i))))
+        Some(first.max(self.left(start, scale, end, project, |stages, i| h * stages.combine(T::LATE, i))))
     }
 
     fn advance(&mut self) {
@@ -221,27 +246,25 @@ impl<T: Tableau, const N: usize> Method<N> for Explicit<T, N> {
         self.sum.restart();
     }
 
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        let errors = self.errors(T::ERROR, start, scale, end);
-        index_of_largest::<N>(|i| errors[i])
+    fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
+        index_of_largest(end.len(), |i| self.error(T::ERROR, i, start, scale, end))
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
-        self.stages.k[1..T::END].iter().find_map(first_not_finite)
+        self.stages.k[1..T::END].iter().find_map(|rate| first_not_finite(rate))
     }
 
-    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        self.stages.k[T::END] = end.rate;
-        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
-        self.stages.evaluate::<false>(&OfFlow(flow), &from, T::END + 1..T::A.len(), &mut ());
+    fn prepare_dense(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        self.stages.k[T::END].copy_from_slice(end.rate);
+        self.stages.evaluate::<false>(&OfFlow(flow), &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
         let arch = self.arch;
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
         self.polynomial.set(start, h, end, |m, _, out| {
-            write_sum(arch, h, row(m).iter().map(|&(stage, weight)| (weight, &self.stages.k[stage])), out);
+            write_sum(arch, h, row(m).iter().map(|&(stage, weight)| (weight, &self.stages.k[stage][..])), out);
         });
     }
 
-    fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn dense(&self, start: PointRef<'_>, _h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         const { assert!(FROM_ENDS + T::DENSE.len() <= COEFFICIENTS) };
         self.polynomial.evaluate(self.arch, FROM_ENDS + T::DENSE.len(), start, theta, x);
     }

@@ -7,40 +7,44 @@
 
 use alloc::vec::Vec;
 
-use nalgebra::SVector;
-
 use crate::model::linear::{Sparsity, differences};
-use crate::solve::integrator::{Flow, Point, Scale, all_finite, is_finite};
+use crate::solve::integrator::{Flow, PointRef, Scale, is_finite};
 
 /// The derivatives of a rate at one point.
 #[derive(Clone, Debug)]
-pub(in crate::solve::integrator) struct Jacobian<const N: usize> {
+pub(in crate::solve::integrator) struct Jacobian {
     /// df/dx in the order of the sparsity.
     pub entries: Vec<f64>,
     /// Whether the entries are differences in all places in place of the flow's own.
     pub is_replaced: bool,
     /// df/dt, per s.
-    pub slope: SVector<f64, N>,
+    pub slope: Vec<f64>,
+    /// A state and a rate, for differences.
+    room: [Vec<f64>; 2],
 }
 
-impl<const N: usize> Jacobian<N> {
+impl Jacobian {
     /// Nothing yet; room is made at the first evaluation.
     pub fn new() -> Self {
-        Self { entries: Vec::new(), is_replaced: false, slope: SVector::zeros() }
+        Self { entries: Vec::new(), is_replaced: false, slope: Vec::new(), room: [const { Vec::new() }; 2] }
     }
 
     /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known. Gives whether all of them are finite.
-    pub fn evaluate(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
+    pub fn evaluate(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+        let n = flow.states();
         self.is_replaced = false;
-        self.entries.resize(flow.sparsity().len(N), 0.0);
-        flow.jacobian(start.t, &start.x, &mut self.entries, &mut self.slope);
+        self.entries.resize(flow.sparsity().len(n), 0.0);
+        self.slope.resize(n, 0.0);
+        self.room.iter_mut().for_each(|room| room.resize(n, 0.0));
+        flow.jacobian(start.t, start.x, &mut self.entries, &mut self.slope);
         if self.is_finite() {
             return true;
         }
         if matches!(flow.sparsity(), Sparsity::Bordered { .. }) {
             self.is_replaced = true;
-            self.entries.resize(Sparsity::Full.len(N), 0.0);
-            differences(|t, x, rate| flow.rate(t, x, rate), start.t, &start.x, &mut self.entries, &mut self.slope);
+            self.entries.resize(Sparsity::Full.len(n), 0.0);
+            let Self { entries, slope, room: [room, _], .. } = self;
+            differences(|t, x, rate| flow.rate(t, x, rate), start.t, start.x, entries, slope, room);
         } else {
             self.replace_faulty(flow, start, h, scale);
         }
@@ -48,42 +52,43 @@ impl<const N: usize> Jacobian<N> {
     }
 
     /// Where the entries are.
-    pub fn sparsity(&self, flow: &impl Flow<N>) -> Sparsity {
+    pub fn sparsity(&self, flow: &(impl Flow + ?Sized)) -> Sparsity {
         if self.is_replaced { Sparsity::Full } else { flow.sparsity() }
     }
 
     /// Whether all derivatives are finite.
     pub fn is_finite(&self) -> bool {
-        all_finite(&self.entries) && is_finite(&self.slope)
+        is_finite(&self.entries) && is_finite(&self.slope)
     }
 
     /// Replaces each derivative that is not finite by a difference: of a state over as much as it changes in the step, and at
     /// least what its tolerance allows, of the time over the step.
-    fn replace_faulty(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) {
-        let sparsity = flow.sparsity();
-        let mut rate = SVector::zeros();
-        for column in 0..N {
+    fn replace_faulty(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) {
+        let (sparsity, n) = (flow.sparsity(), flow.states());
+        let Self { entries, slope, room: [ahead, rate], .. } = self;
+        ahead.copy_from_slice(start.x);
+        for column in 0..n {
             let change = h * start.rate[column];
             let reach = change.abs().max(scale.allowed(column, start.x[column])).copysign(change);
             // The law may have no value on one side.
             for by in [reach, -reach] {
-                let is_faulty = |k: &usize, entry: f64| sparsity.place(*k, N).1 == column && !entry.is_finite();
-                if !(0..self.entries.len()).any(|k| is_faulty(&k, self.entries[k])) {
+                let is_faulty = |k: &usize, entry: f64| sparsity.place(*k, n).1 == column && !entry.is_finite();
+                if !entries.iter().enumerate().any(|(k, entry)| is_faulty(&k, *entry)) {
                     break;
                 }
-                let mut ahead = start.x;
-                ahead[column] += by;
-                flow.rate(start.t, &ahead, &mut rate);
+                ahead[column] = start.x[column] + by;
+                flow.rate(start.t, ahead, rate);
                 let distance = ahead[column] - start.x[column];
-                for (k, entry) in self.entries.iter_mut().enumerate().filter(|(k, entry)| is_faulty(k, **entry)) {
-                    let row = sparsity.place(k, N).0;
+                ahead[column] = start.x[column];
+                for (k, entry) in entries.iter_mut().enumerate().filter(|(k, entry)| is_faulty(k, **entry)) {
+                    let row = sparsity.place(k, n).0;
                     *entry = (rate[row] - start.rate[row]) / distance;
                 }
             }
         }
-        if self.slope.iter().any(|slope| !slope.is_finite()) {
-            flow.rate(start.t + h, &start.x, &mut rate);
-            for (slope, (after, before)) in self.slope.iter_mut().zip(rate.iter().zip(start.rate.iter())) {
+        if slope.iter().any(|slope| !slope.is_finite()) {
+            flow.rate(start.t + h, start.x, rate);
+            for (slope, (after, before)) in slope.iter_mut().zip(rate.iter().zip(start.rate)) {
                 if !slope.is_finite() {
                     *slope = (after - before) / h;
                 }

@@ -4,38 +4,35 @@
 
 use std::ops::Range;
 
-use nalgebra::SVector;
-
 use super::Nystrom;
 use super::ring::{Pull, reach};
 use super::stages::Stages;
 use super::tableau::{ERROR_ORDER, STAGES};
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector};
-use crate::model::system::System;
 use crate::solve::integrator::Scale;
-use crate::solve::integrator::lanes::{OfOne, Side};
+use crate::solve::integrator::lanes::OfOne;
 use crate::solve::integrator::steps::{Begin, Forces};
-use crate::solve::integrator::tolerances::largest;
 
 /// The method for runs side by side.
 #[derive(Debug)]
-pub(crate) struct NystromInLanes<V, const N: usize> {
-    stages: Stages<Lanes<V>, N>,
+pub(crate) struct NystromInLanes<V> {
+    stages: Stages<Lanes<V>>,
     /// The directions of the fastest oscillations.
-    direction: SVector<Lanes<V>, N>,
+    direction: Vec<Lanes<V>>,
+    pull: Pull<Lanes<V>>,
     /// Their frequencies, rad/s.
     frequency: Lanes<V>,
 }
 
-impl<V: Vector, const N: usize> NystromInLanes<V, N> {
+impl<V: Vector> NystromInLanes<V> {
     /// The power of the step with which the norm of the error estimate falls.
     pub const ORDER: f64 = ERROR_ORDER;
 
-    /// Its work space empty.
-    pub fn new() -> Self {
+    /// Of so many states, its work space empty.
+    pub fn new(states: usize) -> Self {
         let zero = Lanes::from_f64(0.0);
-        Self { stages: Stages::new(), direction: SVector::from([zero; N]), frequency: zero }
+        Self { stages: Stages::new(states), direction: vec![zero; states], pull: Pull::new(states), frequency: zero }
     }
 
     /// The frequency of the fastest oscillation at a place is this, rad/s.
@@ -50,37 +47,35 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
     }
 
     /// The directions of the fastest oscillations.
-    pub fn compensation(&mut self) -> &mut SVector<Lanes<V>, N> {
+    pub fn compensation(&mut self) -> &mut [Lanes<V>] {
         &mut self.direction
     }
 
     /// The same: no step changes them.
-    pub fn to_be_carried(&self) -> &SVector<Lanes<V>, N> {
+    pub fn to_be_carried(&self) -> &[Lanes<V>] {
         &self.direction
     }
 
     /// The second derivatives, or rates, of a stage.
-    pub fn stage(&self, stage: usize) -> &SVector<Lanes<V>, N> {
-        &self.stages.k[stage].0
+    pub fn stage(&self, stage: usize) -> &[Lanes<V>] {
+        &self.stages.k[stage]
     }
 
     /// One iteration towards the fastest oscillation at the places of `due`, from states `x` with rates `rate` at time `t` (s): see
     /// [`Ring::follow`](super::ring::Ring::follow). Gives the stiffnesses.
     #[inline(always)]
-    pub fn follow<Sys, const G: usize>(
+    pub fn follow(
         &mut self,
-        side: &Side<'_, Sys, V, G>,
+        forces: &impl Forces<Lanes<V>>,
         due: V::Mask,
         t: Lanes<V>,
-        x: &SVector<Lanes<V>, N>,
-        rate: &SVector<Lanes<V>, N>,
-    ) -> Lanes<V>
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
-        let states = Forces::<Lanes<V>, N>::second(side);
+        x: &[Lanes<V>],
+        rate: &[Lanes<V>],
+    ) -> Lanes<V> {
+        let Self { direction, pull, .. } = self;
+        let states = forces.second();
         let zero = t.alike(0.0);
-        let pull = Pull::along(&self.direction, &states, side, t, (x, rate));
+        pull.follow(direction, &states, forces, t, (x, rate));
         let stiffness = pull.stiffness;
         let infinity = t.alike(f64::INFINITY);
         let is_finite = V::below(stiffness.abs().0, infinity.0);
@@ -88,36 +83,33 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
         let is_found = V::mask(V::bits(due) & V::bits(is_finite));
         for i in states {
             let new = Lanes::select(is_stiff, pull.direction(i), zero);
-            self.direction.data.0[0][i] = Lanes::select(is_found, new, self.direction.data.0[0][i]);
+            direction[i] = Lanes::select(is_found, new, direction[i]);
         }
         stiffness
     }
 
     /// Tries a step at each place; gives the norms of the error estimates.
     #[inline(always)]
-    pub fn attempt<Sys, const G: usize>(
+    pub fn attempt(
         &mut self,
-        side: &Side<'_, Sys, V, G>,
-        begin: &Begin<'_, Lanes<V>, N>,
-        scale: &Scale<N, Lanes<V>>,
-        end: &mut SVector<Lanes<V>, N>,
-    ) -> Lanes<V>
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
-        largest(&self.stages.step(side, begin, scale, end))
+        forces: &impl Forces<Lanes<V>>,
+        begin: &Begin<'_, Lanes<V>>,
+        scale: &Scale<Lanes<V>>,
+        end: &mut [Lanes<V>],
+    ) -> Lanes<V> {
+        self.stages.step(forces, begin, scale, end)
     }
 }
 
-impl<const N: usize> OfOne<N> for Nystrom<N> {
+impl OfOne for Nystrom {
     /// The direction of the fastest oscillation.
-    fn compensation(&mut self) -> &mut SVector<f64, N> {
+    fn compensation(&mut self) -> &mut [f64] {
         &mut self.ring.direction
     }
 
-    fn keep(&mut self, compensation: SVector<f64, N>, stage: &dyn Fn(usize) -> SVector<f64, N>) {
-        self.ring.direction = compensation;
-        self.stages.k[..STAGES].iter_mut().enumerate().for_each(|(index, k)| k.0 = stage(index));
+    fn keep(&mut self, compensation: &dyn Fn(&mut [f64]), stage: &dyn Fn(usize, &mut [f64])) {
+        compensation(&mut self.ring.direction);
+        self.stages.k[..STAGES].iter_mut().enumerate().for_each(|(index, k)| stage(index, k));
     }
 
     fn rates(&self) -> u64 {

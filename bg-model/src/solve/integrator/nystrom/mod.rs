@@ -18,14 +18,11 @@ mod trees;
 
 use core::ops::Range;
 
-use crate::solve::integrator::Arch;
-use nalgebra::SVector;
-
 use super::dense::{FROM_ENDS, Polynomial, write_sum};
-use super::steps::{Begin, Forces, OfFlow};
-use super::tolerances::{index_of_largest, largest};
+use super::steps::{Begin, OfFlow};
+use super::tolerances::index_of_largest;
 use super::vectors::{Vectorised, attempt_in};
-use super::{Flow, Method, Point, Scale, StepControl, first_in};
+use super::{Arch, Flow, Method, PointRef, Scale, StepControl, first_not_finite};
 #[cfg(test)]
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
@@ -43,57 +40,47 @@ const COEFFICIENTS: usize = FROM_ENDS + DENSE.len();
 /// to where that joint is stable, whatever the tolerance: a loose one has no effect there. Where no joint is stiff, and without states
 /// of second order, the tolerance alone decides.
 #[derive(Clone, Debug)]
-pub struct Nystrom<const N: usize> {
-    stages: Stages<f64, N>,
+pub struct Nystrom {
+    stages: Stages<f64>,
     /// The states of second order.
     second: Range<usize>,
-    /// The magnitudes of the differences to the embedded method, in parts of what is allowed.
-    errors: [f64; N],
     /// The fastest oscillation.
-    ring: Ring<N>,
-    polynomial: Polynomial<N, COEFFICIENTS>,
+    ring: Ring,
+    polynomial: Polynomial<COEFFICIENTS>,
     /// The machine's vectors.
     arch: Arch,
 }
 
-impl<const N: usize> Nystrom<N> {
+impl Nystrom {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        Self {
-            stages: Stages::new(),
-            second: 0..0,
-            errors: [0.0; N],
-            ring: Ring::new(),
-            polynomial: Polynomial::zero(),
-            arch: Arch::new(),
-        }
+        let (stages, ring, polynomial) = (Stages::new(0), Ring::new(0), Polynomial::new());
+        Self { stages, second: 0..0, ring, polynomial, arch: Arch::new() }
     }
 }
 
-impl<const N: usize> Default for Nystrom<N> {
+impl Default for Nystrom {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<const N: usize> Vectorised<N> for Nystrom<N> {
+impl Vectorised for Nystrom {
     #[inline(always)]
     fn attempt_inlined(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
-        let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
-        self.errors = self.stages.step(&OfFlow(flow), &from, scale, end);
-        largest(&self.errors)
+        self.stages.step(&OfFlow(flow), &Begin::of(start, h), scale, end)
     }
 }
 
-impl<const N: usize> Method<N> for Nystrom<N> {
+impl Method for Nystrom {
     fn name(&self) -> &'static str {
         tableau::NAME
     }
@@ -102,15 +89,22 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         StepControl::Stabilised { order: tableau::ERROR_ORDER }
     }
 
+    fn fit(&mut self, states: usize) {
+        if self.stages.states() != states {
+            (self.stages, self.ring) = (Stages::new(states), Ring::new(states));
+            self.polynomial.fit(states);
+        }
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
-        self.second = OfFlow(flow).second();
+        self.second = flow.second();
         self.ring.follow(&OfFlow(flow), start, &self.second);
         let reach = self.ring.reach(h);
         if reach > 1.0 {
@@ -128,38 +122,39 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         self.ring.restart();
     }
 
-    fn largest_error(&self, _start: &Point<N>, _scale: &Scale<N>, _end: &SVector<f64, N>) -> usize {
-        index_of_largest::<N>(|i| self.errors[i])
+    fn largest_error(&self, _start: PointRef<'_>, _scale: &Scale, end: &[f64]) -> usize {
+        index_of_largest(end.len(), |i| self.stages.errors[i])
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
         // A force that is no number makes the second derivatives none that follow from it.
         let Range { start, end } = self.second;
         self.stages.k[..STAGES].iter().find_map(|k| {
-            let of = |first: usize, rates: &[f64]| first_in(rates).map(|(i, rate)| (first + i, rate));
-            let (before, second, behind) =
-                (&k.0.as_slice()[..start], &k.0.as_slice()[start..end], &k.0.as_slice()[end..]);
-            of(0, before).or_else(|| of(end, behind)).or_else(|| of(start, second))
+            let of = |states: Range<usize>| {
+                let first = states.start;
+                first_not_finite(&k[states]).map(|(i, rate)| (first + i, rate))
+            };
+            of(0..start).or_else(|| of(end..k.len())).or_else(|| of(start..end))
         })
     }
 
-    fn prepare_dense(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, end: &Point<N>) {
-        self.stages.k[END].0 = end.rate;
-        OfFlow(flow).at_start(&end.x, &mut self.stages.k[END].0);
-        let Self { stages: Stages { k }, second, polynomial, arch, .. } = self;
+    fn prepare_dense(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        self.stages.k[END].copy_from_slice(end.rate);
+        flow.second_derivatives(end.x, &mut self.stages.k[END]);
+        let Self { stages: Stages { k, .. }, second, polynomial, arch, .. } = self;
         polynomial.set(start, h, end, |m, ends, out| {
-            write_sum(*arch, h, DENSE[m].iter().copied().zip(k.iter().map(|k| &k.0)), out);
+            write_sum(*arch, h, DENSE[m].iter().copied().zip(k.iter().map(|k| &k[..])), out);
             for i in second.clone() {
                 let [first, third] = [1, 2].map(|m| ends[m][i]);
                 // The polynomial of degree 5 through the second derivatives at both ends, too.
-                let [before, behind] = [k[0].0[i], k[END].0[i]].map(|second| 0.5 * h * h * second);
+                let [before, behind] = [k[0][i], k[END][i]].map(|second| 0.5 * h * h * second);
                 let at_start = before + first - third;
                 out[i] = if m == 0 { at_start } else { behind + first + 2.0 * third - at_start };
             }
         });
     }
 
-    fn dense(&self, start: &Point<N>, _h: f64, _end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn dense(&self, start: PointRef<'_>, _h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         self.polynomial.evaluate(self.arch, COEFFICIENTS, start, theta, x);
     }
 }

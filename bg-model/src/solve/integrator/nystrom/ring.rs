@@ -5,14 +5,16 @@
 //! Shampine, J. G. Verwer, Journal of Computational and Applied Mathematics 88 (1998), 315-326). Stiff joints turn with the links, so
 //! one rate in so many steps keeps up with them.
 
+use alloc::vec;
+use alloc::vec::Vec;
 use core::ops::Range;
 
-use nalgebra::SVector;
+use nalgebra::DVectorViewMut;
 
 use super::tableau;
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::{fraction, power, root};
-use crate::solve::integrator::Point;
+use crate::solve::integrator::PointRef;
 use crate::solve::integrator::steps::Forces;
 
 /// Steps after a restart that each iterate once.
@@ -26,11 +28,14 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The fastest oscillation as far as it is known.
 #[derive(Clone, Debug)]
-pub(super) struct Ring<const N: usize> {
+pub(super) struct Ring {
     /// Its frequency, rad/s; 0 where it is not known or there is none.
     pub frequency: f64,
     /// Its direction, of length 1; 0 where it is not known.
-    pub(super) direction: SVector<f64, N>,
+    pub(super) direction: Vec<f64>,
+    /// Another, with a share of everything.
+    any: Vec<f64>,
+    pull: Pull<f64>,
     /// Accepted steps since the restart.
     steps: u32,
     /// Whether the present step has been looked at.
@@ -39,44 +44,56 @@ pub(super) struct Ring<const N: usize> {
 
 /// What pulls back along a direction.
 #[derive(Clone, Debug)]
-pub(super) struct Pull<S, const N: usize> {
+pub(super) struct Pull<S> {
     /// Its strength, rad^2/s^2.
     pub stiffness: S,
     /// The change of the second derivatives in a trial displacement, and its length.
-    change: [S; N],
+    change: Vec<S>,
     length: S,
+    /// The displaced state; the rates, then the second derivatives, where they are without and with the displacement.
+    displaced: Vec<S>,
+    ends: [Vec<S>; 2],
 }
 
-impl<S: Scalar, const N: usize> Pull<S, N> {
-    /// What pulls back along `direction`, a part of `states`, at time `t` (s) and a state with its rate.
+impl<S: Scalar> Pull<S> {
+    /// Room for so many states.
+    pub fn new(states: usize) -> Self {
+        let zero = S::from_f64(0.0);
+        let room = || vec![zero; states];
+        Self { stiffness: zero, change: room(), length: zero, displaced: room(), ends: [room(), room()] }
+    }
+
+    /// Tries a displacement along `direction`, a part of `states`, at time `t` (s) and a state with its rate.
     #[inline(always)]
-    pub fn along(
-        direction: &SVector<S, N>,
+    pub fn follow(
+        &mut self,
+        direction: &[S],
         states: &Range<usize>,
-        forces: &impl Forces<S, N>,
+        forces: &impl Forces<S>,
         t: S,
-        (x, rate): (&SVector<S, N>, &SVector<S, N>),
-    ) -> Self {
-        let zero = x.data.0[0][0].alike(0.0);
+        (x, rate): (&[S], &[S]),
+    ) {
+        let Self { change, displaced, ends: [before, behind], .. } = self;
+        let zero = x[0].alike(0.0);
         let mut largest = zero;
         for i in states.clone() {
-            largest = x.data.0[0][i].abs().larger(largest);
+            largest = x[i].abs().larger(largest);
         }
         let size = largest.larger(zero.alike(DISPLACEMENT)).times(DISPLACEMENT);
-        let (mut displaced, mut before, mut behind) = (*x, *rate, *rate);
+        displaced.copy_from_slice(x);
+        before.copy_from_slice(rate);
         for i in states.clone() {
-            displaced.data.0[0][i] = x.data.0[0][i] + direction.data.0[0][i] * size;
+            displaced[i] = x[i] + direction[i] * size;
         }
-        forces.at_start(x, &mut before);
+        forces.at_start(x, before);
         // Not `Forces::at_stage`, which may round otherwise: their difference is small.
-        forces.rate(t, &displaced, &mut behind);
-        forces.at_start(&displaced, &mut behind);
-        let mut change = [zero; N];
+        forces.rate(t, displaced, behind);
+        forces.at_start(displaced, behind);
         for i in states.clone() {
-            change[i] = behind.data.0[0][i] - before.data.0[0][i];
+            change[i] = behind[i] - before[i];
         }
-        let length = length(&change);
-        Self { stiffness: length / size, change, length }
+        self.length = length(change);
+        self.stiffness = self.length / size;
     }
 
     /// The part of state `i` in the direction in which it pulls.
@@ -88,7 +105,7 @@ impl<S: Scalar, const N: usize> Pull<S, N> {
 
 /// The length of a vector; its squares are summed side by side, for none to wait for another.
 #[inline(always)]
-fn length<S: Scalar, const N: usize>(of: &[S; N]) -> S {
+fn length<S: Scalar>(of: &[S]) -> S {
     const SIDE_BY_SIDE: usize = 8;
     let mut sums = [of[0].alike(0.0); SIDE_BY_SIDE];
     for (i, &entry) in of.iter().enumerate() {
@@ -101,9 +118,12 @@ fn length<S: Scalar, const N: usize>(of: &[S; N]) -> S {
     sum.sqrt()
 }
 
-impl<const N: usize> Ring<N> {
-    pub fn new() -> Self {
-        Self { frequency: 0.0, direction: SVector::zeros(), steps: 0, is_done: false }
+impl Ring {
+    /// Of so many states.
+    pub fn new(states: usize) -> Self {
+        let nothing = vec![0.0; states];
+        let (direction, any) = (nothing.clone(), nothing);
+        Self { frequency: 0.0, direction, any, pull: Pull::new(states), steps: 0, is_done: false }
     }
 
     /// A step was accepted.
@@ -119,7 +139,7 @@ impl<const N: usize> Ring<N> {
     }
 
     /// Iterates once if it is time to.
-    pub fn follow(&mut self, forces: &impl Forces<f64, N>, point: &Point<N>, states: &Range<usize>) {
+    pub fn follow(&mut self, forces: &impl Forces<f64>, point: PointRef<'_>, states: &Range<usize>) {
         if states.is_empty() {
             self.frequency = 0.0;
             return;
@@ -130,13 +150,14 @@ impl<const N: usize> Ring<N> {
         if self.begins() {
             self.begin(states);
         }
-        let Point { t, x, rate } = point;
-        let pull = Pull::along(&self.direction, states, forces, *t, (x, rate));
+        let PointRef { t, x, rate } = point;
+        let Self { direction, pull, .. } = self;
+        pull.follow(direction, states, forces, t, (x, rate));
         let stiffness = pull.stiffness;
         if stiffness.is_finite() {
-            self.direction = SVector::zeros();
+            direction.fill(0.0);
             for i in states.clone().filter(|_| stiffness > 0.0) {
-                self.direction[i] = pull.direction(i);
+                direction[i] = pull.direction(i);
             }
         }
         self.found(stiffness);
@@ -144,11 +165,14 @@ impl<const N: usize> Ring<N> {
 
     /// The direction of what rang before the branch changed, and a share of everything else.
     pub fn begin(&mut self, states: &Range<usize>) {
-        let mut any = SVector::<f64, N>::zeros();
+        let Self { direction, any, .. } = self;
+        any.fill(0.0);
         for i in states.clone() {
             any[i] = 1.0 + fraction(GOLDEN * i as f64);
         }
-        self.direction = (self.direction + any.normalize()).normalize();
+        normalize(any);
+        direction.iter_mut().zip(&*any).for_each(|(direction, any)| *direction += any);
+        normalize(direction);
     }
 
     /// Whether it is time to iterate.
@@ -181,8 +205,16 @@ pub(super) fn reach<S: Scalar>(h: S, frequency: S) -> S {
     power(h * frequency / h.alike(tableau::REACH), tableau::ERROR_ORDER as u32)
 }
 
+/// Makes a vector one of length 1.
+fn normalize(vector: &mut [f64]) {
+    let count = vector.len();
+    DVectorViewMut::from_slice(vector, count).normalize_mut();
+}
+
 #[cfg(test)]
 mod tests {
+    use nalgebra::SVector;
+
     use super::*;
 
     fn is_that_of_nalgebra<const N: usize>() {

@@ -3,12 +3,10 @@
 //! In: a flow and a step. Out: the states of the stages with their implicit part.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
-use crate::model::capability::SecondOrder;
 use crate::model::linear::Sparsity;
 use crate::model::scalar::Scalar;
-use crate::solve::integrator::Arch;
-use nalgebra::SVector;
 
 use super::inverse::Inverse;
 use super::pattern::Pattern;
@@ -17,7 +15,7 @@ use super::stage::Stages;
 use super::tableau::KennedyCarpenter;
 use crate::solve::integrator::explicit::{Complete, Tableau};
 use crate::solve::integrator::linear::Jacobian;
-use crate::solve::integrator::{Flow, Point, Scale};
+use crate::solve::integrator::{Arch, Flow, PointRef, Scale};
 
 /// The accepted steps after which the Jacobian is renewed, and the Jacobians after which the damped states are chosen anew.
 const RENEWAL: u32 = 8;
@@ -26,10 +24,14 @@ const CHOICE: u32 = 4;
 const GROWTH: f64 = 2.0;
 
 /// A flow whose Jacobian has what is asked of it here: the entries among states that are not of second order.
-struct Damping<'a, F>(&'a F);
+struct Damping<'a, F: ?Sized>(&'a F);
 
-impl<F: Flow<N>, const N: usize> Flow<N> for Damping<'_, F> {
-    fn rate(&self, t: f64, x: &SVector<f64, N>, dx: &mut SVector<f64, N>) {
+impl<F: Flow + ?Sized> Flow for Damping<'_, F> {
+    fn states(&self) -> usize {
+        self.0.states()
+    }
+
+    fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.0.rate(t, x, dx);
     }
 
@@ -37,20 +39,20 @@ impl<F: Flow<N>, const N: usize> Flow<N> for Damping<'_, F> {
         self.0.damping_sparsity()
     }
 
-    fn jacobian(&self, t: f64, x: &SVector<f64, N>, entries: &mut [f64], slope: &mut SVector<f64, N>) {
+    fn jacobian(&self, t: f64, x: &[f64], entries: &mut [f64], slope: &mut [f64]) {
         self.0.damping(t, x, entries);
-        *slope = SVector::zeros();
+        slope.fill(0.0);
     }
 
-    fn second_order(&self) -> Option<impl SecondOrder<f64, N, 0>> {
-        self.0.second_order()
+    fn second(&self) -> Range<usize> {
+        self.0.second()
     }
 }
 
 /// The damped states of a step, with the work space of their stages.
 #[derive(Clone, Debug)]
-pub(super) struct Block<const N: usize> {
-    jacobian: Jacobian<N>,
+pub(super) struct Block {
+    jacobian: Jacobian,
     pattern: Pattern,
     /// The accepted steps since the Jacobian was made; none where there is none.
     age: Option<u32>,
@@ -75,7 +77,7 @@ pub(super) struct Block<const N: usize> {
     /// Of I - h gamma B.
     inverse: Inverse,
     /// The start of the step and of the one before, in turn, and which of them is that of the step.
-    starts: [(f64, SVector<f64, N>); 2],
+    starts: [(f64, Vec<f64>); 2],
     present: usize,
     /// Whether what is known of the step before still holds.
     has_before: bool,
@@ -83,7 +85,7 @@ pub(super) struct Block<const N: usize> {
     stages: Stages,
 }
 
-impl<const N: usize> Block<N> {
+impl Block {
     /// Nothing yet, calculated in these vectors; room is made at the first step.
     pub fn new(arch: Arch) -> Self {
         Self {
@@ -102,12 +104,17 @@ impl<const N: usize> Block<N> {
             slope: Vec::new(),
             largest: 0.0,
             inverse: Inverse::new(arch),
-            starts: [(0.0, SVector::zeros()); 2],
+            starts: [const { (0.0, Vec::new()) }; 2],
             present: 0,
             has_before: false,
             h: 0.0,
             stages: Stages::default(),
         }
+    }
+
+    /// Makes room for so many states.
+    pub fn fit(&mut self, states: usize) {
+        self.starts.iter_mut().for_each(|(_, start)| start.resize(states, 0.0));
     }
 
     /// The last attempt was accepted.
@@ -122,8 +129,11 @@ impl<const N: usize> Block<N> {
     }
 
     /// Makes ready for a step of size `h` (s) from `start`. Gives whether the Jacobian is one of numbers.
-    pub fn prepare(&mut self, flow: &impl Flow<N>, start: &Point<N>, h: f64, scale: &Scale<N>) -> bool {
-        (self.starts[self.present], self.h) = ((start.t, start.x), h);
+    pub fn prepare(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+        let (t, x) = &mut self.starts[self.present];
+        *t = start.t;
+        x.copy_from_slice(start.x);
+        self.h = h;
         if self.age.is_none_or(|age| age >= RENEWAL) {
             if !self.jacobian.evaluate(&Damping(flow), start, h, scale) {
                 return false;
@@ -140,15 +150,15 @@ impl<const N: usize> Block<N> {
         }
         let (t, before) = &self.starts[1 - self.present];
         let ratio = self.has_before.then(|| h / (start.t - t));
-        let before = ratio.map(|ratio| (ratio, &before.data.0[0][..]));
-        self.stages.begin(h, &start.x.data.0[0], before);
+        let before = ratio.map(|ratio| (ratio, &before[..]));
+        self.stages.begin(h, start.x, before);
         true
     }
 
     /// Chooses the damped states.
     fn choose(&mut self) {
         self.chosen = Some((self.h, 0));
-        let has_changed = self.pattern.choose(&self.entries, self.h, N, &mut self.states);
+        let has_changed = self.pattern.choose(&self.entries, self.h, self.starts[0].1.len(), &mut self.states);
         if has_changed {
             self.places.take(&self.states);
             self.pattern.sources(&self.places, &mut self.sources);
@@ -190,19 +200,19 @@ impl<const N: usize> Block<N> {
 }
 
 /// Solves for the implicit part of a stage.
-impl<const N: usize> Complete<f64, N> for Block<N> {
+impl Complete<f64> for Block {
     #[inline(always)]
-    fn complete(&mut self, stage: usize, x: &mut SVector<f64, N>) {
+    fn complete(&mut self, stage: usize, x: &mut [f64]) {
         let Self { stages, inverse, .. } = self;
-        stages.complete(inverse, stage, &mut x.data.0[0]);
+        stages.complete(inverse, stage, x);
     }
 }
 
-impl<const N: usize> Block<N> {
+impl Block {
     /// Replaces the differences of two methods by what the implicit part, which takes away most of it, leaves in the damped states.
     #[inline(always)]
-    pub fn reduce(&mut self, differences: [&mut SVector<f64, N>; 2]) {
+    pub fn reduce(&mut self, differences: [&mut [f64]; 2]) {
         let Self { stages, inverse, .. } = self;
-        stages.reduce(inverse, differences.map(|differences| &mut differences.data.0[0][..]));
+        stages.reduce(inverse, differences);
     }
 }

@@ -14,31 +14,33 @@ mod places;
 mod stage;
 mod tableau;
 
+use alloc::vec::Vec;
+
 use crate::model::scalar::Scalar;
-use crate::solve::integrator::Arch;
-use nalgebra::SVector;
 
 use self::block::Block;
 pub(super) use self::tableau::KennedyCarpenter;
 use self::tableau::STAGES;
-use super::explicit::{Explicit, Stages, Tableau};
+use super::explicit::{Explicit, Stages, Tableau, write_row};
 use super::hand_on::hand_on;
 use super::steps::{Begin, OfFlow};
 use super::tolerances::largest;
 use super::vectors::{Vectorised, attempt_in};
-use super::{Flow, Method, Point, Scale, StepControl};
+use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
 
 /// The pair `ARK5(4)8L[2]SAb` of Kennedy and Carpenter, implicit in the states alone whose own damping is stiff: eight rates a step.
 ///
 /// For mechanisms with strong dampers between few of many states, and tolerances from 1e-3 to 1e-8: looser ones count as 1e-3.
 #[derive(Clone, Debug)]
-pub struct Ark5<const N: usize> {
-    explicit: Explicit<KennedyCarpenter, N>,
-    block: Block<N>,
+pub struct Ark5 {
+    explicit: Explicit<KennedyCarpenter>,
+    block: Block,
+    /// The tolerances in place of looser ones.
+    tight: Scale,
     arch: Arch,
 }
 
-impl<const N: usize> Ark5<N> {
+impl Ark5 {
     /// The loosest relative tolerance: with steps for looser ones a switch changes without need.
     const LOOSEST: f64 = 1e-3;
 
@@ -49,68 +51,70 @@ impl<const N: usize> Ark5<N> {
     }
 
     fn in_vectors(arch: Arch) -> Self {
-        Self { explicit: Explicit::new(), block: Block::new(arch), arch }
+        Self { explicit: Explicit::new(), block: Block::new(arch), tight: NOTHING, arch }
     }
 }
 
-impl<const N: usize> Default for Ark5<N> {
+impl Default for Ark5 {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<const N: usize> Vectorised<N> for Ark5<N> {
+impl Vectorised for Ark5 {
     #[inline(always)]
     fn attempt_inlined(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         let Self { explicit, block, .. } = self;
         if block.invert() { step(&mut explicit.stages, block, flow, start, h, scale, end) } else { f64::INFINITY }
     }
 }
 
+/// The loosest tolerances, of no states.
+const NOTHING: Scale = Scale { relative: Ark5::LOOSEST, absolute: Vec::new(), coarsest: 0.0, growth: 0.0 };
+
 /// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
 const AT_START: f64 = 0.02;
 
-/// Behind the stages there is room for both differences and for what is allowed.
+/// Behind the stages there is room: for both differences, and for what is allowed.
 const DIFFERENCE: usize = STAGES + 1;
-const ALLOWED: usize = DIFFERENCE + 2;
 
 /// Writes the state at the end of a step of size `h` (s) whose stages `block` completes; gives its error norm.
 #[inline(always)]
-fn step<const N: usize>(
-    stages: &mut Stages<KennedyCarpenter, f64, N>,
-    block: &mut Block<N>,
-    flow: &impl Flow<N>,
-    start: &Point<N>,
+fn step(
+    stages: &mut Stages<KennedyCarpenter, f64>,
+    block: &mut Block,
+    flow: &(impl Flow + ?Sized),
+    start: PointRef<'_>,
     h: f64,
-    scale: &Scale<N>,
-    end: &mut SVector<f64, N>,
+    scale: &Scale,
+    end: &mut [f64],
 ) -> f64 {
-    let from = Begin { t: start.t, h, x: &start.x, rate: &start.rate };
-    stages.k[0] = start.rate;
-    stages.evaluate::<true>(&OfFlow(flow), &from, 1..KennedyCarpenter::END, block);
-    let (start, end) = (&start.x.data.0[0], &mut end.data.0[0]);
-    for i in 0..N {
-        end[i] = start[i] + h * stages.combine(KennedyCarpenter::B, i);
-        stages.k[DIFFERENCE].data.0[0][i] = stages.combine(KennedyCarpenter::ERROR, i);
-        stages.k[DIFFERENCE + 1].data.0[0][i] = AT_START * stages.combine(KennedyCarpenter::START, i);
-        stages.k[ALLOWED].data.0[0][i] = scale.allowed_between(i, start[i], end[i]);
+    stages.k[0].copy_from_slice(start.rate);
+    stages.evaluate::<true>(&OfFlow(flow), &Begin::of(start, h), 1..KennedyCarpenter::END, block);
+    write_row(&stages.k, KennedyCarpenter::B, end);
+    let n = flow.states();
+    let (k, room) = stages.k.split_at_mut(DIFFERENCE);
+    let [difference, at_start, allowed] = room.first_chunk_mut().expect("there is room behind the stages");
+    let (difference, at_start, allowed) = (&mut difference[..n], &mut at_start[..n], &mut allowed[..n]);
+    write_row(k, KennedyCarpenter::ERROR, difference);
+    write_row(k, KennedyCarpenter::START, at_start);
+    for i in 0..n {
+        end[i] = start.x[i] + h * end[i];
+        at_start[i] *= AT_START;
+        allowed[i] = scale.allowed_between(i, start.x[i], end[i]);
     }
-    if let [difference, at_start] = &mut stages.k[DIFFERENCE..ALLOWED] {
-        block.reduce([difference, at_start]);
+    block.reduce([difference, at_start]);
+    for i in 0..n {
+        difference[i] = difference[i].abs().larger(at_start[i].abs()) / allowed[i];
     }
-    for i in 0..N {
-        let (difference, at_start) = (stages.k[DIFFERENCE].data.0[0][i], stages.k[DIFFERENCE + 1].data.0[0][i]);
-        let allowed = stages.k[ALLOWED].data.0[0][i];
-        stages.k[DIFFERENCE].data.0[0][i] = difference.abs().larger(at_start.abs()) / allowed;
-    }
-    h.abs() * largest(&stages.k[DIFFERENCE].data.0[0])
+    h.abs() * largest(difference)
 }
 
 /// Calls the explicit method.
@@ -121,16 +125,21 @@ macro_rules! explicit {
     }};
 }
 
-impl<const N: usize> Method<N> for Ark5<N> {
+impl Method for Ark5 {
     hand_on!(explicit);
+
+    fn fit(&mut self, states: usize) {
+        self.explicit.fit(states);
+        self.block.fit(states);
+    }
 
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         if !self.block.prepare(flow, start, h, scale) {
             return f64::INFINITY;
@@ -139,14 +148,15 @@ impl<const N: usize> Method<N> for Ark5<N> {
         if noise > 1.0 {
             return noise;
         }
-        let tight;
-        let scale = if scale.relative > Self::LOOSEST {
-            tight = Scale { relative: Self::LOOSEST, ..scale.clone() };
-            &tight
-        } else {
-            scale
-        };
-        attempt_in(self.arch, self, flow, start, h, scale, end)
+        if scale.relative <= Self::LOOSEST {
+            return attempt_in(self.arch, self, flow, start, h, scale, end);
+        }
+        let mut tight = core::mem::replace(&mut self.tight, NOTHING);
+        tight.absolute.clone_from(&scale.absolute);
+        (tight.coarsest, tight.growth) = (scale.coarsest, scale.growth);
+        let norm = attempt_in(self.arch, self, flow, start, h, &tight, end);
+        self.tight = tight;
+        norm
     }
 
     fn advance(&mut self) {
@@ -162,6 +172,8 @@ impl<const N: usize> Method<N> for Ark5<N> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::SVector;
+
     use super::*;
     use crate::model::system::System;
     use crate::solve::integrator::Tolerances;
@@ -189,7 +201,7 @@ mod tests {
     #[test]
     fn every_machine_gives_the_same_bytes() {
         let of = |arch: Arch| {
-            let mut method = Ark5::<10>::in_vectors(arch);
+            let mut method = Ark5::in_vectors(arch);
             let start = SVector::from_fn(|i, _| 0.3 - 0.07 * i as f64);
             let settings = Settings { tolerances: Tolerances::new(1e-7, 1e-8), ..Settings::default() };
             let finish = integrate(&Row, &mut method, &start, Span { t0: 0.0, t_end: 10.0 }, &settings, &mut ());

@@ -6,7 +6,6 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::places::{LANES, Places};
-use crate::model::capability::SecondOrder;
 use crate::model::linear::Sparsity;
 use crate::model::scalar::double::power;
 use crate::solve::integrator::Flow;
@@ -40,23 +39,25 @@ pub(super) struct Pattern {
 
 impl Pattern {
     /// Writes the entries of a Jacobian whose places are known from here on; with unknowns beside the states those of the states alone.
-    pub fn entries<const N: usize>(&mut self, flow: &impl Flow<N>, jacobian: &Jacobian<N>, entries: &mut Vec<f64>) {
+    pub fn entries(&mut self, flow: &(impl Flow + ?Sized), jacobian: &Jacobian, entries: &mut Vec<f64>) {
+        let n = flow.states();
         let mut sparsity = jacobian.sparsity(flow);
         entries.clear();
         if let Sparsity::Bordered { .. } = sparsity {
-            entries.extend(sparsity.matrix(N, &jacobian.entries).as_slice());
+            entries.extend(sparsity.matrix(n, &jacobian.entries).as_slice());
             sparsity = Sparsity::Full;
         } else {
             entries.extend(&jacobian.entries);
         }
         if self.places.is_empty() {
-            self.places = (0..entries.len()).map(|k| sparsity.place(k, N)).collect();
-            let is_of_pose = |state: &usize| flow.second_order().is_some_and(|states| states.states().contains(state));
-            let mut numbers = vec![None; N * N];
-            self.places.iter().enumerate().for_each(|(k, (row, column))| numbers[row * N + column] = Some(k));
+            self.places = (0..entries.len()).map(|k| sparsity.place(k, n)).collect();
+            let second = flow.second();
+            let is_of_pose = |state: &usize| second.contains(state);
+            let mut numbers = vec![None; n * n];
+            self.places.iter().enumerate().for_each(|(k, (row, column))| numbers[row * n + column] = Some(k));
             let upper = self.places.iter().enumerate().filter(|(_, (row, column))| row <= column);
             let upper = upper.filter(|(_, (row, column))| !is_of_pose(row) && !is_of_pose(column));
-            let mirrored = upper.filter_map(|(k, &(row, column))| Some((k, numbers[column * N + row]?, (row, column))));
+            let mirrored = upper.filter_map(|(k, &(row, column))| Some((k, numbers[column * n + row]?, (row, column))));
             self.mirrored = mirrored.collect();
         }
     }

@@ -6,40 +6,39 @@
 mod step;
 mod tableau;
 
-use crate::solve::integrator::Arch;
-use nalgebra::SVector;
+use alloc::vec::Vec;
 
 use super::tolerances::index_of_largest;
-use super::{Flow, Method, Point, Scale, StepControl, hermite};
+use super::{Arch, Flow, Method, PointRef, Scale, StepControl, hermite};
 use step::{Stages, add};
 use tableau::{RODAS5P, RODAS5P_DENSE, ROS2};
 
 /// Steinebach's RODAS5P of order 5(4), stiffly accurate and L-stable: for stiff systems at tolerances from 1e-3 to 1e-8.
 /// A step takes one Jacobian, one factorisation, eight solves and seven rates beside that at its start.
 #[derive(Clone, Debug)]
-pub struct Rodas5p<const N: usize> {
-    stages: Stages<8, N>,
+pub struct Rodas5p {
+    stages: Stages<8>,
     /// The dense output's coefficients.
-    dense: [SVector<f64, N>; 3],
+    dense: [Vec<f64>; 3],
     /// The machine's vectors.
     pub(super) arch: Arch,
 }
 
-impl<const N: usize> Rodas5p<N> {
+impl Rodas5p {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        Self { stages: Stages::new(), dense: [SVector::zeros(); 3], arch: Arch::new() }
+        Self { stages: Stages::new(), dense: [const { Vec::new() }; 3], arch: Arch::new() }
     }
 }
 
-impl<const N: usize> Default for Rodas5p<N> {
+impl Default for Rodas5p {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<const N: usize> Method<N> for Rodas5p<N> {
+impl Method for Rodas5p {
     fn name(&self) -> &'static str {
         "RODAS5P"
     }
@@ -48,20 +47,25 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
         StepControl::Adaptive { order: 5.0 }
     }
 
+    fn fit(&mut self, states: usize) {
+        self.stages.fit(states);
+        self.dense.iter_mut().for_each(|room| room.resize(states, 0.0));
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         match self.stages.evaluate(self.arch, &RODAS5P, flow, start, h, scale) {
             None => f64::INFINITY,
             Some(false) => f64::NAN,
             Some(true) => {
-                *end = self.stages.end(&RODAS5P, start);
-                self.stages.error(&RODAS5P, start, scale, end)
+                self.stages.write_end(&RODAS5P, start, end);
+                self.stages.error(start, scale, end)
             }
         }
     }
@@ -74,26 +78,25 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
         self.stages.forget();
     }
 
-    fn largest_error(&self, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> usize {
-        let errors = self.stages.errors(&RODAS5P, start, scale, end);
-        index_of_largest::<N>(|i| errors[i])
+    fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
+        index_of_largest(end.len(), |i| self.stages.part(i, start, scale, end))
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
         self.stages.fault
     }
 
-    fn prepare_dense(&mut self, _flow: &impl Flow<N>, _start: &Point<N>, _h: f64, _end: &Point<N>) {
+    fn prepare_dense(&mut self, _flow: &(impl Flow + ?Sized), _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {
         for (v, weights) in self.dense.iter_mut().zip(&RODAS5P_DENSE) {
-            *v = SVector::zeros();
+            v.fill(0.0);
             add(v, weights, &self.stages.u, 1.0);
         }
     }
 
-    fn dense(&self, start: &Point<N>, _h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn dense(&self, start: PointRef<'_>, _h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         let rest = 1.0 - theta;
         let [v0, v1, v2] = &self.dense;
-        for n in 0..N {
+        for n in 0..x.len() {
             let bulge = v0[n] + theta * (v1[n] + theta * v2[n]);
             x[n] = rest * start.x[n] + theta * (end.x[n] + rest * bulge);
         }
@@ -104,14 +107,14 @@ impl<const N: usize> Method<N> for Rodas5p<N> {
 /// one Jacobian, one factorisation, two solves and one rate beside that at its start, and stays stable however stiff the
 /// system is. The dense output is the cubic through both ends.
 #[derive(Clone, Debug)]
-pub struct Ros2<const N: usize> {
+pub struct Ros2 {
     step: f64,
-    stages: Stages<2, N>,
+    stages: Stages<2>,
     /// The machine's vectors.
     pub(super) arch: Arch,
 }
 
-impl<const N: usize> Ros2<N> {
+impl Ros2 {
     /// The method with steps of `step` (s); the driver refuses a step that is not positive and finite.
     #[must_use]
     pub fn new(step: f64) -> Self {
@@ -119,7 +122,7 @@ impl<const N: usize> Ros2<N> {
     }
 }
 
-impl<const N: usize> Method<N> for Ros2<N> {
+impl Method for Ros2 {
     fn name(&self) -> &'static str {
         "ROS2"
     }
@@ -128,18 +131,22 @@ impl<const N: usize> Method<N> for Ros2<N> {
         StepControl::Fixed { step: self.step }
     }
 
+    fn fit(&mut self, states: usize) {
+        self.stages.fit(states);
+    }
+
     fn attempt(
         &mut self,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
-        end: &mut SVector<f64, N>,
+        scale: &Scale,
+        end: &mut [f64],
     ) -> f64 {
         if self.stages.evaluate(self.arch, &ROS2, flow, start, h, scale) != Some(true) {
             return f64::NAN;
         }
-        *end = self.stages.end(&ROS2, start);
+        self.stages.write_end(&ROS2, start, end);
         0.0
     }
 
@@ -155,7 +162,7 @@ impl<const N: usize> Method<N> for Ros2<N> {
         self.stages.fault
     }
 
-    fn dense(&self, start: &Point<N>, h: f64, end: &Point<N>, theta: f64, x: &mut SVector<f64, N>) {
+    fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         hermite(start, h, end, theta, x);
     }
 }

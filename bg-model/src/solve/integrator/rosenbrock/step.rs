@@ -3,31 +3,37 @@
 //! In: a flow, a step, a tableau. Out: the stages' increments, the state at the end, the error estimate. Source: see
 //! `tableau`. The equations are multiplied by h gamma, so that the matrix is I - h gamma J.
 
-use crate::solve::integrator::Arch;
-use nalgebra::SVector;
+use alloc::vec::Vec;
 
 use super::tableau::Tableau;
 use crate::solve::integrator::linear::{Factors, Jacobian};
-use crate::solve::integrator::tolerances::largest;
-use crate::solve::integrator::{Flow, Point, Scale, first_not_finite, is_finite};
+use crate::solve::integrator::tolerances::largest_of;
+use crate::solve::integrator::{Arch, Flow, PointRef, Scale, first_not_finite, is_finite};
 
 /// The work space of a method of `S` stages.
 #[derive(Clone, Debug)]
-pub(super) struct Stages<const S: usize, const N: usize> {
+pub(super) struct Stages<const S: usize> {
     /// The stages' increments.
-    pub u: [SVector<f64, N>; S],
-    jacobian: Jacobian<N>,
+    pub u: [Vec<f64>; S],
+    /// The state of a stage and its rate; the error of a step.
+    room: [Vec<f64>; 3],
+    jacobian: Jacobian,
     /// Whether the Jacobian is that of the start.
     is_current: bool,
-    factors: Factors<f64, N>,
+    factors: Factors<f64>,
     /// A rate of the last attempt that was not finite.
     pub fault: Option<(usize, f64)>,
 }
 
-impl<const S: usize, const N: usize> Stages<S, N> {
+impl<const S: usize> Stages<S> {
     pub fn new() -> Self {
-        let (jacobian, factors) = (Jacobian::new(), Factors::new());
-        Self { u: [SVector::zeros(); S], jacobian, is_current: false, factors, fault: None }
+        let (u, room) = ([const { Vec::new() }; S], [const { Vec::new() }; 3]);
+        Self { u, room, jacobian: Jacobian::new(), is_current: false, factors: Factors::new(), fault: None }
+    }
+
+    /// Makes room for so many states.
+    pub fn fit(&mut self, states: usize) {
+        self.u.iter_mut().chain(&mut self.room).for_each(|room| room.resize(states, 0.0));
     }
 
     /// The next attempt has another start.
@@ -41,10 +47,10 @@ impl<const S: usize, const N: usize> Stages<S, N> {
         &mut self,
         arch: Arch,
         tableau: &Tableau<S>,
-        flow: &impl Flow<N>,
-        start: &Point<N>,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
         h: f64,
-        scale: &Scale<N>,
+        scale: &Scale,
     ) -> Option<bool> {
         self.fault = None;
         if !self.is_current {
@@ -58,59 +64,55 @@ impl<const S: usize, const N: usize> Stages<S, N> {
         if !self.factors.factor(arch, flow, hg, &self.jacobian) {
             return None;
         }
-        let mut rate = start.rate;
+        let Self { u, room: [x, rate, _], jacobian, factors, fault, .. } = self;
+        rate.copy_from_slice(start.rate);
         for i in 0..S {
             if i > 0 {
-                let mut x = start.x;
-                add(&mut x, &tableau.a[i][..i], &self.u, 1.0);
-                flow.inlined_rate(start.t + tableau.c[i] * h, &x, &mut rate);
-                if !is_finite(&rate) {
-                    self.fault = first_not_finite(&rate);
+                x.copy_from_slice(start.x);
+                add(x, &tableau.a[i][..i], u, 1.0);
+                flow.inlined_rate(start.t + tableau.c[i] * h, x, rate);
+                if !is_finite(rate) {
+                    *fault = first_not_finite(rate);
                     return Some(false);
                 }
             }
             let slope = h * tableau.d[i];
-            let mut b = SVector::<f64, N>::zeros();
-            for n in 0..N {
-                b.data.0[0][n] = hg * (rate.data.0[0][n] + slope * self.jacobian.slope.data.0[0][n]);
+            // The state has been read: the right-hand side takes its place.
+            for ((b, rate), by_time) in x.iter_mut().zip(&*rate).zip(&jacobian.slope) {
+                *b = hg * (rate + slope * by_time);
             }
-            add(&mut b, &tableau.cc[i][..i], &self.u, tableau.gamma);
-            self.factors.solve(arch, flow, &mut b.data.0[0]);
-            self.u[i] = b;
+            add(x, &tableau.cc[i][..i], u, tableau.gamma);
+            factors.solve(arch, flow, x);
+            u[i].copy_from_slice(x);
         }
         Some(true)
     }
 
-    /// The state at the end of the step.
-    pub fn end(&self, tableau: &Tableau<S>, start: &Point<N>) -> SVector<f64, N> {
-        let mut x = start.x;
-        add(&mut x, &tableau.b, &self.u, 1.0);
-        x
+    /// Writes the state at the end of the step.
+    pub fn write_end(&mut self, tableau: &Tableau<S>, start: PointRef<'_>, end: &mut [f64]) {
+        end.copy_from_slice(start.x);
+        add(end, &tableau.b, &self.u, 1.0);
+        let error = &mut self.room[2];
+        error.fill(0.0);
+        add(error, &tableau.e, &self.u, 1.0);
     }
 
-    /// The scaled error estimate of each state.
-    pub fn errors(&self, tableau: &Tableau<S>, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> [f64; N] {
-        let mut error = SVector::<f64, N>::zeros();
-        add(&mut error, &tableau.e, &self.u, 1.0);
-        core::array::from_fn(|n| {
-            error.data.0[0][n].abs() / scale.allowed_between(n, start.x.data.0[0][n], end.data.0[0][n])
-        })
+    /// The error of state `i` in the last step in parts of what is allowed.
+    pub fn part(&self, i: usize, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> f64 {
+        self.room[2][i].abs() / scale.allowed_between(i, start.x[i], end[i])
     }
 
     /// The norm of the error estimate.
-    pub fn error(&self, tableau: &Tableau<S>, start: &Point<N>, scale: &Scale<N>, end: &SVector<f64, N>) -> f64 {
-        let errors = self.errors(tableau, start, scale, end);
-        if is_finite(end) { largest(&errors) } else { f64::NAN }
+    pub fn error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> f64 {
+        if is_finite(end) { largest_of(end.len(), |i| self.part(i, start, scale, end)) } else { f64::NAN }
     }
 }
 
 /// Adds the increments `u` with `weights` times `factor` to `x`.
 #[inline(always)]
-pub(super) fn add<const N: usize>(x: &mut SVector<f64, N>, weights: &[f64], u: &[SVector<f64, N>], factor: f64) {
+pub(super) fn add(x: &mut [f64], weights: &[f64], u: &[Vec<f64>], factor: f64) {
     for (weight, u) in weights.iter().zip(u).filter(|(weight, _)| **weight != 0.0) {
         let weight = weight * factor;
-        for n in 0..N {
-            x.data.0[0][n] += weight * u.data.0[0][n];
-        }
+        x.iter_mut().zip(u).for_each(|(x, u)| *x += weight * u);
     }
 }

@@ -48,7 +48,7 @@ pub(super) struct Back<'a, Mo, Re, Li, const N: usize, const M: usize> {
     pub sweeps: &'a Re,
     /// The model in numbers with slopes, for what has no sweeps.
     pub lifted: Lifted<Li>,
-    scale: Scale<N>,
+    scale: Scale,
     arch: Arch,
     stages: Box<Stages<N>>,
     /// The start of each part of the last step.
@@ -72,7 +72,7 @@ struct Stages<const N: usize> {
 impl<'a, Mo, Re, Li, const N: usize, const M: usize> Back<'a, Mo, Re, Li, N, M> {
     pub fn new<const G: usize>(
         (model, sweeps, lifted): (&'a Mo, &'a Re, Lifted<Li>),
-        scale: Scale<N>,
+        scale: Scale,
         integrals: &[(usize, f64)],
     ) -> Self
     where

@@ -159,7 +159,7 @@ impl LiftedVisitor<Gradient, Gradient> for Asked<'_> {
         let trajectory = outcome?;
         let of = |chunk: &[Direction]| Ok(lifted(&super::sloped(&self.values, chunk))?);
         let lifted = Lifted::new(self.directions, of)?;
-        let scale = record.scale.clone().unwrap_or_else(|| Scale::from(&self.request.tolerances()));
+        let scale = record.scale.clone().unwrap_or_else(|| Scale::from(&self.request.tolerances::<N>()));
         let back = Back::new((model, sweeps, lifted), scale, &self.objective.integrals);
         let mut backwards = Backwards { back, record: &record, model, weights: SVector::zeros() };
         backwards.back_to_start()?;

@@ -60,7 +60,7 @@ pub(super) struct Record<'a, const N: usize, const G: usize> {
     pub events: Vec<Happened<N, G>>,
     pub samples: Vec<Sample<N>>,
     /// What errors are measured by, at the end of the run.
-    pub scale: Option<Scale<N>>,
+    pub scale: Option<Scale>,
     pub error: Option<SensitivityError>,
 }
 
@@ -99,7 +99,7 @@ impl<const N: usize, const G: usize> Observer<N, G> for Record<'_, N, G> {
         }
     }
 
-    fn measured(&mut self, scale: &Scale<N>) {
+    fn measured(&mut self, scale: &Scale) {
         self.scale = Some(scale.clone());
     }
 

@@ -10,7 +10,7 @@ use super::controllers::{Control, Controllers, Judged, Lead};
 use super::{Judgement, Kept, Step};
 use crate::model::reactions::LoopsInLanes;
 use crate::model::scalar::Scalar;
-use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace};
+use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace, take};
 use crate::model::system::System;
 use crate::solve::event::{Readings, Steps};
 use crate::solve::integrator::{AnyInLanes, Begin, OfOne, Point, Rates, Scale, Side};
@@ -35,14 +35,14 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     reached: States<V, N>,
     negative: [V::Mask; G],
     readings: Readings<V, G>,
-    method: AnyInLanes<V, N>,
+    method: AnyInLanes<V>,
     controllers: Controllers<V>,
     /// A bit for each run whose controller is among them.
     led: u8,
     /// A bit for each run whose plain steps are judged here: of its guards nothing is known but what they are at the start.
     plain: u8,
     /// What errors are allowed, and the magnitudes and the step (s) from which on runs have outgrown their sizes.
-    scale: Scale<N, Lanes<V>>,
+    scale: Scale<Lanes<V>>,
     limit: States<V, N>,
     longest: Lanes<V>,
     /// Joints that close loops, if they are looked at here.
@@ -69,10 +69,10 @@ pub(super) struct Tried {
 
 impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     /// Nobody yet; steps by `method` with the tolerances of this scale.
-    pub fn new(method: AnyInLanes<V, N>, control: Control, scale: &Scale<N>) -> Self {
+    pub fn new(method: AnyInLanes<V>, control: Control, scale: &Scale) -> Self {
         let zero = Lanes::from_f64(0.0);
-        let Scale { relative, coarsest, growth, .. } = *scale;
-        let absolute = scale.absolute.map(Lanes::from_f64);
+        let &Scale { relative, coarsest, growth, .. } = scale;
+        let absolute = scale.absolute.iter().map(|absolute| Lanes::from_f64(*absolute)).collect();
         let none = [SVector::from([zero; N]); 2];
         Self {
             t: zero,
@@ -169,7 +169,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         point: &Point<N>,
         negative: [bool; G],
         guards: [SVector<f64, G>; 2],
-        compensation: &SVector<f64, N>,
+        compensation: &[f64],
     ) {
         let bit = 1 << lane;
         for (mask, is_negative) in self.negative.iter_mut().zip(negative) {
@@ -179,65 +179,65 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         self.whole[0] &= !bit;
         *self.t.0.at_mut(lane) = point.t;
         let [x, rate] = &mut self.start;
-        put(lane, x, &point.x);
-        put(lane, rate, &point.rate);
+        put(lane, x.as_mut_slice(), point.x.as_slice());
+        put(lane, rate.as_mut_slice(), point.rate.as_slice());
         for (to, from) in self.readings.start.iter_mut().zip(&guards) {
-            put(lane, to, from);
+            put(lane, to.as_mut_slice(), from.as_slice());
         }
         self.set_compensation(lane, compensation);
     }
 
     /// What errors are allowed in a run, and from which magnitudes and step (s) on it has outgrown its sizes.
-    pub fn measure(&mut self, lane: usize, scale: &Scale<N>, (limit, longest): &(SVector<f64, N>, f64)) {
+    pub fn measure(&mut self, lane: usize, scale: &Scale, (limit, longest): &(SVector<f64, N>, f64)) {
         put(lane, &mut self.scale.absolute, &scale.absolute);
-        put(lane, &mut self.limit, limit);
+        put(lane, self.limit.as_mut_slice(), limit.as_slice());
         *self.longest.0.at_mut(lane) = *longest;
     }
 
     /// The start of a run's step at time `t` (s).
     pub fn start(&self, lane: usize, t: f64) -> Point<N> {
-        let [x, rate] = self.start.each_ref().map(|states| at(lane, states));
+        let [x, rate] = self.start.each_ref().map(|states| at(lane, states.as_slice()));
         Point { t, x, rate }
     }
 
-    /// What a run's method carries over from step to step.
-    pub fn compensation(&mut self, lane: usize) -> SVector<f64, N> {
-        at(lane, self.method.compensation())
+    /// Writes what a run's method carries over from step to step into `to`.
+    pub fn take_compensation(&mut self, lane: usize, to: &mut [f64]) {
+        take(lane, self.method.compensation(), to);
     }
 
     /// What a run's method carries over is this now.
-    pub fn set_compensation(&mut self, lane: usize, compensation: &SVector<f64, N>) {
+    pub fn set_compensation(&mut self, lane: usize, compensation: &[f64]) {
         put(lane, self.method.compensation(), compensation);
     }
 
     /// Hands the stages of a run's step over to its own method.
-    pub fn hand_over(&self, lane: usize, method: &mut dyn OfOne<N>) {
+    pub fn hand_over(&self, lane: usize, method: &mut dyn OfOne) {
         self.method.hand_over(lane, method);
     }
 
     /// The state at the end of a run's step before it was projected, where joints may be rigid.
     pub fn reached(&self, lane: usize) -> SVector<f64, N> {
-        at(lane, &self.reached)
+        at(lane, self.reached.as_slice())
     }
 
     /// The state at the end of a run's step.
     pub fn end(&self, lane: usize) -> SVector<f64, N> {
-        at(lane, &self.end[0])
+        at(lane, self.end[0].as_slice())
     }
 
     /// The rate there.
     pub fn rate(&self, lane: usize) -> SVector<f64, N> {
-        at(lane, &self.end[1])
+        at(lane, self.end[1].as_slice())
     }
 
     /// The readings of the guards at the end of a run's step: values, slopes (per s), values in its middle.
     pub fn guards(&self, lane: usize) -> ([SVector<f64, G>; 2], SVector<f64, G>) {
-        (self.readings.end.each_ref().map(|guards| at(lane, guards)), at(lane, &self.readings.middle))
+        (self.readings.end.each_ref().map(|guards| at(lane, guards.as_slice())), at(lane, self.readings.middle.as_slice()))
     }
 
     /// The readings of the guards at the start of a run's step: values, slopes (per s).
     pub fn guards_at_start(&self, lane: usize) -> [SVector<f64, G>; 2] {
-        self.readings.start.each_ref().map(|guards| at(lane, guards))
+        self.readings.start.each_ref().map(|guards| at(lane, guards.as_slice()))
     }
 
     /// Iterates towards the fastest oscillations of the runs at the places of `due`; gives their stiffnesses.
@@ -278,7 +278,7 @@ where
     #[inline(always)]
     fn call(self) -> V::Numbers {
         let Group { t, start: [x, rate], negative, method, .. } = self.group;
-        method.follow(&Side { system: self.system, negative }, V::mask(self.due), *t, x, rate).0.numbers()
+        method.follow(&Side { system: self.system, negative }, V::mask(self.due), *t, x.as_slice(), rate.as_slice()).0.numbers()
     }
 }
 
@@ -318,7 +318,7 @@ where
         let Group { method, scale, limit, longest, .. } = group;
         let (t, h, t_end) = (*t, *h, *t_end);
         let side = Side { system, negative };
-        let norm = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
+        let norm = method.attempt(&side, &Begin { t, h, x: x.as_slice(), rate: rate.as_slice() }, scale, end.as_mut_slice());
         let mut fine = finite(end);
         let has_joints = system.joints().is_some();
         if has_joints {
@@ -328,7 +328,7 @@ where
         if has_joints {
             fine &= near(reached, end, scale, CERTAIN * moved);
         }
-        side.rate(t_end, end, end_rate);
+        side.rate(t_end, end.as_slice(), end_rate.as_mut_slice());
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
         let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
@@ -388,7 +388,7 @@ fn outgrown<V: Vector, const N: usize>(of: &States<V, N>, limit: &States<V, N>) 
 fn near<V: Vector, const N: usize>(
     before: &States<V, N>,
     after: &States<V, N>,
-    scale: &Scale<N, Lanes<V>>,
+    scale: &Scale<Lanes<V>>,
     most: f64,
 ) -> u8 {
     let mut near = u8::MAX;
@@ -415,8 +415,8 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Advance<'_, V,
         let accepted = V::mask(self.accepted);
         *t = Lanes::select(accepted, *t_end, *t);
         for part in 0..2 {
-            replace(&mut start[part], accepted, &end[part]);
-            replace(&mut readings.start[part], accepted, &readings.end[part]);
+            replace(start[part].as_mut_slice(), accepted, end[part].as_slice());
+            replace(readings.start[part].as_mut_slice(), accepted, readings.end[part].as_slice());
         }
         method.advance(accepted);
     }

@@ -35,7 +35,7 @@ pub(crate) struct Job<'a, Mo, O, const N: usize> {
     /// The values of its parameters.
     pub values: &'a [f64],
     /// A method of its own.
-    pub method: &'a mut AnyMethod<N>,
+    pub method: &'a mut AnyMethod,
     /// Its start.
     pub start: SVector<f64, N>,
     /// Who is told of it.
@@ -56,7 +56,7 @@ where
 struct Lane<'a, Mo, O, const N: usize, const G: usize> {
     number: usize,
     values: &'a [f64],
-    run: Run<'a, Mo, AnyMethod<N>, Never, N, G>,
+    run: Run<'a, Mo, AnyMethod, Never, N, G>,
     observer: O,
     /// Its step is being shortened to an event.
     shortening: Option<Shortening<G>>,
@@ -123,7 +123,7 @@ where
     /// The evaluations of the guards in a step that has no event.
     const GUARDS: u64 = if G == 0 { 0 } else { 3 };
 
-    fn method(&mut self) -> &mut dyn OfOne<N> {
+    fn method(&mut self) -> &mut dyn OfOne {
         self.run.stepper.method.of_one().expect("only runs by such methods are side by side")
     }
 
@@ -305,7 +305,7 @@ where
         let Point { t, .. } = self.run.stepper.start;
         self.run.stepper.start = group.start(place, t);
         self.run.monitor.take_start(group.guards_at_start(place));
-        *self.method().compensation() = group.compensation(place);
+        group.take_compensation(place, self.method().compensation());
     }
 
     /// Whether a step to `t` (s) begins or ends in the neighbourhood of a singular pose.
@@ -330,7 +330,7 @@ where
 /// each run with its observer, and where it has come to: nothing of one that is to be made by itself.
 pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
     mut jobs: impl Iterator<Item = Job<'a, Mo, O, N>>,
-    method: AnyInLanes<V, N>,
+    method: AnyInLanes<V>,
     lifted: impl Fn(&[Lanes<V>]) -> Li,
     span: Span,
     settings: &'a Settings<N>,
@@ -396,7 +396,7 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
 }
 
 /// Where a run has come to at its end. The largest values of its states are not known.
-fn finish<Mo, const N: usize, const G: usize>(run: Run<'_, Mo, AnyMethod<N>, Never, N, G>) -> Finish<N, G>
+fn finish<Mo, const N: usize, const G: usize>(run: Run<'_, Mo, AnyMethod, Never, N, G>) -> Finish<N, G>
 where
     Mo: System<f64, N, G>,
 {
@@ -508,7 +508,7 @@ fn load<V, Mo, O, const N: usize, const G: usize>(
 fn measure<V, Mo, const N: usize, const G: usize>(
     group: &mut Group<V, N, G>,
     place: usize,
-    run: &Run<'_, Mo, AnyMethod<N>, Never, N, G>,
+    run: &Run<'_, Mo, AnyMethod, Never, N, G>,
 ) where
     V: Vector,
     Mo: System<f64, N, G>,
