@@ -9,8 +9,8 @@ use super::hand_on::hand_on;
 #[cfg(feature = "std")]
 use super::lanes::OfOne;
 use super::{
-    Ark5, Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, PointRef, Radau5, Radau9, Rk4, Rodas5p, Ros2,
-    Scale, StepControl, Taylor,
+    Ark5, Auto, Bs5, Cfmr7, Change, Dop853, Flow, Gauss6, Method, Nystrom, PointRef, Radau5, Radau9, Rk4, Rodas5p,
+    Ros2, Scale, StepControl, Taylor,
 };
 
 macro_rules! any {

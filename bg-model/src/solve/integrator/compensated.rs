@@ -17,6 +17,14 @@ pub(super) struct CompensatedSum<S> {
     pub end: Vec<S>,
 }
 
+/// A state that `change` moves on from `from`, with what rounding had kept before from it, and what it keeps now.
+#[inline(always)]
+pub(super) fn compensated<S: Scalar>(from: S, change: S, before: S) -> (S, S) {
+    let change = change + before;
+    let to = from + change;
+    (to, change - (to - from))
+}
+
 impl<S: Scalar> CompensatedSum<S> {
     /// Nothing yet.
     pub fn new(states: usize) -> Self {
@@ -27,9 +35,8 @@ impl<S: Scalar> CompensatedSum<S> {
     /// State `i` after a step that starts at `from` and changes it by `change`.
     #[inline(always)]
     pub fn add(&mut self, i: usize, from: S, change: S) -> S {
-        let change = change + self.start[i];
-        let to = from + change;
-        self.end[i] = change - (to - from);
+        let (to, lost) = compensated(from, change, self.start[i]);
+        self.end[i] = lost;
         to
     }
 

@@ -12,6 +12,7 @@ use alloc::vec::Vec;
 use pulp::NullaryFnOnce;
 
 use super::PointRef;
+use super::side_by_side::{OfEach, for_each, put, some};
 use crate::model::scalar::machine::Arch;
 
 /// The coefficients that follow from the states and rates at both ends.
@@ -56,8 +57,8 @@ impl<const C: usize> Polynomial<C> {
     /// Writes the state at the part `theta` of the step, of the first `count` coefficients, into `x`: in the vectors `arch`.
     pub fn evaluate(&self, arch: Arch, count: usize, start: PointRef<'_>, theta: f64, x: &mut [f64]) {
         let coefficients = self.coefficients.each_ref().map(|coefficient| &coefficient[..]);
-        let polynomials = Polynomials { coefficients: &coefficients[..count], start: start.x, theta };
-        polynomials.write(arch, x);
+        let states = x.len();
+        arch.dispatch(All(Polynomials { coefficients: &coefficients[..count], start: start.x, theta, x }, states));
     }
 }
 
@@ -71,57 +72,34 @@ fn follow_from_ends(h: f64, end: &[f64], chord: &mut [f64], at_start: &mut [f64]
     }
 }
 
-/// States whose numbers are calculated side by side.
-const SIDE_BY_SIDE: usize = 8;
+/// A calculation for all states.
+struct All<F>(F, usize);
 
-/// A calculation for each state.
-trait OfEach {
-    /// Its results for `W` states from `first` on.
-    fn of<const W: usize>(&self, first: usize) -> [f64; W];
-}
-
-/// A calculation for all states, with its results.
-struct Each<'a, F>(&'a F, &'a mut [f64]);
-
-impl<F: OfEach> NullaryFnOnce for Each<'_, F> {
+impl<F: OfEach> NullaryFnOnce for All<F> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self(calculation, results) = self;
-        let (groups, rest) = results.as_chunks_mut::<SIDE_BY_SIDE>();
-        let mut first = 0;
-        for group in groups {
-            *group = calculation.of(first);
-            first += SIDE_BY_SIDE;
-        }
-        for one in rest {
-            [*one] = calculation.of(first);
-            first += 1;
-        }
+        let Self(mut calculation, states) = self;
+        for_each::<f64>(0, states, &mut calculation);
     }
 }
 
-/// The polynomials of all states at the part `theta` of the step.
+/// The polynomials of all states at the part `theta` of the step, to be written into `x`.
 struct Polynomials<'a> {
     coefficients: &'a [&'a [f64]],
     start: &'a [f64],
     theta: f64,
-}
-
-impl Polynomials<'_> {
-    #[inline(never)]
-    fn write(&self, arch: Arch, x: &mut [f64]) {
-        arch.dispatch(Each(self, x));
-    }
+    x: &'a mut [f64],
 }
 
 impl OfEach for Polynomials<'_> {
     #[inline(always)]
-    fn of<const W: usize>(&self, first: usize) -> [f64; W] {
-        let Self { coefficients, start, theta } = *self;
-        let factors = [theta, 1.0 - theta];
-        let Some((last, lower)) = coefficients.split_last() else { return some(start, first) };
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { coefficients, start, theta, x } = self;
+        let factors = [*theta, 1.0 - *theta];
+        let start: [f64; W] = some(start, first);
+        let Some((last, lower)) = coefficients.split_last() else { return put(x, first, start) };
         let mut sums: [f64; W] = some(last, first);
         for (m, coefficient) in lower.iter().enumerate().rev() {
             let (at, factor): ([f64; W], f64) = (some(coefficient, first), factors[(m + 1) % 2]);
@@ -129,11 +107,10 @@ impl OfEach for Polynomials<'_> {
                 sums[k] = at[k] + factor * sums[k];
             }
         }
-        let start: [f64; W] = some(start, first);
         for k in 0..W {
-            sums[k] = start[k] + theta * sums[k];
+            sums[k] = start[k] + *theta * sums[k];
         }
-        sums
+        put(x, first, sums);
     }
 }
 
@@ -141,48 +118,39 @@ impl OfEach for Polynomials<'_> {
 const TERMS: usize = 16;
 
 /// Writes `h` times a sum of rates, each with its weight, in their order: in the vectors `arch`.
+#[inline(never)]
 pub(super) fn write_sum<'a>(arch: Arch, h: f64, terms: impl Iterator<Item = (f64, &'a [f64])>, out: &mut [f64]) {
     let (mut all, mut count) = ([(0.0, &[][..]); TERMS], 0);
     for term in terms {
         all[count] = term;
         count += 1;
     }
-    Sums { h, terms: &all[..count] }.write(arch, out);
+    let states = out.len();
+    arch.dispatch(All(Sums { h, terms: &all[..count], out }, states));
 }
 
-/// `h` times the sums of weighted rates.
+/// `h` times the sums of weighted rates, to be written into `out`.
 struct Sums<'a> {
     h: f64,
     terms: &'a [(f64, &'a [f64])],
-}
-
-impl Sums<'_> {
-    #[inline(never)]
-    fn write(&self, arch: Arch, out: &mut [f64]) {
-        arch.dispatch(Each(self, out));
-    }
+    out: &'a mut [f64],
 }
 
 impl OfEach for Sums<'_> {
     #[inline(always)]
-    fn of<const W: usize>(&self, first: usize) -> [f64; W] {
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { h, terms, out } = self;
         // Adding to -0 changes nothing, not even the sign of a zero.
         let mut sums = [-0.0; W];
-        for (weight, rate) in self.terms {
+        for (weight, rate) in *terms {
             let rate: [f64; W] = some(rate, first);
             for k in 0..W {
                 sums[k] += weight * rate[k];
             }
         }
         for sum in &mut sums {
-            *sum *= self.h;
+            *sum *= *h;
         }
-        sums
+        put(out, first, sums);
     }
-}
-
-/// The numbers from `first` on.
-#[inline(always)]
-fn some<const W: usize>(of: &[f64], first: usize) -> [f64; W] {
-    *of[first..].first_chunk().expect("there is a number for each state")
 }

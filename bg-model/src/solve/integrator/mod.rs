@@ -25,6 +25,7 @@ mod partitioned;
 mod radau;
 pub(crate) mod rk4;
 mod rosenbrock;
+mod side_by_side;
 mod steps;
 mod taylor;
 mod tolerances;

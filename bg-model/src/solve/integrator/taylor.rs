@@ -181,8 +181,7 @@ impl Vectorised for Taylor {
         }
         let (theta, n, order) = (h / self.unit, flow.states(), self.order);
         let Self { series, room: [change, slope, weights, errors], sum, .. } = self;
-        let (change, slope, weights, errors) =
-            (&mut change[..n], &mut slope[..n], &mut weights[..n], &mut errors[..n]);
+        let (change, slope, weights, errors) = (&mut change[..n], &mut slope[..n], &mut weights[..n], &mut errors[..n]);
         sums(series, theta, change, slope);
         for i in 0..n {
             let from = start.x[i];

@@ -105,7 +105,14 @@ impl<S: Scalar> Scale<S> {
     #[inline(always)]
     #[must_use]
     pub fn allowed_between(&self, i: usize, from: S, to: S) -> S {
-        let (at_start, at_end) = (self.allowed(i, from), self.allowed(i, to));
+        self.allowed_from(self.absolute[i], from, to)
+    }
+
+    /// The same with this absolute tolerance.
+    #[inline(always)]
+    pub(super) fn allowed_from(&self, absolute: S, from: S, to: S) -> S {
+        let at = |value: S| absolute + value.abs().times(self.relative);
+        let (at_start, at_end) = (at(from), at(to));
         at_start.larger(smaller(at_end, at_start.times(self.growth)))
     }
 }

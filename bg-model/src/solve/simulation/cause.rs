@@ -47,7 +47,11 @@ where
                 return Cause::NotSolved { t: start.t, h: *h };
             }
         }
-        let index = if error.is_finite() { method.largest_error(start.borrowed(), scale, end.x.as_slice()) } else { scale.fastest(start.borrowed()) };
+        let index = if error.is_finite() {
+            method.largest_error(start.borrowed(), scale, end.x.as_slice())
+        } else {
+            scale.fastest(start.borrowed())
+        };
         let state = self.stepper.system.state_name(index);
         Cause::StepTooSmall { state, index, value: start.x[index], t: start.t, h: self.controller.step() }
     }

@@ -202,7 +202,8 @@ where
         let ahead = inside.chain(FURTHER).map(|part| way * part);
         let on_the_way = ahead.map(|ahead| (t + ahead, x + rate * ahead));
         let mut points = core::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
-        points.find_map(|(t, x)| is_finite(x.as_slice()).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())
+        points
+            .find_map(|(t, x)| is_finite(x.as_slice()).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())
     }
 
     /// The end of the step becomes the start of the next one.

@@ -33,7 +33,7 @@ const WORDS_OF_PART: &[&str] = {
 };
 
 /// The words of a graph.
-const WORDS: [&str; 39] = [
+const WORDS: [&str; 40] = [
     "param",
     "1",
     "R",
@@ -63,6 +63,7 @@ const WORDS: [&str; 39] = [
     "start",
     "baumgarte",
     "expect",
+    "inlined",
     "joint",
     "spring",
     "drive",

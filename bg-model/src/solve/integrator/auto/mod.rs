@@ -304,7 +304,14 @@ impl Auto {
 
     /// Whether steps of a less implicit method meet the tolerances from `start` over the step `h` (s) of the present one. Each of them is
     /// twice as long as it has to be to be worth a change, so that the choice does not swing.
-    fn succeeds(&mut self, kind: Kind, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    fn succeeds(
+        &mut self,
+        kind: Kind,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
+        h: f64,
+        scale: &Scale,
+    ) -> bool {
         let h = 2.0 * h * self.dearness(kind) / self.kind.worth(kind, flow.states());
         let (mut from, mut end) = (core::mem::take(&mut self.trial), core::mem::take(&mut self.end));
         from.note(start);
@@ -338,9 +345,7 @@ impl Auto {
         let agrees = scale.norm_of(&x, |i| self.claimed[i] - x[i]) <= AGREEMENT;
         (self.before, self.end) = (before, x);
         if agrees && self.noise(flow, start, scale) < NOISE {
-            let kind = if claim.kind == Kind::Partitioned
-                && self.is_stiff_throughout(flow, start, since, scale)
-            {
+            let kind = if claim.kind == Kind::Partitioned && self.is_stiff_throughout(flow, start, since, scale) {
                 Kind::Implicit
             } else {
                 claim.kind

@@ -337,7 +337,14 @@ impl Race {
 
     /// The error of a step of this method, in parts of the tolerances, that is longer than `h` (s) by what it has to promise; infinite where
     /// its end is not finite.
-    fn error(&mut self, runner: Runner, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
+    fn error(
+        &mut self,
+        runner: Runner,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
+        h: f64,
+        scale: &Scale,
+    ) -> f64 {
         if runner == Runner::Taylor {
             self.series = self.price(runner, flow, scale);
             return self.taylor.error(flow, start, PROMISE_OF_SERIES * h, scale, &mut self.end);

@@ -135,7 +135,13 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     /// A step that satisfied the tolerances and is tried again with another size is part of a search for an event: it is
     /// solved to rounding, and like all attempts begins at the extrapolation of the step before, so its outcome depends
     /// on its size only.
-    pub fn solve(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> Result<(), f64> {
+    pub fn solve(
+        &mut self,
+        flow: &(impl Flow + ?Sized),
+        start: PointRef<'_>,
+        h: f64,
+        scale: &Scale,
+    ) -> Result<(), f64> {
         self.h = h;
         let goal = if self.is_exact || self.attempts == Attempts::Satisfied { Goal::Rounding } else { Goal::Tolerance };
         if !self.has_jacobian {

@@ -11,7 +11,8 @@ use core::ops::Range;
 use super::{Row, Tableau};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::Scale;
-use crate::solve::integrator::compensated::CompensatedSum;
+use crate::solve::integrator::compensated::{CompensatedSum, compensated};
+use crate::solve::integrator::side_by_side::{OfEach, for_each, put, some};
 use crate::solve::integrator::steps::{Begin, Rates};
 use crate::solve::integrator::tolerances::largest;
 
@@ -61,7 +62,8 @@ impl<T: Tableau, S: Scalar> Stages<T, S> {
     /// Entry `i` of the linear combination of the stages, summed in their order.
     #[inline(always)]
     pub fn combine(&self, row: Row, i: usize) -> S {
-        combined(&rates_of(&self.k, row, self.states()), row, i)
+        let [sum] = combined(&self.k, row, i);
+        sum
     }
 
     /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its weights
@@ -80,7 +82,10 @@ impl<T: Tableau, S: Scalar> Stages<T, S> {
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage if $stage < T::A.len() => reach::<T, S, $stage>(&self.k, from, x), )*
+                        $( $stage if $stage < T::A.len() => {
+                            let (k, start, h, tableau) = (&self.k, &from.x[..n], from.h, PhantomData);
+                            for_each::<S>(0, n, &mut Reach::<T, S, $stage> { k, h, start, x, tableau });
+                        } )*
                         _ => unreachable!("a tableau has fewer stages than there is room for"),
                     }
                 };
@@ -111,56 +116,117 @@ impl<T: Tableau, S: Scalar> Stages<T, S> {
         self.k[0][..n].copy_from_slice(&from.rate[..n]);
         self.evaluate::<true>(rates, from, 1..T::END, &mut ());
         let Self { k, differences: [first, second], .. } = self;
-        let (first, second) = (&mut first[..n], &mut second[..n]);
-        let [b, error, other] = [T::B, T::ERROR, T::SECOND].map(|row| rates_of(k, row, n));
         let (start, end) = (&from.x[..n], &mut end[..n]);
-        for i in 0..n {
-            let slope = combined(&b, T::B, i);
-            let change = from.h * slope;
-            let to = if T::IS_COMPENSATED { sum.add(i, start[i], change) } else { start[i] + change };
-            end[i] = to;
-            let allowed = scale.allowed_between(i, start[i], to);
-            first[i] = (combined(&error, T::ERROR, i) / allowed).abs();
-            if !T::SECOND.is_empty() {
-                second[i] = ((slope - combined(&other, T::SECOND, i)) / allowed).abs();
+        let (h, differences, tableau) = (from.h, [&mut first[..], &mut second[..]], PhantomData::<T>);
+        for_each::<S>(0, n, &mut End { k, h, start, scale, sum, end, differences, tableau });
+        let second = if T::SECOND.is_empty() { from.h.alike(0.0) } else { largest(&second[..n]) };
+        [largest(&first[..n]), second]
+    }
+}
+
+/// The state at the end of a step, and its differences to the embedded methods.
+struct End<'a, T, S> {
+    k: &'a [Vec<S>; STAGES],
+    h: S,
+    start: &'a [S],
+    scale: &'a Scale<S>,
+    sum: &'a mut CompensatedSum<S>,
+    end: &'a mut [S],
+    differences: [&'a mut [S]; 2],
+    tableau: PhantomData<T>,
+}
+
+impl<T: Tableau, S: Scalar> OfEach for End<'_, T, S> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { k, h, start, scale, sum, end, differences: [of_first, of_second], .. } = self;
+        let start: [S; W] = some(start, first);
+        let absolute: [S; W] = some(&scale.absolute, first);
+        let slopes: [S; W] = combined(*k, T::B, first);
+        let mut to = start;
+        if T::IS_COMPENSATED {
+            let (mut lost, before): ([S; W], [S; W]) = (to, some(&sum.start, first));
+            for i in 0..W {
+                (to[i], lost[i]) = compensated(start[i], *h * slopes[i], before[i]);
+            }
+            put(&mut sum.end, first, lost);
+        } else {
+            for i in 0..W {
+                to[i] = start[i] + *h * slopes[i];
             }
         }
-        [largest(first), if T::SECOND.is_empty() { from.h.alike(0.0) } else { largest(second) }]
+        put(end, first, to);
+        let mut allowed = to;
+        for i in 0..W {
+            allowed[i] = scale.allowed_from(absolute[i], start[i], to[i]);
+        }
+        let mut errors: [S; W] = combined(*k, T::ERROR, first);
+        for i in 0..W {
+            errors[i] = (errors[i] / allowed[i]).abs();
+        }
+        put(of_first, first, errors);
+        if !T::SECOND.is_empty() {
+            let mut errors: [S; W] = combined(*k, T::SECOND, first);
+            for i in 0..W {
+                errors[i] = ((slopes[i] - errors[i]) / allowed[i]).abs();
+            }
+            put(of_second, first, errors);
+        }
     }
 }
 
-/// The rates of the stages of a row, of `n` states.
-#[inline(always)]
-fn rates_of<S>(k: &[Vec<S>], row: Row, n: usize) -> [&[S]; STAGES] {
-    core::array::from_fn(|m| row.get(m).map_or(&[][..], |(stage, _)| &k[*stage][..n]))
+/// The state of a stage, without what completes it.
+struct Reach<'a, T, S, const STAGE: usize> {
+    k: &'a [Vec<S>; STAGES],
+    h: S,
+    start: &'a [S],
+    x: &'a mut [S],
+    tableau: PhantomData<T>,
 }
 
-/// The linear combination of these rates of state `i`, summed in their order.
+impl<T: Tableau, S: Scalar, const STAGE: usize> OfEach for Reach<'_, T, S, STAGE> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { k, h, start, x, .. } = self;
+        let (start, mut sums): ([S; W], [S; W]) = (some(start, first), combined(*k, T::A[STAGE], first));
+        for i in 0..W {
+            sums[i] = start[i] + *h * sums[i];
+        }
+        put(x, first, sums);
+    }
+}
+
+/// The linear combinations of the stages `k` by a row, each summed in its order, of `W` states from `first` on.
 #[inline(always)]
-fn combined<S: Scalar>(rates: &[&[S]; STAGES], row: Row, i: usize) -> S {
+fn combined<S: Scalar, const W: usize>(k: &[Vec<S>], row: Row, first: usize) -> [S; W] {
     // Adding to -0 changes nothing, not even the sign of a zero.
-    let mut sum = rates[0][i].alike(-0.0);
-    for (rates, (_, weight)) in rates.iter().zip(row) {
-        sum = sum + rates[i].times(*weight);
+    let mut sums = [k[0][first].alike(-0.0); W];
+    for (stage, weight) in row {
+        let rates: [S; W] = some(&k[*stage], first);
+        for i in 0..W {
+            sums[i] = sums[i] + rates[i].times(*weight);
+        }
     }
-    sum
-}
-
-/// Writes the state of a stage, without what completes it.
-#[inline(always)]
-fn reach<T: Tableau, S: Scalar, const STAGE: usize>(k: &[Vec<S>], from: &Begin<'_, S>, x: &mut [S]) {
-    let n = x.len();
-    let (start, rates) = (&from.x[..n], rates_of(k, T::A[STAGE], n));
-    for i in 0..n {
-        x[i] = start[i] + from.h * combined(&rates, T::A[STAGE], i);
-    }
+    sums
 }
 
 /// Writes the linear combinations of the stages `k` for all states.
 #[inline(always)]
 pub(crate) fn write_row(k: &[Vec<f64>], row: Row, out: &mut [f64]) {
-    let rates = rates_of(k, row, out.len());
-    for (i, out) in out.iter_mut().enumerate() {
-        *out = combined(&rates, row, i);
+    for_each::<f64>(0, out.len(), &mut Written { k, row, out });
+}
+
+/// Linear combinations of the stages.
+struct Written<'a> {
+    k: &'a [Vec<f64>],
+    row: Row,
+    out: &'a mut [f64],
+}
+
+impl OfEach for Written<'_> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let sums: [f64; W] = combined(self.k, self.row, first);
+        put(self.out, first, sums);
     }
 }

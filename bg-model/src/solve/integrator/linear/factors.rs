@@ -108,14 +108,7 @@ impl<T: Number> Factors<T> {
 
     /// Factors I - `c` J along the planned order. Gives whether no pivot is too small.
     #[inline(never)]
-    fn eliminate(
-        &mut self,
-        arch: Arch,
-        flow: &(impl Flow + ?Sized),
-        factors: usize,
-        c: T,
-        entries: &[f64],
-    ) -> bool {
+    fn eliminate(&mut self, arch: Arch, flow: &(impl Flow + ?Sized), factors: usize, c: T, entries: &[f64]) -> bool {
         self.sparse.resize(factors, T::real(0.0));
         arch.dispatch(Eliminate { flow, c, entries, factors: &mut self.sparse })
     }

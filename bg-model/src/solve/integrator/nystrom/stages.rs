@@ -10,6 +10,7 @@ use core::ops::Range;
 use super::tableau::{FIRST, INSTANTS, SECOND, STAGES};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::Scale;
+use crate::solve::integrator::side_by_side::{OfEach, for_each, put, some};
 use crate::solve::integrator::steps::{Begin, Forces};
 use crate::solve::integrator::tolerances::largest;
 
@@ -27,9 +28,6 @@ pub(crate) struct Stages<S> {
     /// The magnitudes of the differences to the embedded method in parts of what is allowed.
     pub(super) errors: Vec<S>,
 }
-
-/// The stages of `n` states, as far as sums go over them.
-type Rates<'a, S> = [&'a [S]; STAGES];
 
 impl<S: Scalar> Stages<S> {
     /// Room for so many states.
@@ -54,7 +52,7 @@ impl<S: Scalar> Stages<S> {
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage => reach::<S, $stage>(&rates_of(&self.k, $stage, n), second, *c, from, x), )*
+                        $( $stage => reach::<S, $stage>(&self.k, second, *c, from, x), )*
                         _ => unreachable!("a step has nine stages"),
                     }
                 };
@@ -66,73 +64,112 @@ impl<S: Scalar> Stages<S> {
 
     /// Writes the state at the end of a step; gives the largest difference to the embedded method in parts of what is allowed.
     #[inline(always)]
-    pub fn step(
-        &mut self,
-        forces: &impl Forces<S>,
-        from: &Begin<'_, S>,
-        scale: &Scale<S>,
-        end: &mut [S],
-    ) -> S {
+    pub fn step(&mut self, forces: &impl Forces<S>, from: &Begin<'_, S>, scale: &Scale<S>, end: &mut [S]) -> S {
         let (second, n) = (&forces.second(), forces.states());
         self.evaluate(forces, second, from);
         let Self { k, errors, .. } = self;
-        let k = rates_of(k, STAGES, n);
-        let (start, end, errors) = (&from.x[..n], &mut end[..n], &mut errors[..n]);
-        reach::<S, END>(&k, second, 1.0, from, end);
-        let h = from.h;
-        for i in 0..second.start {
-            errors[i] = part(h * combined(&k, FIRST[ERROR], i), scale.allowed_between(i, start[i], end[i]));
-        }
-        for i in second.clone() {
-            errors[i] = part(h * (h * combined(&k, SECOND[ERROR], i)), scale.allowed_between(i, start[i], end[i]));
-        }
-        for i in second.end..n {
-            errors[i] = part(h * combined(&k, FIRST[ERROR], i), scale.allowed_between(i, start[i], end[i]));
-        }
-        largest(errors)
+        reach::<S, END>(k, second, 1.0, from, &mut end[..n]);
+        let ends = [from.x, &*end];
+        let mut each = |states: Range<usize>, is_second| {
+            let (weights, h) = (if is_second { SECOND[ERROR] } else { FIRST[ERROR] }, from.h);
+            let errors = &mut *errors;
+            for_each::<S>(states.start, states.end, &mut Errors { k, weights, h, is_second, ends, scale, errors });
+        };
+        each(0..second.start, false);
+        each(second.clone(), true);
+        each(second.end..n, false);
+        largest(&errors[..n])
     }
 }
 
-/// The first `count` stages, of `n` states; no others have a weight in their sums.
+/// The sums of the stages, of `W` states from `first` on.
 #[inline(always)]
-fn rates_of<S>(k: &[Vec<S>; STAGES + 1], count: usize, n: usize) -> Rates<'_, S> {
-    core::array::from_fn(|stage| if stage < count { &k[stage][..n] } else { &[] })
-}
-
-/// The sum of the stages for state `i`.
-#[inline(always)]
-fn combined<S: Scalar>(k: &Rates<'_, S>, weights: &[f64], i: usize) -> S {
-    let mut sum = k[0][i].times(weights[0]);
+fn combined<S: Scalar, const W: usize>(k: &[Vec<S>], weights: &[f64], first: usize) -> [S; W] {
+    let mut sums: [S; W] = some(&k[0], first);
+    for sum in &mut sums {
+        *sum = sum.times(weights[0]);
+    }
     for (k, &weight) in k[1..].iter().zip(&weights[1..]) {
-        sum = sum + k[i].times(weight);
+        let rates: [S; W] = some(k, first);
+        for i in 0..W {
+            sums[i] = sums[i] + rates[i].times(weight);
+        }
     }
-    sum
+    sums
 }
 
 /// Writes the state of a row at the instant `c` of the step.
 #[inline(always)]
-fn reach<S: Scalar, const ROW: usize>(
-    k: &Rates<'_, S>,
-    second: &Range<usize>,
-    c: f64,
-    from: &Begin<'_, S>,
-    x: &mut [S],
-) {
+fn reach<S: Scalar, const ROW: usize>(k: &[Vec<S>], second: &Range<usize>, c: f64, from: &Begin<'_, S>, x: &mut [S]) {
     let n = x.len();
-    let (start, rate) = (&from.x[..n], &from.rate[..n]);
-    for i in 0..second.start {
-        x[i] = start[i] + from.h * combined(k, FIRST[ROW], i);
-    }
-    for i in second.clone() {
-        x[i] = start[i] + from.h * (rate[i].times(c) + from.h * combined(k, SECOND[ROW], i));
-    }
-    for i in second.end..n {
-        x[i] = start[i] + from.h * combined(k, FIRST[ROW], i);
+    for_each::<S>(0, second.start, &mut Reach::<S, ROW> { k, from, x });
+    for_each::<S>(second.start, second.end, &mut ReachSecond::<S, ROW> { k, from, c, x });
+    for_each::<S>(second.end, n, &mut Reach::<S, ROW> { k, from, x });
+}
+
+/// States of first order at a stage.
+struct Reach<'a, S, const ROW: usize> {
+    k: &'a [Vec<S>],
+    from: &'a Begin<'a, S>,
+    x: &'a mut [S],
+}
+
+impl<S: Scalar, const ROW: usize> OfEach for Reach<'_, S, ROW> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { k, from, x } = self;
+        let (start, mut sums): ([S; W], [S; W]) = (some(from.x, first), combined(k, FIRST[ROW], first));
+        for i in 0..W {
+            sums[i] = start[i] + from.h * sums[i];
+        }
+        put(x, first, sums);
     }
 }
 
-/// The magnitude of an error in parts of what is allowed.
-#[inline(always)]
-fn part<S: Scalar>(error: S, allowed: S) -> S {
-    (error / allowed).abs()
+/// States of second order at a stage, at the instant `c` of the step.
+struct ReachSecond<'a, S, const ROW: usize> {
+    k: &'a [Vec<S>],
+    from: &'a Begin<'a, S>,
+    c: f64,
+    x: &'a mut [S],
+}
+
+impl<S: Scalar, const ROW: usize> OfEach for ReachSecond<'_, S, ROW> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { k, from, c, x } = self;
+        let (start, rate): ([S; W], [S; W]) = (some(from.x, first), some(from.rate, first));
+        let mut sums: [S; W] = combined(k, SECOND[ROW], first);
+        for i in 0..W {
+            sums[i] = start[i] + from.h * (rate[i].times(*c) + from.h * sums[i]);
+        }
+        put(x, first, sums);
+    }
+}
+
+/// The magnitudes of errors in parts of what is allowed.
+struct Errors<'a, S> {
+    k: &'a [Vec<S>],
+    weights: &'a [f64],
+    h: S,
+    is_second: bool,
+    ends: [&'a [S]; 2],
+    scale: &'a Scale<S>,
+    errors: &'a mut [S],
+}
+
+impl<S: Scalar> OfEach for Errors<'_, S> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { k, weights, h, is_second, ends: [start, end], scale, errors } = self;
+        let (start, end, absolute): ([S; W], [S; W], [S; W]) =
+            (some(start, first), some(end, first), some(&scale.absolute, first));
+        let mut sums: [S; W] = combined(k, weights, first);
+        for i in 0..W {
+            let error = *h * sums[i];
+            let error = if *is_second { *h * error } else { error };
+            sums[i] = (error / scale.allowed_from(absolute[i], start[i], end[i])).abs();
+        }
+        put(errors, first, sums);
+    }
 }

@@ -232,7 +232,10 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
 
     /// The readings of the guards at the end of a run's step: values, slopes (per s), values in its middle.
     pub fn guards(&self, lane: usize) -> ([SVector<f64, G>; 2], SVector<f64, G>) {
-        (self.readings.end.each_ref().map(|guards| at(lane, guards.as_slice())), at(lane, self.readings.middle.as_slice()))
+        (
+            self.readings.end.each_ref().map(|guards| at(lane, guards.as_slice())),
+            at(lane, self.readings.middle.as_slice()),
+        )
     }
 
     /// The readings of the guards at the start of a run's step: values, slopes (per s).
@@ -278,7 +281,10 @@ where
     #[inline(always)]
     fn call(self) -> V::Numbers {
         let Group { t, start: [x, rate], negative, method, .. } = self.group;
-        method.follow(&Side { system: self.system, negative }, V::mask(self.due), *t, x.as_slice(), rate.as_slice()).0.numbers()
+        method
+            .follow(&Side { system: self.system, negative }, V::mask(self.due), *t, x.as_slice(), rate.as_slice())
+            .0
+            .numbers()
     }
 }
 
@@ -318,7 +324,8 @@ where
         let Group { method, scale, limit, longest, .. } = group;
         let (t, h, t_end) = (*t, *h, *t_end);
         let side = Side { system, negative };
-        let norm = method.attempt(&side, &Begin { t, h, x: x.as_slice(), rate: rate.as_slice() }, scale, end.as_mut_slice());
+        let norm =
+            method.attempt(&side, &Begin { t, h, x: x.as_slice(), rate: rate.as_slice() }, scale, end.as_mut_slice());
         let mut fine = finite(end);
         let has_joints = system.joints().is_some();
         if has_joints {
