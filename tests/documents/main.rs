@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use markdown::{anchors, codes, first_cells, links};
+use markdown::{anchors, codes, first_cells, labels, links};
 
 /// Lines that a decision may have.
 const LINES: usize = 40;
@@ -168,6 +168,32 @@ fn stages_of_the_table_are_those_of_the_pipeline() {
     assert!(stages.len() > 15, "{stages:?}");
     for stage in stages {
         assert!(code.contains(&stage), "`{stage}` is no stage");
+    }
+}
+
+/// In rustdoc the chapters of the language are one page: there a label leads to a heading of that page.
+#[test]
+fn labels_of_the_language_lead_to_headings_in_rustdoc() {
+    let package = root().join("bg-macros");
+    let source = read(&package.join("src/lib.rs"));
+    let in_rustdoc = labels(&source.replace("/// ", ""));
+    let chapters: Vec<String> = files(&package.join("docs/language")).iter().map(|path| read(path)).collect();
+    let headings: BTreeSet<String> = chapters.iter().flat_map(|text| anchors(text)).collect();
+    let used: BTreeSet<String> = chapters.iter().flat_map(|text| labels(text).into_keys()).collect();
+    assert!(used.len() > 15, "{used:?}");
+    assert_eq!(used, in_rustdoc.keys().cloned().collect());
+    for (label, target) in &in_rustdoc {
+        assert!(target.strip_prefix('#').is_some_and(|anchor| headings.contains(anchor)), "{label}: {target}");
+    }
+    for text in &chapters {
+        let (text, defined) = (text.to_lowercase(), labels(text));
+        let lacking =
+            in_rustdoc.keys().find(|label| text.contains(&format!("[{label}]")) && !defined.contains_key(*label));
+        assert_eq!(lacking, None, "in {:?}", text.lines().next());
+    }
+    for path in files(&package.join("docs/language")) {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        assert!(source.contains(&format!("include_str!(\"../docs/language/{name}\")")), "{name} is not in rustdoc");
     }
 }
 
