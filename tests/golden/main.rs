@@ -5,6 +5,7 @@
 //! `README.md` says how the snapshots are renewed. What the program itself gives, with exact counts, is recorded in
 //! `hacksaw/golden`.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use bg_model::integrator::{Dop853, Tolerances};
@@ -24,16 +25,22 @@ fn file(name: &str) -> String {
 const DEFAULT: [f64; 2] = [1e-8, 1e-9];
 const CLOSE: [f64; 2] = [1e-10, 1e-11];
 
-/// The generated code of a model of the stages suite.
-fn generated(model: &str) {
-    let tokens = file(&format!("stages/{model}.bond")).parse().expect("a model is tokens");
+/// The code that is generated for a call with this text, formatted.
+fn code(text: &str) -> String {
+    let tokens = text.parse().expect("a model is tokens");
     let mut items: syn::File = syn::parse2(bg_compiler::compile(tokens)).expect("generated code is Rust");
     items.items.retain(|item| !is_for_editors(item));
+    prettyplease::unparse(&items)
+}
+
+/// The generated code of a model of the stages suite.
+fn generated(model: &str) {
+    let code = code(&file(&format!("stages/{model}.bond")));
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path(".");
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    settings.bind(|| insta::assert_snapshot!(model, without_graph_text(&prettyplease::unparse(&items))));
+    settings.bind(|| insta::assert_snapshot!(model, without_graph_text(&code)));
 }
 
 /// Whether it is the module that rust-analyzer alone reads; the suite `editor` asks what it makes of it.
@@ -56,6 +63,35 @@ fn the_code_of_the_motor() {
 #[test]
 fn the_code_of_the_pendulum() {
     generated("pendulum");
+}
+
+/// The statements of the rate in a text of Rust, without comments.
+fn statements_of_the_rate(code: &str) -> Vec<&str> {
+    let (_, function) = code.split_once("fn always_inlined_rate(").expect("a rate");
+    let (_, body) = function.split_once(") {\n").expect("a body");
+    let lines = body.lines().map(|line| line.split("//").next().unwrap_or_default().trim());
+    lines.take_while(|&line| line != "}").collect()
+}
+
+/// The traits that a text says a motor has: of the document in comments, of generated code by path.
+fn traits(code: &str) -> BTreeSet<&str> {
+    let heads = code.lines().filter_map(|line| line.split_once("impl")?.1.split_once(" for M"));
+    let paths = heads.map(|(head, _)| head.strip_prefix("<S: Scalar>").unwrap_or(head).trim());
+    let names = paths.map(|path| path.split_once('<').map_or(path, |(path, _)| path));
+    names.map(|path| path.rsplit_once("::").map_or(path, |(_, name)| name)).collect()
+}
+
+#[test]
+fn the_documented_code_is_what_is_generated() {
+    let document = file("../docs/generated-code.md");
+    let blocks: Vec<&str> = document.split("```rust\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let [call, shown] = blocks[..] else { panic!("a call and its code") };
+    let graph = call.trim().strip_prefix("bond_graph! {").and_then(|text| text.strip_suffix('}')).expect("a call");
+    let code = code(graph);
+    assert_eq!(statements_of_the_rate(shown), statements_of_the_rate(&code));
+    let missing = |name: &&str| !traits(shown).contains(name);
+    assert!(traits(shown).is_subset(&traits(&code)), "{:?}", traits(&code));
+    assert_eq!(traits(&code).into_iter().filter(missing).collect::<Vec<_>>(), ["Scenes"]);
 }
 
 /// A table of numbers with named columns, the first of them `t`.

@@ -1,6 +1,6 @@
 //! The hacksaw made hard, in short: what its integrators reach, and that nothing is wrong without an error.
 //!
-//! The cases and what they are held against are in `src/hard_hacksaw`. `cargo bench -p bond-graph-tests --bench stability --
+//! The cases and what they are held against are in `cases`. `cargo bench -p bond-graph-tests --bench stability --
 //! --only hacksaw` runs all of it at full length and at four tolerances.
 
 mod extremes;

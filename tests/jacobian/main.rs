@@ -194,7 +194,7 @@ where
     for row in 0..N {
         let products = (0..N).map(|column| c.scaled(matrix[(row, column)]) * y[column]);
         let sum = products.fold(b[row] - y[row], |sum, product| sum + product);
-        assert!(sum.size().is_finite(), "a solution that is none");
+        assert!(sum.size().is_finite(), "an unusable solution");
         rest = rest.max(sum.size());
         norm = norm.max(1.0 + (0..N).map(|column| c.scaled(matrix[(row, column)]).size()).sum::<f64>());
     }

@@ -1,6 +1,6 @@
 //! Long-term behaviour of conservative scenes, in short: what is kept, with which order it falls, how it grows.
 //!
-//! The scenes are in `src/long_term`. `cargo bench -p bond-graph-tests --bench stability -- --only drift` runs 1e6 periods.
+//! The scenes are in `cases`. `cargo bench -p bond-graph-tests --bench stability -- --only drift` runs 1e6 periods.
 
 use bond_graph_tests::hardcases::integrator;
 use bond_graph_tests::long_term::drift::{Drift, Exactness, drift};

@@ -7,11 +7,10 @@ use bg_compiler::expr::{Environment, Id, Symbol, derivative, evaluate, sized};
 use bg_compiler::fault::Staged;
 use bg_compiler::graph::causality::CausalGraph;
 use bg_compiler::graph::{BondGraph, NodeId, NodeKind};
-use bg_compiler::pipeline::{self, Derived};
+use bg_compiler::pipeline::{self, Arranged};
 use bg_compiler::source::ast::TrackKind;
-use bg_compiler::source::{part, syntax};
+use bg_compiler::source::{part, scene, syntax};
 use bg_compiler::system::equations::{Kind, StateEquations};
-use bg_compiler::system::{reduce, second_order};
 use bg_model::bond_graph;
 use bg_model::input::Input;
 use bg_model::nalgebra::SVector;
@@ -106,11 +105,9 @@ fn compiled(text: &str) -> (CausalGraph, StateEquations) {
 
 fn attempt(text: &str) -> Staged<(CausalGraph, StateEquations)> {
     let source = part::flatten(&syntax::parse(text.parse().expect("tokens"))?)?.source;
-    let Derived { causal, mut equations, .. } = pipeline::derive(&source.graphs[0])?;
-    reduce::solve_reactions(&mut equations);
+    let Arranged { derived, mut equations, .. } = pipeline::arrange(&scene::variants(&source.graphs[0])?[0])?;
     equations.close();
-    second_order::arrange(&mut equations);
-    Ok((causal, equations))
+    Ok((derived.causal, equations))
 }
 
 /// A point at which expressions are evaluated.

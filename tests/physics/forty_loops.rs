@@ -4,11 +4,9 @@
 //! 243 states.
 
 use bg_compiler::expr::{Environment, Id, evaluate};
-use bg_compiler::pipeline;
-use bg_compiler::program;
+use bg_compiler::pipeline::{self, Arranged};
 use bg_compiler::source::{part, scene, syntax};
 use bg_compiler::system::equations::{Kind, StateEquations};
-use bg_compiler::system::{projection, reduce, second_order};
 use bg_model::capability::Joints;
 use bg_model::holding::{Held, Slip};
 use bg_model::integrator::{Dop853, Tolerances};
@@ -64,15 +62,7 @@ impl Forty {
         let source = syntax::parse(TEXT.parse().expect("tokens")).unwrap_or_else(|faults| panic!("{faults:?}"));
         let source = part::flatten(&source).unwrap_or_else(|faults| panic!("{faults:?}")).source;
         let variant = scene::variants(&source.graphs[0]).unwrap_or_else(|faults| panic!("{faults:?}")).remove(1);
-        let wanted = |equations: &StateEquations| {
-            let scene = variant.scene.as_ref().expect("the scene");
-            reduce::expectation::wanted(scene, equations).unwrap_or_else(|faults| panic!("{faults:?}"))
-        };
-        let derived = pipeline::derive(&variant.graph).unwrap_or_else(|faults| panic!("{faults:?}"));
-        let wanted = wanted(&derived.equations);
-        let (mut equations, _) = reduce::for_scene(derived.equations, &wanted, &mut program::rate_operations);
-        projection::complete(&mut equations);
-        second_order::arrange(&mut equations);
+        let Arranged { mut equations, .. } = pipeline::arrange(&variant).unwrap_or_else(|faults| panic!("{faults:?}"));
         equations.close();
         let rates = equations.states.iter().map(|state| state.rate).collect();
         let entries = equations.holding.entries(&equations.pool);

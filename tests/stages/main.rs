@@ -8,7 +8,7 @@ use std::path::Path;
 use bg_compiler::fault::Fault;
 use bg_compiler::source::ast::Source;
 use bg_compiler::source::syntax;
-use bg_compiler::stages::{Stage, stages};
+use bg_compiler::stages::{NAMES, Stage, stages};
 use proc_macro2::TokenStream;
 
 /// Every stage.
@@ -95,6 +95,18 @@ fn mechanisms_as_bond_graphs() {
     PARTS.iter().for_each(|model| snapshot(model, &["source", "causal"]));
     MECHANISMS.iter().for_each(|model| snapshot(model, &["expanded", "causal"]));
     LARGE.iter().for_each(|model| snapshot(model, &["causal"]));
+}
+
+#[test]
+fn stages_have_the_names_that_are_listed() {
+    let graph = "param k: N/m = 2; Se push = 1; 1 cart: translation; I mass = 3; C spring = k; \
+                 push -> cart -> mass; cart -> spring; observe { cart.flow }";
+    let scene = compiled(&format!("graph Cart {{ {graph} scene Run {{ observe {{ cart.flow }} }} }}"));
+    let names = |model: &str| scene.iter().filter(|stage| stage.graph == model).map(|stage| stage.name).collect();
+    let without = |left_out: &[&str]| NAMES.into_iter().filter(|name| !left_out.contains(name)).collect();
+    let (literal, reduced): (Vec<&str>, Vec<&str>) = (names("Cart"), names("Run"));
+    assert_eq!((literal, reduced), (without(&["reduction", "reduced", "pairs"]), without(&["pairs"])));
+    assert!(compiled(&text("slider_crank")).iter().any(|stage| stage.name == "pairs"));
 }
 
 #[test]

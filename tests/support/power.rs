@@ -1,6 +1,6 @@
 //! The power balance of a model at states drawn at random.
 
-use bg_model::description::StateInfo;
+use bg_model::description::{StateInfo, StateKind};
 use bg_model::nalgebra::SVector;
 use bg_model::scalar::Dual;
 use bg_model::system::{Model, Powers};
@@ -43,6 +43,11 @@ impl Draw {
     }
 }
 
+/// Whether two states are components of one orientation.
+fn is_of_one_rotation(one: &StateInfo, other: &StateInfo) -> bool {
+    one.element == other.element && [one, other].iter().all(|state| matches!(state.kind, StateKind::Orientation(..)))
+}
+
 /// A state drawn at random: storages and positions anywhere near their start, orientations any rotation; about z, where a scene
 /// integrates less than the whole matrix.
 pub fn state<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, draw: &mut Draw) -> SVector<f64, N>
@@ -50,27 +55,16 @@ where
     Mo: Model<f64, N, G, M>,
 {
     let mut x = model.start().expect("the mechanism closes");
-    let states = model.description().states;
-    // What stands before the row and the column in an orientation's name.
-    let stem = |index: usize| {
-        let StateInfo { name, kind, .. } = &states[index];
-        (kind.storage() == "orientation").then(|| &name[..name.len() - 2])
-    };
     let mut index = 0;
-    while index < N {
-        let length = (index..N).take_while(|&other| stem(other).is_some() && stem(other) == stem(index)).count();
-        if length == 0 {
-            x[index] += (1.0 + x[index].abs()) * draw.number();
+    for of_one in model.description().states.chunk_by(is_of_one_rotation) {
+        let rotation = if of_one.len() == 9 { draw.rotation() } else { draw.turn() };
+        for state in of_one {
+            match state.kind {
+                StateKind::Orientation(row, column) => x[index] = rotation[3 * row + column],
+                _ => x[index] += (1.0 + x[index].abs()) * draw.number(),
+            }
             index += 1;
-            continue;
         }
-        let rotation = if length == 9 { draw.rotation() } else { draw.turn() };
-        for entry in index..index + length {
-            let name = states[entry].name.as_bytes();
-            let [row, column] = [2, 1].map(|back| usize::from(name[name.len() - back] - b'1'));
-            x[entry] = rotation[3 * row + column];
-        }
-        index += length;
     }
     x
 }

@@ -2,12 +2,12 @@
 
 use std::process::ExitCode;
 
+use bg_compiler::stages::NAMES;
+
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let Some(file) = arguments.next() else {
-        eprintln!(
-            "usage: stages FILE [source|expanded|resolved|causal|equations|reduction|reduced|program|pairs|jacobian|second|elimination]"
-        );
+        eprintln!("usage: stages FILE [{}]", NAMES.join("|"));
         return ExitCode::from(2);
     };
     let wanted = arguments.next();

@@ -32,6 +32,17 @@ pub struct Derived {
     pub equations: StateEquations,
 }
 
+/// A model's results as far as the state equations that it integrates.
+#[derive(Debug)]
+pub struct Arranged {
+    /// Those of the whole graph.
+    pub derived: Derived,
+    /// What became of its states; none of a literal graph, which keeps them all.
+    pub reduction: Option<Report>,
+    /// The state equations that the model integrates, their reactions symbols.
+    pub equations: StateEquations,
+}
+
 /// Every result of the stages of one model.
 #[derive(Debug)]
 pub struct Compiled {
@@ -59,7 +70,8 @@ pub struct Compiled {
     pub programs: Programs,
 }
 
-/// All models of a macro call. With `scenes only;` the literal graph is none: its stages end with the state equations. A fault of a literal graph is not repeated for its scenes, one of a part not for its uses.
+/// All models of a macro call. With `scenes only;` the literal graph is none: its stages end with the state equations. A
+/// fault of a literal graph is not repeated for its scenes, one of a part not for its uses.
 ///
 /// # Errors
 /// The faults of all parts and graphs.
@@ -140,16 +152,26 @@ pub fn derive(graph: &Graph) -> Staged<Derived> {
     Ok(Derived { expanded, causal, equations })
 }
 
+/// The stages of one model as far as the state equations that it integrates. Reactions are symbols there until
+/// [`StateEquations::close`].
+///
+/// # Errors
+/// The faults of the first stage that has any.
+pub fn arrange(variant: &Variant) -> Staged<Arranged> {
+    let derived = derive(&variant.graph)?;
+    let (mut equations, reduction) = reduced(variant, derived.equations.clone())?;
+    projection::complete(&mut equations);
+    second_order::arrange(&mut equations);
+    Ok(Arranged { derived, reduction, equations })
+}
+
 /// All stages of one model.
 ///
 /// # Errors
 /// The faults of the first stage that has any.
 pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let (source, is_scene, scenes) = (variant.graph.clone(), variant.scene.is_some(), variant.scenes.clone());
-    let derived = derive(&source)?;
-    let (mut equations, reduction) = reduced(variant, derived.equations.clone())?;
-    projection::complete(&mut equations);
-    second_order::arrange(&mut equations);
+    let Arranged { derived, reduction, mut equations } = arrange(variant)?;
     let mut jacobian = jacobian::differentiate(&equations);
     equations.close();
     let mut second_order = second_order::differentiate(&equations);

@@ -21,13 +21,30 @@ use crate::system::jacobian::Jacobian;
 use crate::system::second_order::SecondOrder;
 use crate::system::sizes::Sizes;
 
+/// The names of the stages, in their order. `reduction` and `reduced` are of scenes only, `pairs` is there where it pays.
+pub const NAMES: [&str; 14] = [
+    "source",
+    "expanded",
+    "resolved",
+    "causal",
+    "equations",
+    "reduction",
+    "reduced",
+    "program",
+    "pairs",
+    "reversed",
+    "jacobian",
+    "second",
+    "sizes",
+    "elimination",
+];
+
 /// One stage of one graph.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The graph's name.
     pub graph: String,
-    /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `program`, where it pays
-    /// `pairs`, `reversed`, `jacobian`, `second`, `sizes` and `elimination`.
+    /// One of [`NAMES`].
     pub name: &'static str,
     /// The stage's result.
     pub text: String,

@@ -10,7 +10,7 @@ use crate::ImportError;
 /// The text of a file.
 ///
 /// # Errors
-/// Its encoding is not known, or it has bytes that are none of its encoding.
+/// Its encoding is not known, or has no such bytes.
 pub fn text(bytes: &[u8]) -> Result<String, ImportError> {
     let label = declared(bytes);
     let encoding = match (Encoding::for_bom(bytes), label) {

@@ -1,7 +1,7 @@
 //! What of a file was not used: a note each, but for what changes no motion.
 //!
 //! In: what nobody has asked for ([`crate::xml::unread`]) and a format's [`Rule`]s. Out: sentences with the lines. An
-//! element or attribute without a rule is a note, so that what this reader does not know is told.
+//! element or attribute without a rule is a note, so that nothing is left out in silence.
 
 use crate::xml::{Place, Unread};
 
@@ -39,7 +39,7 @@ pub const fn told(element: &'static str, attribute: &'static str, lost: &'static
     Rule { element, attribute, verdict: Verdict::Told(lost) }
 }
 
-/// Lines that are written out; of more only the number is told.
+/// Lines that are written out; of more, only the number is given.
 const LINES: usize = 4;
 
 /// A sentence for each kind of thing that was not used.

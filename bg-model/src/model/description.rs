@@ -76,7 +76,7 @@ pub struct InputInfo {
     pub doc: &'static str,
 }
 
-/// A state variable.
+/// A state variable. A storage in derivative causality has none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateInfo {
     /// Its name, such as `rod.mass.p_x`.
@@ -85,8 +85,6 @@ pub struct StateInfo {
     pub unit: &'static str,
     /// What it is.
     pub kind: StateKind,
-    /// Its causality: `integral`. A storage in derivative causality has no state; its stroke is in the bonds.
-    pub causality: &'static str,
     /// The element that stores it, or the junction that it follows; empty for an integral and for an angle that counts turns.
     pub element: &'static str,
 }

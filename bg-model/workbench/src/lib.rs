@@ -42,7 +42,8 @@
 //!
 //! | module | question |
 //! |---|---|
-//! | [`program`] | how a program is made of a mechanism, and what it adds |
+//! | [`program`] | how a program is made of a mechanism |
+//! | [`extras`] | what it adds: figures, lines, checks |
 //! | [`command`] | what the user asks for |
 //! | [`calls`] | the same for another program: runs and linear models as values |
 //! | [`scenes`] | which models there are, by name |
@@ -51,23 +52,25 @@
 //! | [`request`] | how it is integrated |
 //! | [`tables`] | what a scene consists of and what it left out |
 //! | [`picture`] | what its graph looks like |
+//! | [`samples`] | which samples a CSV file has |
 //! | [`compare`] | how far two runs are apart |
-//! | [`golden`] | does what was recorded still come out |
+//! | [`golden`] | whether a recorded run is reproduced |
 //! | [`precision`] | how exact a run is and what that costs |
 //! | [`figures`] | what the outputs look like |
 //! | [`linear`] | where the mechanism is in equilibrium, and how it moves near a state |
 //! | [`sensitivity`] | which parameter moves which output |
+//! | [`gradient`] | how one number of a run depends on all parameters |
 //! | [`identify`] | which parameters come nearest to what was measured |
-//! | [`summary`] | what a run comes to in numbers |
+//! | [`summary`] | what a run results in, in numbers |
 //! | [`overview`] | all of it on one page |
 //! | [`page`] | the same in motion, in one file that needs nothing else |
 //! | [`live`] | the same with the model inside, so that the page can run it again |
 //! | [`markup`] | texts as HTML |
 //! | [`shown`] | which page shows a run, and with which files |
-//! | [`sweep`] | what comes of many runs with many values |
+//! | [`sweep`] | what many runs with many values give |
 //! | [`output`] | which files a run writes, and where |
 //! | [`files`] | how results reach disk and terminal: whole, or not at all |
-//! | [`cookbook`] | short programs for what comes up after the first run |
+//! | [`cookbook`] | short programs for what follows the first run |
 
 // In a page a program answers orders, see `live`: what that has no use for is not built there.
 #![cfg_attr(

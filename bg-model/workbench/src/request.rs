@@ -40,7 +40,7 @@ pub struct Integration {
 }
 
 impl Default for Integration {
-    /// As a run is that is told nothing.
+    /// As a run is made without options.
     fn default() -> Self {
         let Request { method, fixed_step, rtol, .. } = Request::default();
         Self { t_end: T_END, step: 0.01, method, rtol, atol: None, fixed_step }

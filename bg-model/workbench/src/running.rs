@@ -28,7 +28,7 @@ pub enum Begin {
     Equilibrium,
 }
 
-/// A start that is none.
+/// An unusable start.
 #[derive(Debug, Error)]
 pub enum BeginError {
     #[error(transparent)]

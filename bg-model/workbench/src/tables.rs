@@ -17,7 +17,7 @@ pub enum Part {
     Elements,
     /// Bonds with their causal strokes: a ->| b has its stroke at b, which receives the effort and gives the flow
     Bonds,
-    /// States with unit, storage and causality
+    /// States with unit and storage
     States,
     /// The equations of the bonds and of the states, in the order of evaluation
     Equations,
@@ -122,10 +122,11 @@ fn bonds(description: &Description) -> String {
 }
 
 fn states(states: &[StateInfo]) -> String {
-    let head = ["", "state", "unit", "storage", "causality"].map(str::to_owned);
-    let rows = states.iter().enumerate().map(|(index, state)| {
-        [index.to_string(), state.name.into(), state.unit.into(), state.kind.storage().into(), state.causality.into()]
-    });
+    let head = ["", "state", "unit", "storage"].map(str::to_owned);
+    let rows = states
+        .iter()
+        .enumerate()
+        .map(|(index, state)| [index.to_string(), state.name.into(), state.unit.into(), state.kind.storage().into()]);
     table(&std::iter::once(head).chain(rows).collect::<Vec<_>>())
 }
 

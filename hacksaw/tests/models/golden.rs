@@ -1,4 +1,4 @@
-//! What is recorded in `hacksaw/golden` still comes out: `cargo run --release -- golden check --out hacksaw/golden`.
+//! The runs recorded in `hacksaw/golden` are reproduced: `cargo run --release -- golden check --out hacksaw/golden`.
 
 use bg_workbench::golden::GoldenError;
 use hacksaw::mechanism::Hacksaw;

@@ -1,6 +1,7 @@
 //! What the program does: its commands, the files of a run, parameters, page and pictures.
 
 mod command;
+mod documents;
 mod files;
 mod page;
 mod parameters;

@@ -1,7 +1,7 @@
 //! The hacksaw with another drive: one that turns round in the middle of a run, and none at all.
 
 bg_model::bond_graph! {
-    /// A torque that changes its sign at an instant: by a choice in its law, which is a switch, or by an input, which is none.
+    /// A torque that changes its sign at an instant: by a choice in its law, which is a switch, or by an input, which is not.
     pub graph ReversibleHacksaw {
         part hacksaw::Mechanism;
         /// Drive torque on the crank about z, up to the reversal.

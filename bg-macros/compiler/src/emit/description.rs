@@ -48,7 +48,7 @@ fn states(graph: &BondGraph, equations: &StateEquations) -> impl Iterator<Item =
         let (name, unit, kind) = (&state.name, &state.unit, state_kind(state.origin));
         quote! {
             ::bg_model::description::StateInfo {
-                name: #name, unit: #unit, kind: #kind, causality: "integral", element: #element,
+                name: #name, unit: #unit, kind: #kind, element: #element,
             }
         }
     })

@@ -90,9 +90,9 @@ fn switches(equations: &StateEquations) -> String {
 fn states(equations: &StateEquations) -> String {
     let rows = equations.states.iter().enumerate().map(|(index, state)| {
         let storage = state.origin.kind().storage().to_owned();
-        [index.to_string(), code(&state.name), state.unit.clone(), storage, "integral".to_owned()]
+        [index.to_string(), code(&state.name), state.unit.clone(), storage]
     });
-    table("States", ["index", "name", "unit", "storage", "causality"], rows)
+    table("States", ["index", "name", "unit", "storage"], rows)
 }
 
 fn operations(costs: &[(&str, Counts)]) -> String {

@@ -121,7 +121,9 @@ impl Explain for GraphFault {
                 left.name, right.name, left.effort, right.effort
             ),
             F::NotDimensionless { what, found } => format!("{what} must be a pure number; this has unit {found}"),
-            F::NoRoot { found } => format!("the square root of a quantity in {found} has no unit"),
+            F::NoRoot { found } => {
+                format!("the square root of a quantity in {found} has no unit: exponents are whole or half")
+            }
             F::UnknownUnits { from, to, .. } => {
                 format!("nothing fixes the units of effort and flow on the bond `{from}` -> `{to}`")
             }
@@ -202,7 +204,7 @@ impl Explain for GraphFault {
                 )
             }
             F::NotDimensionless { .. } => "divide by a reference quantity of the same unit".to_owned(),
-            F::NoRoot { .. } => "take the root of a square".to_owned(),
+            F::NoRoot { .. } => "take the root of a quantity whose unit has whole exponents".to_owned(),
             F::UnknownUnits { declaration: Some(declaration), .. } => {
                 format!("where the junction is declared, name its domain, such as `{declaration}: rotation`")
             }

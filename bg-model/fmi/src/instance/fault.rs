@@ -36,7 +36,7 @@ pub enum Fault {
     /// A variable that is calculated.
     #[error("`{0}` is calculated and cannot be set")]
     Calculated(String),
-    /// A number that is none.
+    /// A value that is not finite.
     #[error("`{name}` is set to {value}; it must be a finite number")]
     NotFinite {
         /// The variable.

@@ -281,7 +281,7 @@ impl Instance {
     /// Makes a step of Co-Simulation, from time `t` of length `h` (s). On failure the time is that of the last good state.
     ///
     /// # Errors
-    /// Why the run stopped; a step that is none.
+    /// Why the run stopped; an unusable step.
     pub fn step(&mut self, t: f64, h: f64) -> Result<(), Fault> {
         /// A communication point is met to this part of 1 s, or of the time: hosts add up steps.
         const NEAR: f64 = 1e-9;

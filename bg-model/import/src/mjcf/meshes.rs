@@ -66,7 +66,7 @@ impl<'n> Meshes<'n> {
             _ => return Err("a mesh without a file".to_owned()),
         };
         let numbers = |name: &str, plain: &[f64]| list(name).map(|given| given.unwrap_or_else(|| plain.to_vec()));
-        let wrong = || "a mesh with a scale or reference that is none".to_owned();
+        let wrong = || "a mesh with an unusable scale or reference".to_owned();
         let [scale, place] = [numbers("scale", &[1.0; 3])?, numbers("refpos", &[0.0; 3])?];
         let &[w, x, y, z] = &numbers("refquat", &[1.0, 0.0, 0.0, 0.0])?[..] else { return Err(wrong()) };
         if scale.len() != 3 || place.len() != 3 {

@@ -13,6 +13,8 @@
 //! | 8 | function, its arguments | function of steps |
 //! | 9 | switch k, step a, step b | a where switch k is negative, else b |
 //! | 10 | index k | reaction k of the rigid joints |
+//! | 11 | index k | what was found for unknown k of the algebraic loops |
+//! | 12 | index k | side of root k by which a loop is closed, 1 or -1 |
 
 use alloc::vec::Vec;
 

@@ -105,7 +105,7 @@ where
     }
 }
 
-/// What a run's own method tells where runs are side by side, and is told.
+/// What a run's own method and the group exchange where runs are side by side.
 pub(crate) trait OfOne {
     /// What it carries over from step to step, state by state.
     fn compensation(&mut self) -> &mut [f64];

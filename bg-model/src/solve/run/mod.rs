@@ -82,7 +82,7 @@ pub struct Simulation<'a, Me, E = Unconditional> {
 type EachStep<'a> = Box<dyn FnMut(f64) -> ControlFlow<()> + 'a>;
 
 impl<'a, Me: Mechanism> Simulation<'a, Me> {
-    /// A run of `model` from its start, as [`Request::default`] says until it is told otherwise.
+    /// A run of `model` from its start, as [`Request::default`] says, unless another setting is given.
     pub fn new(model: &'a Me) -> Self {
         Self::of(model, Request::default())
     }
@@ -249,7 +249,7 @@ impl<E: Ending> ModelVisitor<f64> for Integration<'_, E> {
     }
 }
 
-/// Makes a run of `model` from its start as it is asked for, of which another observer is told.
+/// Makes a run of `model` from its start as it is asked for, with another observer.
 pub(crate) fn observed<Mo, const N: usize, const G: usize, const M: usize>(
     model: &Mo,
     request: &Request,
@@ -294,7 +294,7 @@ impl<E: Ending> Integration<'_, E> {
     }
 }
 
-/// Who is told of a run: what records it, what hands its steps on, another one.
+/// The observers of a run: what records it, what hands its steps on, another one.
 type Observers<'a, 'b, 'c, Mo, const N: usize, const G: usize, const M: usize> =
     (Recorder<'a, Mo, N, G, M>, (Told<'b>, Another<'c, N, G>));
 

@@ -1,4 +1,4 @@
-//! Observers: who is told what a run gives.
+//! Observers of what a run gives.
 
 use nalgebra::SVector;
 

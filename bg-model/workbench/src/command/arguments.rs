@@ -40,7 +40,7 @@ pub enum Command {
     },
     /// Print or draw the multibond graph of a scene: elements, bonds with causal strokes, states, equations, operations
     Graph(GraphArguments),
-    /// List the states of a scene: name, unit, storage, causality
+    /// List the states of a scene: name, unit, storage
     States {
         /// The scene
         #[arg(long, value_name = "NAME")]
@@ -66,7 +66,7 @@ pub enum Command {
     Sweep(SweepArguments),
     /// Pack a scene as a functional mock-up unit for other programs: FMI 3.0 or 2.0, Model Exchange and Co-Simulation in one file
     Fmu(FmuArguments),
-    /// Record a run as a golden output, or check that what was recorded still comes out
+    /// Record a run as a golden output, or check that recorded runs are reproduced
     #[command(subcommand)]
     Golden(GoldenCommand),
     /// Compare two runs, output by output: the largest difference and its time

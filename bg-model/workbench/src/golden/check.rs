@@ -1,4 +1,4 @@
-//! Whether what was recorded still comes out.
+//! Whether recorded runs are reproduced.
 //!
 //! In: a folder of golden outputs and the mechanism of now. Out: for each of them that it is as recorded, or what
 //! differs and the command that records it anew.

@@ -13,7 +13,7 @@ use super::run::RunFault;
 use crate::compare::{Deviation, deviations};
 use crate::parameters::number;
 
-/// The most columns whose deviations are told one by one.
+/// The most columns whose deviations are listed.
 const MOST: usize = 5;
 
 /// A difference from what was recorded.

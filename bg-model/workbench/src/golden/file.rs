@@ -184,10 +184,10 @@ impl Files {
     }
 }
 
-/// The files of the golden outputs in `folder` by name: all of them, or those called `names`. None where there are none.
+/// The files of the golden outputs in `folder` by name: all of them, or those called `names`; empty where it has none.
 ///
 /// # Errors
-/// A folder that cannot be read, a name that is none of those that there are.
+/// A folder that cannot be read, an unknown name.
 pub fn list(folder: &Path, names: &[String]) -> Result<Vec<Files>, GoldenError> {
     let unreadable = |source| GoldenError::Unreadable { path: folder.to_owned(), source };
     let entries = match fs::read_dir(folder) {

@@ -170,7 +170,7 @@ impl Design {
     /// `count` runs, one in each of as many intervals of every parameter.
     ///
     /// # Errors
-    /// An interval that is none, no or too many runs.
+    /// An unusable interval, no or too many runs.
     pub fn latin_hypercube(intervals: &[(String, Interval)], count: usize, seed: u64) -> Result<Self, DesignError> {
         check(intervals)?;
         let mut places = vec![0.0; if count > MOST { 0 } else { count * intervals.len() }];
@@ -186,7 +186,7 @@ impl Design {
     /// The first `count` points of a Sobol sequence.
     ///
     /// # Errors
-    /// An interval that is none, no or too many runs or parameters.
+    /// An unusable interval, no or too many runs or parameters.
     pub fn sobol(intervals: &[(String, Interval)], count: usize, seed: u32) -> Result<Self, DesignError> {
         check(intervals)?;
         if count > MOST_SOBOL[0] || intervals.len() > MOST_SOBOL[1] {

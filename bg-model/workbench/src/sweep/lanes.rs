@@ -77,7 +77,7 @@ impl<P: Parameters> MechanismVisitor for Together<'_, P> {
     }
 }
 
-/// As a run by itself is told of: one that stops before its end is none that could not begin.
+/// As of a run by itself: one that stops before its end has begun.
 fn outcome(run: Result<Trajectory, LaneError>) -> Result<Outcome, String> {
     match run {
         Ok(run) => Ok(Outcome { run, failure: None }),

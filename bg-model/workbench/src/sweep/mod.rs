@@ -57,7 +57,7 @@ pub enum SweepError {
     /// A file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A part that is none.
+    /// An unusable share.
     #[error("--shard {0}: give it as i/n, such as 3/8 for the third of eight parts")]
     Share(String),
     /// No threads.
@@ -65,7 +65,7 @@ pub enum SweepError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Every so-manieth shard: the work of one of several processes.
+/// Every n-th shard, beginning with the i-th: the work of one of n processes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Share {
     index: usize,

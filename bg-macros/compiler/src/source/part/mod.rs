@@ -34,7 +34,7 @@ pub struct Flattened {
     pub source: Source,
     /// Each part that no graph of the call uses, as a graph of its own with something at each of its ports.
     pub unused: Vec<Graph>,
-    /// Parameters and inputs of graphs that nothing uses. A name that is wrong may be meant for one, so this is told where nothing else is wrong.
+    /// Parameters and inputs of graphs that nothing uses. A wrong name may be meant for one, so this is a fault only where nothing else is wrong.
     pub unused_parameters: Faults,
     uses: Vec<Placed>,
 }

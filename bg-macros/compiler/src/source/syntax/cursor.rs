@@ -306,7 +306,7 @@ impl Cursor<'_> {
         Err(self.note(name.span, &SyntaxFault::DottedName { what, name: name.text, instead }))
     }
 
-    /// The names of `{ a, b }`, without those that are none.
+    /// The names of `{ a, b }`; what is no name is a fault and left out.
     pub fn names(&mut self, what: &'static str) -> Vec<Name> {
         let mut names = Vec::new();
         self.statements(|entry| {

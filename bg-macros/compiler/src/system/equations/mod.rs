@@ -2,8 +2,9 @@
 //!
 //! In: [`CausalGraph`]. Out: [`StateEquations`]. No longer occurs: bonds, ports and junctions; scalars only from here.
 //! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one expression;
-//! storages in integral causality turn theirs into rates, those in derivative causality differentiate theirs. What needs itself is an
-//! initially unknown, with an equation that is solved in symbols where it is linear, by an iteration at run time where it is not.
+//! storages in integral causality turn theirs into rates, those in derivative causality differentiate theirs. What
+//! depends on itself is an unknown with an equation, which is solved in symbols where it is linear, by an iteration at run
+//! time where it is not.
 
 pub mod definite;
 mod dependent;

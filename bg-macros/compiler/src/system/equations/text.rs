@@ -8,7 +8,7 @@ use super::unknowns::Unknown;
 use crate::expr::{Id, Symbol, text as expression_text};
 use crate::graph::{BondId, ElementKind, End, Law, NodeId, NodeKind, Role, Storage, TrackKind};
 
-/// An expression longer than this is told by what it depends on.
+/// Of an expression longer than this a message says what it depends on.
 const LONGEST: usize = 300;
 
 /// All lines: for every bond its effort and its flow, then the rates, then what has been solved for.

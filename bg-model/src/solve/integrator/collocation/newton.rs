@@ -5,11 +5,14 @@
 //! real system and one complex system for each pair. Source: Hairer, Wanner II, section IV.8; the tests of convergence
 //! and their constants are those of `radau5.f`.
 
+use alloc::vec::Vec;
+
 use nalgebra::Complex;
 use pulp::NullaryFnOnce;
 
-use super::{Collocation, KEEP};
+use super::{Collocation, KEEP, Tableau};
 use crate::model::scalar::double::root;
+use crate::solve::integrator::side_by_side::{OfEach, for_each, put, some};
 use crate::solve::integrator::tolerances::largest;
 use crate::solve::integrator::vectors::rate_in;
 use crate::solve::integrator::{Flow, PointRef, Scale, is_finite};
@@ -140,45 +143,119 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     fn correct_inlined(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         let n = flow.states();
         let Self { tableau, z, f, room: [_, sizes], real_side, complex_sides, .. } = self;
-        let (z, f) = (z.each_mut().map(|z| &mut z[..n]), f.each_ref().map(|f| &f[..n]));
-        let (real, sizes) = (&mut real_side[..n], &mut sizes[..n]);
-        let mut complex = complex_sides.each_mut().map(|side| &mut side[..n]);
-        for i in 0..n {
-            let f: [f64; S] = core::array::from_fn(|j| h * f[j][i]);
-            let residual: [f64; S] = core::array::from_fn(|j| dot(&tableau.a[j], &f) - z[j][i]);
-            real[i] = dot(&tableau.real.left, &residual);
-            for (complex, mode) in complex.iter_mut().zip(&tableau.pairs) {
-                complex[i] = Complex::new(dot(&mode.left[0], &residual), dot(&mode.left[1], &residual));
-            }
+        let tableau: &Tableau<S, P> = tableau;
+        for_each::<f64>(0, n, &mut Residuals { tableau, z, f, h, real: real_side, complex: complex_sides });
+        self.real.solve(self.arch, flow, &mut real_side[..n]);
+        for (factors, complex) in self.complex.iter().zip(&mut *complex_sides) {
+            factors.solve(self.arch, flow, &mut complex[..n]);
         }
-        self.real.solve(self.arch, flow, real);
-        for (factors, complex) in self.complex.iter().zip(&mut complex) {
-            factors.solve(self.arch, flow, complex);
-        }
-        for i in 0..n {
-            let allowed = scale.allowed(i, start.x[i]);
-            let mut size = 0.0;
-            for j in 0..S {
-                let mut correction = tableau.real.right[j] * real[i];
-                for (complex, mode) in complex.iter().zip(&tableau.pairs) {
-                    correction += mode.right[0][j] * complex[i].re - mode.right[1][j] * complex[i].im;
-                }
-                z[j][i] += correction;
-                // A correction that is no number shows as an infinite one.
-                let correction = if correction.is_nan() { f64::INFINITY } else { correction.abs() };
-                size = if correction > size { correction } else { size };
-            }
-            sizes[i] = size / allowed;
-        }
-        largest(sizes)
+        let corrections =
+            &mut Corrections { tableau, real: real_side, complex: complex_sides, scale, start: start.x, z, sizes };
+        for_each::<f64>(0, n, corrections);
+        largest(&sizes[..n])
     }
 }
 
-#[inline(always)]
-fn dot<const S: usize>(a: &[f64; S], b: &[f64; S]) -> f64 {
-    let mut sum = a[0] * b[0];
-    for j in 1..S {
-        sum += a[j] * b[j];
+/// The right-hand sides of a correction.
+struct Residuals<'a, const S: usize, const P: usize> {
+    tableau: &'a Tableau<S, P>,
+    z: &'a [Vec<f64>; S],
+    f: &'a [Vec<f64>; S],
+    h: f64,
+    real: &'a mut [f64],
+    complex: &'a mut [Vec<Complex<f64>>; P],
+}
+
+impl<const S: usize, const P: usize> OfEach for Residuals<'_, S, P> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { tableau, h, .. } = self;
+        let (mut f, mut residuals) = ([[0.0; W]; S], [[0.0; W]; S]);
+        for j in 0..S {
+            f[j] = some(&self.f[j], first);
+            residuals[j] = some(&self.z[j], first);
+            for f in &mut f[j] {
+                *f *= *h;
+            }
+        }
+        for (residual, row) in residuals.iter_mut().zip(&tableau.a) {
+            let sums = weighted(row, &f);
+            for i in 0..W {
+                residual[i] = sums[i] - residual[i];
+            }
+        }
+        put(self.real, first, weighted(&tableau.real.left, &residuals));
+        for (complex, mode) in self.complex.iter_mut().zip(&tableau.pairs) {
+            let [re, im] = [0, 1].map(|part| weighted(&mode.left[part], &residuals));
+            for i in 0..W {
+                complex[first + i] = Complex::new(re[i], im[i]);
+            }
+        }
     }
-    sum
+}
+
+/// The corrected increments, and the sizes of the corrections in parts of what is allowed.
+struct Corrections<'a, const S: usize, const P: usize> {
+    tableau: &'a Tableau<S, P>,
+    real: &'a [f64],
+    complex: &'a [Vec<Complex<f64>>; P],
+    scale: &'a Scale,
+    start: &'a [f64],
+    z: &'a mut [Vec<f64>; S],
+    sizes: &'a mut [f64],
+}
+
+impl<const S: usize, const P: usize> OfEach for Corrections<'_, S, P> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let Self { tableau, scale, .. } = self;
+        let (real, start): ([f64; W], [f64; W]) = (some(self.real, first), some(self.start, first));
+        let absolute: [f64; W] = some(&scale.absolute, first);
+        let mut parts = [[[0.0; W]; 2]; P];
+        for ([re, im], complex) in parts.iter_mut().zip(self.complex) {
+            let complex: [Complex<f64>; W] = some(complex, first);
+            for i in 0..W {
+                (re[i], im[i]) = (complex[i].re, complex[i].im);
+            }
+        }
+        let mut sizes = [0.0; W];
+        for (j, z) in self.z.iter_mut().enumerate() {
+            let mut corrections = [0.0; W];
+            for i in 0..W {
+                corrections[i] = tableau.real.right[j] * real[i];
+            }
+            for ([re, im], mode) in parts.iter().zip(&tableau.pairs) {
+                for i in 0..W {
+                    corrections[i] += mode.right[0][j] * re[i] - mode.right[1][j] * im[i];
+                }
+            }
+            let mut increments: [f64; W] = some(z, first);
+            for i in 0..W {
+                increments[i] += corrections[i];
+                // A correction that is no number shows as an infinite one.
+                let size = if corrections[i].is_nan() { f64::INFINITY } else { corrections[i].abs() };
+                sizes[i] = if size > sizes[i] { size } else { sizes[i] };
+            }
+            put(z, first, increments);
+        }
+        for i in 0..W {
+            sizes[i] /= absolute[i] + start[i].abs() * scale.relative;
+        }
+        put(self.sizes, first, sizes);
+    }
+}
+
+/// The sums of these numbers with weights, in their order.
+#[inline(always)]
+fn weighted<const S: usize, const W: usize>(weights: &[f64; S], of: &[[f64; W]; S]) -> [f64; W] {
+    let mut sums = [0.0; W];
+    for i in 0..W {
+        sums[i] = weights[0] * of[0][i];
+    }
+    for j in 1..S {
+        for i in 0..W {
+            sums[i] += weights[j] * of[j][i];
+        }
+    }
+    sums
 }

@@ -38,7 +38,7 @@ pub(crate) struct Job<'a, Mo, O, const N: usize> {
     pub method: &'a mut AnyMethod,
     /// Its start.
     pub start: SVector<f64, N>,
-    /// Who is told of it.
+    /// Its observer.
     pub observer: O,
 }
 

@@ -1,0 +1,207 @@
+//! What documents say of files: links lead somewhere, files that are named are there, tables list the modules of their
+//! folders, decisions are short.
+
+mod markdown;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use markdown::{anchors, codes, first_cells, labels, links};
+
+/// Lines that a decision may have.
+const LINES: usize = 40;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the folder of the workspace").to_owned()
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The files in and below a folder, but for what is hidden and what builds leave.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let name = |path: &Path| path.file_name().expect("a name").to_string_lossy().into_owned();
+    let is_source = |path: &PathBuf| {
+        let name = name(path);
+        !name.starts_with('.') && !["target", "out", "node_modules"].contains(&name.as_str())
+    };
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let (folders, mut found): (Vec<PathBuf>, Vec<PathBuf>) = entries.filter(is_source).partition(|path| path.is_dir());
+    found.extend(folders.iter().flat_map(|folder| files(folder)));
+    found
+}
+
+fn documents() -> impl Iterator<Item = (PathBuf, String)> {
+    let is_markdown = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "md");
+    files(&root()).into_iter().filter(is_markdown).map(|path| (path.clone(), read(&path)))
+}
+
+/// The modules that a folder has, tests and lists left out.
+fn modules(folder: &str) -> BTreeSet<String> {
+    let entries = fs::read_dir(root().join(folder)).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let names = entries.map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned());
+    names.filter(|name| !["lib", "mod", "tests"].contains(&name.as_str())).collect()
+}
+
+fn names<const N: usize>(names: [&str; N]) -> BTreeSet<String> {
+    names.into_iter().map(str::to_owned).collect()
+}
+
+/// The names in code in the first column of the table of `ARCHITECTURE.md` with this head.
+fn table_of_the_architecture(head: &str) -> BTreeSet<String> {
+    first_cells(&read(&root().join("ARCHITECTURE.md")), head).iter().flat_map(|cell| codes(cell)).collect()
+}
+
+#[test]
+fn links_lead_to_files_and_headings() {
+    let mut count = 0;
+    for (path, text) in documents() {
+        for link in links(&text).into_iter().filter(|link| !link.contains(':')) {
+            let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
+            let target = if file.is_empty() { path.clone() } else { path.with_file_name(file) };
+            assert!(target.exists(), "{}: {link} leads to no file", path.display());
+            let is_anchored = !anchor.is_empty() && target.extension().is_some_and(|extension| extension == "md");
+            assert!(
+                !is_anchored || anchors(&read(&target)).contains(anchor),
+                "{}: {link} leads to no heading",
+                path.display()
+            );
+            count += 1;
+        }
+    }
+    assert!(count > 300, "{count} links");
+}
+
+/// Of the documents for who works on the project: others name files of their readers, too.
+#[test]
+fn source_files_that_are_named_are_there() {
+    let of_the_project = ["ARCHITECTURE.md", "CONTRIBUTING.md", "tests", "docs/decisions", "docs/benchmarks"];
+    let is_of_the_project = |path: &Path| of_the_project.iter().any(|part| path.starts_with(root().join(part)));
+    let all: Vec<String> = files(&root()).iter().map(|path| path.to_string_lossy().into_owned()).collect();
+    // `NAME` stands for any.
+    let is_source = |code: &String| {
+        let is_path = code.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '/' | '.'));
+        is_path && code.ends_with(".rs") && !code.contains("NAME")
+    };
+    let mut count = 0;
+    for (path, text) in documents().filter(|(path, _)| is_of_the_project(path)) {
+        for code in codes(&text).into_iter().filter(is_source) {
+            let end = format!("/{code}");
+            assert!(all.iter().any(|file| file.ends_with(&end)), "{}: `{code}` is no file", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 80, "{count} files");
+}
+
+#[test]
+fn decisions_are_short_and_listed_in_their_order() {
+    let folder = root().join("docs/decisions");
+    let list = read(&folder.join("README.md"));
+    let mut files = files(&folder);
+    files.retain(|path| !path.ends_with("README.md"));
+    files.sort();
+    let mut rows = Vec::new();
+    for path in files {
+        let (name, text) = (path.file_name().expect("a name").to_string_lossy().into_owned(), read(&path));
+        let lines = text.lines().count();
+        assert!(lines <= LINES, "{name}: {lines} lines");
+        let (number, title) = text.lines().next().and_then(|head| head[2..].split_once(". ")).expect("`# N. Title`");
+        assert_eq!(format!("{number:0>4}"), name[..4], "{name}");
+        rows.push(format!("| [{}]({name}) | {title} |", &name[..4]));
+    }
+    let listed: Vec<&str> = list.lines().filter(|line| line.starts_with("| [")).collect();
+    assert_eq!(listed.len(), rows.len());
+    for (listed, row) in listed.iter().zip(&rows) {
+        assert!(listed.starts_with(row), "{listed}\nis not\n{row}");
+    }
+}
+
+#[test]
+fn tables_of_modules_have_those_of_their_folders() {
+    for folder in ["model", "solve"] {
+        let listed = table_of_the_architecture(&format!("| module of `{folder}/` |"));
+        assert_eq!(listed, modules(&format!("bg-model/src/{folder}")), "{folder}");
+    }
+    let mut workbench = modules("bg-model/workbench/src");
+    // It is that of bg-analysis, under its name.
+    workbench.insert("linear".to_owned());
+    assert_eq!(table_of_the_architecture("| module | question it answers |"), workbench);
+    // What its documentation lists is what is public in it, as rustdoc's links hold.
+    let private = names(["machine", "quantities", "running"]);
+    let text = read(&root().join("bg-model/workbench/src/lib.rs")).replace("//! ", "");
+    let listed: BTreeSet<String> =
+        first_cells(&text, "| module | question |").iter().flat_map(|cell| codes(cell)).collect();
+    let public: BTreeSet<String> = workbench.difference(&private).cloned().chain(["cookbook".to_owned()]).collect();
+    assert_eq!(listed, public);
+}
+
+#[test]
+fn the_layout_has_files_that_are_there() {
+    let text = read(&root().join("ARCHITECTURE.md"));
+    let layout = text.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the layout");
+    let mut folders: Vec<&str> = Vec::new();
+    for line in layout.lines() {
+        let entry = line.trim_start();
+        let depth = (line.len() - entry.len()) / 2;
+        folders.truncate(depth);
+        let (entry, _) = entry.split_once("  ").unwrap_or((entry, ""));
+        for name in entry.split(", ") {
+            assert!(folders.iter().fold(root(), |path, folder| path.join(folder)).join(name).exists(), "{line}");
+        }
+        folders.push(entry);
+    }
+}
+
+#[test]
+fn stages_of_the_table_are_those_of_the_pipeline() {
+    let text = read(&root().join("ARCHITECTURE.md"));
+    let compiler = root().join("bg-macros/compiler/src");
+    let code = ["pipeline.rs", "lib.rs"].map(|file| read(&compiler.join(file))).concat();
+    let rows = text.lines().skip_while(|line| !line.starts_with("| floor | stage |")).skip(2);
+    let stages: Vec<String> = rows
+        .take_while(|line| line.starts_with('|'))
+        .flat_map(|row| codes(row.split('|').nth(2).expect("a stage")))
+        .collect();
+    assert!(stages.len() > 15, "{stages:?}");
+    for stage in stages {
+        assert!(code.contains(&stage), "`{stage}` is no stage");
+    }
+}
+
+/// In rustdoc the chapters of the language are one page: there a label leads to a heading of that page.
+#[test]
+fn labels_of_the_language_lead_to_headings_in_rustdoc() {
+    let package = root().join("bg-macros");
+    let source = read(&package.join("src/lib.rs"));
+    let in_rustdoc = labels(&source.replace("/// ", ""));
+    let chapters: Vec<String> = files(&package.join("docs/language")).iter().map(|path| read(path)).collect();
+    let headings: BTreeSet<String> = chapters.iter().flat_map(|text| anchors(text)).collect();
+    let used: BTreeSet<String> = chapters.iter().flat_map(|text| labels(text).into_keys()).collect();
+    assert!(used.len() > 15, "{used:?}");
+    assert_eq!(used, in_rustdoc.keys().cloned().collect());
+    for (label, target) in &in_rustdoc {
+        assert!(target.strip_prefix('#').is_some_and(|anchor| headings.contains(anchor)), "{label}: {target}");
+    }
+    for text in &chapters {
+        let (text, defined) = (text.to_lowercase(), labels(text));
+        let lacking =
+            in_rustdoc.keys().find(|label| text.contains(&format!("[{label}]")) && !defined.contains_key(*label));
+        assert_eq!(lacking, None, "in {:?}", text.lines().next());
+    }
+    for path in files(&package.join("docs/language")) {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        assert!(source.contains(&format!("include_str!(\"../docs/language/{name}\")")), "{name} is not in rustdoc");
+    }
+}
+
+#[test]
+fn suites_are_listed() {
+    let text = read(&root().join("tests/README.md"));
+    let listed: BTreeSet<String> = first_cells(&text, "| suite |").iter().flat_map(|cell| codes(cell)).collect();
+    let manifest = read(&root().join("tests/Cargo.toml"));
+    let suites = manifest.split("[[test]]\nname = \"").skip(1).filter_map(|rest| rest.split_once('"'));
+    assert_eq!(listed, suites.map(|(name, _)| format!("{name}/")).collect());
+}
