@@ -22,10 +22,6 @@ use crate::model::scalar::Scalar;
 /// A hand-written system needs its rate only. What else it knows of itself it implements as a capability and hands
 /// over as `Some(self)`; what it does not know is [`Absent`].
 pub trait System<S: Scalar, const N: usize, const G: usize> {
-    /// Whether the steps of methods are compiled around the rate, in the crate of who runs it, so that it is inlined into them. Else they call
-    /// it, and what makes the steps is compiled once, in this crate: a run takes some tenths longer, a build far less. The bits are the same.
-    const HAS_INLINED_STEPS: bool = false;
-
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`. `negative[k]` says that switch `k` is in the branch of its
     /// negative guard. Allocates nothing.
     fn rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);

@@ -55,8 +55,6 @@ pub struct BondGraph {
     pub baumgarte: Option<f64>,
     /// Whether a storage in derivative causality is a fault.
     pub expects_integral: bool,
-    /// Whether the steps of methods are compiled around the rate.
-    pub has_inlined_steps: bool,
     /// Observed outputs.
     pub observations: Vec<Observation>,
     /// The guesses in start expressions, each one unknown of the assembly.

@@ -112,8 +112,6 @@ pub enum Item {
     Baumgarte(Baumgarte),
     /// `expect integral causality;`: a storage in derivative causality is a fault.
     IntegralCausality,
-    /// `inlined steps;`: the steps of methods are compiled around the rate.
-    InlinedSteps,
     /// `body NAME { ... }`
     Body(Body),
     /// `joint NAME: KIND AXES (a.P -> b.Q) { ... }`
@@ -468,8 +466,6 @@ pub struct Scene {
     pub angles: bool,
     /// `all reactions;`: what rigid joints determine of bodies stays in the states, with a reaction for each row of each joint.
     pub all_reactions: bool,
-    /// `inlined steps;`: the steps of methods are compiled around its rate.
-    pub inlined_steps: bool,
     /// `dependent { rod }`: bodies of which loops give the orientations.
     pub dependent: Vec<Name>,
     /// `expect planar;`, `expect states = 29;`, `expect independent speeds;`, `expect integral causality;`

@@ -146,7 +146,6 @@ impl Display for Item {
             Self::Impulse(_) => f.write_str("start impulse;"),
             Self::Baumgarte(Baumgarte { rate, .. }) => write!(f, "baumgarte {rate};"),
             Self::IntegralCausality => Expectation::IntegralCausality.fmt(f),
-            Self::InlinedSteps => f.write_str("inlined steps;"),
             Self::Body(body) => body.fmt(f),
             Self::Joint(joint) => joint.fmt(f),
             Self::Spring(spring) => spring.fmt(f),
@@ -348,7 +347,6 @@ impl Display for Scene {
         }
         entries.extend(self.all_reactions.then(|| "all reactions;".into()));
         entries.extend(self.angles.then(|| "angles;".into()));
-        entries.extend(self.inlined_steps.then(|| "inlined steps;".into()));
         entries.extend(self.expect.iter().map(Expectation::to_string));
         write!(f, "scene {} ", self.name)?;
         block(f, &entries)

@@ -144,9 +144,6 @@ fn watched(literal: &Graph, mut items: Vec<Item>, scene: &Scene) -> Graph {
     if scene.expect.iter().any(|expected| matches!(expected, Expectation::IntegralCausality)) {
         items.push(Item::IntegralCausality);
     }
-    if scene.inlined_steps && !items.iter().any(|item| matches!(item, Item::InlinedSteps)) {
-        items.push(Item::InlinedSteps);
-    }
     let docs = if scene.docs.is_empty() { literal.docs.clone() } else { scene.docs.clone() };
     Graph { docs, visibility: literal.visibility.clone(), name: scene.name.clone(), items, drawing: Drawing::default() }
 }

@@ -52,7 +52,7 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
             values(points(&mut ground.points), each);
         }
         Item::Gravity(gravity) => values([&mut gravity.acceleration], each),
-        Item::Impulse(_) | Item::IntegralCausality | Item::InlinedSteps | Item::ScenesOnly(_) => {}
+        Item::Impulse(_) | Item::IntegralCausality | Item::ScenesOnly(_) => {}
         Item::Baumgarte(baumgarte) => values([&mut baumgarte.rate], each),
         Item::Body(body) => of_body(body, each),
         Item::Joint(joint) => {

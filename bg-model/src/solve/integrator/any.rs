@@ -77,23 +77,8 @@ impl Method for AnyMethod {
         inside!((&mut) self, method => method.fit(states));
     }
 
-    fn attempt(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         inside!((&mut) self, method => method.attempt(flow, start, h, scale, end))
-    }
-
-    fn attempt_any(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
-        self.attempt(flow, start, h, scale, end)
-    }
-
-    fn prepare_dense_any(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
-        self.prepare_dense(flow, start, h, end);
     }
 
     fn advance(&mut self) {

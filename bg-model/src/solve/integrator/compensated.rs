@@ -3,18 +3,16 @@
 //! In: a state and its change in a step. Out: their sum. Without it the momenta of long runs drift by a random walk. Source:
 //! W. Kahan, Communications of the ACM 8 (1965); Hairer, Lubich, Wanner, section VIII.5.
 
-use alloc::vec;
-use alloc::vec::Vec;
-
+use super::side_by_side::Padded;
 use crate::model::scalar::Scalar;
 
 /// What rounding has kept from the states.
 #[derive(Clone, Debug)]
-pub(super) struct CompensatedSum<S> {
+pub(super) struct CompensatedSum<S, const W: usize> {
     /// At the start of the step.
-    pub start: Vec<S>,
+    pub start: Padded<S, W>,
     /// At the end of the step that was tried last.
-    pub end: Vec<S>,
+    pub end: Padded<S, W>,
 }
 
 /// A state that `change` moves on from `from`, with what rounding had kept before from it, and what it keeps now.
@@ -25,10 +23,10 @@ pub(super) fn compensated<S: Scalar>(from: S, change: S, before: S) -> (S, S) {
     (to, change - (to - from))
 }
 
-impl<S: Scalar> CompensatedSum<S> {
+impl<S: Scalar, const W: usize> CompensatedSum<S, W> {
     /// Nothing yet.
     pub fn new(states: usize) -> Self {
-        let nothing = vec![S::from_f64(0.0); states];
+        let nothing = Padded::new(states, S::from_f64(0.0));
         Self { start: nothing.clone(), end: nothing }
     }
 

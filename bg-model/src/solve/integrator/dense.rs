@@ -81,7 +81,7 @@ impl<F: OfEach> NullaryFnOnce for All<F> {
     #[inline(always)]
     fn call(self) {
         let Self(mut calculation, states) = self;
-        for_each::<f64>(0, states, &mut calculation);
+        for_each(states, &mut calculation);
     }
 }
 
@@ -111,46 +111,5 @@ impl OfEach for Polynomials<'_> {
             sums[k] = start[k] + *theta * sums[k];
         }
         put(x, first, sums);
-    }
-}
-
-/// The most terms of a sum of rates.
-const TERMS: usize = 16;
-
-/// Writes `h` times a sum of rates, each with its weight, in their order: in the vectors `arch`.
-#[inline(never)]
-pub(super) fn write_sum<'a>(arch: Arch, h: f64, terms: impl Iterator<Item = (f64, &'a [f64])>, out: &mut [f64]) {
-    let (mut all, mut count) = ([(0.0, &[][..]); TERMS], 0);
-    for term in terms {
-        all[count] = term;
-        count += 1;
-    }
-    let states = out.len();
-    arch.dispatch(All(Sums { h, terms: &all[..count], out }, states));
-}
-
-/// `h` times the sums of weighted rates, to be written into `out`.
-struct Sums<'a> {
-    h: f64,
-    terms: &'a [(f64, &'a [f64])],
-    out: &'a mut [f64],
-}
-
-impl OfEach for Sums<'_> {
-    #[inline(always)]
-    fn of<const W: usize>(&mut self, first: usize) {
-        let Self { h, terms, out } = self;
-        // Adding to -0 changes nothing, not even the sign of a zero.
-        let mut sums = [-0.0; W];
-        for (weight, rate) in *terms {
-            let rate: [f64; W] = some(rate, first);
-            for k in 0..W {
-                sums[k] += weight * rate[k];
-            }
-        }
-        for sum in &mut sums {
-            *sum *= *h;
-        }
-        put(out, first, sums);
     }
 }

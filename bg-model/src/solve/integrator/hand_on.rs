@@ -36,7 +36,7 @@ macro_rules! hand_on {
             $present!((&) self, method => method.faulty_rate())
         }
 
-        fn prepare_dense(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
             $present!((&mut) self, method => method.prepare_dense(flow, start, h, end));
         }
 

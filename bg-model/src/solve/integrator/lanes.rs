@@ -56,11 +56,6 @@ impl<Sys, V: Vector, const N: usize, const G: usize> Rates<Lanes<V>> for Side<'_
 where
     Sys: System<Lanes<V>, N, G>,
 {
-    #[inline(always)]
-    fn states(&self) -> usize {
-        N
-    }
-
     #[inline(never)]
     fn rate(&self, t: Lanes<V>, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
         V::vectorized(Rate { side: self, t, x, dx });
@@ -190,18 +185,19 @@ impl<V: Vector> AnyInLanes<V> {
         }
     }
 
-    /// The rates of a stage of the last attempts.
-    fn stage(&self, stage: usize) -> &[Lanes<V>] {
+    /// Writes the rates of a stage of the last attempt at a place.
+    fn take_stage(&self, place: usize, stage: usize, to: &mut [f64]) {
+        let mut write = |state: usize, rate: Lanes<V>| to[state] = *rate.0.at(place);
         match self {
-            Self::Cfmr7(method) => method.stage(stage),
-            Self::Dop853(method) => method.stage(stage),
-            Self::Nystrom(method) => method.stage(stage),
+            Self::Cfmr7(method) => method.stage(stage).for_each(|(state, rate)| write(state, rate)),
+            Self::Dop853(method) => method.stage(stage).for_each(|(state, rate)| write(state, rate)),
+            Self::Nystrom(method) => method.stage(stage).for_each(|(state, rate)| write(state, rate)),
         }
     }
 
     /// Hands the attempt at a place over to its run's own `method`.
     pub fn hand_over(&self, lane: usize, method: &mut dyn OfOne) {
-        method.keep(&|to| take(lane, self.to_be_carried(), to), &|stage, to| take(lane, self.stage(stage), to));
+        method.keep(&|to| take(lane, self.to_be_carried(), to), &|stage, to| self.take_stage(lane, stage, to));
     }
 
     /// Iterates towards the fastest oscillations at the places of `due`, from states `x` with rates `rate` at time `t` (s); gives their

@@ -62,23 +62,17 @@ pub(crate) use steps::{Begin, Rates};
 pub use taylor::Taylor;
 pub use tolerances::{Absolute, Scale, Tolerances};
 pub(crate) use tolerances::{displaced, rounding, smaller};
-pub(crate) use vectors::{Arch, rate_in};
+pub(crate) use vectors::Arch;
 
 /// A smooth flow: a system with its switches frozen. Only the number of its states and the rate have to be written; what else it knows of
-/// itself it may say. States, and all that there is one of for each of them, are slices: methods are compiled once for `dyn Flow`, and
-/// again for a flow whose type is known, of which [`Flow::states`] is then a constant.
+/// itself it may say. States, and all that there is one of for each of them, are slices: methods are compiled once, in this crate, for any
+/// flow.
 pub trait Flow {
     /// The number of states.
     fn states(&self) -> usize;
 
     /// Writes dx/dt at time `t` (s) and state `x` into `dx`.
     fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]);
-
-    /// As [`Flow::rate`], to be inlined into the stages of a step.
-    #[inline(always)]
-    fn inlined_rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.rate(t, x, dx);
-    }
 
     /// Where the Jacobian df/dx can differ from zero.
     fn sparsity(&self) -> Sparsity {
@@ -135,7 +129,7 @@ pub trait Flow {
     /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second derivatives.
     #[inline(always)]
     fn forces(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.inlined_rate(t, x, dx);
+        self.rate(t, x, dx);
         self.second_derivatives(x, dx);
     }
 
@@ -272,19 +266,7 @@ pub trait Method {
     ///
     /// Gives the norm of the error estimate: up to 1 the step satisfies the tolerances. A fixed-step method gives 0. Not
     /// a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
-    fn attempt(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64;
-
-    /// As [`Method::attempt`], of any flow: of this crate's methods compiled once, in this crate.
-    fn attempt_any(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
-        self.attempt(flow, start, h, scale, end)
-    }
+    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64;
 
     /// The norm of what `project` leaves of the last attempt's error estimate; none where the method does not say. Joints that
     /// hold a motion take away what a step errs in it.
@@ -322,12 +304,7 @@ pub trait Method {
     /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
     /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be nothing to
     /// prepare.
-    fn prepare_dense(&mut self, _flow: &(impl Flow + ?Sized), _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {}
-
-    /// As [`Method::prepare_dense`], of any flow: of this crate's methods compiled once, in this crate.
-    fn prepare_dense_any(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
-        self.prepare_dense(flow, start, h, end);
-    }
+    fn prepare_dense(&mut self, _flow: &dyn Flow, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {}
 
     /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
     fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]);

@@ -1,33 +1,116 @@
-//! Calculations that are the same for each state, several states side by side.
+//! Numbers of all states in groups side by side.
 //!
-//! In: what is calculated of some states. Out: it is done for all of them. A group's numbers are read into arrays of a known length before
-//! any is written, so that they become vectors of the machine however many states there are, and whatever lies beside what is written.
+//! In: how many states there are. Out: numbers for each of them, and groups of these as arrays of a length that is known when this is
+//! compiled: what is calculated of a group becomes vectors of the machine however many states there are.
 
-/// What is calculated of each state.
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::{Deref, DerefMut, Range};
+
+/// Numbers of a run in a group.
+pub(crate) const SIDE_BY_SIDE: usize = 8;
+
+/// A number for each state, with room behind them for a group that begins at the last one.
+#[derive(Clone, Debug)]
+pub(crate) struct Padded<S, const W: usize> {
+    numbers: Vec<S>,
+    states: usize,
+}
+
+impl<S: Copy, const W: usize> Padded<S, W> {
+    /// This number for each of so many states.
+    pub fn new(states: usize, number: S) -> Self {
+        Self { numbers: vec![number; states + W - 1], states }
+    }
+
+    /// The group that begins at a state.
+    #[inline(always)]
+    pub fn group(&self, first: usize) -> [S; W] {
+        *self.numbers[first..].first_chunk().expect("there is room for a group")
+    }
+
+    /// Writes the group that begins at a state, and what lies behind the last state with it.
+    #[inline(always)]
+    pub fn set_group(&mut self, first: usize, group: [S; W]) {
+        *self.numbers[first..].first_chunk_mut().expect("there is room for a group") = group;
+    }
+}
+
+impl<S, const W: usize> Deref for Padded<S, W> {
+    type Target = [S];
+
+    #[inline(always)]
+    fn deref(&self) -> &[S] {
+        &self.numbers[..self.states]
+    }
+}
+
+impl<S, const W: usize> DerefMut for Padded<S, W> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [S] {
+        &mut self.numbers[..self.states]
+    }
+}
+
+/// `R` rows of numbers for each state, as those of the stages of a step: of each group all rows stand together, so that a sum over rows finds
+/// them by one look at where the group is.
+#[derive(Clone, Debug)]
+pub(crate) struct Stack<S, const W: usize, const R: usize> {
+    /// The first state of each group, and its rows.
+    groups: Vec<(usize, [[S; W]; R])>,
+}
+
+impl<S: Copy, const W: usize, const R: usize> Stack<S, W, R> {
+    /// This number everywhere, in room for so many states and further groups.
+    pub fn new(states: usize, further: usize, number: S) -> Self {
+        let mut stack = Self { groups: Vec::with_capacity(states.div_ceil(W) + further) };
+        stack.arrange([0..states], number);
+        stack
+    }
+
+    /// Makes groups of these states, none of which has states of two of the ranges; with this number everywhere.
+    pub fn arrange<const RANGES: usize>(&mut self, ranges: [Range<usize>; RANGES], number: S) {
+        self.groups.clear();
+        let firsts = ranges.into_iter().flat_map(|states| states.step_by(W));
+        self.groups.extend(firsts.map(|first| (first, [[number; W]; R])));
+    }
+
+    /// The groups, each with its first state.
+    #[inline(always)]
+    pub fn groups(&self) -> &[(usize, [[S; W]; R])] {
+        &self.groups
+    }
+
+    /// Writes a row.
+    #[inline(always)]
+    pub fn set_row(&mut self, row: usize, numbers: &Padded<S, W>) {
+        for (first, rows) in &mut self.groups {
+            rows[row] = numbers.group(*first);
+        }
+    }
+
+    /// The numbers of a row, each with its state, of groups of this many states or fewer: up to the first state of the next one.
+    pub fn row(&self, row: usize, states: usize) -> impl Iterator<Item = (usize, S)> {
+        let ends = self.groups[1.min(self.groups.len())..].iter().map(|(first, _)| *first).chain([states]);
+        self.groups.iter().zip(ends).flat_map(move |((first, rows), end)| (*first..end).zip(rows[row]))
+    }
+}
+
+/// A calculation for each state.
 pub(super) trait OfEach {
     /// Calculates it of `W` states from `first` on.
     fn of<const W: usize>(&mut self, first: usize);
 }
 
-/// Calculates it of the states `from`..`to`, whose numbers are of type `S`: of those that are vectors already one after the other.
+/// Calculates it of so many states.
 #[inline(always)]
-pub(super) fn for_each<S>(from: usize, to: usize, calculation: &mut impl OfEach) {
-    let mut first = from;
-    if size_of::<S>() == size_of::<f64>() {
-        while first + 8 <= to {
-            calculation.of::<8>(first);
-            first += 8;
-        }
-        if first + 4 <= to {
-            calculation.of::<4>(first);
-            first += 4;
-        }
-        if first + 2 <= to {
-            calculation.of::<2>(first);
-            first += 2;
-        }
+pub(super) fn for_each(states: usize, calculation: &mut impl OfEach) {
+    let mut first = 0;
+    while first + SIDE_BY_SIDE <= states {
+        calculation.of::<SIDE_BY_SIDE>(first);
+        first += SIDE_BY_SIDE;
     }
-    while first < to {
+    while first < states {
         calculation.of::<1>(first);
         first += 1;
     }

@@ -22,9 +22,6 @@ pub(crate) struct Begin<'a, S> {
 
 /// What stages of first order are evaluated of.
 pub(crate) trait Rates<S> {
-    /// The number of states.
-    fn states(&self) -> usize;
-
     /// Writes the rates at time `t` (s) and state `x` into `dx`. Compiled once.
     fn rate(&self, t: S, x: &[S], dx: &mut [S]);
 
@@ -45,7 +42,7 @@ pub(crate) trait Forces<S>: Rates<S> {
 }
 
 /// Those of a flow.
-pub(super) struct OfFlow<'a, F: ?Sized>(pub &'a F);
+pub(super) struct OfFlow<'a>(pub &'a dyn Flow);
 
 impl<'a> Begin<'a, f64> {
     /// The start of a step of size `h` (s).
@@ -55,12 +52,7 @@ impl<'a> Begin<'a, f64> {
     }
 }
 
-impl<F: Flow + ?Sized> Rates<f64> for OfFlow<'_, F> {
-    #[inline(always)]
-    fn states(&self) -> usize {
-        self.0.states()
-    }
-
+impl Rates<f64> for OfFlow<'_> {
     #[inline(always)]
     fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.0.rate(t, x, dx);
@@ -68,11 +60,11 @@ impl<F: Flow + ?Sized> Rates<f64> for OfFlow<'_, F> {
 
     #[inline(always)]
     fn inlined_rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.0.inlined_rate(t, x, dx);
+        self.0.rate(t, x, dx);
     }
 }
 
-impl<F: Flow + ?Sized> Forces<f64> for OfFlow<'_, F> {
+impl Forces<f64> for OfFlow<'_> {
     #[inline(always)]
     fn second(&self) -> Range<usize> {
         self.0.second()

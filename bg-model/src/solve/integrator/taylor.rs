@@ -11,8 +11,9 @@
 use alloc::vec::Vec;
 
 use super::compensated::CompensatedSum;
+use super::side_by_side::{OfEach, SIDE_BY_SIDE, for_each, put, some};
 use super::tolerances::{index_of_largest, largest};
-use super::vectors::{Vectorised, attempt_in, rate_in};
+use super::vectors::{Vectorised, attempt_in};
 use super::{Arch, Bs5, Flow, Method, PointRef, Scale, StepControl, first_not_finite, is_finite};
 
 /// The highest order.
@@ -37,7 +38,7 @@ pub struct Taylor {
     /// Whether the series is that of the present start.
     is_current: bool,
     /// What rounding has kept from the states.
-    sum: CompensatedSum<f64>,
+    sum: CompensatedSum<f64, SIDE_BY_SIDE>,
     /// Of each state: its change in the step, its slope at the end, the weight of its error, an error or a rate.
     room: [Vec<f64>; 4],
     /// The method that makes the step where the series is not of numbers, and whether it does.
@@ -75,7 +76,7 @@ impl Taylor {
     /// Expands the flow from `start` to the order that `relative` calls for, with the unit of time `h` (s). Without a
     /// series, which the driver refuses, the other method makes the step.
     #[inline(always)]
-    fn expand(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, relative: f64) {
+    fn expand(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, relative: f64) {
         let size = flow.series();
         self.is_current = true;
         self.is_by_other = size.is_none();
@@ -99,7 +100,7 @@ impl Taylor {
     /// begins anew after it. The state that the step leads to becomes `end`.
     pub(super) fn error(
         &mut self,
-        flow: &(impl Flow + ?Sized),
+        flow: &dyn Flow,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,
@@ -112,20 +113,29 @@ impl Taylor {
     }
 }
 
-/// Writes of the `series` at the part `theta` of the unit: the state less that at the start, and the slope of the series, in the state's unit.
-#[inline(always)]
-fn sums(series: &[f64], theta: f64, change: &mut [f64], slope: &mut [f64]) {
-    let n = change.len();
-    let slope = &mut slope[..n];
-    change.fill(0.0);
-    slope.fill(0.0);
-    for coefficients in series[n..].chunks_exact(n.max(1)).rev() {
-        let coefficients = &coefficients[..n];
-        for i in 0..n {
-            let sum = change[i] + coefficients[i];
-            slope[i] = slope[i] * theta + sum;
-            change[i] = sum * theta;
+/// Of the `series` at the part `theta` of the unit: the state less that at the start, and the slope of the series, in the state's unit.
+struct Sums<'a> {
+    series: &'a [f64],
+    theta: f64,
+    change: &'a mut [f64],
+    slope: &'a mut [f64],
+}
+
+impl OfEach for Sums<'_> {
+    #[inline(always)]
+    fn of<const W: usize>(&mut self, first: usize) {
+        let n = self.change.len();
+        let (mut change, mut slope) = ([0.0; W], [0.0; W]);
+        for coefficients in self.series[n..].chunks_exact(n).rev() {
+            let coefficients: [f64; W] = some(coefficients, first);
+            for i in 0..W {
+                let sum = change[i] + coefficients[i];
+                slope[i] = slope[i] * self.theta + sum;
+                change[i] = sum * self.theta;
+            }
         }
+        put(self.change, first, change);
+        put(self.slope, first, slope);
     }
 }
 
@@ -165,14 +175,7 @@ impl Default for Taylor {
 /// Of a step that the other method makes, the norm is none.
 impl Vectorised for Taylor {
     #[inline(always)]
-    fn attempt_inlined(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if !self.is_current {
             self.expand(flow, start, h, scale.relative);
         }
@@ -182,7 +185,7 @@ impl Vectorised for Taylor {
         let (theta, n, order) = (h / self.unit, flow.states(), self.order);
         let Self { series, room: [change, slope, weights, errors], sum, .. } = self;
         let (change, slope, weights, errors) = (&mut change[..n], &mut slope[..n], &mut weights[..n], &mut errors[..n]);
-        sums(series, theta, change, slope);
+        for_each(n, &mut Sums { series, theta, change, slope });
         for i in 0..n {
             let from = start.x[i];
             let to = sum.add(i, from, change[i]);
@@ -194,8 +197,8 @@ impl Vectorised for Taylor {
             self.is_by_other = true;
             return f64::NAN;
         }
-        let mut term = |k: usize| term(k, &series[k * n..][..n], theta, weights, errors);
-        let (last, before) = (term(order), term(order - 1));
+        let last = term(order, &series[order * n..][..n], theta, weights, errors);
+        let before = term(order - 1, &series[(order - 1) * n..][..n], theta, weights, errors);
         // The power only matters where the term before the last is larger.
         let norm = if before > last {
             let before = libm::pow(before, order as f64 / (order - 1) as f64);
@@ -207,7 +210,7 @@ impl Vectorised for Taylor {
             return norm;
         }
         let (rate, unit) = (errors, self.unit);
-        rate_in(self.arch, flow, start.t + h, end, rate);
+        flow.rate(start.t + h, end, rate);
         for i in 0..n {
             rate[i] = ((unit * rate[i] - slope[i]) * weights[i]).abs();
         }
@@ -240,14 +243,7 @@ impl Method for Taylor {
         }
     }
 
-    fn attempt(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
         if self.is_by_other { self.other.attempt(flow, start, h, scale, end) } else { norm }
     }
@@ -282,7 +278,7 @@ impl Method for Taylor {
         self.series.chunks_exact(n.max(1)).skip(1).find_map(first_not_finite)
     }
 
-    fn prepare_dense(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+    fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
         if self.is_by_other {
             self.other.prepare_dense(flow, start, h, end);
         }

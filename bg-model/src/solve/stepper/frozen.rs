@@ -7,11 +7,12 @@ use core::cell::Cell;
 use core::ops::Range;
 
 use nalgebra::{Complex, SVector};
+use pulp::NullaryFnOnce;
 
 use crate::model::capability::{Elimination, Linearised, SecondOrder, Series};
 use crate::model::linear::{Field, Sparsity, differences};
 use crate::model::system::System;
-use crate::solve::integrator::{Flow, SeriesSize};
+use crate::solve::integrator::{Arch, Flow, SeriesSize};
 use crate::solve::statistics::Statistics;
 
 /// The counters of a run.
@@ -48,6 +49,8 @@ pub(crate) struct Frozen<'a, Sys, const N: usize, const G: usize> {
     system: &'a Sys,
     negative: &'a [bool; G],
     counters: Counters<'a>,
+    /// The machine's vectors.
+    arch: Arch,
 }
 
 impl<'a, Sys, const N: usize, const G: usize> Frozen<'a, Sys, N, G>
@@ -55,7 +58,7 @@ where
     Sys: System<f64, N, G>,
 {
     pub fn new(system: &'a Sys, negative: &'a [bool; G], statistics: &'a mut Statistics) -> Self {
-        Self { system, negative, counters: Counters::from(statistics) }
+        Self { system, negative, counters: Counters::from(statistics), arch: Arch::new() }
     }
 
     /// The elimination made for the system's sparsity.
@@ -64,16 +67,99 @@ where
         self.system.linearised().and_then(Linearised::elimination)
     }
 
-    #[inline(always)]
     fn eliminated<F: Field<f64>>(&self, c: F, entries: &[f64], factors: &mut [F]) -> bool {
-        self.elimination().is_some_and(|elimination| elimination.eliminate(c, entries, factors))
+        let in_vectors = |elimination| self.arch.dispatch(Eliminate { elimination, c, entries, factors });
+        self.elimination().is_some_and(in_vectors)
     }
 
-    #[inline(always)]
     fn substituted<F: Field<f64>>(&self, factors: &[F], b: &mut [F]) {
         if let Some(elimination) = self.elimination() {
-            elimination.substitute(factors, b.first_chunk_mut().expect("there is a number for each state"));
+            let b = b.first_chunk_mut().expect("there is a number for each state");
+            self.arch.dispatch(Substitute { elimination, factors, b });
         }
+    }
+}
+
+struct Rate<'a, Sys, const N: usize, const G: usize> {
+    system: &'a Sys,
+    t: f64,
+    x: &'a SVector<f64, N>,
+    negative: &'a [bool; G],
+    dx: &'a mut SVector<f64, N>,
+}
+
+impl<Sys: System<f64, N, G>, const N: usize, const G: usize> NullaryFnOnce for Rate<'_, Sys, N, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.system.inlined_rate(self.t, self.x, self.negative, self.dx);
+    }
+}
+
+struct Eliminate<'a, E, F, const N: usize> {
+    elimination: &'a E,
+    c: F,
+    entries: &'a [f64],
+    factors: &'a mut [F],
+}
+
+impl<E: Elimination<f64, N>, F: Field<f64>, const N: usize> NullaryFnOnce for Eliminate<'_, E, F, N> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        self.elimination.eliminate(self.c, self.entries, self.factors)
+    }
+}
+
+struct Substitute<'a, E, F, const N: usize> {
+    elimination: &'a E,
+    factors: &'a [F],
+    b: &'a mut [F; N],
+}
+
+impl<E: Elimination<f64, N>, F: Field<f64>, const N: usize> NullaryFnOnce for Substitute<'_, E, F, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.elimination.substitute(self.factors, self.b);
+    }
+}
+
+struct Forces<'a, C, const N: usize, const G: usize> {
+    second: &'a C,
+    t: f64,
+    x: &'a SVector<f64, N>,
+    negative: &'a [bool; G],
+    dx: &'a mut SVector<f64, N>,
+}
+
+impl<C: SecondOrder<f64, N, G>, const N: usize, const G: usize> NullaryFnOnce for Forces<'_, C, N, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.second.forces(self.t, self.x, self.negative, self.dx);
+    }
+}
+
+struct Expansion<'a, C, const N: usize, const G: usize> {
+    expansion: &'a C,
+    t: f64,
+    h: f64,
+    negative: &'a [bool; G],
+    rows: &'a mut [f64],
+    series: &'a mut [SVector<f64, N>],
+}
+
+impl<C: Series<f64, N, G>, const N: usize, const G: usize> NullaryFnOnce for Expansion<'_, C, N, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.expansion.expand(self.t, self.h, self.negative, self.rows, self.series);
     }
 }
 
@@ -92,25 +178,13 @@ impl<Sys, const N: usize, const G: usize> Flow for Frozen<'_, Sys, N, G>
 where
     Sys: System<f64, N, G>,
 {
-    #[inline(always)]
     fn states(&self) -> usize {
         N
     }
 
-    #[inline(always)]
     fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         count(self.counters.rates, 1);
-        self.system.rate(t, whole(x), self.negative, whole_mut(dx));
-    }
-
-    #[inline(always)]
-    fn inlined_rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        if Sys::HAS_INLINED_STEPS {
-            count(self.counters.rates, 1);
-            self.system.inlined_rate(t, whole(x), self.negative, whole_mut(dx));
-        } else {
-            self.rate(t, x, dx);
-        }
+        self.arch.dispatch(Rate { system: self.system, t, x: whole(x), negative: self.negative, dx: whole_mut(dx) });
     }
 
     fn sparsity(&self) -> Sparsity {
@@ -146,46 +220,39 @@ where
         self.elimination().map(Elimination::factors)
     }
 
-    #[inline(always)]
     fn eliminate(&self, c: f64, entries: &[f64], factors: &mut [f64]) -> bool {
         self.eliminated(c, entries, factors)
     }
 
-    #[inline(always)]
     fn eliminate_complex(&self, c: Complex<f64>, entries: &[f64], factors: &mut [Complex<f64>]) -> bool {
         self.eliminated(c, entries, factors)
     }
 
-    #[inline(always)]
     fn substitute(&self, factors: &[f64], b: &mut [f64]) {
         self.substituted(factors, b);
     }
 
-    #[inline(always)]
     fn substitute_complex(&self, factors: &[Complex<f64>], b: &mut [Complex<f64>]) {
         self.substituted(factors, b);
     }
 
-    #[inline(always)]
     fn second(&self) -> Range<usize> {
         self.system.second_order().map_or(0..0, |second| second.states())
     }
 
-    #[inline(always)]
     fn second_derivatives(&self, x: &[f64], dx: &mut [f64]) {
         if let Some(second) = self.system.second_order() {
             second.second_derivatives(whole(x), whole_mut(dx));
         }
     }
 
-    #[inline(always)]
     fn forces(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         match self.system.second_order() {
             Some(second) => {
                 count(self.counters.rates, 1);
-                second.forces(t, whole(x), self.negative, whole_mut(dx));
+                self.arch.dispatch(Forces { second, t, x: whole(x), negative: self.negative, dx: whole_mut(dx) });
             }
-            None => self.inlined_rate(t, x, dx),
+            None => self.rate(t, x, dx),
         }
     }
 
@@ -197,12 +264,11 @@ where
         self.system.series().map(|series| SeriesSize { width: series.width(), operations: series.operations() })
     }
 
-    #[inline(always)]
     fn expand(&self, t: f64, h: f64, rows: &mut [f64], series: &mut [f64]) {
         let series: &mut [SVector<f64, N>] = bytemuck::cast_slice_mut(series);
         if let Some(expansion) = self.system.series().filter(|_| !series.is_empty()) {
             count(self.counters.series_orders, (series.len() - 1) as u64);
-            expansion.expand(t, h, self.negative, rows, series);
+            self.arch.dispatch(Expansion { expansion, t, h, negative: self.negative, rows, series });
         }
     }
 

@@ -4,12 +4,11 @@ mod frozen;
 
 use alloc::vec;
 
-use crate::solve::integrator::Arch;
 use nalgebra::SVector;
 
 use crate::model::origin::Origin;
 use crate::model::system::System;
-use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_finite, rate_in};
+use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_finite};
 use crate::solve::statistics::Statistics;
 use frozen::Frozen;
 
@@ -35,8 +34,6 @@ pub(crate) struct Stepper<'a, Sys, M, const N: usize, const G: usize> {
     /// The size of the last attempt, s. More precise than the difference of the two times.
     pub h: f64,
     dense_is_ready: bool,
-    /// The machine's vectors.
-    arch: Arch,
 }
 
 impl<'a, Sys, M, const N: usize, const G: usize> Stepper<'a, Sys, M, N, G>
@@ -47,9 +44,8 @@ where
     pub fn new(system: &'a Sys, method: &'a mut M, scale: Scale, start: Point<N>) -> Self {
         let statistics = Statistics::default();
         let negative = [false; G];
-        let arch = Arch::new();
         method.fit(N);
-        Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false, arch }
+        Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false }
     }
 
     /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
@@ -65,11 +61,7 @@ where
         let (method, flow, start, end, scale) = self.split();
         end.t = start.t + h;
         let (start, end) = (start.borrowed(), end.x.as_mut_slice());
-        if Sys::HAS_INLINED_STEPS {
-            method.attempt(&flow, start, h, scale, end)
-        } else {
-            method.attempt_any(&flow, start, h, scale, end)
-        }
+        method.attempt(&flow, start, h, scale, end)
     }
 
     /// Takes over an attempt of size `h` (s) to `end`, which was made elsewhere. Its method is to know its stages.
@@ -155,10 +147,9 @@ where
 
     /// Evaluates the rate at the end of the step.
     pub fn evaluate_end(&mut self) {
-        let arch = self.arch;
         let (_, flow, _, end, _) = self.split();
         let Point { t, x, rate } = end;
-        rate_in(arch, &flow, *t, x.as_slice(), rate.as_mut_slice());
+        flow.rate(*t, x.as_slice(), rate.as_mut_slice());
     }
 
     /// Evaluates the rate at the start of the step, whose branches may be new.
@@ -218,7 +209,7 @@ where
             let before = self.statistics.rate_evaluations;
             let h = self.h;
             let (method, flow, start, end, _) = self.split();
-            method.prepare_dense_any(&flow, start.borrowed(), h, end.borrowed());
+            method.prepare_dense(&flow, start.borrowed(), h, end.borrowed());
             self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
             self.dense_is_ready = true;
         }

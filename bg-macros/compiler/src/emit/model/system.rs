@@ -27,16 +27,9 @@ impl Emission<'_> {
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
         let (next_break, first_branches, iterations) = (self.next_break(), self.first_branches(), self.iterations());
         let runs_in_lanes = self.runs_in_lanes();
-        let has_inlined_steps = self.model.derived.causal.graph.has_inlined_steps;
-        let inlined_steps = has_inlined_steps.then(|| {
-            quote!(
-                const HAS_INLINED_STEPS: bool = true;
-            )
-        });
         quote! {
             #iterations
             impl<S: Scalar> ::bg_model::system::System<S, #n, #g> for Model<S> {
-                #inlined_steps
                 #rate
                 #guards
                 #project

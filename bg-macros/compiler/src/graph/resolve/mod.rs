@@ -110,7 +110,6 @@ impl Resolver {
             impulse: false,
             baumgarte: None,
             expects_integral: false,
-            has_inlined_steps: false,
             observations: Vec::new(),
             guesses: Vec::new(),
             turns: Vec::new(),
@@ -289,7 +288,6 @@ impl Resolver {
                 Item::Impulse(_) => self.graph.impulse = true,
                 Item::Baumgarte(baumgarte) => self.graph.baumgarte = Some(self.decay(&baumgarte.rate)),
                 Item::IntegralCausality => self.graph.expects_integral = true,
-                Item::InlinedSteps => self.graph.has_inlined_steps = true,
                 Item::Observe(watched) => {
                     let values = watched.iter().filter_map(Watch::value);
                     values.for_each(|observation| self.observe(observation));

@@ -58,7 +58,6 @@ impl Cursor<'_> {
             "start" => self.start_statement(),
             "baumgarte" => self.baumgarte().map(Item::Baumgarte),
             "expect" => self.expected_causality().map(|()| Item::IntegralCausality),
-            "inlined" => self.inlined_steps().map(|()| Item::InlinedSteps),
             "body" => self.body().map(Item::Body),
             "joint" => self.joint().map(Item::Joint),
             "spring" => self.spring().map(Item::Spring),
@@ -141,14 +140,6 @@ impl Cursor<'_> {
     /// What comes after `expect integral`.
     pub fn integral_causality(&mut self) -> Parsed<()> {
         self.expect_word("causality")?;
-        self.end_statement("");
-        Ok(())
-    }
-
-    /// `inlined steps;`
-    pub fn inlined_steps(&mut self) -> Parsed<()> {
-        self.advance();
-        self.expect_word("steps")?;
         self.end_statement("");
         Ok(())
     }

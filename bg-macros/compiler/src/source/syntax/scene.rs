@@ -14,7 +14,7 @@ use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene, Tun
 /// The block of a scene.
 const SCENE: Place = Place {
     name: "a scene",
-    words: &["observe", "tune", "without", "rigid", "all", "dependent", "angles", "inlined", "expect"],
+    words: &["observe", "tune", "without", "rigid", "all", "dependent", "angles", "expect"],
     list: false,
 };
 
@@ -74,7 +74,6 @@ impl Cursor<'_> {
             rigid: Rigid::None,
             angles: false,
             all_reactions: false,
-            inlined_steps: false,
             dependent: Vec::new(),
             expect: Vec::new(),
         };
@@ -129,11 +128,6 @@ impl Cursor<'_> {
                 self.expect_word("reactions")?;
                 self.end_statement("");
                 scene.all_reactions = true;
-            }
-            Some("inlined") => {
-                self.fill(&mut filled.inlined, (), "inlined steps", span);
-                self.inlined_steps()?;
-                scene.inlined_steps = true;
             }
             Some("dependent") => {
                 self.advance();
@@ -227,7 +221,6 @@ struct Filled {
     rigid: Option<()>,
     angles: Option<()>,
     reactions: Option<()>,
-    inlined: Option<()>,
 }
 
 /// `NAME: UNIT = E`, `NAME = E` or `E`

@@ -33,7 +33,7 @@ const WORDS_OF_PART: &[&str] = {
 };
 
 /// The words of a graph.
-const WORDS: [&str; 40] = [
+const WORDS: [&str; 39] = [
     "param",
     "1",
     "R",
@@ -63,7 +63,6 @@ const WORDS: [&str; 40] = [
     "start",
     "baumgarte",
     "expect",
-    "inlined",
     "joint",
     "spring",
     "drive",

@@ -22,7 +22,6 @@ use self::newton::{Convergence, Goal};
 pub(super) use self::radau9::RADAU9;
 pub(super) use self::tableau::{GAUSS6, RADAU5, Tableau};
 use super::tolerances::{index_of_largest, largest_of};
-use super::vectors::rate_in;
 use super::{Arch, Flow, PointRef, Scale, first_not_finite, is_finite};
 use crate::solve::integrator::linear::{Factors, Jacobian};
 
@@ -135,13 +134,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     /// A step that satisfied the tolerances and is tried again with another size is part of a search for an event: it is
     /// solved to rounding, and like all attempts begins at the extrapolation of the step before, so its outcome depends
     /// on its size only.
-    pub fn solve(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-    ) -> Result<(), f64> {
+    pub fn solve(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> Result<(), f64> {
         self.h = h;
         let goal = if self.is_exact || self.attempts == Attempts::Satisfied { Goal::Rounding } else { Goal::Tolerance };
         if !self.has_jacobian {
@@ -163,21 +156,21 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
         }
     }
 
-    fn evaluate_jacobian(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) {
+    fn evaluate_jacobian(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) {
         self.jacobian.evaluate(flow, start, h, scale);
         (self.has_jacobian, self.is_fresh, self.factored) = (true, true, 0.0);
     }
 
     /// Makes the factors for a step of size `h` (s) where those at hand do not serve. Gives whether there are any.
-    fn factor(&mut self, flow: &(impl Flow + ?Sized), h: f64) -> bool {
+    fn factor(&mut self, flow: &dyn Flow, h: f64) -> bool {
         if self.factored != 0.0 && (h - self.factored).abs() <= NEARLY * h.abs() {
             return true;
         }
         let tableau = self.tableau;
-        let mut is_regular = self.real.factor(self.arch, flow, h * tableau.real.value, &self.jacobian);
+        let mut is_regular = self.real.factor(flow, h * tableau.real.value, &self.jacobian);
         for (factors, mode) in self.complex.iter_mut().zip(&tableau.pairs) {
             let [re, im] = mode.value;
-            is_regular = is_regular && factors.factor(self.arch, flow, Complex::new(h * re, h * im), &self.jacobian);
+            is_regular = is_regular && factors.factor(flow, Complex::new(h * re, h * im), &self.jacobian);
         }
         self.factored = if is_regular { h } else { 0.0 };
         self.remainder = 1.0;
@@ -189,20 +182,13 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     ///
     /// Section IV.8, equations (8.19) and (8.20): after a rejection and in a first step a large estimate is taken once
     /// more, with the rate at x0 and the estimate, because the first one is too large for stiff states.
-    pub fn estimate(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &[f64],
-    ) -> f64 {
+    pub fn estimate(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &[f64]) -> f64 {
         let is_doubtful = self.attempts == Attempts::Rejected || self.step_before == 0.0;
         let mut norm = self.filtered_defect(flow, start, h, scale, end, None);
         if norm > 1.0 && is_doubtful {
-            let Self { error, room: [x, rate], arch, .. } = self;
+            let Self { error, room: [x, rate], .. } = self;
             x.iter_mut().zip(start.x).zip(error).for_each(|((x, start), error)| *x = start + *error);
-            rate_in(*arch, flow, start.t, x, rate);
+            flow.rate(start.t, x, rate);
             let rate = core::mem::take(rate);
             norm = self.filtered_defect(flow, start, h, scale, end, Some(&rate));
             self.room[1] = rate;
@@ -213,7 +199,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     /// The same of the rate at the start where no other one is given.
     fn filtered_defect(
         &mut self,
-        flow: &(impl Flow + ?Sized),
+        flow: &dyn Flow,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,
@@ -228,7 +214,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
             }
             *defect = real.value * (h * rate[i] - sum);
         }
-        self.real.solve(self.arch, flow, &mut self.error);
+        self.real.solve(flow, &mut self.error);
         if !is_finite(&self.error) {
             return f64::NAN;
         }

@@ -14,7 +14,6 @@ use super::{Collocation, KEEP, Tableau};
 use crate::model::scalar::double::root;
 use crate::solve::integrator::side_by_side::{OfEach, for_each, put, some};
 use crate::solve::integrator::tolerances::largest;
-use crate::solve::integrator::vectors::rate_in;
 use crate::solve::integrator::{Flow, PointRef, Scale, is_finite};
 
 /// Corrections that shrink by less do not converge.
@@ -48,15 +47,15 @@ fn allowance(relative: f64) -> f64 {
     if loosest > tightest { loosest } else { tightest }
 }
 
-struct Correction<'a, F: ?Sized, const S: usize, const P: usize> {
+struct Correction<'a, const S: usize, const P: usize> {
     core: &'a mut Collocation<S, P>,
-    flow: &'a F,
+    flow: &'a dyn Flow,
     start: PointRef<'a>,
     h: f64,
     scale: &'a Scale,
 }
 
-impl<F: Flow + ?Sized, const S: usize, const P: usize> NullaryFnOnce for Correction<'_, F, S, P> {
+impl<const S: usize, const P: usize> NullaryFnOnce for Correction<'_, S, P> {
     type Output = f64;
 
     #[inline(always)]
@@ -73,7 +72,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     /// Iterates from the increments at hand.
     pub(super) fn iterate(
         &mut self,
-        flow: &(impl Flow + ?Sized),
+        flow: &dyn Flow,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,
@@ -121,11 +120,11 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     }
 
     /// Evaluates the rates of all stages. Gives whether they are finite; stops at the first that is not.
-    fn evaluate_stages(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64) -> bool {
-        let Self { tableau, z, f, room: [x, _], arch, .. } = self;
+    fn evaluate_stages(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64) -> bool {
+        let Self { tableau, z, f, room: [x, _], .. } = self;
         for ((c, z), f) in tableau.c.iter().zip(z).zip(f) {
             x.iter_mut().zip(start.x).zip(z).for_each(|((x, start), z)| *x = start + *z);
-            rate_in(*arch, flow, start.t + c * h, x, f);
+            flow.rate(start.t + c * h, x, f);
             if !is_finite(f) {
                 return false;
             }
@@ -134,24 +133,24 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     }
 
     /// Corrects the increments once. Gives the norm of the correction.
-    fn correct(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
+    fn correct(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         let arch = self.arch;
         arch.dispatch(Correction { core: self, flow, start, h, scale })
     }
 
     #[inline(always)]
-    fn correct_inlined(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
+    fn correct_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         let n = flow.states();
         let Self { tableau, z, f, room: [_, sizes], real_side, complex_sides, .. } = self;
         let tableau: &Tableau<S, P> = tableau;
-        for_each::<f64>(0, n, &mut Residuals { tableau, z, f, h, real: real_side, complex: complex_sides });
-        self.real.solve(self.arch, flow, &mut real_side[..n]);
+        for_each(n, &mut Residuals { tableau, z, f, h, real: real_side, complex: complex_sides });
+        self.real.solve(flow, &mut real_side[..n]);
         for (factors, complex) in self.complex.iter().zip(&mut *complex_sides) {
-            factors.solve(self.arch, flow, &mut complex[..n]);
+            factors.solve(flow, &mut complex[..n]);
         }
         let corrections =
             &mut Corrections { tableau, real: real_side, complex: complex_sides, scale, start: start.x, z, sizes };
-        for_each::<f64>(0, n, corrections);
+        for_each(n, corrections);
         largest(&sizes[..n])
     }
 }

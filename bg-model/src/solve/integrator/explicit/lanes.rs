@@ -13,8 +13,8 @@ use crate::solve::integrator::steps::{Begin, Rates};
 /// The method of tableau `T` for runs side by side.
 #[derive(Debug)]
 pub(crate) struct ExplicitInLanes<T, V> {
-    stages: Stages<T, Lanes<V>>,
-    sum: CompensatedSum<Lanes<V>>,
+    stages: Stages<T, Lanes<V>, 1>,
+    sum: CompensatedSum<Lanes<V>, 1>,
 }
 
 impl<T: Tableau, V: Vector> ExplicitInLanes<T, V> {
@@ -34,9 +34,9 @@ impl<T: Tableau, V: Vector> ExplicitInLanes<T, V> {
         &self.sum.end
     }
 
-    /// The rates of a stage.
-    pub fn stage(&self, stage: usize) -> &[Lanes<V>] {
-        &self.stages.k[stage]
+    /// The rates of a stage, each with its state.
+    pub fn stage(&self, stage: usize) -> impl Iterator<Item = (usize, Lanes<V>)> {
+        self.stages.stage(stage)
     }
 
     /// Tries a step at each place; gives the norms of the error estimates.
@@ -67,7 +67,7 @@ impl<T: Tableau> OfOne for Explicit<T> {
 
     fn keep(&mut self, compensation: &dyn Fn(&mut [f64]), stage: &dyn Fn(usize, &mut [f64])) {
         compensation(&mut self.sum.end);
-        self.stages.k[..T::END].iter_mut().enumerate().for_each(|(index, k)| stage(index, k));
+        (0..T::END).for_each(|index| self.stages.set_stage(index, |rate| stage(index, rate)));
     }
 
     fn rates(&self) -> u64 {

@@ -24,15 +24,16 @@ pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
 
 use super::compensated::CompensatedSum;
-use super::dense::{FROM_ENDS, Polynomial, write_sum};
+use super::dense::{FROM_ENDS, Polynomial};
+use super::side_by_side::SIDE_BY_SIDE;
 use super::steps::{Begin, OfFlow};
 use super::tolerances::{index_of_largest, largest_of, smaller};
 use super::vectors::{Vectorised, attempt_in};
-use super::{Arch, Flow, Method, PointRef, Scale, StepControl, first_not_finite};
+use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
 pub(super) use lanes::ExplicitInLanes;
-pub(super) use stages::{Complete, Stages, write_row};
+pub(super) use stages::{Complete, Stages};
 
 /// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
 /// for.
@@ -90,11 +91,11 @@ const COEFFICIENTS: usize = 7;
 /// The explicit method of tableau `T`.
 #[derive(Clone, Debug)]
 pub struct Explicit<T> {
-    pub(super) stages: Stages<T, f64>,
+    pub(super) stages: Stages<T, f64, SIDE_BY_SIDE>,
     /// The dense output's coefficients.
     polynomial: Polynomial<COEFFICIENTS>,
     /// What rounding has kept from the states.
-    sum: CompensatedSum<f64>,
+    sum: CompensatedSum<f64, SIDE_BY_SIDE>,
     /// States at the end of a step, as they are and moved by a difference, after their projection.
     projected: [Vec<f64>; 2],
     /// The machine's vectors.
@@ -134,7 +135,7 @@ impl<T: Tableau> Explicit<T> {
         scale: &Scale,
         end: &[f64],
         project: &dyn Fn(&mut [f64]),
-        moved: impl Fn(&Stages<T, f64>, usize) -> f64,
+        moved: impl Fn(&Stages<T, f64, SIDE_BY_SIDE>, usize) -> f64,
     ) -> f64 {
         let Self { stages, projected: [reached, other], .. } = self;
         for (i, other) in other.iter_mut().enumerate() {
@@ -166,14 +167,7 @@ pub(crate) fn both<S: Scalar>(scale: S, first: S, second: S) -> S {
 
 impl<T: Tableau> Vectorised for Explicit<T> {
     #[inline(always)]
-    fn attempt_inlined(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         norm::<T, _>(h, self.stages.step(&OfFlow(flow), &Begin::of(start, h), scale, &mut self.sum, end))
     }
 }
@@ -195,19 +189,12 @@ impl<T: Tableau> Method for Explicit<T> {
         }
     }
 
-    fn attempt(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
         if T::LATE.is_empty() || norm > 1.0 {
             return norm;
         }
-        flow.rate(start.t + h, end, &mut self.stages.k[T::END]);
+        self.stages.set_stage(T::END, |rate| flow.rate(start.t + h, end, rate));
         let late = h.abs() * largest_of(end.len(), |i| self.error(T::LATE, i, start, scale, end));
         if late > norm { late } else { norm }
     }
@@ -225,14 +212,15 @@ impl<T: Tableau> Method for Explicit<T> {
         project(&mut self.projected[0]);
         let first = self.left(start, scale, end, project, |stages, i| h * stages.combine(T::ERROR, i));
         if !T::SECOND.is_empty() {
-            let difference = |stages: &Stages<T, f64>, i| stages.combine(T::B, i) - stages.combine(T::SECOND, i);
+            let difference =
+                |stages: &Stages<T, f64, SIDE_BY_SIDE>, i| stages.combine(T::B, i) - stages.combine(T::SECOND, i);
             let second = self.left(start, scale, end, project, |stages, i| h * difference(stages, i));
             return Some(both(1.0, first, second));
         }
         if T::LATE.is_empty() || first > 1.0 {
             return Some(first);
         }
-        flow.rate(start.t + h, end, &mut self.stages.k[T::END]);
+        self.stages.set_stage(T::END, |rate| flow.rate(start.t + h, end, rate));
         Some(first.max(self.left(start, scale, end, project, |stages, i| h * stages.combine(T::LATE, i))))
     }
 
@@ -251,17 +239,14 @@ impl<T: Tableau> Method for Explicit<T> {
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
-        self.stages.k[1..T::END].iter().find_map(|rate| first_not_finite(rate))
+        (1..T::END).flat_map(|stage| self.stages.stage(stage)).find(|(_, rate)| !rate.is_finite())
     }
 
-    fn prepare_dense(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, end: PointRef<'_>) {
-        self.stages.k[T::END].copy_from_slice(end.rate);
+    fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        self.stages.set_stage(T::END, |rate| rate.copy_from_slice(end.rate));
         self.stages.evaluate::<false>(&OfFlow(flow), &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
-        let arch = self.arch;
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
-        self.polynomial.set(start, h, end, |m, _, out| {
-            write_sum(arch, h, row(m).iter().map(|&(stage, weight)| (weight, &self.stages.k[stage][..])), out);
-        });
+        self.polynomial.set(start, h, end, |m, _, out| self.stages.write(row(m), h, out));
     }
 
     fn dense(&self, start: PointRef<'_>, _h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {

@@ -3,8 +3,6 @@
 //! In: the start of a step, what gives rates. Out: the state at its end and what it errs by. The numbers of runs side by side are those of
 //! each by itself, to the bit: operations stand in loops, since closures around vectors of a machine are calls.
 
-use alloc::vec;
-use alloc::vec::Vec;
 use core::marker::PhantomData;
 use core::ops::Range;
 
@@ -12,7 +10,7 @@ use super::{Row, Tableau};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::Scale;
 use crate::solve::integrator::compensated::{CompensatedSum, compensated};
-use crate::solve::integrator::side_by_side::{OfEach, for_each, put, some};
+use crate::solve::integrator::side_by_side::{Padded, Stack};
 use crate::solve::integrator::steps::{Begin, Rates};
 use crate::solve::integrator::tolerances::largest;
 
@@ -31,25 +29,35 @@ impl<S> Complete<S> for () {
     fn complete(&mut self, _stage: usize, _x: &mut [S]) {}
 }
 
-/// The rates of all stages of tableau `T`, with room for what steps need beside them.
+/// The rates of all stages of tableau `T`, with room for what steps need beside them: in groups of `W` states.
 #[derive(Clone, Debug)]
-pub(crate) struct Stages<T, S> {
-    pub k: [Vec<S>; STAGES],
-    /// The state of a stage.
-    x: Vec<S>,
+pub(crate) struct Stages<T, S, const W: usize> {
+    k: Stack<S, W, STAGES>,
+    /// The state of a stage and its rate; the states at the start and at the end of the step.
+    x: Padded<S, W>,
+    rate: Padded<S, W>,
+    start: Padded<S, W>,
+    pub end: Padded<S, W>,
+    /// The absolute tolerances.
+    absolute: Padded<S, W>,
     /// The differences to the embedded methods in parts of what is allowed.
-    differences: [Vec<S>; 2],
+    pub differences: [Padded<S, W>; 2],
     tableau: PhantomData<T>,
 }
 
-impl<T: Tableau, S: Scalar> Stages<T, S> {
+impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
     /// Room for so many states.
     pub fn new(states: usize) -> Self {
-        let room = || vec![S::from_f64(0.0); states];
+        let (zero, one) = (S::from_f64(0.0), S::from_f64(1.0));
+        let room = || Padded::new(states, zero);
         Self {
-            k: core::array::from_fn(|_| room()),
+            k: Stack::new(states, 0, zero),
             x: room(),
-            differences: core::array::from_fn(|_| room()),
+            rate: room(),
+            start: room(),
+            end: room(),
+            absolute: Padded::new(states, one),
+            differences: [room(), room()],
             tableau: PhantomData,
         }
     }
@@ -59,11 +67,27 @@ impl<T: Tableau, S: Scalar> Stages<T, S> {
         self.x.len()
     }
 
+    /// The rates of a stage, each with its state.
+    pub fn stage(&self, stage: usize) -> impl Iterator<Item = (usize, S)> {
+        self.k.row(stage, self.states())
+    }
+
+    /// Takes the rates of a stage that `write` writes.
+    pub fn set_stage(&mut self, stage: usize, write: impl FnOnce(&mut [S])) {
+        write(&mut self.rate);
+        self.k.set_row(stage, &self.rate);
+    }
+
     /// Entry `i` of the linear combination of the stages, summed in their order.
-    #[inline(always)]
     pub fn combine(&self, row: Row, i: usize) -> S {
-        let [sum] = combined(&self.k, row, i);
-        sum
+        combined(&self.k.groups()[i / W].1, row)[i % W]
+    }
+
+    /// Writes the linear combinations of the stages for all states, times `h`.
+    pub fn write(&self, row: Row, h: S, out: &mut [S]) {
+        for ((_, k), out) in self.k.groups().iter().zip(out.chunks_mut(W)) {
+            out.iter_mut().zip(combined(k, row)).for_each(|(out, sum)| *out = sum * h);
+        }
     }
 
     /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its weights
@@ -76,15 +100,20 @@ impl<T: Tableau, S: Scalar> Stages<T, S> {
         stages: Range<usize>,
         completed: &mut impl Complete<S>,
     ) {
-        let n = rates.states();
+        self.start.copy_from_slice(from.x);
+        let Self { k, x, rate, start, .. } = self;
         for stage in stages {
-            let x = &mut self.x[..n];
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
                         $( $stage if $stage < T::A.len() => {
-                            let (k, start, h, tableau) = (&self.k, &from.x[..n], from.h, PhantomData);
-                            for_each::<S>(0, n, &mut Reach::<T, S, $stage> { k, h, start, x, tableau });
+                            for (first, k) in k.groups() {
+                                let (from_start, mut to) = (start.group(*first), combined(k, T::A[$stage]));
+                                for i in 0..W {
+                                    to[i] = from_start[i] + from.h * to[i];
+                                }
+                                x.set_group(*first, to);
+                            }
                         } )*
                         _ => unreachable!("a tableau has fewer stages than there is room for"),
                     }
@@ -94,11 +123,19 @@ impl<T: Tableau, S: Scalar> Stages<T, S> {
             completed.complete(stage, x);
             let t = from.t + from.h.times(T::C[stage]);
             if IS_INLINED {
-                rates.inlined_rate(t, x, &mut self.k[stage][..n]);
+                rates.inlined_rate(t, x, rate);
             } else {
-                rates.rate(t, x, &mut self.k[stage][..n]);
+                rates.rate(t, x, rate);
             }
+            k.set_row(stage, rate);
         }
+    }
+
+    /// The rates at the start of a step.
+    #[inline(always)]
+    pub fn begin(&mut self, rate: &[S]) {
+        self.rate.copy_from_slice(rate);
+        self.k.set_row(0, &self.rate);
     }
 
     /// Writes the state at the end of a step; gives the largest of the differences to each of the embedded methods, in parts of what is
@@ -109,124 +146,75 @@ impl<T: Tableau, S: Scalar> Stages<T, S> {
         rates: &impl Rates<S>,
         from: &Begin<'_, S>,
         scale: &Scale<S>,
-        sum: &mut CompensatedSum<S>,
+        sum: &mut CompensatedSum<S, W>,
         end: &mut [S],
     ) -> [S; 2] {
-        let n = rates.states();
-        self.k[0][..n].copy_from_slice(&from.rate[..n]);
+        self.begin(from.rate);
         self.evaluate::<true>(rates, from, 1..T::END, &mut ());
-        let Self { k, differences: [first, second], .. } = self;
-        let (start, end) = (&from.x[..n], &mut end[..n]);
-        let (h, differences, tableau) = (from.h, [&mut first[..], &mut second[..]], PhantomData::<T>);
-        for_each::<S>(0, n, &mut End { k, h, start, scale, sum, end, differences, tableau });
-        let second = if T::SECOND.is_empty() { from.h.alike(0.0) } else { largest(&second[..n]) };
-        [largest(&first[..n]), second]
+        self.absolute.copy_from_slice(&scale.absolute);
+        let Self { k, start, end: reached, absolute, differences: [of_first, of_second], .. } = self;
+        for (first, k) in k.groups() {
+            let (start, absolute) = (start.group(*first), absolute.group(*first));
+            let slopes = combined(k, T::B);
+            let mut to = start;
+            if T::IS_COMPENSATED {
+                let before = sum.start.group(*first);
+                let mut lost = before;
+                for i in 0..W {
+                    (to[i], lost[i]) = compensated(start[i], from.h * slopes[i], before[i]);
+                }
+                sum.end.set_group(*first, lost);
+            } else {
+                for i in 0..W {
+                    to[i] = start[i] + from.h * slopes[i];
+                }
+            }
+            reached.set_group(*first, to);
+            let mut allowed = to;
+            for i in 0..W {
+                allowed[i] = scale.allowed_from(absolute[i], start[i], to[i]);
+            }
+            let mut errors = combined(k, T::ERROR);
+            for i in 0..W {
+                errors[i] = (errors[i] / allowed[i]).abs();
+            }
+            of_first.set_group(*first, errors);
+            if !T::SECOND.is_empty() {
+                let mut errors = combined(k, T::SECOND);
+                for i in 0..W {
+                    errors[i] = ((slopes[i] - errors[i]) / allowed[i]).abs();
+                }
+                of_second.set_group(*first, errors);
+            }
+        }
+        end.copy_from_slice(reached);
+        let second = if T::SECOND.is_empty() { from.h.alike(0.0) } else { largest(of_second) };
+        [largest(of_first), second]
     }
 }
 
-/// The state at the end of a step, and its differences to the embedded methods.
-struct End<'a, T, S> {
-    k: &'a [Vec<S>; STAGES],
-    h: S,
-    start: &'a [S],
-    scale: &'a Scale<S>,
-    sum: &'a mut CompensatedSum<S>,
-    end: &'a mut [S],
-    differences: [&'a mut [S]; 2],
-    tableau: PhantomData<T>,
-}
-
-impl<T: Tableau, S: Scalar> OfEach for End<'_, T, S> {
+impl<T, S: Scalar, const W: usize> Stages<T, S, W> {
+    /// Writes the linear combinations of the stages by these rows into the state at the end and into both differences.
     #[inline(always)]
-    fn of<const W: usize>(&mut self, first: usize) {
-        let Self { k, h, start, scale, sum, end, differences: [of_first, of_second], .. } = self;
-        let start: [S; W] = some(start, first);
-        let absolute: [S; W] = some(&scale.absolute, first);
-        let slopes: [S; W] = combined(*k, T::B, first);
-        let mut to = start;
-        if T::IS_COMPENSATED {
-            let (mut lost, before): ([S; W], [S; W]) = (to, some(&sum.start, first));
-            for i in 0..W {
-                (to[i], lost[i]) = compensated(start[i], *h * slopes[i], before[i]);
-            }
-            put(&mut sum.end, first, lost);
-        } else {
-            for i in 0..W {
-                to[i] = start[i] + *h * slopes[i];
-            }
-        }
-        put(end, first, to);
-        let mut allowed = to;
-        for i in 0..W {
-            allowed[i] = scale.allowed_from(absolute[i], start[i], to[i]);
-        }
-        let mut errors: [S; W] = combined(*k, T::ERROR, first);
-        for i in 0..W {
-            errors[i] = (errors[i] / allowed[i]).abs();
-        }
-        put(of_first, first, errors);
-        if !T::SECOND.is_empty() {
-            let mut errors: [S; W] = combined(*k, T::SECOND, first);
-            for i in 0..W {
-                errors[i] = ((slopes[i] - errors[i]) / allowed[i]).abs();
-            }
-            put(of_second, first, errors);
+    pub fn write_rows(&mut self, [of_end, first, second]: [Row; 3]) {
+        let Self { k, end, differences: [of_first, of_second], .. } = self;
+        for (at, k) in k.groups() {
+            end.set_group(*at, combined(k, of_end));
+            of_first.set_group(*at, combined(k, first));
+            of_second.set_group(*at, combined(k, second));
         }
     }
 }
 
-/// The state of a stage, without what completes it.
-struct Reach<'a, T, S, const STAGE: usize> {
-    k: &'a [Vec<S>; STAGES],
-    h: S,
-    start: &'a [S],
-    x: &'a mut [S],
-    tableau: PhantomData<T>,
-}
-
-impl<T: Tableau, S: Scalar, const STAGE: usize> OfEach for Reach<'_, T, S, STAGE> {
-    #[inline(always)]
-    fn of<const W: usize>(&mut self, first: usize) {
-        let Self { k, h, start, x, .. } = self;
-        let (start, mut sums): ([S; W], [S; W]) = (some(start, first), combined(*k, T::A[STAGE], first));
-        for i in 0..W {
-            sums[i] = start[i] + *h * sums[i];
-        }
-        put(x, first, sums);
-    }
-}
-
-/// The linear combinations of the stages `k` by a row, each summed in its order, of `W` states from `first` on.
+/// The linear combinations of the stages `k` of a group by a row, each summed in its order.
 #[inline(always)]
-fn combined<S: Scalar, const W: usize>(k: &[Vec<S>], row: Row, first: usize) -> [S; W] {
+fn combined<S: Scalar, const W: usize>(k: &[[S; W]; STAGES], row: Row) -> [S; W] {
     // Adding to -0 changes nothing, not even the sign of a zero.
-    let mut sums = [k[0][first].alike(-0.0); W];
+    let mut sums = [k[0][0].alike(-0.0); W];
     for (stage, weight) in row {
-        let rates: [S; W] = some(&k[*stage], first);
         for i in 0..W {
-            sums[i] = sums[i] + rates[i].times(*weight);
+            sums[i] = sums[i] + k[*stage][i].times(*weight);
         }
     }
     sums
-}
-
-/// Writes the linear combinations of the stages `k` for all states.
-#[inline(always)]
-pub(crate) fn write_row(k: &[Vec<f64>], row: Row, out: &mut [f64]) {
-    for_each::<f64>(0, out.len(), &mut Written { k, row, out });
-}
-
-/// Linear combinations of the stages.
-struct Written<'a> {
-    k: &'a [Vec<f64>],
-    row: Row,
-    out: &'a mut [f64],
-}
-
-impl OfEach for Written<'_> {
-    #[inline(always)]
-    fn of<const W: usize>(&mut self, first: usize) {
-        let sums: [f64; W] = combined(self.k, self.row, first);
-        put(self.out, first, sums);
-    }
 }

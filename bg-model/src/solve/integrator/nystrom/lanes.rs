@@ -17,7 +17,7 @@ use crate::solve::integrator::steps::{Begin, Forces};
 /// The method for runs side by side.
 #[derive(Debug)]
 pub(crate) struct NystromInLanes<V> {
-    stages: Stages<Lanes<V>>,
+    stages: Stages<Lanes<V>, 1>,
     /// The directions of the fastest oscillations.
     direction: Vec<Lanes<V>>,
     pull: Pull<Lanes<V>>,
@@ -56,9 +56,9 @@ impl<V: Vector> NystromInLanes<V> {
         &self.direction
     }
 
-    /// The second derivatives, or rates, of a stage.
-    pub fn stage(&self, stage: usize) -> &[Lanes<V>] {
-        &self.stages.k[stage]
+    /// The second derivatives, or rates, of a stage, each with its state.
+    pub fn stage(&self, stage: usize) -> impl Iterator<Item = (usize, Lanes<V>)> {
+        self.stages.stage(stage)
     }
 
     /// One iteration towards the fastest oscillation at the places of `due`, from states `x` with rates `rate` at time `t` (s): see
@@ -109,7 +109,7 @@ impl OfOne for Nystrom {
 
     fn keep(&mut self, compensation: &dyn Fn(&mut [f64]), stage: &dyn Fn(usize, &mut [f64])) {
         compensation(&mut self.ring.direction);
-        self.stages.k[..STAGES].iter_mut().enumerate().for_each(|(index, k)| stage(index, k));
+        (0..STAGES).for_each(|index| self.stages.set_stage(index, |rate| stage(index, rate)));
     }
 
     fn rates(&self) -> u64 {

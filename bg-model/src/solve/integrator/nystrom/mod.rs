@@ -18,11 +18,12 @@ mod trees;
 
 use core::ops::Range;
 
-use super::dense::{FROM_ENDS, Polynomial, write_sum};
+use super::dense::{FROM_ENDS, Polynomial};
+use super::side_by_side::SIDE_BY_SIDE;
 use super::steps::{Begin, OfFlow};
 use super::tolerances::index_of_largest;
 use super::vectors::{Vectorised, attempt_in};
-use super::{Arch, Flow, Method, PointRef, Scale, StepControl, first_not_finite};
+use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
 #[cfg(test)]
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
@@ -41,7 +42,7 @@ const COEFFICIENTS: usize = FROM_ENDS + DENSE.len();
 /// of second order, the tolerance alone decides.
 #[derive(Clone, Debug)]
 pub struct Nystrom {
-    stages: Stages<f64>,
+    stages: Stages<f64, SIDE_BY_SIDE>,
     /// The states of second order.
     second: Range<usize>,
     /// The fastest oscillation.
@@ -68,14 +69,7 @@ impl Default for Nystrom {
 
 impl Vectorised for Nystrom {
     #[inline(always)]
-    fn attempt_inlined(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         self.stages.step(&OfFlow(flow), &Begin::of(start, h), scale, end)
     }
 }
@@ -96,14 +90,7 @@ impl Method for Nystrom {
         }
     }
 
-    fn attempt(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         self.second = flow.second();
         self.ring.follow(&OfFlow(flow), start, &self.second);
         let reach = self.ring.reach(h);
@@ -128,26 +115,24 @@ impl Method for Nystrom {
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
         // A force that is no number makes the second derivatives none that follow from it.
-        let Range { start, end } = self.second;
-        self.stages.k[..STAGES].iter().find_map(|k| {
-            let of = |states: Range<usize>| {
-                let first = states.start;
-                first_not_finite(&k[states]).map(|(i, rate)| (first + i, rate))
-            };
-            of(0..start).or_else(|| of(end..k.len())).or_else(|| of(start..end))
+        (0..STAGES).find_map(|stage| {
+            let faulty = || self.stages.stage(stage).filter(|(_, rate)| !rate.is_finite());
+            faulty().find(|(state, _)| !self.second.contains(state)).or_else(|| faulty().next())
         })
     }
 
-    fn prepare_dense(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, end: PointRef<'_>) {
-        self.stages.k[END].copy_from_slice(end.rate);
-        flow.second_derivatives(end.x, &mut self.stages.k[END]);
-        let Self { stages: Stages { k, .. }, second, polynomial, arch, .. } = self;
+    fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        self.stages.set_stage(END, |rate| {
+            rate.copy_from_slice(end.rate);
+            flow.second_derivatives(end.x, rate);
+        });
+        let Self { stages, second, polynomial, .. } = self;
         polynomial.set(start, h, end, |m, ends, out| {
-            write_sum(*arch, h, DENSE[m].iter().copied().zip(k.iter().map(|k| &k[..])), out);
-            for i in second.clone() {
+            stages.write(&DENSE[m], h, out);
+            for (i, [before, behind]) in stages.ends(second) {
                 let [first, third] = [1, 2].map(|m| ends[m][i]);
                 // The polynomial of degree 5 through the second derivatives at both ends, too.
-                let [before, behind] = [k[0][i], k[END][i]].map(|second| 0.5 * h * h * second);
+                let [before, behind] = [before, behind].map(|second| 0.5 * h * h * second);
                 let at_start = before + first - third;
                 out[i] = if m == 0 { at_start } else { behind + first + 2.0 * third - at_start };
             }

@@ -3,14 +3,12 @@
 //! In: the start of a step, what gives forces. Out: the state at its end and what it errs by. The numbers of runs side by side
 //! are those of each by itself, to the bit.
 
-use alloc::vec;
-use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::tableau::{FIRST, INSTANTS, SECOND, STAGES};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::Scale;
-use crate::solve::integrator::side_by_side::{OfEach, for_each, put, some};
+use crate::solve::integrator::side_by_side::{Padded, Stack};
 use crate::solve::integrator::steps::{Begin, Forces};
 use crate::solve::integrator::tolerances::largest;
 
@@ -19,21 +17,40 @@ pub(super) const END: usize = STAGES;
 pub(super) const ERROR: usize = STAGES + 1;
 
 /// The second derivatives of the states of second order and the rates of the others, at the stages and at the end, with room for what steps
-/// need beside them.
+/// need beside them: in groups of `W` states of one order.
 #[derive(Clone, Debug)]
-pub(crate) struct Stages<S> {
-    pub(super) k: [Vec<S>; STAGES + 1],
-    /// The state of a stage.
-    x: Vec<S>,
+pub(crate) struct Stages<S, const W: usize> {
+    k: Stack<S, W, { STAGES + 1 }>,
+    /// The states of second order that the groups are made for.
+    second: Range<usize>,
+    /// The state of a stage and its forces; the states at the start and at the end of the step, the rates at its start.
+    x: Padded<S, W>,
+    force: Padded<S, W>,
+    start: Padded<S, W>,
+    rate: Padded<S, W>,
+    end: Padded<S, W>,
+    /// The absolute tolerances.
+    absolute: Padded<S, W>,
     /// The magnitudes of the differences to the embedded method in parts of what is allowed.
-    pub(super) errors: Vec<S>,
+    pub(super) errors: Padded<S, W>,
 }
 
-impl<S: Scalar> Stages<S> {
+impl<S: Scalar, const W: usize> Stages<S, W> {
     /// Room for so many states.
     pub fn new(states: usize) -> Self {
-        let room = || vec![S::from_f64(0.0); states];
-        Self { k: core::array::from_fn(|_| room()), x: room(), errors: room() }
+        let (zero, one) = (S::from_f64(0.0), S::from_f64(1.0));
+        let room = || Padded::new(states, zero);
+        Self {
+            k: Stack::new(states, 2, zero),
+            second: 0..0,
+            x: room(),
+            force: room(),
+            start: room(),
+            rate: room(),
+            end: room(),
+            absolute: Padded::new(states, one),
+            errors: room(),
+        }
     }
 
     /// The number of states.
@@ -41,135 +58,125 @@ impl<S: Scalar> Stages<S> {
         self.x.len()
     }
 
+    /// The second derivatives, or rates, of a stage, each with its state.
+    pub fn stage(&self, stage: usize) -> impl Iterator<Item = (usize, S)> {
+        self.k.row(stage, self.states())
+    }
+
+    /// Takes those of a stage that `write` writes.
+    pub fn set_stage(&mut self, stage: usize, write: impl FnOnce(&mut [S])) {
+        write(&mut self.force);
+        self.k.set_row(stage, &self.force);
+    }
+
+    /// Writes the sums of the stages by these weights, times `h`.
+    pub fn write(&self, weights: &[f64], h: S, out: &mut [S]) {
+        out.fill(h.alike(-0.0));
+        for (stage, weight) in weights.iter().enumerate() {
+            self.stage(stage).for_each(|(state, rate)| out[state] = out[state] + rate.times(*weight));
+        }
+        out.iter_mut().for_each(|out| *out = *out * h);
+    }
+
+    /// The second derivatives of these states at both ends of the step, each with its state.
+    pub fn ends(&self, second: &Range<usize>) -> impl Iterator<Item = (usize, [S; 2])> {
+        let both = self.stage(0).zip(self.stage(END)).map(|((state, before), (_, behind))| (state, [before, behind]));
+        both.filter(|(state, _)| second.contains(state))
+    }
+
     /// Evaluates the stages. Their sums are written out, so that each finds its weights as constants.
     #[inline(always)]
-    fn evaluate(&mut self, forces: &impl Forces<S>, second: &Range<usize>, from: &Begin<'_, S>) {
-        let n = forces.states();
-        self.k[0][..n].copy_from_slice(&from.rate[..n]);
-        forces.at_start(from.x, &mut self.k[0]);
+    fn evaluate(&mut self, forces: &impl Forces<S>, from: &Begin<'_, S>) {
+        self.start.copy_from_slice(from.x);
+        self.rate.copy_from_slice(from.rate);
+        self.force.copy_from_slice(from.rate);
+        forces.at_start(from.x, &mut self.force);
+        self.k.set_row(0, &self.force);
         for (stage, c) in INSTANTS.iter().enumerate().skip(1) {
-            let x = &mut self.x[..n];
             macro_rules! written_out {
                 ($($stage:literal)*) => {
                     match stage {
-                        $( $stage => reach::<S, $stage>(&self.k, second, *c, from, x), )*
+                        $( $stage => {
+                            let Self { k, second, x, start, rate, .. } = self;
+                            reach::<S, W, $stage>(k, second, (start, rate), [from.h.alike(*c), from.h], x);
+                        } )*
                         _ => unreachable!("a step has nine stages"),
                     }
                 };
             }
             written_out!(1 2 3 4 5 6 7 8);
-            forces.at_stage(from.t + from.h.times(*c), x, &mut self.k[stage][..n]);
+            forces.at_stage(from.t + from.h.times(*c), &self.x, &mut self.force);
+            self.k.set_row(stage, &self.force);
         }
     }
 
     /// Writes the state at the end of a step; gives the largest difference to the embedded method in parts of what is allowed.
     #[inline(always)]
     pub fn step(&mut self, forces: &impl Forces<S>, from: &Begin<'_, S>, scale: &Scale<S>, end: &mut [S]) -> S {
-        let (second, n) = (&forces.second(), forces.states());
-        self.evaluate(forces, second, from);
-        let Self { k, errors, .. } = self;
-        reach::<S, END>(k, second, 1.0, from, &mut end[..n]);
-        let ends = [from.x, &*end];
-        let mut each = |states: Range<usize>, is_second| {
-            let (weights, h) = (if is_second { SECOND[ERROR] } else { FIRST[ERROR] }, from.h);
-            let errors = &mut *errors;
-            for_each::<S>(states.start, states.end, &mut Errors { k, weights, h, is_second, ends, scale, errors });
-        };
-        each(0..second.start, false);
-        each(second.clone(), true);
-        each(second.end..n, false);
-        largest(&errors[..n])
+        let second = forces.second();
+        if self.second != second {
+            self.k.arrange([0..second.start, second.clone(), second.end..self.states()], from.h.alike(0.0));
+            self.second = second;
+        }
+        self.evaluate(forces, from);
+        self.absolute.copy_from_slice(&scale.absolute);
+        let Self { k, second, start, rate, end: reached, absolute, errors, .. } = self;
+        let h = from.h;
+        reach::<S, W, END>(k, second, (start, rate), [h.alike(1.0), h], reached);
+        for (first, k) in k.groups() {
+            let (start, to, absolute) = (start.group(*first), reached.group(*first), absolute.group(*first));
+            let is_second = second.contains(first);
+            let mut error = if is_second { combined(k, SECOND[ERROR]) } else { combined(k, FIRST[ERROR]) };
+            for i in 0..W {
+                error[i] = h * error[i];
+                error[i] = if is_second { h * error[i] } else { error[i] };
+                error[i] = (error[i] / scale.allowed_from(absolute[i], start[i], to[i])).abs();
+            }
+            errors.set_group(*first, error);
+        }
+        end.copy_from_slice(reached);
+        largest(errors)
     }
 }
 
-/// The sums of the stages, of `W` states from `first` on.
+/// Writes the state of a row at the instant `c` of the step. A group may end in states of the next order, which come after it.
 #[inline(always)]
-fn combined<S: Scalar, const W: usize>(k: &[Vec<S>], weights: &[f64], first: usize) -> [S; W] {
-    let mut sums: [S; W] = some(&k[0], first);
+fn reach<S: Scalar, const W: usize, const ROW: usize>(
+    k: &Stack<S, W, { STAGES + 1 }>,
+    second: &Range<usize>,
+    (start, rate): (&Padded<S, W>, &Padded<S, W>),
+    [c, h]: [S; 2],
+    x: &mut Padded<S, W>,
+) {
+    for (first, k) in k.groups() {
+        let start = start.group(*first);
+        let mut to = start;
+        if second.contains(first) {
+            let (rate, sums) = (rate.group(*first), combined(k, SECOND[ROW]));
+            for i in 0..W {
+                to[i] = start[i] + h * (rate[i] * c + h * sums[i]);
+            }
+        } else {
+            let sums = combined(k, FIRST[ROW]);
+            for i in 0..W {
+                to[i] = start[i] + h * sums[i];
+            }
+        }
+        x.set_group(*first, to);
+    }
+}
+
+/// The sums of the stages of a group.
+#[inline(always)]
+fn combined<S: Scalar, const W: usize>(k: &[[S; W]; STAGES + 1], weights: &[f64]) -> [S; W] {
+    let mut sums = k[0];
     for sum in &mut sums {
         *sum = sum.times(weights[0]);
     }
     for (k, &weight) in k[1..].iter().zip(&weights[1..]) {
-        let rates: [S; W] = some(k, first);
         for i in 0..W {
-            sums[i] = sums[i] + rates[i].times(weight);
+            sums[i] = sums[i] + k[i].times(weight);
         }
     }
     sums
-}
-
-/// Writes the state of a row at the instant `c` of the step.
-#[inline(always)]
-fn reach<S: Scalar, const ROW: usize>(k: &[Vec<S>], second: &Range<usize>, c: f64, from: &Begin<'_, S>, x: &mut [S]) {
-    let n = x.len();
-    for_each::<S>(0, second.start, &mut Reach::<S, ROW> { k, from, x });
-    for_each::<S>(second.start, second.end, &mut ReachSecond::<S, ROW> { k, from, c, x });
-    for_each::<S>(second.end, n, &mut Reach::<S, ROW> { k, from, x });
-}
-
-/// States of first order at a stage.
-struct Reach<'a, S, const ROW: usize> {
-    k: &'a [Vec<S>],
-    from: &'a Begin<'a, S>,
-    x: &'a mut [S],
-}
-
-impl<S: Scalar, const ROW: usize> OfEach for Reach<'_, S, ROW> {
-    #[inline(always)]
-    fn of<const W: usize>(&mut self, first: usize) {
-        let Self { k, from, x } = self;
-        let (start, mut sums): ([S; W], [S; W]) = (some(from.x, first), combined(k, FIRST[ROW], first));
-        for i in 0..W {
-            sums[i] = start[i] + from.h * sums[i];
-        }
-        put(x, first, sums);
-    }
-}
-
-/// States of second order at a stage, at the instant `c` of the step.
-struct ReachSecond<'a, S, const ROW: usize> {
-    k: &'a [Vec<S>],
-    from: &'a Begin<'a, S>,
-    c: f64,
-    x: &'a mut [S],
-}
-
-impl<S: Scalar, const ROW: usize> OfEach for ReachSecond<'_, S, ROW> {
-    #[inline(always)]
-    fn of<const W: usize>(&mut self, first: usize) {
-        let Self { k, from, c, x } = self;
-        let (start, rate): ([S; W], [S; W]) = (some(from.x, first), some(from.rate, first));
-        let mut sums: [S; W] = combined(k, SECOND[ROW], first);
-        for i in 0..W {
-            sums[i] = start[i] + from.h * (rate[i].times(*c) + from.h * sums[i]);
-        }
-        put(x, first, sums);
-    }
-}
-
-/// The magnitudes of errors in parts of what is allowed.
-struct Errors<'a, S> {
-    k: &'a [Vec<S>],
-    weights: &'a [f64],
-    h: S,
-    is_second: bool,
-    ends: [&'a [S]; 2],
-    scale: &'a Scale<S>,
-    errors: &'a mut [S],
-}
-
-impl<S: Scalar> OfEach for Errors<'_, S> {
-    #[inline(always)]
-    fn of<const W: usize>(&mut self, first: usize) {
-        let Self { k, weights, h, is_second, ends: [start, end], scale, errors } = self;
-        let (start, end, absolute): ([S; W], [S; W], [S; W]) =
-            (some(start, first), some(end, first), some(&scale.absolute, first));
-        let mut sums: [S; W] = combined(k, weights, first);
-        for i in 0..W {
-            let error = *h * sums[i];
-            let error = if *is_second { *h * error } else { error };
-            sums[i] = (error / scale.allowed_from(absolute[i], start[i], end[i])).abs();
-        }
-        put(errors, first, sums);
-    }
 }

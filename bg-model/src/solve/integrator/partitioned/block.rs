@@ -24,9 +24,9 @@ const CHOICE: u32 = 4;
 const GROWTH: f64 = 2.0;
 
 /// A flow whose Jacobian has what is asked of it here: the entries among states that are not of second order.
-struct Damping<'a, F: ?Sized>(&'a F);
+struct Damping<'a>(&'a dyn Flow);
 
-impl<F: Flow + ?Sized> Flow for Damping<'_, F> {
+impl Flow for Damping<'_> {
     fn states(&self) -> usize {
         self.0.states()
     }
@@ -129,7 +129,7 @@ impl Block {
     }
 
     /// Makes ready for a step of size `h` (s) from `start`. Gives whether the Jacobian is one of numbers.
-    pub fn prepare(&mut self, flow: &(impl Flow + ?Sized), start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    pub fn prepare(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let (t, x) = &mut self.starts[self.present];
         *t = start.t;
         x.copy_from_slice(start.x);

@@ -20,9 +20,9 @@ use crate::model::scalar::Scalar;
 
 use self::block::Block;
 pub(super) use self::tableau::KennedyCarpenter;
-use self::tableau::STAGES;
-use super::explicit::{Explicit, Stages, Tableau, write_row};
+use super::explicit::{Explicit, Stages, Tableau};
 use super::hand_on::hand_on;
+use super::side_by_side::SIDE_BY_SIDE;
 use super::steps::{Begin, OfFlow};
 use super::tolerances::largest;
 use super::vectors::{Vectorised, attempt_in};
@@ -63,14 +63,7 @@ impl Default for Ark5 {
 
 impl Vectorised for Ark5 {
     #[inline(always)]
-    fn attempt_inlined(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let Self { explicit, block, .. } = self;
         if block.invert() { step(&mut explicit.stages, block, flow, start, h, scale, end) } else { f64::INFINITY }
     }
@@ -82,37 +75,29 @@ const NOTHING: Scale = Scale { relative: Ark5::LOOSEST, absolute: Vec::new(), co
 /// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
 const AT_START: f64 = 0.02;
 
-/// Behind the stages there is room: for both differences, and for what is allowed.
-const DIFFERENCE: usize = STAGES + 1;
-
 /// Writes the state at the end of a step of size `h` (s) whose stages `block` completes; gives its error norm.
 #[inline(always)]
 fn step(
-    stages: &mut Stages<KennedyCarpenter, f64>,
+    stages: &mut Stages<KennedyCarpenter, f64, SIDE_BY_SIDE>,
     block: &mut Block,
-    flow: &(impl Flow + ?Sized),
+    flow: &dyn Flow,
     start: PointRef<'_>,
     h: f64,
     scale: &Scale,
     end: &mut [f64],
 ) -> f64 {
-    stages.k[0].copy_from_slice(start.rate);
+    stages.begin(start.rate);
     stages.evaluate::<true>(&OfFlow(flow), &Begin::of(start, h), 1..KennedyCarpenter::END, block);
-    write_row(&stages.k, KennedyCarpenter::B, end);
-    let n = flow.states();
-    let (k, room) = stages.k.split_at_mut(DIFFERENCE);
-    let [difference, at_start, allowed] = room.first_chunk_mut().expect("there is room behind the stages");
-    let (difference, at_start, allowed) = (&mut difference[..n], &mut at_start[..n], &mut allowed[..n]);
-    write_row(k, KennedyCarpenter::ERROR, difference);
-    write_row(k, KennedyCarpenter::START, at_start);
-    for i in 0..n {
-        end[i] = start.x[i] + h * end[i];
-        at_start[i] *= AT_START;
-        allowed[i] = scale.allowed_between(i, start.x[i], end[i]);
+    stages.write_rows([KennedyCarpenter::B, KennedyCarpenter::ERROR, KennedyCarpenter::START]);
+    let Stages { end: slopes, differences: [difference, at_start], .. } = stages;
+    for ((end, from), slope) in end.iter_mut().zip(start.x).zip(&**slopes) {
+        *end = from + h * slope;
     }
+    at_start.iter_mut().for_each(|at_start| *at_start *= AT_START);
     block.reduce([difference, at_start]);
-    for i in 0..n {
-        difference[i] = difference[i].abs().larger(at_start[i].abs()) / allowed[i];
+    for (i, difference) in difference.iter_mut().enumerate() {
+        let allowed = scale.allowed_between(i, start.x[i], end[i]);
+        *difference = difference.abs().larger(at_start[i].abs()) / allowed;
     }
     h.abs() * largest(difference)
 }
@@ -133,14 +118,7 @@ impl Method for Ark5 {
         self.block.fit(states);
     }
 
-    fn attempt(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
+    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if !self.block.prepare(flow, start, h, scale) {
             return f64::INFINITY;
         }

@@ -9,7 +9,7 @@ mod tableau;
 use alloc::vec::Vec;
 
 use super::tolerances::index_of_largest;
-use super::{Arch, Flow, Method, PointRef, Scale, StepControl, hermite};
+use super::{Flow, Method, PointRef, Scale, StepControl, hermite};
 use step::{Stages, add};
 use tableau::{RODAS5P, RODAS5P_DENSE, ROS2};
 
@@ -20,15 +20,13 @@ pub struct Rodas5p {
     stages: Stages<8>,
     /// The dense output's coefficients.
     dense: [Vec<f64>; 3],
-    /// The machine's vectors.
-    pub(super) arch: Arch,
 }
 
 impl Rodas5p {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        Self { stages: Stages::new(), dense: [const { Vec::new() }; 3], arch: Arch::new() }
+        Self { stages: Stages::new(), dense: [const { Vec::new() }; 3] }
     }
 }
 
@@ -52,15 +50,8 @@ impl Method for Rodas5p {
         self.dense.iter_mut().for_each(|room| room.resize(states, 0.0));
     }
 
-    fn attempt(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
-        match self.stages.evaluate(self.arch, &RODAS5P, flow, start, h, scale) {
+    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+        match self.stages.evaluate(&RODAS5P, flow, start, h, scale) {
             None => f64::INFINITY,
             Some(false) => f64::NAN,
             Some(true) => {
@@ -86,7 +77,7 @@ impl Method for Rodas5p {
         self.stages.fault
     }
 
-    fn prepare_dense(&mut self, _flow: &(impl Flow + ?Sized), _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {
+    fn prepare_dense(&mut self, _flow: &dyn Flow, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {
         for (v, weights) in self.dense.iter_mut().zip(&RODAS5P_DENSE) {
             v.fill(0.0);
             add(v, weights, &self.stages.u, 1.0);
@@ -110,15 +101,13 @@ impl Method for Rodas5p {
 pub struct Ros2 {
     step: f64,
     stages: Stages<2>,
-    /// The machine's vectors.
-    pub(super) arch: Arch,
 }
 
 impl Ros2 {
     /// The method with steps of `step` (s); the driver refuses a step that is not positive and finite.
     #[must_use]
     pub fn new(step: f64) -> Self {
-        Self { step, stages: Stages::new(), arch: Arch::new() }
+        Self { step, stages: Stages::new() }
     }
 }
 
@@ -135,15 +124,8 @@ impl Method for Ros2 {
         self.stages.fit(states);
     }
 
-    fn attempt(
-        &mut self,
-        flow: &(impl Flow + ?Sized),
-        start: PointRef<'_>,
-        h: f64,
-        scale: &Scale,
-        end: &mut [f64],
-    ) -> f64 {
-        if self.stages.evaluate(self.arch, &ROS2, flow, start, h, scale) != Some(true) {
+    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+        if self.stages.evaluate(&ROS2, flow, start, h, scale) != Some(true) {
             return f64::NAN;
         }
         self.stages.write_end(&ROS2, start, end);

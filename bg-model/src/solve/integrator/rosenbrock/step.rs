@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use super::tableau::Tableau;
 use crate::solve::integrator::linear::{Factors, Jacobian};
 use crate::solve::integrator::tolerances::largest_of;
-use crate::solve::integrator::{Arch, Flow, PointRef, Scale, first_not_finite, is_finite};
+use crate::solve::integrator::{Flow, PointRef, Scale, first_not_finite, is_finite};
 
 /// The work space of a method of `S` stages.
 #[derive(Clone, Debug)]
@@ -41,13 +41,12 @@ impl<const S: usize> Stages<S> {
         self.is_current = false;
     }
 
-    /// Evaluates all stages, linear systems in the vectors `arch`; gives whether they are numbers, or nothing where the matrix is singular or a derivative is no
+    /// Evaluates all stages; gives whether they are numbers, or nothing where the matrix is singular or a derivative is no
     /// number.
     pub fn evaluate(
         &mut self,
-        arch: Arch,
         tableau: &Tableau<S>,
-        flow: &(impl Flow + ?Sized),
+        flow: &dyn Flow,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,
@@ -61,7 +60,7 @@ impl<const S: usize> Stages<S> {
             return None;
         }
         let hg = h * tableau.gamma;
-        if !self.factors.factor(arch, flow, hg, &self.jacobian) {
+        if !self.factors.factor(flow, hg, &self.jacobian) {
             return None;
         }
         let Self { u, room: [x, rate, _], jacobian, factors, fault, .. } = self;
@@ -70,7 +69,7 @@ impl<const S: usize> Stages<S> {
             if i > 0 {
                 x.copy_from_slice(start.x);
                 add(x, &tableau.a[i][..i], u, 1.0);
-                flow.inlined_rate(start.t + tableau.c[i] * h, x, rate);
+                flow.rate(start.t + tableau.c[i] * h, x, rate);
                 if !is_finite(rate) {
                     *fault = first_not_finite(rate);
                     return Some(false);
@@ -82,7 +81,7 @@ impl<const S: usize> Stages<S> {
                 *b = hg * (rate + slope * by_time);
             }
             add(x, &tableau.cc[i][..i], u, tableau.gamma);
-            factors.solve(arch, flow, x);
+            factors.solve(flow, x);
             u[i].copy_from_slice(x);
         }
         Some(true)
