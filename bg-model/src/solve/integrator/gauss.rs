@@ -123,5 +123,5 @@ fn of_fixed<const N: usize>(scale: &Scale<N>) -> Scale<N> {
         let absolute = if absolute > f64::MIN_POSITIVE { absolute * part } else { 0.0 };
         if absolute > f64::MIN_POSITIVE { absolute } else { UNKNOWN }
     });
-    Scale { relative: OF_FIXED, absolute, coarsest: OF_FIXED, growth: scale.growth }
+    Scale { relative: OF_FIXED, absolute, coarsest: OF_FIXED, ..*scale }
 }

@@ -102,8 +102,8 @@ pub(crate) trait OfOne<const N: usize> {
         false
     }
 
-    /// Begins anew to look for it, where that is called for; gives whether it is.
-    fn begins(&mut self, _second: &Range<usize>) -> bool {
+    /// Begins anew to look for it, where that is called for, in the norm of these weights; gives whether it is.
+    fn begins(&mut self, _second: &Range<usize>, _weights: &SVector<f64, N>) -> bool {
         false
     }
 
@@ -184,23 +184,22 @@ impl<V: Vector, const N: usize> AnyInLanes<V, N> {
         method.keep(at(lane, self.to_be_carried()), &|stage| at(lane, self.stage(stage)));
     }
 
-    /// Iterates towards the fastest oscillations at the places of `due`, from states `x` with rates `rate` at time `t` (s); gives their
-    /// stiffnesses. For Nystrom's method.
+    /// Iterates towards the fastest oscillations at the places of `due`, from states `x` with rates `rate` at time
+    /// `t` (s), in the norm of the weights of `scale`; gives their stiffnesses. For Nystrom's method.
     #[inline(always)]
     pub fn follow<Sys, const G: usize>(
         &mut self,
         side: &Side<'_, Sys, V, G>,
         due: V::Mask,
-        t: Lanes<V>,
-        x: &SVector<Lanes<V>, N>,
-        rate: &SVector<Lanes<V>, N>,
+        (t, x, rate): (Lanes<V>, &SVector<Lanes<V>, N>, &SVector<Lanes<V>, N>),
+        scale: &Scale<N, Lanes<V>>,
     ) -> Lanes<V>
     where
         Sys: System<Lanes<V>, N, G>,
     {
         match self {
             Self::Cfmr7(_) | Self::Dop853(_) => t.alike(0.0),
-            Self::Nystrom(method) => method.follow(side, due, t, x, rate),
+            Self::Nystrom(method) => method.follow(side, due, (t, x, rate), &scale.weights),
         }
     }
 

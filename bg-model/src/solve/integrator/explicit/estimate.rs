@@ -18,7 +18,8 @@ impl<F: Fn(f64) -> f64> Flow<1> for Clock<F> {
 fn norm(mut method: impl Method<1>, rate: impl Fn(f64) -> f64, h: f64) -> f64 {
     let mut start = Point::at(0.0, SVector::from([0.0]));
     start.rate[0] = rate(0.0);
-    let scale = Scale { relative: 0.0, absolute: SVector::from([1.0]), coarsest: 1.0, growth: f64::INFINITY };
+    let one = SVector::from([1.0]);
+    let scale = Scale { relative: 0.0, absolute: one, coarsest: 1.0, growth: f64::INFINITY, weights: one };
     method.attempt(&Clock(rate), &start, h, &scale, &mut SVector::from([0.0]))
 }
 

@@ -64,23 +64,23 @@ impl<V: Vector, const N: usize> NystromInLanes<V, N> {
         &self.stages.k[stage].0
     }
 
-    /// One iteration towards the fastest oscillation at the places of `due`, from states `x` with rates `rate` at time `t` (s): see
-    /// [`Ring::follow`](super::ring::Ring::follow). Gives the stiffnesses.
+    /// One iteration towards the fastest oscillation at the places of `due`, from states `x` with rates `rate` at
+    /// time `t` (s), in the norm of these weights: see [`Ring::follow`](super::ring::Ring::follow). Gives the
+    /// stiffnesses.
     #[inline(always)]
     pub fn follow<Sys, const G: usize>(
         &mut self,
         side: &Side<'_, Sys, V, G>,
         due: V::Mask,
-        t: Lanes<V>,
-        x: &SVector<Lanes<V>, N>,
-        rate: &SVector<Lanes<V>, N>,
+        (t, x, rate): (Lanes<V>, &SVector<Lanes<V>, N>, &SVector<Lanes<V>, N>),
+        weights: &SVector<Lanes<V>, N>,
     ) -> Lanes<V>
     where
         Sys: System<Lanes<V>, N, G>,
     {
         let states = Forces::<Lanes<V>, N>::second(side);
         let zero = t.alike(0.0);
-        let pull = Pull::along(&self.direction, &states, side, t, (x, rate));
+        let pull = Pull::along(&self.direction, weights, &states, side, (t, x, rate));
         let stiffness = pull.stiffness;
         let infinity = t.alike(f64::INFINITY);
         let is_finite = V::below(stiffness.abs().0, infinity.0);
@@ -128,11 +128,11 @@ impl<const N: usize> OfOne<N> for Nystrom<N> {
         self.ring.is_due()
     }
 
-    fn begins(&mut self, second: &Range<usize>) -> bool {
+    fn begins(&mut self, second: &Range<usize>, weights: &SVector<f64, N>) -> bool {
         self.second = second.clone();
         let begins = self.ring.begins();
         if begins {
-            self.ring.begin(second);
+            self.ring.begin(second, weights);
         }
         begins
     }

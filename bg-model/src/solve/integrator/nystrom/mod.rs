@@ -111,7 +111,7 @@ impl<const N: usize> Method<N> for Nystrom<N> {
         end: &mut SVector<f64, N>,
     ) -> f64 {
         self.second = OfFlow(flow).second();
-        self.ring.follow(&OfFlow(flow), start, &self.second);
+        self.ring.follow(&OfFlow(flow), start, &self.second, &scale.weights);
         let reach = self.ring.reach(h);
         if reach > 1.0 {
             return reach;

@@ -72,7 +72,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     pub fn new(method: AnyInLanes<V, N>, control: Control, scale: &Scale<N>) -> Self {
         let zero = Lanes::from_f64(0.0);
         let Scale { relative, coarsest, growth, .. } = *scale;
-        let absolute = scale.absolute.map(Lanes::from_f64);
+        let [absolute, weights] = [scale.absolute, scale.weights].map(|of| of.map(Lanes::from_f64));
         let none = [SVector::from([zero; N]); 2];
         Self {
             t: zero,
@@ -87,7 +87,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             controllers: Controllers::new(control),
             led: 0,
             plain: 0,
-            scale: Scale { relative, absolute, coarsest, growth },
+            scale: Scale { relative, absolute, coarsest, growth, weights },
             limit: SVector::repeat(Lanes::from_f64(f64::INFINITY)),
             longest: Lanes::from_f64(f64::INFINITY),
             loops: None,
@@ -190,6 +190,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     /// What errors are allowed in a run, and from which magnitudes and step (s) on it has outgrown its sizes.
     pub fn measure(&mut self, lane: usize, scale: &Scale<N>, (limit, longest): &(SVector<f64, N>, f64)) {
         put(lane, &mut self.scale.absolute, &scale.absolute);
+        put(lane, &mut self.scale.weights, &scale.weights);
         put(lane, &mut self.limit, limit);
         *self.longest.0.at_mut(lane) = *longest;
     }
@@ -277,8 +278,8 @@ where
 
     #[inline(always)]
     fn call(self) -> V::Numbers {
-        let Group { t, start: [x, rate], negative, method, .. } = self.group;
-        method.follow(&Side { system: self.system, negative }, V::mask(self.due), *t, x, rate).0.numbers()
+        let Group { t, start: [x, rate], negative, method, scale, .. } = self.group;
+        method.follow(&Side { system: self.system, negative }, V::mask(self.due), (*t, x, rate), scale).0.numbers()
     }
 }
 

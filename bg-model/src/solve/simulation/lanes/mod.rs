@@ -422,7 +422,8 @@ where
             continue;
         }
         due |= 1 << place;
-        if lane.method().begins(&second) {
+        let weights = lane.run.stepper.scale.weights;
+        if lane.method().begins(&second, &weights) {
             group.set_compensation(place, lane.method().compensation());
         }
     }
