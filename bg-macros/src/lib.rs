@@ -900,7 +900,8 @@ use proc_macro::TokenStream;
 ///   the least step from their guesses to where the flows of all rigid joints vanish, and those of the compliant joints
 ///   that a guessed velocity moves. Given velocities stay. Example: the crank's spin is given, all that it drives is
 ///   guessed.
-/// - A **misfit** of more than 1e-9 m/s or rad/s is an error, `AssemblyError::Torn`: *joint `pin` is torn apart at
+/// - A **misfit** of more than 1e-9 of what the kinetic energy could move there is an error, `AssemblyError::Torn`:
+///   *joint `pin` is torn apart at
 ///   -0.5 m/s in y*. Rigid joints are always looked at. A compliant one only where a guess moves it: without a guess a
 ///   spring may be in motion at the start.
 /// - With the statement **`start impulse;`** in the graph, impulses of the rigid joints make the velocities fit, as in a
