@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use nalgebra::{DVector, SVector};
 use thiserror::Error;
 
-use crate::model::holding::{FITTING, Redundancy, Slipping};
+use crate::model::holding::{Redundancy, Slipping};
 use crate::model::nearest::nearest;
 use crate::model::requirement::Impossible;
 
@@ -76,15 +76,18 @@ pub enum AssemblyError {
     /// A start value cannot be, such as an orientation that is no rotation.
     #[error(transparent)]
     Impossible(#[from] Impossible),
-    /// Some joints are torn apart by the start velocities, faster than [`FITTING`].
+    /// Some joints are torn apart by the start velocities, by more than the part
+    /// [`FITTING`](crate::model::holding::FITTING) of what could move there.
     #[error(
-        "the start velocities do not fit: joint {largest} (allowed: {FITTING:e}){}; correct them, give `guess(..)` to \
+        "the start velocities do not fit: joint {largest} (allowed: {allowed:.0e}){}; correct them, give `guess(..)` to \
          those that may change{}",
         also_torn(.others), or_impulse(.largest)
     )]
     Torn {
         /// The fastest.
         largest: Slipping,
+        /// The fastest that would fit, in its unit.
+        allowed: f64,
         /// The other joints that are torn apart, each with its fastest motion.
         others: Vec<Slipping>,
     },
@@ -143,7 +146,7 @@ pub fn close<const U: usize>(
     terms: impl Fn(&[f64; U], &mut [f64]),
 ) -> Result<[f64; U], AssemblyError> {
     // Half a radian, or half the size of the coordinates, so that the pose is not thrown over into another one that
-    // closes as well.
+    // closes as well. Gaps are linear in lengths, so those of a small machine go where the angles want them.
     let longest = |coordinates: &SVector<f64, U>| 0.5 * coordinates.amax().max(1.0);
     let (coordinates, sizes) = nearest(guess, gaps.len(), longest, residual, |sizes| check_finite(gaps, sizes))?;
     let mut all = vec![0.0; gaps.len()];
@@ -160,7 +163,8 @@ fn check_finite(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError>
 }
 
 fn check_closed(gaps: &[Gap], sizes: &DVector<f64>, terms: &[f64]) -> Result<(), AssemblyError> {
-    // Of an angle a radian counts, of a length a metre: a gap of numbers alone, or one component of it, has no terms at run time.
+    // Of an angle a radian counts, of a length a metre: a gap of numbers alone, or one component of it, has no terms
+    // at run time. What can be closed is closed to rounding all the same.
     let allowed = |unit: &str| {
         let of_unit = gaps.iter().zip(terms).filter(|(gap, _)| gap.unit == unit);
         CLOSED * of_unit.fold(1.0_f64, |largest, (_, &terms)| largest.max(terms))

@@ -6,7 +6,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// The largest relative flow of a joint that fits, in the flow's unit (m/s or rad/s).
+/// The largest relative flow of a joint that fits, as a part of what sources and all kinetic energy could move there.
 pub const FITTING: f64 = 1e-9;
 
 /// A motion that a joint holds.

@@ -10,7 +10,8 @@ use nalgebra::{Const, DimMin, SMatrix, SVector};
 
 use crate::model::scalar::Scalar;
 
-/// Where the iteration begins, one after the other.
+/// Where the iteration begins, one after the other, in the unknowns' own units: nothing is known of their sizes. What
+/// is found is right to rounding from any of them; of an equation with several solutions they may say which.
 const STARTS: [f64; 9] = [0.0, 1.0, -1.0, 1e-3, -1e-3, 1e3, -1e3, 1e6, -1e6];
 /// Steps from one start.
 const MOST_STEPS: u32 = 60;

@@ -98,7 +98,8 @@ fn jacobian<const U: usize>(
     rows: usize,
     gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
 ) -> DMatrix<f64> {
-    // Balances the truncation error d^4 / 30 against the rounding error 1e-16 / d.
+    // Balances the truncation error d^4 / 30 against the rounding error 1e-16 / d. Of an angle this is a part of a
+    // radian; in lengths and velocities gaps and flows are linear, so that no displacement of them is too long.
     const DISPLACEMENT: f64 = 1.0 / 1024.0;
     let mut jacobian = DMatrix::zeros(rows, U);
     for column in 0..U {

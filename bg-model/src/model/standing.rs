@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use crate::model::capability::{Impacts, Joints};
 use crate::model::description::{StateInfo, StateKind};
-use crate::model::holding::{FITTING, Slip, Slipping};
+use crate::model::holding::{Slip, Slipping};
 use crate::model::reactions::{Collision, Hold};
 use crate::model::system::{Model, branches, branches_by_sign};
 
@@ -429,11 +429,8 @@ impl Limits {
             alike.fold(0.0_f64, |size, other| size.max(sizes[other]))
         };
         let sizes: Vec<f64> = (0..2 * count).map(largest).collect();
-        // What the assembly of the start accepts: a flow, and the gaps that it leaves.
-        let of_start = |row: usize| {
-            let left = at_start.map_or(0.0, |start| 2.0 * start[row].abs());
-            if row < count { left + FITTING } else { left }
-        };
+        // What the assembly of the start accepts and leaves.
+        let of_start = |row: usize| at_start.map_or(0.0, |start| 2.0 * start[row].abs());
         let allowed = sizes.iter().enumerate().map(|(row, size)| part * size + of_start(row)).collect();
         Self { rigid, sizes, allowed }
     }

@@ -1,6 +1,7 @@
 //! Runs: the driver, events, samples, what ends them, what they say and that they allocate nothing; tables, values and drawings of a model.
 
 mod allocation;
+mod decades;
 mod drawing;
 mod driver;
 mod events;

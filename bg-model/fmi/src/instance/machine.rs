@@ -45,7 +45,7 @@ pub(crate) trait Machine {
     /// The input or law that something which is not finite comes from, as far as that is known.
     fn origin(&self) -> Option<Origin>;
     /// Whether the state has drifted off the invariants: whether the projection changes a state by more than the part
-    /// `rtol` of what is larger, the state or 1 SI unit.
+    /// `rtol` of what is larger, the state or its size ([`Machine::nominals`]) at the start.
     ///
     /// # Errors
     /// It is so far off that no step leads there.
@@ -87,8 +87,8 @@ impl ModelVisitor<f64> for AtStart {
         Mo: Model<f64, N, G, M> + Clone + 'static,
     {
         let x = model.start().map_err(|fault| Fault::Start(fault.to_string()))?;
-        let (model, t, largest) = (model.clone(), self.t, x.abs());
-        Ok(Box::new(Stood::<Mo, N, G, M> { model, t, start: x, x, largest, negative: None, run: None }))
+        let (model, t, largest, size) = (model.clone(), self.t, x.abs(), above_zero(&sizes(model, self.t, &x)));
+        Ok(Box::new(Stood::<Mo, N, G, M> { model, t, start: x, x, size, largest, negative: None, run: None }))
     }
 }
 
@@ -100,6 +100,8 @@ struct Stood<Mo, const N: usize, const G: usize, const M: usize> {
     /// The model's own start.
     start: SVector<f64, N>,
     x: SVector<f64, N>,
+    /// How large each state is to be taken for at the start, in its unit.
+    size: SVector<f64, N>,
     /// How large each state has been.
     largest: SVector<f64, N>,
     /// The branches of the switches, once an event or a step has found them.
@@ -115,12 +117,13 @@ struct Run<const N: usize, const G: usize> {
 }
 
 impl<const N: usize, const G: usize> Run<N, G> {
-    fn at(t: f64, x: SVector<f64, N>, negative: Option<[bool; G]>) -> Self {
+    fn at(t: f64, x: SVector<f64, N>, largest: &SVector<f64, N>, negative: Option<[bool; G]>) -> Self {
         let ongoing = match negative {
             Some(negative) => Ongoing::standing(t, x, negative),
             None => Ongoing::at(t, x),
         };
-        Self { method: Integrator::default().method(Request::default().fixed_step), ongoing }
+        let method = Integrator::default().method(Request::default().fixed_step);
+        Self { method, ongoing: ongoing.grown(largest) }
     }
 }
 
@@ -129,8 +132,8 @@ fn settings<const N: usize>(rtol: f64) -> Settings<N> {
 }
 
 /// Nominal values of these sizes: 1 SI unit, as the standard has it, where nothing is known.
-fn above_zero<const N: usize>(sizes: &SVector<f64, N>) -> Vec<f64> {
-    sizes.iter().map(|&size| if size > 0.0 && size.is_finite() { size } else { 1.0 }).collect()
+fn above_zero<const N: usize>(sizes: &SVector<f64, N>) -> SVector<f64, N> {
+    sizes.map(|size| if size > 0.0 && size.is_finite() { size } else { 1.0 })
 }
 
 /// The nominal values of a model's states at its start.
@@ -143,7 +146,7 @@ impl ModelVisitor<f64> for Nominals {
     where
         Mo: Model<f64, N, G, M>,
     {
-        Some(above_zero(&sizes(model, 0.0, &model.start().ok()?)))
+        Some(above_zero(&sizes(model, 0.0, &model.start().ok()?)).as_slice().to_vec())
     }
 }
 
@@ -213,7 +216,7 @@ where
     }
 
     fn nominals(&self) -> Vec<f64> {
-        above_zero(&sizes(&self.model, self.t, &self.x).sup(&self.largest))
+        above_zero(&sizes(&self.model, self.t, &self.x).sup(&self.largest)).as_slice().to_vec()
     }
 
     fn rates(&self, rates: &mut [f64]) {
@@ -241,8 +244,7 @@ where
     fn drifts(&self, rtol: f64) -> Result<bool, Fault> {
         let mut x = self.x;
         self.model.project(self.t, self.negative(), &mut x);
-        let change = |(new, old): (&f64, &f64)| (new - old).abs() / old.abs().max(1.0);
-        let drift = x.iter().zip(self.x.iter()).map(change).fold(0.0, f64::max);
+        let drift = (x - self.x).component_div(&self.x.abs().sup(&self.size)).amax();
         // What no projection moves, such as an orientation of zeros, is off as well.
         self.standing(DRIFT).rotated(&self.x).map_err(misplaced)?;
         if drift > rtol {
@@ -256,7 +258,7 @@ where
         self.stand(DRIFT)?;
         if G > 0 {
             // A run of no length finds branches and impacts.
-            let Run { mut method, mut ongoing } = Run::<N, G>::at(self.t, self.x, self.negative);
+            let Run { mut method, mut ongoing } = Run::<N, G>::at(self.t, self.x, &self.largest, self.negative);
             let settled = ongoing.advance(&self.model, &mut method, self.t, &settings(rtol), &mut ());
             settled.map_err(|failure| Fault::Stopped(failure.to_string()))?;
             (self.x, self.negative) = (*ongoing.state(), Some(*ongoing.negative()));
@@ -269,7 +271,7 @@ where
     }
 
     fn advance(&mut self, to: f64, rtol: f64) -> Result<(), Fault> {
-        let run = self.run.get_or_insert_with(|| Run::at(self.t, self.x, self.negative));
+        let run = self.run.get_or_insert_with(|| Run::at(self.t, self.x, &self.largest, self.negative));
         let outcome = run.ongoing.advance(&self.model, &mut run.method, to, &settings(rtol), &mut ());
         (self.t, self.x) = (run.ongoing.time(), *run.ongoing.state());
         self.negative = Some(*run.ongoing.negative());
@@ -298,7 +300,7 @@ where
         self.negative = negative.as_ref().map(|negative| std::array::from_fn(|index| negative[index]));
         self.stand(CLOSE)?;
         self.run = step.map(|step| {
-            let mut run = Run::at(*t, self.x, self.negative);
+            let mut run = Run::at(*t, self.x, &self.largest, self.negative);
             run.ongoing.renew(Some(step));
             run
         });

@@ -283,7 +283,7 @@ impl Instance {
     /// # Errors
     /// Why the run stopped; an unusable step.
     pub fn step(&mut self, t: f64, h: f64) -> Result<(), Fault> {
-        /// A communication point is met to this part of 1 s, or of the time: hosts add up steps.
+        /// A communication point is met to this part of the step, or of the time: hosts add up steps.
         const NEAR: f64 = 1e-9;
         self.only("a step", &[Mode::Step])?;
         let rtol = self.rtol;
@@ -292,7 +292,7 @@ impl Instance {
         if !(h.is_finite() && h >= 0.0) {
             return Err(Fault::Step(h));
         }
-        let is_near = (t - present).abs() <= NEAR * present.abs().max(1.0);
+        let is_near = (t - present).abs() <= NEAR * present.abs().max(h);
         if !is_near {
             return Err(Fault::CommunicationPoint { asked: t, present });
         }

@@ -370,6 +370,8 @@ fn what_cannot_be_is_refused_in_words() {
     let late = instance.set(&[length], &[1.0]).unwrap_err().to_string();
     assert_eq!(late, "to set a parameter is not possible in Step Mode");
     assert!(instance.step(0.5, 0.1).unwrap_err().to_string().starts_with("the step is to begin at 0.5 s"));
+    // A communication point is met to a part of the step.
+    assert!(instance.step(1e-10, 1e-9).is_err());
     assert!(instance.step(0.0, f64::NAN).is_err() && instance.step(0.0, -0.1).is_err());
     assert!(instance.set_states(&[0.0]).is_err());
     assert_eq!(

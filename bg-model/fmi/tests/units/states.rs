@@ -13,11 +13,25 @@ bond_graph! {
         rope -> slide -> block; slide -> rub;
         observe { rub.effort; root: 1 = sqrt((pull - least) / least) }
     }
+
+    /// A rod of any size that swings about a pin.
+    graph Rod {
+        param length: m = 1, above 0;
+        gravity [0, -9.81 * length, 0];
+        ground { point pivot = [0, 0, 0]; }
+        body rod {
+            mass 1; inertia [length * length / 100, length * length / 12, length * length / 12];
+            point end = [-length / 2, 0, 0]; start end at [0, 0, 0];
+        }
+        joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
+        observe { angle: rad = pin.angle }
+    }
 }
 
 static PENDULUM: Of<Pendulum> = Of::NEW;
 static BALL: Of<Ball> = Of::NEW;
 static RUBBED: Of<Rubbed> = Of::NEW;
+static ROD: Of<Rod> = Of::NEW;
 
 fn begun(model: &'static dyn Exported, interface: Interface) -> Instance {
     let mut instance = Instance::new(model, interface);
@@ -76,6 +90,25 @@ fn states_that_are_no_numbers_or_no_place_are_refused() {
     assert!(instance.completed_step().unwrap());
     instance.enter_event().unwrap();
     assert!(instance.update().unwrap().states_changed);
+}
+
+#[test]
+fn a_drift_is_a_part_of_the_machine() {
+    for size in [1e-9, 1.0, 1e9] {
+        let mut instance = Instance::new(&ROD, Interface::ModelExchange);
+        // Its one parameter is the first variable after the time.
+        instance.set(&[1], &[size]).unwrap();
+        instance.enter_initialization(0.0, Some(1e-8)).unwrap();
+        instance.exit_initialization().unwrap();
+        instance.update().unwrap();
+        instance.enter_continuous().unwrap();
+        let mut x = vec![0.0; instance.state_count()];
+        instance.states(&mut x).unwrap();
+        assert!(!instance.completed_step().unwrap(), "{size}");
+        x[index(&instance, "rod.position_x")] += 1e-6 * size;
+        instance.set_states(&x).unwrap();
+        assert!(instance.completed_step().unwrap(), "{size}");
+    }
 }
 
 #[test]

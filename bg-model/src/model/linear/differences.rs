@@ -2,7 +2,8 @@
 //!
 //! In: a rate. Out: its derivatives by every state, column by column, and by time. Source of the increments: the
 //! subroutine RADCOR of Hairer's `radau5.f`, sqrt(rounding unit * max(1e-5, |x_j|)); but at least 1e-12 |x_j|, since that one
-//! is lost in the rounding of a large x_j.
+//! is lost in the rounding of a large x_j. The 1e-5 is in the state's own unit: of a hand-written system that is all
+//! that is known, and one whose states are smaller gives its Jacobian.
 
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::root;

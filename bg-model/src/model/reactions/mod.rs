@@ -20,7 +20,8 @@ use alloc::vec::Vec;
 use nalgebra::{DVector, SVector};
 
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::Joints;
+use crate::model::capability::{Joints, Storages};
+use crate::model::description::StateKind;
 use crate::model::holding::{FITTING, Held, HeldNow, Redundancy, Slip, Slipping};
 use crate::model::nearest::{lifted, nearest};
 use crate::model::scalar::Scalar;
@@ -135,7 +136,10 @@ where
         };
         let rows = held.rigid.len() + held.compliant.len();
         let check = |flows: &DVector<f64>| match flows.iter().position(|flow| !flow.is_finite()) {
-            Some(k) => Err(AssemblyError::Torn { largest: slipping(&held, k, flows[k]), others: Vec::new() }),
+            Some(k) => {
+                let (largest, allowed) = (slipping(&held, k, flows[k]), 0.0);
+                Err(AssemblyError::Torn { largest, allowed, others: Vec::new() })
+            }
             None => Ok(()),
         };
         // The flows are linear in the velocities, so the first step is the last but for rounding.
@@ -151,10 +155,57 @@ where
     if let Some(redundancy) = factors.redundancy(held.rigid, &dropped(system)) {
         return Err(AssemblyError::Redundant(redundancy));
     }
-    check_fit(&hold, |slipping| impulse && slipping.is_rigid)?;
+    // Guesses count as well: what is left of them where nothing moves is rounding.
+    let allowed = fitting(&x, &momenta(system, [&x, &start(&unknowns)]), &read);
+    check_fit(&hold, &allowed, |slipping| impulse && slipping.is_rigid)?;
     let started = if impulse { strike(x, &read) } else { Started { x, lost: S::from_f64(0.0) } };
-    check_fit(&read(&started.x), |slipping| !slipping.is_rigid)?;
+    check_fit(&read(&started.x), &allowed, |slipping| !slipping.is_rigid)?;
     Ok(started)
+}
+
+/// For each flow at state `x` the largest that fits, in its unit: the part [`FITTING`] of what sources move there and
+/// of what these momenta do, each alone.
+fn fitting<S: Scalar, const N: usize>(
+    x: &SVector<S, N>,
+    momenta: &SVector<f64, N>,
+    read: &impl Fn(&SVector<S, N>) -> Hold<S>,
+) -> Vec<f64> {
+    let mut still = *x;
+    (0..N).filter(|&i| momenta[i] > 0.0).for_each(|i| still[i] = S::from_f64(0.0));
+    let rest = read(&still);
+    let mut squares = vec![0.0; rest.flows().len()];
+    for i in (0..N).filter(|&i| momenta[i] > 0.0) {
+        let mut moving = still;
+        moving[i] = S::from_f64(momenta[i]);
+        for ((square, flow), rest) in squares.iter_mut().zip(read(&moving).flows()).zip(rest.flows()) {
+            let alone = (*flow - *rest).to_f64();
+            *square += alone * alone;
+        }
+    }
+    let both = squares.into_iter().zip(rest.flows());
+    both.map(|(square, rest)| FITTING * (libm::sqrt(square) + rest.to_f64().abs())).collect()
+}
+
+/// How large each momentum would be if it stored alone what all of them store at one of these states; of a system
+/// that does not know what it stores, how large it is there. Zero for other states.
+fn momenta<Sys, S, const N: usize, const G: usize>(system: &Sys, states: [&SVector<S, N>; 2]) -> SVector<f64, N>
+where
+    Sys: System<S, N, G> + Joints<S, N, G>,
+    S: Scalar,
+{
+    let largest = |i: usize| states.iter().fold(0.0_f64, |largest, x| largest.max(x[i].to_f64().abs()));
+    let Some(storages) = system.storages() else {
+        let moved = system.held().moved;
+        return SVector::from_fn(|i, _| if moved.contains(&i) { largest(i) } else { 0.0 });
+    };
+    let is_momentum = |i: usize| matches!(storages.states()[i].kind, StateKind::Momentum(_));
+    let mut curvatures = SVector::from([S::from_f64(0.0); N]);
+    let negative = branches(system, states[0]).map(S::Switch::from);
+    storages.energy(S::from_f64(0.0), states[0], &negative, &mut curvatures);
+    let curvature = |i: usize| if is_momentum(i) { curvatures[i].to_f64() } else { 0.0 };
+    let doubled = |x: &SVector<S, N>| (0..N).map(|i| curvature(i) * x[i].to_f64() * x[i].to_f64()).sum::<f64>();
+    let most = states.into_iter().map(doubled).fold(0.0, f64::max);
+    SVector::from_fn(|i, _| if curvature(i) > 0.0 { libm::sqrt(most / curvature(i)) } else { 0.0 })
 }
 
 /// For each rigid motion whether it follows from others and takes no part.
@@ -219,24 +270,28 @@ fn slipping(held: &Held, k: usize, speed: f64) -> Slipping {
     Slipping { slip, speed, is_rigid }
 }
 
-/// Finds the joints whose flows are above [`FITTING`], those apart that are `excused`.
-fn check_fit<S: Scalar>(hold: &Hold<S>, excused: impl Fn(&Slipping) -> bool) -> Result<(), AssemblyError> {
-    let mut joints: Vec<Slipping> = Vec::new();
-    for (k, flow) in hold.flows().iter().enumerate() {
+/// Finds the joints whose flows are above what is `allowed`, those apart that are `excused`.
+fn check_fit<S: Scalar>(
+    hold: &Hold<S>,
+    allowed: &[f64],
+    excused: impl Fn(&Slipping) -> bool,
+) -> Result<(), AssemblyError> {
+    let mut joints: Vec<(Slipping, f64)> = Vec::new();
+    for (k, (flow, &allowed)) in hold.flows().iter().zip(allowed).enumerate() {
         let found = slipping(&hold.held, k, flow.to_f64());
-        if found.speed.abs() <= FITTING || excused(&found) {
+        if found.speed.abs() <= allowed || excused(&found) {
             continue;
         }
-        match joints.iter_mut().find(|known| known.slip.joint == found.slip.joint) {
-            Some(known) if known.speed.abs() >= found.speed.abs() => {}
-            Some(known) => *known = found,
-            None => joints.push(found),
+        match joints.iter_mut().find(|(known, _)| known.slip.joint == found.slip.joint) {
+            Some((known, _)) if known.speed.abs() >= found.speed.abs() => {}
+            Some(known) => *known = (found, allowed),
+            None => joints.push((found, allowed)),
         }
     }
-    joints.sort_by(|a, b| b.speed.abs().total_cmp(&a.speed.abs()));
+    joints.sort_by(|(a, _), (b, _)| b.speed.abs().total_cmp(&a.speed.abs()));
     if joints.is_empty() {
         return Ok(());
     }
-    let largest = joints.remove(0);
-    Err(AssemblyError::Torn { largest, others: joints })
+    let (largest, allowed) = joints.remove(0);
+    Err(AssemblyError::Torn { largest, allowed, others: joints.into_iter().map(|(other, _)| other).collect() })
 }

@@ -18,9 +18,10 @@ use crate::model::holding::{Held, Redundancy};
 use crate::model::scalar::Scalar;
 use crate::model::system::System;
 
-/// How far a mechanism is moved, rad; m where nothing turns.
+/// How far a mechanism is moved, rad; m where nothing turns, since all that joints hold is linear there.
 const FAR: f64 = 1e-3;
-/// Velocities that are smaller beside those without joints are rounding: nothing can move.
+/// Velocities that are smaller beside those without joints are rounding, of what turns and of what moves straight
+/// each: nothing can move.
 const STILL: f64 = 1e-9;
 /// How often gaps are closed after a move; each time squares what is left.
 const CLOSINGS: usize = 6;
@@ -79,14 +80,14 @@ where
         let pushed = self.pushed(seed);
         let free = self.velocities(&pushed);
         let allowed = self.velocities(&self.fitted(pushed));
-        let largest = |velocities: &SVector<f64, N>, of: &[usize]| {
-            of.iter().fold(0.0_f64, |largest, &state| largest.max(velocities[state].abs()))
+        let fastest = |is_turning: bool| {
+            let states = pose.iter().filter(|&state| turning.contains(state) == is_turning);
+            let [free, allowed] = states.fold([0.0_f64; 2], |[free_so_far, allowed_so_far], &state| {
+                [free_so_far.max(free[state].abs()), allowed_so_far.max(allowed[state].abs())]
+            });
+            (allowed > STILL * free).then_some(allowed)
         };
-        if largest(&allowed, pose) <= STILL * largest(&free, pose) {
-            return None;
-        }
-        let turn = largest(&allowed, turning);
-        let fastest = if turn > 0.0 { turn } else { largest(&allowed, pose) };
+        let fastest = fastest(true).or_else(|| fastest(false))?;
         let mut near = self.pose + allowed * (FAR / fastest);
         for _ in 0..CLOSINGS {
             self.system.project(0.0, &self.negative, &mut near);

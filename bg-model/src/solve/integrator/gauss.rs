@@ -128,12 +128,14 @@ impl Method for Gauss6 {
 }
 
 /// A scale of no states.
-const NOTHING: Scale = Scale { relative: OF_FIXED, absolute: Vec::new(), coarsest: OF_FIXED, growth: f64::INFINITY };
+const NOTHING: Scale =
+    Scale { relative: OF_FIXED, absolute: Vec::new(), coarsest: OF_FIXED, growth: f64::INFINITY, weights: Vec::new() };
 
 /// Makes `own` the scale of a fixed step, whatever the tolerances.
 fn of_fixed(scale: &Scale, own: &mut Scale) {
     let part = OF_FIXED / scale.relative;
     own.growth = scale.growth;
+    own.weights.clone_from(&scale.weights);
     own.absolute.clear();
     own.absolute.extend(scale.absolute.iter().map(|&absolute| {
         let absolute = if absolute > f64::MIN_POSITIVE { absolute * part } else { 0.0 };

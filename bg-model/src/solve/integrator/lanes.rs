@@ -117,8 +117,8 @@ pub(crate) trait OfOne {
         false
     }
 
-    /// Begins anew to look for it, where that is called for; gives whether it is.
-    fn begins(&mut self, _second: &Range<usize>) -> bool {
+    /// Begins anew to look for it, where that is called for, in the norm of these weights; gives whether it is.
+    fn begins(&mut self, _second: &Range<usize>, _weights: &[f64]) -> bool {
         false
     }
 
@@ -200,20 +200,19 @@ impl<V: Vector> AnyInLanes<V> {
         method.keep(&|to| take(lane, self.to_be_carried(), to), &|stage, to| self.take_stage(lane, stage, to));
     }
 
-    /// Iterates towards the fastest oscillations at the places of `due`, from states `x` with rates `rate` at time `t` (s); gives their
-    /// stiffnesses. For Nystrom's method.
+    /// Iterates towards the fastest oscillations at the places of `due`, from states `x` with rates `rate` at time
+    /// `t` (s), in the norm of the weights of `scale`; gives their stiffnesses. For Nystrom's method.
     #[inline(always)]
     pub fn follow(
         &mut self,
         forces: &impl Forces<Lanes<V>>,
         due: V::Mask,
-        t: Lanes<V>,
-        x: &[Lanes<V>],
-        rate: &[Lanes<V>],
+        at: (Lanes<V>, &[Lanes<V>], &[Lanes<V>]),
+        scale: &Scale<Lanes<V>>,
     ) -> Lanes<V> {
         match self {
-            Self::Cfmr7(_) | Self::Dop853(_) => t.alike(0.0),
-            Self::Nystrom(method) => method.follow(forces, due, t, x, rate),
+            Self::Cfmr7(_) | Self::Dop853(_) => at.0.alike(0.0),
+            Self::Nystrom(method) => method.follow(forces, due, at, &scale.weights),
         }
     }
 

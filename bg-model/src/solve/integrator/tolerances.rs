@@ -72,6 +72,9 @@ pub struct Scale<S = f64> {
     /// By how much the end of a step may have outgrown its start for its value to excuse the step's error: without bound where absolute
     /// tolerances are given, since a state may start from zero.
     pub growth: f64,
+    /// What makes changes of different states comparable: one over the size at which each counts beside the others,
+    /// per its unit; 0 where that is not known. 1 for all where absolute tolerances are given, which are in SI.
+    pub weights: Vec<S>,
 }
 
 impl<const N: usize> From<&Tolerances<N>> for Scale {
@@ -88,7 +91,7 @@ impl<const N: usize> From<&Tolerances<N>> for Scale {
             }
         };
         let growth = if tolerances.absolute == Absolute::OfSizes { GROWTH } else { f64::INFINITY };
-        Self { relative: tolerances.relative, absolute, coarsest, growth }
+        Self { relative: tolerances.relative, absolute, coarsest, growth, weights: vec![1.0; N] }
     }
 }
 

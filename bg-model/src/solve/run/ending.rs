@@ -13,7 +13,7 @@ use crate::solve::event::{Located, Never};
 use crate::solve::failure::Failure;
 use crate::solve::finish::Finish;
 use crate::solve::integrator::Method;
-use crate::solve::simulation::{Observer, Settings, Span, make};
+use crate::solve::simulation::{Beginning, Observer, Settings, Span, make};
 
 /// A model at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +40,7 @@ impl Index<&str> for Sample<'_> {
 
 /// What may end a run.
 pub trait Ending {
-    /// Integrates as [`integrate`](crate::simulation::integrate) does, from a state in the branches of its switches
-    /// where they are known, and ends where this says so.
+    /// Integrates as [`integrate`](crate::simulation::integrate) does, and ends where this says so.
     ///
     /// # Errors
     /// As [`integrate`](crate::simulation::integrate).
@@ -49,7 +48,7 @@ pub trait Ending {
         self,
         model: &Mo,
         method: &mut Me,
-        start: (&SVector<f64, N>, Option<[bool; G]>),
+        start: &Beginning<N, G>,
         span: Span,
         settings: &Settings<N>,
         observer: &mut O,
@@ -69,7 +68,7 @@ impl Ending for Unconditional {
         self,
         model: &Mo,
         method: &mut Me,
-        start: (&SVector<f64, N>, Option<[bool; G]>),
+        start: &Beginning<N, G>,
         span: Span,
         settings: &Settings<N>,
         observer: &mut O,
@@ -92,7 +91,7 @@ impl<F: FnMut(&Sample<'_>) -> f64> Ending for When<F> {
         mut self,
         model: &Mo,
         method: &mut Me,
-        start: (&SVector<f64, N>, Option<[bool; G]>),
+        start: &Beginning<N, G>,
         span: Span,
         settings: &Settings<N>,
         observer: &mut O,

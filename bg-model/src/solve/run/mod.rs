@@ -18,7 +18,6 @@ use std::time::Duration;
 
 use clock::Clock;
 use nalgebra::SVector;
-use state::Vectors;
 
 pub use ending::{Ending, Sample, Unconditional, When};
 pub use instants::sample_times;
@@ -36,7 +35,7 @@ use crate::model::system::Model;
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason, Scale};
-use crate::solve::simulation::{Observer, Part, Recorder, Samples, Span, Switching};
+use crate::solve::simulation::{Beginning, Observer, Part, Recorder, Samples, Span, Switching};
 use crate::solve::statistics::Statistics;
 
 /// A run to be made.
@@ -198,22 +197,22 @@ struct Start<'a> {
 }
 
 impl Start<'_> {
-    fn vectors<Mo, const N: usize, const G: usize, const M: usize>(
+    fn beginning<Mo, const N: usize, const G: usize, const M: usize>(
         &self,
         model: &Mo,
-    ) -> Result<(f64, Vectors<N, G>), RunError>
+    ) -> Result<(f64, Beginning<N, G>), RunError>
     where
         Mo: Model<f64, N, G, M>,
     {
         let Some(state) = self.start else {
             let x = model.start()?;
-            return Ok((0.0, Vectors { x, largest: x.abs(), negative: None }));
+            return Ok((0.0, Beginning::at(x)));
         };
-        let Vectors { x, largest, negative } = state.vectors::<N, G>(model.description())?;
+        let Beginning { x, largest, negative } = state.beginning::<N, G>(model.description())?;
         let standing = Standing::new(model, state.t, &largest, CLOSE);
         let negative = negative.map(|negative| standing.possible(&x, negative));
         let x = standing.closed(&x, negative.as_ref()).map_err(StateError::from)?;
-        Ok((state.t, Vectors { x, largest, negative }))
+        Ok((state.t, Beginning { x, largest, negative }))
     }
 }
 
@@ -224,7 +223,7 @@ impl ModelVisitor<f64> for Start<'_> {
     where
         Mo: Model<f64, N, G, M>,
     {
-        let (t, Vectors { x, largest, negative }) = self.vectors(model)?;
+        let (t, Beginning { x, largest, negative }) = self.beginning(model)?;
         let negative = negative.as_ref().map(<[bool; G]>::as_slice);
         Ok(State::new(model.description(), t, x.as_slice(), largest.as_slice(), negative))
     }
@@ -274,14 +273,14 @@ impl<E: Ending> Integration<'_, E> {
     {
         let Self { request, start, each_step, ending } = self;
         let clock = Clock::started();
-        let (t0, Vectors { x, largest, negative }) = Start { start: start.as_ref() }.vectors(model)?;
+        let (t0, beginning) = Start { start: start.as_ref() }.beginning(model)?;
         let mut method: AnyMethod = request.method.method(request.fixed_step);
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
         let mut observer = observer(model, &request.parts, each_step, another);
-        observer.0.largest = largest;
+        observer.0.largest = beginning.largest;
         let span = Span { t0, t_end: request.t_end };
-        let outcome = ending.integrate(model, &mut method, (&x, negative), span, &settings, &mut observer);
+        let outcome = ending.integrate(model, &mut method, &beginning, span, &settings, &mut observer);
         let (finish, cause) = match outcome {
             Ok(finish) => (finish, None),
             Err(failure) => (*failure.last, Some(failure.cause)),

@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use crate::model::description::Description;
 use crate::model::standing::Misplaced;
+use crate::solve::simulation::Beginning;
 
 /// The states of a model at some time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,7 +26,7 @@ pub struct State {
     /// Name and value of each state, in the order of the model's description, SI units.
     pub states: Vec<(String, f64)>,
     /// The largest absolute value that each of them has had in the runs that led here: what rounding may have left of
-    /// it is a part of that.
+    /// it, and how a run that goes on measures its errors, is a part of that.
     pub largest: Vec<f64>,
     /// Name and branch of each switch, in the order of the model's description: whether it is that of the negative
     /// guard, such as sliding, or being clear of a stop. None where they are not known: a run finds them.
@@ -163,11 +164,11 @@ impl State {
         serde_json::from_str(text).map_err(no_state)
     }
 
-    /// The state vector for a model, how large each state has been, and the branches where they are known.
-    pub(super) fn vectors<const N: usize, const G: usize>(
+    /// The state for a model.
+    pub(super) fn beginning<const N: usize, const G: usize>(
         &self,
         of: &Description,
-    ) -> Result<Vectors<N, G>, StateError> {
+    ) -> Result<Beginning<N, G>, StateError> {
         let Description { name: model, states, switches, .. } = *of;
         if self.model != model {
             return Err(StateError::OtherModel { expected: model.to_owned(), found: self.model.clone() });
@@ -191,7 +192,7 @@ impl State {
         let x = SVector::from_fn(|index, _| self.states[index].1);
         let largest = SVector::from_fn(|index, _| self.largest.get(index).map_or(x[index], |value| *value).abs());
         let negative = self.branches.as_ref().map(|branches| std::array::from_fn(|index| branches[index].1));
-        Ok(Vectors { x, largest, negative })
+        Ok(Beginning { x, largest, negative })
     }
 
     fn check_finite(&self) -> Result<(), StateError> {
@@ -202,16 +203,6 @@ impl State {
             None => Ok(()),
         }
     }
-}
-
-/// A state without the names.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Vectors<const N: usize, const G: usize> {
-    pub x: SVector<f64, N>,
-    /// How large each state has been.
-    pub largest: SVector<f64, N>,
-    /// The branches of the switches, where they are known.
-    pub negative: Option<[bool; G]>,
 }
 
 /// What says how the rest of a state file is to be read.

@@ -29,7 +29,7 @@ pub enum DifferencesError {
 }
 
 /// The derivatives of the outputs of `model` at `t` (s) by the parameter of this index, in the output's unit per the parameter's: by runs at
-/// distances of `part` of its value, or of a hundredth where it is smaller.
+/// distances of `part` of its value; of its default where it is zero, and of 1 in its unit where that is zero, too.
 ///
 /// # Errors
 /// [`DifferencesError`].
@@ -41,7 +41,9 @@ pub fn differences<Me: Mechanism>(
     accuracy: Accuracy,
 ) -> Result<Vec<f64>, DifferencesError> {
     let values = model.parameters().values();
-    let distance = part * values[parameter].abs().max(1e-2);
+    let default = Me::describe().parameters[parameter].default;
+    let size = [values[parameter], default, 1.0].into_iter().find(|&size| size != 0.0).map_or(1.0, f64::abs);
+    let distance = part * size;
     model.visit_lifted(Differences { values, parameter, distance, t, accuracy })
 }
 

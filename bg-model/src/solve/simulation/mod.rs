@@ -57,7 +57,7 @@ where
     M: Method,
     O: Observer<N, G>,
 {
-    make(system, method, (start, None), span, settings, Never, observer)
+    make(system, method, &Beginning::at(*start), span, settings, Never, observer)
 }
 
 /// As [`integrate`], but the run also ends where `condition` passes through zero, in either direction.
@@ -110,14 +110,32 @@ where
     C: FnMut(f64, &SVector<f64, N>, &[bool; G]) -> f64,
     O: Observer<N, G>,
 {
-    make(system, method, (start, None), span, settings, Located::new(condition), observer)
+    make(system, method, &Beginning::at(*start), span, settings, Located::new(condition), observer)
 }
 
-/// Makes a run that `condition` may end, from a state in the branches of the switches where they are known.
+/// What is known of a state that a run starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct Beginning<const N: usize, const G: usize> {
+    /// The state.
+    pub x: SVector<f64, N>,
+    /// How large each state has been in the runs that led here: errors are measured by that.
+    pub largest: SVector<f64, N>,
+    /// The branches of the switches, where they are known.
+    pub negative: Option<[bool; G]>,
+}
+
+impl<const N: usize, const G: usize> Beginning<N, G> {
+    /// A state that nothing has led to.
+    pub(crate) fn at(x: SVector<f64, N>) -> Self {
+        Self { x, largest: x.abs(), negative: None }
+    }
+}
+
+/// Makes a run that `condition` may end.
 pub(crate) fn make<Sys, M, C, O, const N: usize, const G: usize>(
     system: &Sys,
     method: &mut M,
-    (start, negative): (&SVector<f64, N>, Option<[bool; G]>),
+    Beginning { x: start, largest, negative }: &Beginning<N, G>,
     span: Span,
     settings: &Settings<N>,
     condition: C,
@@ -133,10 +151,11 @@ where
     let needs_series = method.needs_series().then(|| method.name());
     let stepper = Stepper::new(system, method, Scale::from(&settings.tolerances), Point::at(span.t0, *start));
     let mut run = Run::new(stepper, condition, control, span, settings);
+    run.sizes.remember(&run.stepper, largest);
     let outcome = settings::check(system, control, start, span, settings)
         .and_then(|()| settings::check_series(system, needs_series))
         .map_err(Cause::from)
-        .and_then(|()| run.begin(control, settings, negative))
+        .and_then(|()| run.begin(control, settings, *negative))
         .and_then(|()| run.advance_to_end(observer));
     match outcome {
         Ok(ended) => Ok(run.finish(ended)),

@@ -54,6 +54,8 @@ pub struct Ongoing<const N: usize, const G: usize> {
     rounding: Option<RoundingMonitor>,
     /// None before the first piece.
     sizes: Option<SizeMonitor<N>>,
+    /// How large each state has been before that.
+    largest: SVector<f64, N>,
     /// None where the start has to be looked at.
     controller: Option<StepSizeController>,
     /// The size of the next step, s, where it is known.
@@ -74,6 +76,12 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         Self::with(t, x, Some(negative))
     }
 
+    /// The same where the states have been as large as `largest` before: errors are measured by that.
+    #[must_use]
+    pub fn grown(self, largest: &SVector<f64, N>) -> Self {
+        Self { largest: self.largest.sup(&largest.abs()), ..self }
+    }
+
     fn with(t: f64, x: SVector<f64, N>, negative: Option<[bool; G]>) -> Self {
         let (start, statistics) = (Point::at(t, x), Statistics::default());
         Self {
@@ -83,6 +91,7 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
             monitor: EventMonitor::new(),
             rounding: None,
             sizes: None,
+            largest: x.abs(),
             controller: None,
             step: None,
             statistics,
@@ -156,6 +165,8 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         if let Some(mut sizes) = self.sizes.take() {
             sizes.go_on(&run.sizes, &mut run.stepper.scale);
             run.sizes = sizes;
+        } else {
+            run.sizes.remember(&run.stepper, &self.largest);
         }
         let outcome = settings::check(system, control, &self.start.x, span, settings)
             .and_then(|()| settings::check_series(system, needs_series))

@@ -102,13 +102,30 @@ impl<const N: usize> SizeMonitor<N> {
         self.lead(scale);
     }
 
+    /// The states have been as large as `largest` before the start of the run, and their storages have stored that
+    /// much.
+    pub fn remember<Sys, M, const G: usize>(&mut self, stepper: &Stepper<'_, Sys, M, N, G>, largest: &SVector<f64, N>)
+    where
+        Sys: System<f64, N, G>,
+        M: Method,
+    {
+        let (Point { t, x, .. }, mut curvatures) = (stepper.start, SVector::zeros());
+        (self.sizes.own, self.largest) = (*largest, *largest);
+        if let Some(storages) = stepper.system.storages().filter(|_| x.abs() != *largest) {
+            storages.energy(t, &x, &stepper.negative, &mut curvatures);
+            for i in (0..N).filter(|&i| largest[i] > x[i].abs()) {
+                self.sizes.energy = larger(0.5 * curvatures[i] * largest[i] * largest[i], self.sizes.energy);
+            }
+        }
+    }
+
     /// Takes the sizes from the state at the start, whose rate is not known.
     pub fn start<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
     where
         Sys: System<f64, N, G>,
         M: Method,
     {
-        self.largest = stepper.start.x.abs();
+        self.largest = self.largest.sup(&stepper.start.x.abs());
         self.measure(stepper.system, &stepper.start, &stepper.negative);
         self.lead(&mut stepper.scale);
     }
@@ -368,6 +385,7 @@ impl<const N: usize> SizeMonitor<N> {
         }
         for i in 0..N {
             scale.absolute[i] = larger(self.noise[i], self.without_noise(i, scale));
+            scale.weights[i] = if self.sizes.beside[i] > 0.0 { 1.0 / self.sizes.beside[i] } else { 0.0 };
             self.limit[i] = OUTGROWN / OWN * self.size(i);
         }
     }

@@ -20,7 +20,7 @@ impl<F: Fn(f64) -> f64> Flow for Clock<F> {
 fn norm(mut method: impl Method, rate: impl Fn(f64) -> f64, h: f64) -> f64 {
     let at_start = [rate(0.0)];
     let start = PointRef { t: 0.0, x: &[0.0], rate: &at_start };
-    let scale = Scale { relative: 0.0, absolute: vec![1.0], coarsest: 1.0, growth: f64::INFINITY };
+    let scale = Scale { relative: 0.0, absolute: vec![1.0], coarsest: 1.0, growth: f64::INFINITY, weights: vec![1.0] };
     method.fit(1);
     method.attempt(&Clock(rate), start, h, &scale, &mut [0.0])
 }

@@ -61,21 +61,21 @@ impl<V: Vector> NystromInLanes<V> {
         self.stages.stage(stage)
     }
 
-    /// One iteration towards the fastest oscillation at the places of `due`, from states `x` with rates `rate` at time `t` (s): see
-    /// [`Ring::follow`](super::ring::Ring::follow). Gives the stiffnesses.
+    /// One iteration towards the fastest oscillation at the places of `due`, from states `x` with rates `rate` at
+    /// time `t` (s), in the norm of these weights: see [`Ring::follow`](super::ring::Ring::follow). Gives the
+    /// stiffnesses.
     #[inline(always)]
     pub fn follow(
         &mut self,
         forces: &impl Forces<Lanes<V>>,
         due: V::Mask,
-        t: Lanes<V>,
-        x: &[Lanes<V>],
-        rate: &[Lanes<V>],
+        (t, x, rate): (Lanes<V>, &[Lanes<V>], &[Lanes<V>]),
+        weights: &[Lanes<V>],
     ) -> Lanes<V> {
         let Self { direction, pull, .. } = self;
         let states = forces.second();
         let zero = t.alike(0.0);
-        pull.follow(direction, &states, forces, t, (x, rate));
+        pull.follow(direction, weights, &states, forces, (t, x, rate));
         let stiffness = pull.stiffness;
         let infinity = t.alike(f64::INFINITY);
         let is_finite = V::below(stiffness.abs().0, infinity.0);
@@ -120,11 +120,11 @@ impl OfOne for Nystrom {
         self.ring.is_due()
     }
 
-    fn begins(&mut self, second: &Range<usize>) -> bool {
+    fn begins(&mut self, second: &Range<usize>, weights: &[f64]) -> bool {
         self.second = second.clone();
         let begins = self.ring.begins();
         if begins {
-            self.ring.begin(second);
+            self.ring.begin(second, weights);
         }
         begins
     }

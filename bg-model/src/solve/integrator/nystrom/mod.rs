@@ -92,7 +92,7 @@ impl Method for Nystrom {
 
     fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         self.second = flow.second();
-        self.ring.follow(&OfFlow(flow), start, &self.second);
+        self.ring.follow(&OfFlow(flow), start, &self.second, &scale.weights);
         let reach = self.ring.reach(h);
         if reach > 1.0 {
             return reach;

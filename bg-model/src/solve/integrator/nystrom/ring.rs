@@ -3,13 +3,12 @@
 //! In: a point of the trajectory. Out: the frequency of the stiffest joint there. Method: one step of a power iteration with
 //! q'' = a(q) now and then, from the direction that the last one led to; as for the spectral radius in RKC (B. P. Sommeijer, L. F.
 //! Shampine, J. G. Verwer, Journal of Computational and Applied Mathematics 88 (1998), 315-326). Stiff joints turn with the links, so
-//! one rate in so many steps keeps up with them.
+//! one rate in so many steps keeps up with them. Lengths of directions are in parts of the sizes at which states
+//! count beside each other, so that metres and radians compare in any units.
 
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
-
-use nalgebra::DVectorViewMut;
 
 use super::tableau;
 use crate::model::scalar::Scalar;
@@ -21,7 +20,7 @@ use crate::solve::integrator::steps::Forces;
 const FIRST_STEPS: u32 = 8;
 /// Steps between iterations later on.
 const PAUSE: u32 = 4;
-/// The size of the trial displacement, in parts of the largest position.
+/// The size of the trial displacement, in parts of the largest state of second order.
 const DISPLACEMENT: f64 = 1e-7;
 /// The fractional part of the golden ratio: its multiples lie evenly, so that no oscillation of equal parts has no share in them.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -31,7 +30,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 pub(super) struct Ring {
     /// Its frequency, rad/s; 0 where it is not known or there is none.
     pub frequency: f64,
-    /// Its direction, of length 1; 0 where it is not known.
+    /// Its direction; 0 where it is not known.
     pub(super) direction: Vec<f64>,
     /// Another, with a share of everything.
     any: Vec<f64>,
@@ -45,7 +44,7 @@ pub(super) struct Ring {
 /// What pulls back along a direction.
 #[derive(Clone, Debug)]
 pub(super) struct Pull<S> {
-    /// Its strength, rad^2/s^2.
+    /// Its strength, rad^2/s^2; none along a direction of length 0.
     pub stiffness: S,
     /// The change of the second derivatives in a trial displacement, and its length.
     change: Vec<S>,
@@ -63,27 +62,29 @@ impl<S: Scalar> Pull<S> {
         Self { stiffness: zero, change: room(), length: zero, displaced: room(), ends: [room(), room()] }
     }
 
-    /// Tries a displacement along `direction`, a part of `states`, at time `t` (s) and a state with its rate.
+    /// Tries a displacement along `direction`, a part of `states`, at time `t` (s) and a state with its rate, in the
+    /// norm of these weights.
     #[inline(always)]
     pub fn follow(
         &mut self,
         direction: &[S],
+        weights: &[S],
         states: &Range<usize>,
         forces: &impl Forces<S>,
-        t: S,
-        (x, rate): (&[S], &[S]),
+        (t, x, rate): (S, &[S], &[S]),
     ) {
         let Self { change, displaced, ends: [before, behind], .. } = self;
         let zero = x[0].alike(0.0);
         let mut largest = zero;
         for i in states.clone() {
-            largest = x[i].abs().larger(largest);
+            largest = (x[i] * weights[i]).abs().larger(largest);
         }
         let size = largest.larger(zero.alike(DISPLACEMENT)).times(DISPLACEMENT);
+        let factor = size / length(direction, weights);
         displaced.copy_from_slice(x);
         before.copy_from_slice(rate);
         for i in states.clone() {
-            displaced[i] = x[i] + direction[i] * size;
+            displaced[i] = x[i] + direction[i] * factor;
         }
         forces.at_start(x, before);
         // Not `Forces::at_stage`, which may round otherwise: their difference is small.
@@ -92,7 +93,7 @@ impl<S: Scalar> Pull<S> {
         for i in states.clone() {
             change[i] = behind[i] - before[i];
         }
-        self.length = length(change);
+        self.length = length(change, weights);
         self.stiffness = self.length / size;
     }
 
@@ -103,13 +104,15 @@ impl<S: Scalar> Pull<S> {
     }
 }
 
-/// The length of a vector; its squares are summed side by side, for none to wait for another.
+/// The length of a vector in the norm of these weights; its squares are summed side by side, for none to wait for
+/// another.
 #[inline(always)]
-fn length<S: Scalar>(of: &[S]) -> S {
+fn length<S: Scalar>(of: &[S], weights: &[S]) -> S {
     const SIDE_BY_SIDE: usize = 8;
     let mut sums = [of[0].alike(0.0); SIDE_BY_SIDE];
-    for (i, &entry) in of.iter().enumerate() {
-        sums[i % SIDE_BY_SIDE] = sums[i % SIDE_BY_SIDE] + entry * entry;
+    for (i, (&entry, &weight)) in of.iter().zip(weights).enumerate() {
+        let part = entry * weight;
+        sums[i % SIDE_BY_SIDE] = sums[i % SIDE_BY_SIDE] + part * part;
     }
     let mut sum = sums[0];
     for other in &sums[1..] {
@@ -138,8 +141,8 @@ impl Ring {
         self.is_done = false;
     }
 
-    /// Iterates once if it is time to.
-    pub fn follow(&mut self, forces: &impl Forces<f64>, point: PointRef<'_>, states: &Range<usize>) {
+    /// Iterates once if it is time to, in the norm of these weights.
+    pub fn follow(&mut self, forces: &impl Forces<f64>, point: PointRef<'_>, states: &Range<usize>, weights: &[f64]) {
         if states.is_empty() {
             self.frequency = 0.0;
             return;
@@ -148,11 +151,11 @@ impl Ring {
             return;
         }
         if self.begins() {
-            self.begin(states);
+            self.begin(states, weights);
         }
         let PointRef { t, x, rate } = point;
         let Self { direction, pull, .. } = self;
-        pull.follow(direction, states, forces, t, (x, rate));
+        pull.follow(direction, weights, states, forces, (t, x, rate));
         let stiffness = pull.stiffness;
         if stiffness.is_finite() {
             direction.fill(0.0);
@@ -164,15 +167,17 @@ impl Ring {
     }
 
     /// The direction of what rang before the branch changed, and a share of everything else.
-    pub fn begin(&mut self, states: &Range<usize>) {
+    pub fn begin(&mut self, states: &Range<usize>, weights: &[f64]) {
         let Self { direction, any, .. } = self;
         any.fill(0.0);
-        for i in states.clone() {
-            any[i] = 1.0 + fraction(GOLDEN * i as f64);
+        for i in states.clone().filter(|&i| weights[i] > 0.0) {
+            any[i] = (1.0 + fraction(GOLDEN * i as f64)) / weights[i];
         }
-        normalize(any);
-        direction.iter_mut().zip(&*any).for_each(|(direction, any)| *direction += any);
-        normalize(direction);
+        for vector in [&mut *direction, &mut *any] {
+            let length = length(vector, weights);
+            vector.iter_mut().for_each(|part| *part = if length > 0.0 { *part / length } else { 0.0 });
+        }
+        direction.iter_mut().zip(any).for_each(|(direction, any)| *direction += *any);
     }
 
     /// Whether it is time to iterate.
@@ -205,12 +210,6 @@ pub(super) fn reach<S: Scalar>(h: S, frequency: S) -> S {
     power(h * frequency / h.alike(tableau::REACH), tableau::ERROR_ORDER as u32)
 }
 
-/// Makes a vector one of length 1.
-fn normalize(vector: &mut [f64]) {
-    let count = vector.len();
-    DVectorViewMut::from_slice(vector, count).normalize_mut();
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::SVector;
@@ -220,7 +219,7 @@ mod tests {
     fn is_that_of_nalgebra<const N: usize>() {
         let of: [f64; N] = core::array::from_fn(|i| root(0.7 + i as f64) - 2.3);
         let expected = SVector::from(of).norm();
-        assert!((length(&of) - expected).abs() <= 4.0 * f64::EPSILON * expected, "{N}");
+        assert!((length(&of, &[1.0; N]) - expected).abs() <= 4.0 * f64::EPSILON * expected, "{N}");
     }
 
     #[test]

@@ -70,7 +70,8 @@ impl Vectorised for Ark5 {
 }
 
 /// The loosest tolerances, of no states.
-const NOTHING: Scale = Scale { relative: Ark5::LOOSEST, absolute: Vec::new(), coarsest: 0.0, growth: 0.0 };
+const NOTHING: Scale =
+    Scale { relative: Ark5::LOOSEST, absolute: Vec::new(), coarsest: 0.0, growth: 0.0, weights: Vec::new() };
 
 /// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
 const AT_START: f64 = 0.02;
@@ -131,6 +132,7 @@ impl Method for Ark5 {
         }
         let mut tight = core::mem::replace(&mut self.tight, NOTHING);
         tight.absolute.clone_from(&scale.absolute);
+        tight.weights.clone_from(&scale.weights);
         (tight.coarsest, tight.growth) = (scale.coarsest, scale.growth);
         let norm = attempt_in(self.arch, self, flow, start, h, &tight, end);
         self.tight = tight;

@@ -72,7 +72,8 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     pub fn new(method: AnyInLanes<V>, control: Control, scale: &Scale) -> Self {
         let zero = Lanes::from_f64(0.0);
         let &Scale { relative, coarsest, growth, .. } = scale;
-        let absolute = scale.absolute.iter().map(|absolute| Lanes::from_f64(*absolute)).collect();
+        let lifted = |of: &[f64]| of.iter().map(|number| Lanes::from_f64(*number)).collect();
+        let (absolute, weights) = (lifted(&scale.absolute), lifted(&scale.weights));
         let none = [SVector::from([zero; N]); 2];
         Self {
             t: zero,
@@ -87,7 +88,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             controllers: Controllers::new(control),
             led: 0,
             plain: 0,
-            scale: Scale { relative, absolute, coarsest, growth },
+            scale: Scale { relative, absolute, coarsest, growth, weights },
             limit: SVector::repeat(Lanes::from_f64(f64::INFINITY)),
             longest: Lanes::from_f64(f64::INFINITY),
             loops: None,
@@ -190,6 +191,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     /// What errors are allowed in a run, and from which magnitudes and step (s) on it has outgrown its sizes.
     pub fn measure(&mut self, lane: usize, scale: &Scale, (limit, longest): &(SVector<f64, N>, f64)) {
         put(lane, &mut self.scale.absolute, &scale.absolute);
+        put(lane, &mut self.scale.weights, &scale.weights);
         put(lane, self.limit.as_mut_slice(), limit.as_slice());
         *self.longest.0.at_mut(lane) = *longest;
     }
@@ -280,11 +282,9 @@ where
 
     #[inline(always)]
     fn call(self) -> V::Numbers {
-        let Group { t, start: [x, rate], negative, method, .. } = self.group;
-        method
-            .follow(&Side { system: self.system, negative }, V::mask(self.due), *t, x.as_slice(), rate.as_slice())
-            .0
-            .numbers()
+        let Group { t, start: [x, rate], negative, method, scale, .. } = self.group;
+        let side = Side { system: self.system, negative };
+        method.follow(&side, V::mask(self.due), (*t, x.as_slice(), rate.as_slice()), scale).0.numbers()
     }
 }
 

@@ -8,6 +8,8 @@
 mod controllers;
 mod group;
 
+use core::ops::Range;
+
 use nalgebra::SVector;
 
 use super::observer::Observer;
@@ -125,6 +127,12 @@ where
 
     fn method(&mut self) -> &mut dyn OfOne {
         self.run.stepper.method.of_one().expect("only runs by such methods are side by side")
+    }
+
+    /// Whether the run's method begins anew to look for the fastest oscillation.
+    fn begins(&mut self, second: &Range<usize>) -> bool {
+        let stepper = &mut self.run.stepper;
+        stepper.method.of_one().is_some_and(|method| method.begins(second, &stepper.scale.weights))
     }
 
     fn is_at_end(&self) -> bool {
@@ -422,7 +430,7 @@ where
             continue;
         }
         due |= 1 << place;
-        if lane.method().begins(&second) {
+        if lane.begins(&second) {
             group.set_compensation(place, lane.method().compensation());
         }
     }
