@@ -26,8 +26,8 @@ use crate::system::sizes::Sizes;
 pub struct Stage {
     /// The graph's name.
     pub graph: String,
-    /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `program`, where it pays
-    /// `pairs`, `reversed`, `jacobian`, `second`, `sizes` and `elimination`.
+    /// `source`, `expanded`, `resolved`, `causal`, `equations`, of a scene `reduction` and `reduced`, `projection`, `program`, where it
+    /// pays `pairs`, `reversed`, `jacobian`, `second`, `sizes` and `elimination`.
     pub name: &'static str,
     /// The stage's result.
     pub text: String,
@@ -67,6 +67,7 @@ fn of_model(model: &Compiled) -> Vec<Stage> {
         push("reduction", report.to_string());
         push("reduced", equations_text(equations));
     }
+    push("projection", projection_text(equations));
     push("program", program_text(equations, &programs.running));
     if let Some(paired) = &programs.running.paired_rate {
         push("pairs", paired_text(equations, paired));
@@ -152,6 +153,20 @@ fn equations_text(equations: &StateEquations) -> String {
     let _ = writeln!(out, "stored = {}", show(equations.stored));
     let _ = writeln!(out, "supplied = {}", show(equations.supplied));
     let _ = writeln!(out, "dissipated = {}", show(equations.dissipated));
+    out
+}
+
+/// What a step's end is moved to: the states of the pose, then the momenta.
+fn projection_text(equations: &StateEquations) -> String {
+    let mut out = String::new();
+    let StateEquations { projections, settled, .. } = equations;
+    for (what, moved) in [("pose", projections), ("momenta", settled)] {
+        let _ = writeln!(out, "{what}: {} states", moved.len());
+        for &(state, value) in moved {
+            let _ =
+                writeln!(out, "    {} -> {}", equations.states[state].name, equations.shown(&equations.pool, value));
+        }
+    }
     out
 }
 
