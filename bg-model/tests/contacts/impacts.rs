@@ -77,7 +77,17 @@ bond_graph! {
         param height: m = 0.1;
         param tilt: rad = 0;
         param reach: m = 0.5;
-        1 heave: translation; 1 pitch: rotation; I mass = 2; I moment = 0.1; Se weight = -19.62; weight -> heave -> mass; pitch -> moment;
+        param fall: m/s = 0;
+        param turn: rad/s = 0;
+        param lift: N = 0;
+        param twist: N*m = 0;
+        param slow: m/s = 0.05;
+        let weight: N = 2 * 9.81;
+        // Both act where it does not fall, and by less than rounding where it falls at 2 m/s.
+        MSe load = lift * exp(-(heave.flow / slow) * (heave.flow / slow)) - weight;
+        MSe tilting = twist * exp(-(heave.flow / slow) * (heave.flow / slow));
+        1 heave: translation; 1 pitch: rotation; I mass = 2 start 2 * fall; I moment = 0.1 start 0.1 * turn;
+        load -> heave -> mass; tilting -> pitch -> moment;
         TF arm_a = reach; TF arm_b = -reach; 0 sum_a, sum_b: translation; 1 a, b: translation;
         heave -> sum_a -> a; pitch -> arm_a -> sum_a; heave -> sum_b -> b; pitch -> arm_b -> sum_b;
         stop left on a { at least 0; start height + reach * tilt; restitution give; }
@@ -380,7 +390,7 @@ fn two_stops_at_once_give_back_both() {
 fn an_end_that_rests_stays_or_is_thrown_up() {
     for integrator in Integrator::ALL.into_iter().filter(|integrator| !integrator.has_fixed_step()) {
         for reach in [0.1, 0.5] {
-            let parameters = BarParameters { give: 0.0, height: reach * 0.1, tilt: -0.1, reach };
+            let parameters = BarParameters { give: 0.0, height: reach * 0.1, tilt: -0.1, reach, ..Default::default() };
             let (last, events) = run(&Bar::new(parameters).expect("in range"), integrator, 5.0);
             let name = integrator.name();
             let (_, before, after, _) =
@@ -393,6 +403,49 @@ fn an_end_that_rests_stays_or_is_thrown_up() {
             assert!(last[2].abs() + last[3].abs() < 1e-9, "{name} {reach}: {last:?}");
             assert!((last[6] + 9.81).abs() < 1e-9 && (last[7] + 9.81).abs() < 1e-9, "{name} {reach}: {last:?}");
             assert!((last[8] - last[9] + last[10]).abs() < 1e-9, "{name} {reach}: {last:?}");
+        }
+    }
+}
+
+/// With 1 / m + a^2 / J = 0.6 and 1 / m - a^2 / J = 0.4 the left end's impulse, 1.5 * 4 / 0.6, throws the right end up from -1 to 3:
+/// faster than its own restitution asks, so that its support has nothing to give.
+#[test]
+fn several_stops_give_no_impulse_that_pulls() {
+    let parameters = BarParameters { height: 0.0, reach: 0.1, fall: -2.5, turn: -15.0, ..Default::default() };
+    let model = Bar::new(parameters).expect("in range");
+    let run = Simulation::new(&model).every(1e-3).until(1e-3).run().expect("a run");
+    for (name, expected) in [("va", 2.0), ("vb", 3.0), ("la", -10.0), ("lb", 0.0)] {
+        assert!((run[name][0] - expected).abs() < 1e-12, "{name}: {} {expected}", run[name][0]);
+    }
+}
+
+/// It comes down flat and without a rebound, and then is lifted and turned: the efforts l of the supports and the accelerations b towards
+/// them without any obey A l = b, where 3 is on A's diagonal and -2 beside it, or b is not above 0 where l is 0.
+#[test]
+fn of_several_stops_those_bear_the_load_that_do_not_pull() {
+    for integrator in Integrator::ALL.into_iter().filter(|integrator| !integrator.has_fixed_step()) {
+        let name = integrator.name();
+        let landed = |lift: f64, twist: f64| {
+            let parameters = BarParameters { give: 0.0, fall: -2.0, lift, twist, ..Default::default() };
+            let (_, events) = run(&Bar::new(parameters).expect("in range"), integrator, 0.1);
+            let (_, before, after, _) = &events[0];
+            assert!(before[2] < -2.0 && after[2].abs() + after[3].abs() < 1e-12, "{name}: {before:?} {after:?}");
+            // The supports press in the direction of what leaves.
+            [-after[6], -after[7]]
+        };
+        // b = 9.81, 9.81; then the left one would pull by 4.9 N, and the right one bears (9.81 + 73.575) / 3 alone; the same the other way.
+        // Lifted by 1 m/s^2 and turned by 4 rad/s^2, b = -3, 1: both would pull; without the right one the left one would; without both
+        // the right one is moved towards, and bears 1 / 3.
+        for (lift, twist, expected) in [
+            (0.0, 0.0, [9.81, 9.81]),
+            (0.0, 14.715, [0.0, 27.795]),
+            (0.0, -14.715, [27.795, 0.0]),
+            (21.62, 0.4, [0.0, 1.0 / 3.0]),
+            (21.62, -0.4, [1.0 / 3.0, 0.0]),
+        ] {
+            let found = landed(lift, twist);
+            let is_close = |k: usize| (found[k] - expected[k]).abs() < 1e-9;
+            assert!(is_close(0) && is_close(1), "{name} {lift} {twist}: {found:?} {expected:?}");
         }
     }
 }
