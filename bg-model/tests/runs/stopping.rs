@@ -102,7 +102,8 @@ fn what_is_zero_at_the_start_does_not_stop_the_run_there() {
     assert!((finish.unwrap().t - PI).abs() < 1e-10);
     // It leaves zero with a derivative that vanishes, or late.
     let cube = |t: f64, _: &SVector<f64, 1>, _: &[bool; 0]| t * t * t * (t - 0.7);
-    let (finish, _) = until(&clock(), Dop853::new(), [0.0], 2.0, &settings(1e-9), cube);
+    let in_one_step = Settings { first_step: Some(2.0), ..settings(1e-9) };
+    let (finish, _) = until(&clock(), Dop853::new(), [0.0], 2.0, &in_one_step, cube);
     assert!((finish.unwrap().t - 0.7).abs() < 1e-13);
     let late = |t: f64, _: &SVector<f64, 1>, _: &[bool; 0]| if t < 1.0 { 0.0 } else { (1.0 - t) * (3.0 - t) };
     let settings = Settings { largest_step: 0.3, ..settings(1e-9) };
