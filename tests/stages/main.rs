@@ -12,7 +12,7 @@ use bg_compiler::stages::{NAMES, Stage, stages};
 use proc_macro2::TokenStream;
 
 /// Every stage.
-const WHOLE: [&str; 12] = [
+const WHOLE: [&str; 13] = [
     "se_1_i",
     "mass_spring_damper",
     "rlc",
@@ -25,11 +25,12 @@ const WHOLE: [&str; 12] = [
     "rigid_gear",
     "divider",
     "friction",
+    "bead",
 ];
 
 /// The names of the stages after the source.
-const ALL: [&str; 8] =
-    ["expanded", "resolved", "causal", "equations", "program", "reversed", "jacobian", "elimination"];
+const ALL: [&str; 9] =
+    ["expanded", "resolved", "causal", "equations", "projection", "program", "reversed", "jacobian", "elimination"];
 
 /// Every stage but the program, whose lists of values in three dimensions are longer than a reader follows.
 const SPATIAL: [&str; 1] = ["free_body"];

@@ -22,7 +22,7 @@ use crate::system::second_order::SecondOrder;
 use crate::system::sizes::Sizes;
 
 /// The names of the stages, in their order. `reduction` and `reduced` are of scenes only, `pairs` is there where it pays.
-pub const NAMES: [&str; 14] = [
+pub const NAMES: [&str; 15] = [
     "source",
     "expanded",
     "resolved",
@@ -30,6 +30,7 @@ pub const NAMES: [&str; 14] = [
     "equations",
     "reduction",
     "reduced",
+    "projection",
     "program",
     "pairs",
     "reversed",
@@ -84,6 +85,7 @@ fn of_model(model: &Compiled) -> Vec<Stage> {
         push("reduction", report.to_string());
         push("reduced", equations_text(equations));
     }
+    push("projection", projection_text(equations));
     push("program", program_text(equations, &programs.running));
     if let Some(paired) = &programs.running.paired_rate {
         push("pairs", paired_text(equations, paired));
@@ -169,6 +171,20 @@ fn equations_text(equations: &StateEquations) -> String {
     let _ = writeln!(out, "stored = {}", show(equations.stored));
     let _ = writeln!(out, "supplied = {}", show(equations.supplied));
     let _ = writeln!(out, "dissipated = {}", show(equations.dissipated));
+    out
+}
+
+/// What a step's end is moved to: the states of the pose, then the momenta.
+fn projection_text(equations: &StateEquations) -> String {
+    let mut out = String::new();
+    let StateEquations { projections, settled, .. } = equations;
+    for (what, moved) in [("pose", projections), ("momenta", settled)] {
+        let _ = writeln!(out, "{what}: {} states", moved.len());
+        for &(state, value) in moved {
+            let _ =
+                writeln!(out, "    {} -> {}", equations.states[state].name, equations.shown(&equations.pool, value));
+        }
+    }
     out
 }
 

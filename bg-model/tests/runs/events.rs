@@ -88,6 +88,20 @@ fn of_two_switches_the_earlier_one_is_first_whatever_their_order() {
     }
 }
 
+/// Between 0.5 and 0.6 the first guard is negative, at 0.8 the second one changes, all in one step.
+#[test]
+fn a_dip_before_a_crossing_in_the_same_step_is_found_first() {
+    type Guard = fn(f64, &[f64]) -> f64;
+    let guards: [Guard; 2] = [|_, x| (x[0] - 0.5) * (x[0] - 0.6), |_, x| x[0] - 0.8];
+    let system = switched(guards, |_, _: &SVector<f64, 1>, _: &[bool; 2]| [1.0]);
+    let settings = Settings { first_step: Some(3.0), ..settings(1e-6) };
+    let (_, record) = run(&system, Dop853::new(), [0.0], 3.0, &settings);
+    let found: Vec<(usize, bool)> = record.events.iter().map(|(_, _, k, negative)| (*k, negative[*k])).collect();
+    assert_eq!(found, [(0, true), (0, false), (1, false)]);
+    let times = record.event_times();
+    assert!(times.iter().zip([0.5, 0.6, 0.8]).all(|(t, exact)| (t - exact).abs() < ROUNDING), "{times:?}");
+}
+
 #[test]
 fn simultaneous_switches_change_together() {
     let guards: [fn(f64, &[f64]) -> f64; 2] = [|_, x| x[0] - 0.5, |_, x| 3.0 * (0.5 - x[0])];

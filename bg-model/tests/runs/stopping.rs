@@ -1,10 +1,12 @@
-//! Runs that end before their span: by a condition, by their observer.
+//! Runs that end before their span: by a condition, by their observer, where a joint is torn.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
 
 use crate::problems::*;
 use bg_model::bond_graph;
+use bg_model::capability::Joints;
 use bg_model::failure::{Cause, Failure};
+use bg_model::holding::{Held, Slip};
 use bg_model::integrator::{Bs5, Dop853, Integrator, Method, Radau5, Rk4, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Ended, Finish, Observer, Samples, Settings, Span, integrate, integrate_until};
@@ -100,7 +102,8 @@ fn what_is_zero_at_the_start_does_not_stop_the_run_there() {
     assert!((finish.unwrap().t - PI).abs() < 1e-10);
     // It leaves zero with a derivative that vanishes, or late.
     let cube = |t: f64, _: &SVector<f64, 1>, _: &[bool; 0]| t * t * t * (t - 0.7);
-    let (finish, _) = until(&clock(), Dop853::new(), [0.0], 2.0, &settings(1e-9), cube);
+    let in_one_step = Settings { first_step: Some(2.0), ..settings(1e-9) };
+    let (finish, _) = until(&clock(), Dop853::new(), [0.0], 2.0, &in_one_step, cube);
     assert!((finish.unwrap().t - 0.7).abs() < 1e-13);
     let late = |t: f64, _: &SVector<f64, 1>, _: &[bool; 0]| if t < 1.0 { 0.0 } else { (1.0 - t) * (3.0 - t) };
     let settings = Settings { largest_step: 0.3, ..settings(1e-9) };
@@ -353,4 +356,53 @@ fn an_observer_ends_the_run_with_the_step_after_which_it_is_done() {
             assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{samples:?}: {times:?}");
         }
     }
+}
+
+/// Two joints that hold one motion at the start, so that the second one is left out; from 1 s on this moves by itself, with `others`
+/// of its speed in the first one.
+struct Loosened {
+    others: f64,
+}
+
+impl System<f64, 1, 0> for Loosened {
+    fn rate(&self, _: f64, _: &SVector<f64, 1>, _: &[bool; 0], dx: &mut SVector<f64, 1>) {
+        dx[0] = 1.0;
+    }
+    fn joints(&self) -> Option<&impl Joints<f64, 1, 0>> {
+        Some(self)
+    }
+}
+
+impl Joints<f64, 1, 0> for Loosened {
+    fn held(&self) -> Held {
+        const fn slip(joint: &'static str) -> Slip {
+            Slip { joint, direction: "in x", unit: "m/s" }
+        }
+        const SLIPS: [Slip; 2] = [slip("first"), slip("second")];
+        Held { rigid: &SLIPS, moved: &[0], closing: &[(1, 0)], ..Held::NOTHING }
+    }
+    fn kept(&self) -> &[f64] {
+        &[0.0]
+    }
+    fn hold(&self, t: f64, _: &SVector<f64, 1>, _: &[bool; 0], entries: &mut [f64]) {
+        let speed = (t - 1.0).max(0.0);
+        // Flows, gaps, mobilities, the matrix, what the reactions move.
+        entries.copy_from_slice(&[self.others * speed, speed, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
+    }
+}
+
+#[test]
+fn a_joint_that_was_left_out_is_torn_where_others_do_not_hold_its_motion_any_more() {
+    let start = SVector::from([0.0]);
+    let run = |others: f64| {
+        let settings = Settings { largest_step: 0.125, ..Settings::default() };
+        integrate(&Loosened { others }, &mut Dop853::new(), &start, Span { t0: 0.0, t_end: 2.0 }, &settings, &mut ())
+    };
+    let failure = run(0.0).unwrap_err();
+    let Cause::Torn { slipping, t } = &failure.cause else { panic!("{failure}") };
+    assert!(*t > 1.0 && *t < 1.126 && slipping.slip.joint == "second" && slipping.speed == *t - 1.0, "{failure}");
+    assert!(failure.to_string().contains("at the start other rigid joints held this as well"), "{failure}");
+    // A thousandth of its speed in another joint is what Baumgarte's terms may leave; less is not.
+    assert!(run(1.1e-3).is_ok());
+    assert!(matches!(run(0.9e-3).unwrap_err().cause, Cause::Torn { .. }));
 }

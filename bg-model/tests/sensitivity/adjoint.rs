@@ -11,8 +11,8 @@ use bg_model::sensitivity::{
 use bg_model::simulation::Samples;
 
 use super::{
-    Ball, BallParameters, Belt, BeltParameters, Block, BlockParameters, Crank, CrankParameters, Pendulum,
-    PendulumParameters,
+    Ball, BallParameters, Belt, BeltParameters, Block, BlockParameters, Crank, CrankParameters, Lifted,
+    LiftedParameters, Pendulum, PendulumParameters,
 };
 
 /// All parameters and the start of each state.
@@ -82,8 +82,11 @@ fn sticking_and_slipping() {
 
 #[test]
 fn impacts() {
-    let (error, events) = deviation(&Ball::new(BallParameters::default()).unwrap(), 3.0);
-    assert!(error < 1e-11 && events >= 3, "{error:e} {events}");
+    let ball = deviation(&Ball::new(BallParameters::default()).unwrap(), 3.0);
+    let lifted = deviation(&Lifted::new(LiftedParameters::default()).unwrap(), 3.0);
+    for (error, events) in [ball, lifted] {
+        assert!(error < 1e-11 && events >= 3, "{error:e} {events}");
+    }
 }
 
 /// The squares of what measured columns leave, at instants inside steps, of which two columns share some.
@@ -160,17 +163,38 @@ fn sums_of_several_terms() {
     assert!(difference(&model, &found, &expected) < 1e-11, "{:e}", difference(&model, &found, &expected));
 }
 
+/// A sample inside a step is on the way of that step, whose integral counts once.
+#[test]
+fn an_integral_beside_samples_is_what_it_is_alone() {
+    let model = Block::new(BlockParameters::default()).unwrap();
+    let of = |objective: Objective<'_>| gradient(&model, &request(2.0), &objective, &everything::<Block>()).unwrap();
+    let instants: Vec<f64> = (1..40).map(|k| 0.05 * f64::from(k)).collect();
+    let sum = || {
+        Objective::samples(&instants, |_, outputs, by| {
+            by[0] += 1.0;
+            outputs[0]
+        })
+    };
+    let [integral, samples, both] = [Objective::integral(1), sum(), Objective::integral(1).plus(sum())].map(of);
+    assert!((both.value - integral.value - samples.value).abs() < 1e-12 * samples.value.abs());
+    let expected: Vec<f64> = integral.by.iter().zip(&samples.by).map(|(a, b)| a + b).collect();
+    assert!(difference(&model, &both, &expected) < 1e-12, "{:e}", difference(&model, &both, &expected));
+}
+
 #[test]
 fn of_a_long_run_states_are_made_again() {
-    fn check<Me: Mechanism>(model: &Me, t: f64) {
+    fn check<Me: Mechanism>(model: &Me, t: f64, states: usize) {
         let [objective, again] = [(); 2].map(|()| Objective::last(0).plus(Objective::integral(1)));
         let all = gradient(model, &request(t), &objective, &everything::<Me>()).unwrap();
-        let few = gradient_within(model, &request(t), &again, &everything::<Me>(), 4).unwrap();
-        assert!(all.trajectory.statistics.steps > 32, "{}", all.trajectory.statistics.steps);
+        let few = gradient_within(model, &request(t), &again, &everything::<Me>(), states).unwrap();
+        let steps = all.trajectory.statistics.steps;
+        assert!(steps > 4 * states as u64, "{steps}");
         assert!(difference(model, &few, &all.by) < 1e-9, "{:e}", difference(model, &few, &all.by));
     }
-    check(&Belt::new(BeltParameters::default()).unwrap(), 4.0);
-    check(&Crank::new(CrankParameters::default()).unwrap(), 2.0);
+    check(&Belt::new(BeltParameters::default()).unwrap(), 4.0, 4);
+    check(&Crank::new(CrankParameters::default()).unwrap(), 2.0, 4);
+    // The state jumps at its events.
+    check(&Ball::new(BallParameters::default()).unwrap(), 3.0, 2);
 }
 
 #[test]

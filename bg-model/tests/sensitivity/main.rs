@@ -54,6 +54,20 @@ bond_graph! {
         stop floor on fall { at least 0; start height; restitution give; }
         observe { y: m = floor.place; v: m/s = fall.flow; lost: J = integral(dissipated_power) }
     }
+    /// The same on a table that is lifted faster and faster.
+    graph Lifted {
+        param mass: kg = 2, above 0; param height: m = 1.25; param gravity: m/s^2 = 9.81; param give: 1 = 0.8; param rise: m/s^2 = 1.5;
+        1 fall: translation; I ball = mass; Se weight = -mass * gravity; weight -> fall -> ball;
+        MSf table = rise * t; 0 between: translation; 1 apart: translation; table -> between -> fall; between -> apart;
+        stop floor on apart { at most 0; start -height; restitution give; }
+        observe { y: m = floor.place; v: m/s = fall.flow; lost: J = integral(dissipated_power) }
+    }
+    /// A mass on a spring.
+    graph Oscillator {
+        param mass: kg = 2, above 0; param stiffness: N/m = 50, above 0; param start: m = 0.1;
+        1 slide: translation; I body = mass; C spring = stiffness start start; slide -> body; slide -> spring;
+        observe { x: m = spring.q }
+    }
     /// A slider and a crank of rigid joints, whose loop the assembly closes.
     graph Crank {
         param radius: m = 0.2, above 0; param rod: m = 0.6, above 0; param angle: rad = 1; param spin: rad/s = -8; param drag: N*s/m = 2;
@@ -164,6 +178,42 @@ fn impacts_against_the_closed_form() {
         // The stop's place is the state that starts at the height.
         assert!((found.of(4, 0)[0] - found.of(0, 0)[0]).abs() < 1e-12);
     }
+}
+
+/// Seen from the table the ball falls with g + a; where it hits, the speed of the table depends on the instant.
+#[test]
+fn impacts_on_what_moves_against_the_closed_form() {
+    let model = Lifted::new(LiftedParameters::default()).unwrap();
+    let names = ["height", "gravity", "give", "rise"];
+    let directions = names.map(|name| Direction::parameter::<Lifted>(name).unwrap());
+    let found = sensitivities(&model, &request(3.0, Integrator::Dop853), &directions).unwrap();
+    assert!(found.trajectory.statistics.events >= 3, "{}", found.trajectory.statistics.events);
+    for k in 0..4 {
+        let mut numbers = [1.25, 9.81, 0.8, 1.5].map(Dual::from_f64);
+        numbers[k].slope = 1.0;
+        let ([height, gravity, give, rise], t) = (numbers, Dual::from_f64(3.0));
+        let [place, speed] = bounced(height, gravity + rise, give, t);
+        // The way of the table past the ball.
+        for (output, Dual { value, slope }) in [-place, speed + rise * t].into_iter().enumerate() {
+            assert!((found.trajectory.columns[output].values[0] - value).abs() < 1e-9);
+            let error = (found.of(k, output)[0] - slope).abs() / slope.abs();
+            assert!(error < 1e-9, "{}: {error:e}", names[k]);
+        }
+    }
+}
+
+/// The steps of a Taylor series go over more than a radian, for which those of the slopes are divided: x = x_0 cos(w t) with
+/// w = sqrt(k / m).
+#[test]
+fn slopes_along_long_steps_are_as_exact_as_the_run() {
+    let model = Oscillator::new(OscillatorParameters::default()).unwrap();
+    let stiffness = Direction::parameter::<Oscillator>("stiffness").unwrap();
+    let request = Request { rtol: 1e-11, ..request(6.0, Integrator::Taylor) };
+    let found = sensitivities(&model, &request, &[stiffness]).unwrap();
+    let steps = found.trajectory.statistics.steps;
+    let expected = -0.1 * 30.0_f64.sin() * 6.0 / (2.0 * 2.0 * 5.0);
+    let error = (found.of(0, 0)[0] - expected).abs() / expected.abs();
+    assert!(error < 1e-9 && steps < 30, "in {steps} steps: {error:e}");
 }
 
 #[test]

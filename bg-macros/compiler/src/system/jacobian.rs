@@ -121,3 +121,154 @@ impl Jacobian {
         self.slopes = slopes.to_vec();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::{Environment, evaluate, partial, substitute};
+    use crate::pipeline;
+    use crate::source::syntax;
+    use crate::system::reduce::solve_reactions;
+
+    /// The literal equations with their reactions as symbols, and the derivatives.
+    fn differentiated(statements: &str) -> (StateEquations, Jacobian) {
+        let text = format!("graph G {{ {statements} }}");
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        let mut equations = pipeline::derive(&source.graphs[0]).expect("equations").equations;
+        solve_reactions(&mut equations);
+        let jacobian = differentiate(&equations);
+        (equations, jacobian)
+    }
+
+    /// A pendulum, whose pin is rigid.
+    const PENDULUM: &str = "gravity [0, -9.81, 0]; ground { point O = [0, 0, 0]; point P = [0, 0, 1]; }
+        body bob { mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.5, 0]; point side = [0, 0.5, 1];
+            start top at [0, 0, 0]; start turned rotation_z(0.7); start spin [0, 0, 2]; }
+        joint pin: revolute z (ground.O -> bob.top) { rigid; }";
+
+    /// States that are none of a run: what holds of derivatives holds anywhere.
+    fn anywhere(equations: &StateEquations) -> Vec<f64> {
+        (0..equations.states.len() as u32).map(|k| 0.8 + 0.3 * f64::from(k).sin()).collect()
+    }
+
+    /// The rates with the reactions' values in their places, in the Jacobian's pool.
+    fn closed_rates(equations: &StateEquations, jacobian: &mut Jacobian) -> Vec<Id> {
+        let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
+        equations.solution.closed(&mut jacobian.pool, &rates)
+    }
+
+    #[test]
+    fn only_what_depends_has_a_place_row_by_row() {
+        let (equations, jacobian) = differentiated(
+            "param k: N/m = 3; 1 j: translation; C s = k; I m = 2; R r = 5; j -> s; j -> m; j -> r; observe { w: J = integral(r.power) }",
+        );
+        let name = |index: usize| equations.states[index].name.as_str();
+        let places: Vec<_> = jacobian.places().into_iter().map(|(row, column)| (name(row), name(column))).collect();
+        assert_eq!(places, [("s.q", "m.p"), ("m.p", "s.q"), ("m.p", "m.p"), ("w", "m.p")]);
+        // w' = 5 (p / 2)^2.
+        let ids: Vec<Id> = jacobian.entries.iter().map(|entry| entry.value).collect();
+        let states = [7.0, 4.0, 0.0];
+        let found = evaluate(
+            &jacobian.pool,
+            &ids,
+            &Environment { states: &states, parameters: &[3.0], ..Environment::default() },
+        );
+        let momentum = states[equations.states.iter().position(|state| state.name == "m.p").expect("a state")];
+        assert_eq!(found, [0.5, -3.0, -2.5, 2.5 * momentum]);
+    }
+
+    #[test]
+    fn a_rate_changes_with_time_by_its_inputs_as_well() {
+        let (_, jacobian) =
+            differentiated("input f: N; 1 j: translation; I m = 2; MSe push = f * sin(3 * t); push -> j -> m;");
+        let environment = Environment { time: 0.2, inputs: &[5.0], slopes: &[7.0], ..Environment::default() };
+        let found = evaluate(&jacobian.pool, &jacobian.slopes, &environment)[0];
+        assert!((found - (7.0 * 0.6_f64.sin() + 15.0 * 0.6_f64.cos())).abs() < 1e-14, "{found}");
+    }
+
+    /// With the slopes l' of the reactions, df/dx is f_x + f_l l', and r_x + r_l l' is zero.
+    #[test]
+    fn reactions_beside_the_states_give_the_derivatives_of_the_rates() {
+        let (equations, mut jacobian) = differentiated(PENDULUM);
+        let (n, states) = (equations.states.len(), anywhere(&equations));
+        assert_eq!(jacobian.unknowns, equations.solution.multipliers);
+        let rates = closed_rates(&equations, &mut jacobian);
+        let environment = Environment { states: &states, ..Environment::default() };
+        for column in 0..n {
+            let pool = &mut jacobian.pool;
+            let [slopes, expected] = [&equations.solution.values, &rates].map(|ids| {
+                let ids = partial(pool, ids, Symbol::state(column));
+                evaluate(pool, &ids, &environment)
+            });
+            let (mut found, mut sizes) = (vec![0.0; n + slopes.len()], vec![1.0_f64; n + slopes.len()]);
+            for entry in &jacobian.entries {
+                let by = match entry.column.checked_sub(n) {
+                    Some(unknown) => slopes[unknown],
+                    None => f64::from(u8::from(entry.column == column)),
+                };
+                let part = by * evaluate(&jacobian.pool, &[entry.value], &environment)[0];
+                found[entry.row] += part;
+                sizes[entry.row] = sizes[entry.row].max(part.abs());
+            }
+            for (row, found) in found.into_iter().enumerate() {
+                let expected = expected.get(row).copied().unwrap_or(0.0);
+                assert!((found - expected).abs() < 1e-12 * sizes[row], "{row} {column}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_reaction_that_is_not_kept_is_zero() {
+        let (equations, mut jacobian) =
+            differentiated(&format!("{PENDULUM} joint second: revolute z (ground.P -> bob.side) {{ rigid; }}"));
+        let (n, states) = (equations.states.len(), anywhere(&equations));
+        let rows: Vec<usize> = (0..10).filter(|&row| equations.holding.kept(row).is_some()).collect();
+        assert_eq!(rows, [5, 6, 7, 8, 9]);
+        let (zero, ids) = (jacobian.pool.zero(), jacobian.roots());
+        let dropped = substitute(&mut jacobian.pool, &ids, &|symbol| matches!(symbol, Symbol::Kept(_)).then_some(zero));
+        let environment = Environment { states: &states, ..Environment::default() };
+        let values = evaluate(&jacobian.pool, &dropped, &environment);
+        for (entry, value) in jacobian.entries.iter().zip(values).filter(|(entry, _)| entry.row >= n + 5) {
+            let expected = f64::from(u8::from(entry.row == entry.column));
+            assert_eq!(value, expected, "{} {}", entry.row, entry.column);
+        }
+        assert!((n + 5..n + 10).all(|row| jacobian.places().contains(&(row, row))));
+    }
+
+    #[test]
+    fn dry_friction_leaves_no_reaction_beside_the_states() {
+        let (equations, mut jacobian) = differentiated(
+            "param k: N/m = 5; param c: N*s/m = 3; 1 a, b: translation; I ma = 2; I mb = 3; C s = k; MSe pull = 3 * sin(2 * t);
+             R ra(v) = c * v holds 2; R rab(v) = 1 holds 2;
+             pull -> a -> ma; a -> ra; a -> s; b -> mb; 0 ab: translation; 1 sab: translation; a -> ab -> b; ab -> sab -> rab;",
+        );
+        assert!(jacobian.unknowns.is_empty());
+        let (n, states) = (equations.states.len(), anywhere(&equations));
+        let rates = closed_rates(&equations, &mut jacobian);
+        let switches = equations.switches.len();
+        for branch in 0..1_u32 << switches {
+            let negative: Vec<bool> = (0..switches).map(|switch| branch >> switch & 1 == 1).collect();
+            let environment = Environment {
+                time: 0.3,
+                states: &states,
+                parameters: &[5.0, 3.0],
+                negative: &negative,
+                ..Environment::default()
+            };
+            let pool = &mut jacobian.pool;
+            let mut expected = Vec::new();
+            for column in (0..n).map(Symbol::state).chain([Symbol::Time]) {
+                let ids = partial(pool, &rates, column);
+                expected.push(evaluate(pool, &ids, &environment));
+            }
+            let mut found = vec![vec![0.0; n]; n];
+            for entry in &jacobian.entries {
+                found[entry.column][entry.row] = evaluate(&jacobian.pool, &[entry.value], &environment)[0];
+            }
+            found.push(evaluate(&jacobian.pool, &jacobian.slopes, &environment));
+            let pairs = found.iter().flatten().zip(expected.iter().flatten());
+            let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-13, "{negative:?}: {found:?} {expected:?}");
+        }
+    }
+}

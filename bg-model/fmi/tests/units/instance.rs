@@ -358,6 +358,61 @@ fn a_saved_state_goes_on_with_the_same_bits_and_its_bytes_nearly_so() {
     assert!(other.deserialize(&bytes[1..]).is_err());
 }
 
+/// Parameters, inputs, place, branches, sizes, the next step: all that the bytes have.
+#[test]
+fn a_restored_instance_has_all_that_was_saved() {
+    let bounce = |value: f64| {
+        let mut instance = Instance::new(&BALL, Interface::CoSimulation);
+        set(&mut instance, &BALL, Kind::Parameter(1), value);
+        instance.enter_initialization(0.0, Some(1e-7)).unwrap();
+        instance.exit_initialization().unwrap();
+        instance
+    };
+    let mut instance = bounce(0.25);
+    set(&mut instance, &BALL, Kind::Input(0), 1.0);
+    (0..7).for_each(|k| instance.step(f64::from(k) * 0.1, 0.1).unwrap());
+    let saved = instance.save();
+    let bytes = instance.serialize(&saved).unwrap();
+    let mut other = bounce(0.75);
+    set(&mut other, &BALL, Kind::Input(0), 3.0);
+    for snapshot in [saved, other.deserialize(&bytes).unwrap()] {
+        other.restore(&snapshot).unwrap();
+        assert_eq!(get(&mut other, &BALL, Kind::Parameter(1)), 0.25);
+        assert_eq!(get(&mut other, &BALL, Kind::Input(0)), 1.0);
+        let again = other.serialize(&other.save()).unwrap();
+        assert_eq!(String::from_utf8(again), String::from_utf8(bytes.clone()));
+        other.step(0.7, 0.1).unwrap();
+        set(&mut other, &BALL, Kind::Input(0), 3.0);
+    }
+}
+
+#[test]
+fn a_parameter_that_is_set_once_more_makes_the_model_anew() {
+    let mut instance = Instance::new(&BALL, Interface::CoSimulation);
+    instance.enter_initialization(0.0, None).unwrap();
+    for height in [1.25, 0.5] {
+        set(&mut instance, &BALL, Kind::Parameter(0), height);
+        assert_eq!(get(&mut instance, &BALL, Kind::Output(0)), height);
+    }
+}
+
+/// What fell and lies still is no smaller than it was.
+#[test]
+fn nominal_values_are_those_of_the_whole_run() {
+    let mut ball = begun(&BALL, Interface::CoSimulation, 1e-8);
+    let nominal = |ball: &mut Instance| {
+        let mut nominals = vec![0.0; ball.state_count()];
+        ball.nominals(&mut nominals).unwrap();
+        nominals[ball.description().states.iter().position(|state| state.name == "ball.p").unwrap()]
+    };
+    ball.step(0.0, 0.4).unwrap();
+    // 2 kg after 0.4 s.
+    let fallen = 2.0 * 9.81 * 0.4;
+    assert!(nominal(&mut ball) >= fallen);
+    ball.step(0.4, 4.0).unwrap();
+    assert!(get(&mut ball, &BALL, Kind::Output(1)).abs() < 1e-9 && nominal(&mut ball) >= fallen);
+}
+
 #[test]
 fn what_cannot_be_is_refused_in_words() {
     let mut instance = Instance::new(&PENDULUM, Interface::CoSimulation);

@@ -90,7 +90,56 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::Irregular;
+    use super::*;
+    use crate::solve::integrator::Point;
+
+    /// A step of a state from 2 at the time 0.5, of 0.25 s at the rate 4, with guards: a jump of the time, and the state itself.
+    struct Step {
+        start: Point<1>,
+        jump: f64,
+    }
+
+    impl Guarded<1, 2> for Step {
+        fn start(&self) -> &Point<1> {
+            &self.start
+        }
+        fn end(&self) -> &Point<1> {
+            &self.start
+        }
+        fn size(&self) -> f64 {
+            0.25
+        }
+        fn negative(&self) -> [bool; 2] {
+            [false; 2]
+        }
+        fn guards(&mut self, t: f64, x: &SVector<f64, 1>) -> SVector<f64, 2> {
+            SVector::from([if t < self.jump { 1.0 } else { -1.0 }, x[0]])
+        }
+        fn dense(&mut self, _: f64) -> SVector<f64, 1> {
+            self.start.x
+        }
+        fn resize(&mut self, _: f64) {}
+        fn close(&mut self, _: f64) {}
+    }
+
+    #[test]
+    fn a_guard_is_noisy_by_the_rounding_of_its_states_and_not_by_a_jump() {
+        let mut start = Point::at(0.5, SVector::from([2.0]));
+        start.rate = SVector::from([4.0]);
+        // The jump is at the point itself: a little earlier the guard is on its other side.
+        let (mut step, mut monitor) = (Step { start, jump: 0.5 }, EventMonitor::<2>::new());
+        let value = step.guards(start.t, &start.x);
+        let noise = |monitor: &EventMonitor<2>, step: &mut Step| monitor.noise(step, start.t, &start.x, &value);
+        let [jump, state] = noise(&monitor, &mut step);
+        assert_eq!((value[0], jump), (-1.0, 0.0));
+        // Half to all of 16 times the rounding of 2 + 0.25 * 4.
+        assert!((24.0..=49.0).contains(&(state / f64::EPSILON)), "{state:e}");
+        // What an event has left counts four times, of a stop once.
+        monitor.leave(0, -1e-3);
+        assert_eq!(noise(&monitor, &mut step), [4e-3, state]);
+        monitor.is_stop[0] = true;
+        assert_eq!(noise(&monitor, &mut step), [1e-3, state]);
+    }
 
     #[test]
     fn factors_are_of_both_signs_and_of_sizes_from_a_half_to_one() {

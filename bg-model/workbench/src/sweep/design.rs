@@ -311,6 +311,17 @@ mod tests {
         assert_eq!(grid.extremes(1), [1.0, 10.0, 100.0]);
         let linear = Design::grid(&[("a".to_owned(), steps(4, Scale::Linear))]).unwrap();
         assert_eq!(all(&linear), [[1.0], [34.0], [67.0], [100.0]]);
+        // -0.3 + (0.1 + 0.3) is not 0.1.
+        let ends = Axis::Steps(Steps { from: -0.3, to: 0.1, count: 7, scale: Scale::Linear });
+        let ends = Design::grid(&[("a".to_owned(), ends)]).unwrap();
+        assert_eq!((ends.values(0), ends.values(6)), (vec![-0.3], vec![0.1]));
+    }
+
+    #[test]
+    fn a_list_has_its_rows_as_runs_and_its_columns_as_extremes() {
+        let list = Design::list(["a", "b"].map(str::to_owned).to_vec(), vec![1.0, 10.0, 2.0, 20.0, 3.0, 30.0]).unwrap();
+        assert_eq!(all(&list), [[1.0, 10.0], [2.0, 20.0], [3.0, 30.0]]);
+        assert_eq!([0, 1].map(|parameter| list.extremes(parameter)), [vec![1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0]]);
     }
 
     #[test]

@@ -208,6 +208,7 @@ impl Folder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sweep::parquet::{Column, Values};
 
     #[test]
     fn what_a_killed_process_left_is_removed_and_nothing_else() {
@@ -229,5 +230,20 @@ mod tests {
         names.sort();
         let starts = [".mine", ".runs-000004.parquet", "runs-000003.parquet"];
         assert!(names.len() == 3 && names.iter().zip(starts).all(|(name, start)| name.starts_with(start)), "{names:?}");
+    }
+
+    #[test]
+    fn a_shard_is_there_with_its_trajectories_and_its_own_recipe() {
+        let place = tempfile::tempdir().unwrap();
+        let of = |recipe: &str| Folder { path: place.path().to_owned(), recipe: recipe.to_owned() };
+        let folder = of("t_end = 1.0");
+        let texts = vec![(SAID.to_owned(), folder.recipe.clone())];
+        let table = Table { columns: vec![Column { name: "run".to_owned(), values: Values::Whole(vec![0]) }], texts };
+        assert!(!folder.has(2, false));
+        folder.write(Kind::Runs, 2, &table).unwrap();
+        assert!(folder.has(2, false) && !folder.has(2, true) && !folder.has(1, false));
+        folder.write(Kind::Trajectories, 2, &table).unwrap();
+        assert!(folder.has(2, true));
+        assert!(!of("t_end = 2.0").has(2, false), "it is one of another sweep");
     }
 }

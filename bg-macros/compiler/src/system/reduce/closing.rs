@@ -89,3 +89,58 @@ pub(super) fn moves(
     let rows = momenta.into_iter().enumerate().map(|(k, state)| (state, row(k)));
     rows.filter(|(_, row)| row.iter().any(|&id| !pool.is_zero(id))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline;
+    use crate::source::syntax;
+
+    /// Joint and number of each row after the arrangement.
+    fn arranged(statements: &str) -> Vec<(String, Option<u32>)> {
+        let text = format!("graph G {{ {statements} }}");
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        let mut equations = pipeline::derive(&source.graphs[0]).expect("equations").equations;
+        assert_eq!(is_any(&mut equations), statements.contains("closes"));
+        let reactions = std::mem::take(&mut equations.reactions);
+        let (reactions, moves) = arrange(&mut equations, reactions);
+        assert!(moves.iter().all(|(_, by)| by.len() == reactions.len()));
+        reactions.into_iter().map(|reaction| (reaction.slip.joint, reaction.slip.kept)).collect()
+    }
+
+    fn rows(joint: &str, first: Option<u32>, count: u32) -> impl Iterator<Item = (String, Option<u32>)> {
+        (0..count).map(move |row| (joint.to_owned(), first.map(|first| first + row)))
+    }
+
+    const RODS: &str = "ground { point O = [0, 0, 0]; point P = [1, 0, 0]; }
+        body a { mass 1; inertia [0.1, 0.1, 0.1]; point left = [-0.5, 0, 0]; point right = [0.5, 0, 0]; }
+        body b { mass 1; inertia [0.1, 0.1, 0.1]; point left = [-0.5, 0, 0]; point right = [0.5, 0, 0]; }";
+
+    #[test]
+    fn a_chain_closes_no_loop() {
+        let text = format!(
+            "{RODS} joint p: spherical (ground.O -> a.left) {{ rigid; }} joint q: spherical (a.right -> b.left) {{ rigid; }}"
+        );
+        assert_eq!(arranged(&text), rows("p", None, 3).chain(rows("q", None, 3)).collect::<Vec<_>>());
+    }
+
+    /// Whether it does only the run time knows.
+    #[test]
+    fn a_joint_on_bodies_that_hang_already_may_close_a_loop() {
+        let text = format!(
+            "{RODS} joint q: spherical (a.right -> b.left) {{ rigid; }} joint closes: spherical (ground.O -> a.left) {{ rigid; }}"
+        );
+        assert_eq!(arranged(&text), rows("q", None, 3).chain(rows("closes", Some(0), 3)).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn rows_that_close_a_loop_come_last_with_their_numbers() {
+        // The joint that stands second holds what the first one has hung on the ground.
+        let text = format!(
+            "{RODS} joint p: spherical (ground.O -> a.left) {{ rigid; }} joint closes: spherical (ground.P -> a.right) {{ rigid; }}
+             joint q: spherical (a.right -> b.left) {{ rigid; }}"
+        );
+        let expected: Vec<_> = rows("p", None, 3).chain(rows("q", None, 3)).chain(rows("closes", Some(0), 3)).collect();
+        assert_eq!(arranged(&text), expected);
+    }
+}

@@ -414,3 +414,80 @@ fn bounds_of(equations: &mut StateEquations, id: Id) -> Bounds {
     let Bounds { least, most } = bounds(pool, rest, &of);
     Bounds { least: least - swing, most: most + swing }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::reduce::tests::scene;
+
+    /// Equations in the plane with one link, and two lengths, squared, in ranges.
+    fn link() -> StateEquations {
+        let graph = "param a: m^2 = 1.5, at least 1, at most 2; param b: m^2 = 4, at least 3.5; ground { point O = [0, 0, 0]; }
+            body bob { mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.5, 0]; start top at [0, 0, 0]; start turned rotation_z(0.3); }
+            joint pin: revolute z (ground.O -> bob.top) { stiffness 1e4; damping 10; tilt stiffness 10; tilt damping 1; }
+            observe { angle: rad = bob.angle; size: m^2 = a + b; }";
+        scene(graph, "expect planar;").reduced
+    }
+
+    /// The cosine and the sine of the link, then the lengths.
+    fn symbols(of: &mut StateEquations) -> [Id; 4] {
+        let [turn] = &angle::turns(of)[..] else { panic!("one link") };
+        [turn.cosine, turn.sine]
+            .map(Symbol::state)
+            .into_iter()
+            .chain([0, 1].map(Symbol::Parameter))
+            .map(|symbol| of.pool.symbol(symbol))
+            .collect::<Vec<_>>()
+            .try_into()
+            .expect("four symbols")
+    }
+
+    #[test]
+    fn bounds_have_the_swing_of_a_link_once() {
+        let mut of = link();
+        let [cosine, sine, a, b] = symbols(&mut of);
+        let pool = &mut of.pool;
+        let swings = pool.linear(2.0, &[(cosine, 3.0), (sine, -4.0), (a, 1.0)]);
+        // What stands before the cosine is in a range itself: no more is known than that a cosine is none above 1.
+        let stretched = pool.mul(a, cosine);
+        let of_both = pool.linear(0.0, &[(stretched, 1.0), (sine, 1.0)]);
+        for (id, least, most) in [(swings, -2.0, 9.0), (of_both, -3.0, 3.0), (b, 3.5, f64::INFINITY)] {
+            let found = bounds_of(&mut of, id);
+            assert_eq!((found.least, found.most), (least, most));
+        }
+    }
+
+    #[test]
+    fn two_links_are_apart_from_being_stretched_and_folded_or_not() {
+        let mut of = link();
+        let [_, _, a, b] = symbols(&mut of);
+        let mut is_between = |distance: f64, lengths: [f64; 2]| {
+            let [distance, own, other] =
+                [distance, lengths[0], lengths[1]].map(|length| of.pool.number(length * length));
+            super::is_between(&mut of, distance, [own, other])
+        };
+        assert!(is_between(1.0, [1.0, 1.0]) && is_between(2.0, [2.0, 1.0]));
+        assert!(!is_between(2.0, [1.0, 1.0]) && !is_between(1.0, [2.0, 1.0]) && !is_between(1.0, [1.0, 2.0]));
+        assert!(!is_between(3.0, [1.0, 1.0]) && !is_between(0.0, [1.0, 1.0]));
+        // Squares from 1 to 2 beside 1 and 1: stretched at 4, folded at 0. Without an end nothing is known.
+        let one = of.pool.number(1.0);
+        assert!(super::is_between(&mut of, a, [one, one]) && !super::is_between(&mut of, b, [one, one]));
+        // A link of 1 to sqrt(2) and one of 1 are stretched at a distance of 2 if the first is the shortest that it may be.
+        let four = of.pool.number(4.0);
+        assert!(!super::is_between(&mut of, four, [a, one]));
+    }
+
+    #[test]
+    fn the_rest_of_a_gap_is_shorter_than_the_link_or_not() {
+        let mut of = link();
+        let [cosine, _, a, b] = symbols(&mut of);
+        let mut is_apart = |factor: f64, square: Id| {
+            let part = of.pool.scale(factor, cosine);
+            super::is_apart(&mut of, part, square)
+        };
+        assert!(is_apart(0.99, a) && is_apart(-0.99, b) && !is_apart(1.0, a) && !is_apart(-1.0, a));
+        let zero = of.pool.zero();
+        let half = of.pool.number(0.5);
+        assert!(!super::is_apart(&mut of, half, zero), "no link at all");
+    }
+}

@@ -62,3 +62,73 @@ pub(super) fn reciprocal(pool: &mut Pool, pivot: Id, entry: Id) -> Id {
     let squares = pool.sum(&squares);
     pool.div(pivot, squares)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::{Environment, evaluate};
+    use crate::system::equations::{Slip, Switched};
+
+    /// A reaction of dry friction, whose switches are numbers, or of a joint.
+    fn reaction(pool: &mut Pool, number: u32, acts: Option<f64>) -> Reaction {
+        let flow = pool.zero();
+        let slip = Slip {
+            joint: String::new(),
+            direction: String::new(),
+            unit: String::new(),
+            flow,
+            kept: None,
+            gap: None,
+            mobility: None,
+        };
+        // What slides gives 5 N, what sticks its multiplier.
+        let multiplier = Symbol::Multiplier(number);
+        let switched = acts.map(|acts| Switched {
+            effort: if acts == 0.0 { pool.number(5.0) } else { pool.symbol(multiplier) },
+            acts: pool.number(acts),
+        });
+        Reaction { slip, multiplier, switched, rebound: None }
+    }
+
+    fn reactions(pool: &mut Pool) -> Vec<Reaction> {
+        [None, Some(1.0), Some(0.0)].into_iter().zip(0..).map(|(acts, k)| reaction(pool, k, acts)).collect()
+    }
+
+    #[test]
+    fn what_slides_is_coupled_with_nothing() {
+        let pool = &mut Pool::new();
+        let reactions = reactions(pool);
+        assert_eq!(rigid(&reactions), 1);
+        let full: Vec<Vec<Id>> = [&[4.0][..], &[1.0, 5.0], &[2.0, 3.0, 6.0]]
+            .map(|row| row.iter().map(|&value| pool.number(value)).collect())
+            .into();
+        let found = decoupled(pool, &reactions, &full);
+        let numbers: Vec<f64> = found.iter().flatten().map(|&id| pool.as_number(id).expect("a number")).collect();
+        assert_eq!(numbers, [4.0, 1.0, 5.0, 0.0, 0.0, 6.0]);
+    }
+
+    /// r = l_0 + 10 l_1 + 100 l_2 in every row.
+    #[test]
+    fn what_slides_gives_its_effort_to_all_rows_but_its_own() {
+        let pool = &mut Pool::new();
+        let reactions = reactions(pool);
+        let multipliers: Vec<Symbol> = reactions.iter().map(|reaction| reaction.multiplier).collect();
+        let terms: Vec<(Id, f64)> = multipliers.iter().map(|&of| pool.symbol(of)).zip([1.0, 10.0, 100.0]).collect();
+        let (all, efforts) = (pool.linear(0.0, &terms), efforts(pool, &reactions));
+        let found = residuals(pool, &multipliers, &efforts, &[all; 3]);
+        let sliding = pool.linear(500.0, &terms[..2]);
+        assert_eq!(found, [sliding, sliding, all]);
+    }
+
+    #[test]
+    fn a_pivot_that_vanishes_beside_its_entry_has_no_reciprocal() {
+        let pool = &mut Pool::new();
+        let [pivot, entry] = [0, 1].map(|state| pool.symbol(Symbol::state(state)));
+        let (damped, own) = (reciprocal(pool, pivot, entry), reciprocal(pool, entry, entry));
+        for (pivot, expected) in [(3.0, 1.0 / 3.0), (4e-10, 0.5 / 4e-10), (0.0, 0.0)] {
+            let states = [pivot, 4.0];
+            let found = evaluate(pool, &[damped, own], &Environment { states: &states, ..Environment::default() });
+            assert!((found[0] - expected).abs() <= 1e-15 * expected && found[1] == 0.25, "{pivot}: {found:?}");
+        }
+    }
+}

@@ -134,6 +134,7 @@ fn matrix(pool: &mut Pool, reactions: &[Reaction], expressions: &[Id]) -> Vec<Ve
 
 #[cfg(test)]
 mod tests {
+    use crate::expr::{Environment, evaluate};
     use crate::system::reduce::tests::scene;
 
     const BOB: &str = "param mass: kg = 2; param g: m/s^2 = 9.81; gravity [0, -g, 0]; ground { point O = [0, 0, 0]; }
@@ -208,6 +209,25 @@ mod tests {
             assert!((row[0] - expected).abs() < 1e-6, "{k}: {} {expected}", row[0]);
         }
         assert!((gaps[1][0] - 0.02 * 3.5 * (-2.5_f64).exp()).abs() < 1e-6, "{}", gaps[1][0]);
+    }
+
+    /// q'' + 2 q' + q = 0 where a ball rests on a floor, whose place truncation has left: the pull of the floor is 1/s, critically damped.
+    #[test]
+    fn what_rests_on_a_stop_returns_to_its_place() {
+        let graph = "1 fall: translation; I ball = 2; Se weight = -20; weight -> fall -> ball;
+            stop floor on fall { at least 0; start 0.5; restitution 0.5; } observe { y: m = floor.place; }";
+        let of = scene(graph, "").literal;
+        let name = |index: usize| of.states[index].name.as_str();
+        let (place, momentum) = if name(0) == "ball.p" { (1, 0) } else { (0, 1) };
+        assert_eq!([name(place), name(momentum)], ["floor.way.q", "ball.p"]);
+        for (y, v, is_clear) in [(1e-3, 0.0, false), (0.0, 4e-3, false), (-2e-3, 3e-3, false), (0.5, 3.0, true)] {
+            let mut states = [0.0; 2];
+            (states[place], states[momentum]) = (y, 2.0 * v);
+            let environment = Environment { states: &states, negative: &[is_clear], ..Environment::default() };
+            let rate = evaluate(&of.pool, &[of.states[momentum].rate], &environment)[0] / 2.0;
+            let expected = if is_clear { -10.0 } else { -2.0 * v - y };
+            assert!((rate - expected).abs() < 1e-14, "{y} {v}: {rate} {expected}");
+        }
     }
 
     /// The effort that keeps a prescribed flow depends on the flow's change, which an input does not tell.

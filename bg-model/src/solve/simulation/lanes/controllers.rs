@@ -167,3 +167,63 @@ impl<V: Vector> Controllers<V> {
         self.largest = Lanes::select(is_accepted, h.larger(self.largest), self.largest);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::integrator::StepControl;
+    use crate::solve::simulation::settings::Settings;
+    use crate::solve::simulation::step_size::StepSizeController;
+
+    /// Steps with these error norms, by the controller of a run and by those side by side: both choose the same ones.
+    fn compared<V: Vector>(errors: &[f64]) {
+        if !V::is_at_hand() {
+            return;
+        }
+        let (span, order) = (Span { t0: 0.0, t_end: 100.0 }, 8.0);
+        let settings = Settings::<1> { first_step: Some(1.0), ..Settings::default() };
+        let mut own = StepSizeController::new(StepControl::Stabilised { order }, span, &settings, false);
+        let place = V::LANES - 1;
+        let mut others = Controllers::<V>::new(Control { span, largest: settings.largest_step, order });
+        others.take(place, Lead { controller: own.kept(), until: span.t_end, left: 1000 });
+        let (mut t, mut counts) = (0.0, [0, 0]);
+        for &error in errors {
+            let end = own.next_end(t, f64::INFINITY);
+            let (size, side, possible) = others.next(Lanes::each(|_| t));
+            assert_eq!([size.get(place), side.get(place)], [end - t, end], "{errors:?}");
+            assert_ne!(possible & 1 << place, 0);
+            let judged = others.judge(Lanes::each(|_| error));
+            let is_accepted = error <= 1.0;
+            let [accepted, refused] = [is_accepted, !is_accepted].map(|is| u8::from(is) << place);
+            others.go_on([size, side], judged, accepted, refused);
+            if is_accepted {
+                own.accept(end, end - t, error);
+                t = end;
+            } else {
+                own.reject(end - t, error);
+            }
+            counts[usize::from(!is_accepted)] += 1;
+            let (kept, made) = others.give(place);
+            assert_eq!(kept.step.to_bits(), own.kept().step.to_bits(), "{errors:?}: {} {}", kept.step, own.kept().step);
+            assert_eq!(kept.is_rejected, own.kept().is_rejected);
+            assert_eq!([made.steps, made.rejected], counts);
+        }
+    }
+
+    #[test]
+    fn steps_are_those_of_a_controller_by_itself() {
+        let sequences: [&[f64]; 4] = [
+            &[0.5, 0.1, 1e-6, 0.9, 0.3],
+            // After a rejected step the next one is not longer, the one after that is.
+            &[0.5, 30.0, 1e-4, 1e-4, 1e-4],
+            &[2.0, 1e3, 1.5, 1e-3, 0.2, 1e-3],
+            &[1.0, 1.0 + 1e-12, 1.0, 0.0, 0.7],
+        ];
+        for errors in sequences {
+            #[cfg(target_arch = "x86_64")]
+            compared::<crate::model::scalar::lanes::Avx2>(errors);
+            #[cfg(target_arch = "x86_64")]
+            compared::<crate::model::scalar::lanes::Avx512>(errors);
+        }
+    }
+}

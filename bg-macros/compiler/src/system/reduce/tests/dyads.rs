@@ -129,3 +129,17 @@ fn ranges_of_lengths_prove_that_a_loop_may_be_closed() {
         assert!(states[0] > states[1] && states[1] == 3, "{states:?}");
     }
 }
+
+/// The rod ends 5 mm above its slide, and nothing is guessed: the start is for the run time to refuse, which sees what has a reaction.
+#[test]
+fn a_loop_that_is_open_at_the_start_keeps_its_reactions() {
+    let open = |by: f64| {
+        let turn = format!("(asin(0.1 / rod) + {by})");
+        let graph = SLIDER_CRANK.replace("0.1, 0]; }\n    joint o", &format!("rod * sin({turn}), 0]; }}\n    joint o"));
+        assert_ne!(graph, SLIDER_CRANK);
+        scene(&graph.replace("rod: m = 0.5, above 0", "rod: m = 0.5").replace("TURN", &turn), "tune {}")
+    };
+    let [closed, open] = [0.0, 0.01].map(open);
+    assert_eq!(closed.left().len(), 3, "{}", closed.report);
+    assert_eq!((open.left().len(), open.reduced.holding.rigid.len()), (6, 1), "{}", open.report);
+}

@@ -164,3 +164,37 @@ fn rows_that_close_a_loop_are_known_as_such() {
         assert!((own / among_all - 1.0).abs() < 1e-12, "{own} {among_all}");
     }
 }
+
+/// A pin that is open by 10 mm at the start is for the run time to refuse.
+#[test]
+fn a_pin_that_is_open_at_the_start_keeps_its_reactions() {
+    let graph = chain(1, "").replace("start top at [0, -0, 0]", "start top at [0, 0.01, 0]");
+    let scene = scene(&graph, "tune {}");
+    assert_eq!((scene.left().len(), scene.reduced.holding.rigid.len()), (5, 1), "{}", scene.report);
+}
+
+/// At the angle a from below and the speed w, about the pin: J w' = 3 - m g l sin(a), and the pin carries the rod round.
+#[test]
+fn the_reactions_of_solved_rows_are_those_of_the_motion() {
+    let scene = scene(&chain(1, ""), "tune {}");
+    let StateEquations { pool, states, outputs, .. } = &scene.reduced;
+    let (mass, length, own, angle, speed) = (1.0, 0.5, 0.1, 0.7_f64, 3.0);
+    let moment = own + mass * length * length;
+    let value = |name: &str| match name {
+        "b0.orientation_11" => angle.cos(),
+        "b0.orientation_12" => -angle.sin(),
+        "b0.angular.p_z" => own * speed,
+        _ => panic!("{name}"),
+    };
+    let at: Vec<f64> = states.iter().map(|state| value(&state.name)).collect();
+    let momentum = states.iter().position(|state| state.name == "b0.angular.p_z").expect("a momentum");
+    let roots: Vec<_> = [states[momentum].rate].into_iter().chain(outputs.iter().map(|output| output.value)).collect();
+    let found = evaluate(pool, &roots, &Environment { states: &at, ..Environment::default() });
+    let turn = (3.0 - mass * 9.81 * length * angle.sin()) / moment;
+    let [across, along] = [mass * length * turn, mass * length * speed * speed];
+    let force = [across * angle.cos() - along * angle.sin(), mass * 9.81 + across * angle.sin() + along * angle.cos()];
+    let expected = [own * turn, length * angle.sin(), -length * angle.cos(), 0.0, force[0], force[1]];
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+    }
+}
