@@ -36,8 +36,11 @@ fn the_corpus_has_the_outcomes_it_had() {
 /// Fresh inputs of one kind and what became of them.
 fn fresh(tally: &mut Tally, kind: Kind, count: u64) {
     let seeds = seeds(&here().join("..")).expect("the models are there");
+    // As rustc has it: tokens inside of many groups are printed by calls inside of as many.
+    const STACK: usize = 8 << 20;
+    let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK).build().expect("threads");
     let examined = (0..count).into_par_iter().map(|number| examine(&kind.input(&seeds, 2026, number)));
-    for (number, result) in (0..count).zip(examined.collect::<Vec<_>>()) {
+    for (number, result) in (0..count).zip(pool.install(|| examined.collect::<Vec<_>>())) {
         tally.count(kind, &result);
         if let Err(violation) = result {
             panic!("{} {number}: {}\n{}", kind.name(), violation.0, kind.input(&seeds, 2026, number).text());

@@ -170,7 +170,10 @@ impl Sample {
             negative: &self.negative,
             ..Environment::default()
         };
-        evaluate(&equations.pool, roots, &environment)
+        // Reactions that joints share are symbols in what is shown.
+        let mut pool = equations.pool.clone();
+        let roots = equations.solution.closed(&mut pool, roots);
+        evaluate(&pool, &roots, &environment)
     }
 }
 
@@ -329,13 +332,20 @@ fn power_is_balanced_at_every_junction_and_two_port() {
 
 #[test]
 fn stored_energy_changes_by_what_is_supplied_less_what_is_dissipated() {
+    let mut balanced = 0;
     for (model, text) in texts() {
         let (causal, mut equations) = compiled(&text);
+        // At a state in which rigid joints do not hold their motions, reactions do work.
+        if equations.holding.rigid.iter().any(|slip| !equations.pool.is_zero(slip.flow)) {
+            continue;
+        }
+        balanced += 1;
         let mut random = Random(5);
         for _ in 0..20 {
             assert!(is_balanced(&model, &causal, &mut equations, &mut random), "{model}: not finite");
         }
     }
+    assert!(balanced > 20, "{balanced} models");
 }
 
 /// Whether the values at a sample are finite; the energy balance then must hold.

@@ -174,15 +174,17 @@ fn equations_text(equations: &StateEquations) -> String {
     out
 }
 
-/// What a step's end is moved to: the states of the pose, then the momenta.
+/// What a step's end is moved to: the states of the pose, then the momenta. What is long stands in the program alone.
 fn projection_text(equations: &StateEquations) -> String {
+    const LONGEST: usize = 60;
     let mut out = String::new();
-    let StateEquations { projections, settled, .. } = equations;
+    let StateEquations { projections, settled, pool, .. } = equations;
     for (what, moved) in [("pose", projections), ("momenta", settled)] {
         let _ = writeln!(out, "{what}: {} states", moved.len());
         for &(state, value) in moved {
-            let _ =
-                writeln!(out, "    {} -> {}", equations.states[state].name, equations.shown(&equations.pool, value));
+            let parts = pool.reachable(&[value]).len();
+            let text = if parts > LONGEST { format!("{parts} terms") } else { equations.shown(pool, value) };
+            let _ = writeln!(out, "    {} -> {text}", equations.states[state].name);
         }
     }
     out

@@ -26,8 +26,8 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// negative guard. Allocates nothing.
     fn rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);
 
-    /// As [`System::rate`], for the stages of explicit steps, where a run spends its time: a generated model has its rate inlined
-    /// here. All else calls `rate`, so that it is compiled once. By default there is no difference.
+    /// As [`System::rate`], inlined where it is compiled for the vectors of the machine, which methods call, but for rates that are
+    /// too long. By default there is no difference.
     #[inline(always)]
     fn inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
         self.rate(t, x, negative, dx);
