@@ -1,5 +1,5 @@
-//! Suites across the crates: a folder for each suite, with its cases, its data and its verdict (`main.rs`). This library is what
-//! suites, benchmarks and examples share: the models, and the cases that are run by more than a suite.
+//! Suites across the crates: a folder for each suite, with its cases, its data and its verdict (`main.rs`). This
+//! library is what suites, benchmarks and examples share: the models, and the cases that are run by more than a suite.
 
 #[path = "fuzz/cases/mod.rs"]
 pub mod fuzz;

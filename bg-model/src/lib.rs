@@ -1,9 +1,9 @@
-//! Run time of `bond_graph!` models: the traits they implement, integrators that drive them, events, the assembly of the
-//! start pose and the description of what a model consists of.
+//! Run time of `bond_graph!` models: the traits they implement, integrators that drive them, events, the assembly of
+//! the start pose and the description of what a model consists of.
 //!
-//! This is the one crate that a program depends on. The macro comes from here, and its documentation is the reference of
-//! the language: [`bond_graph!`](bond_graph). Generated code names this crate only, which re-exports [`nalgebra`] and
-//! [`serde`] for it.
+//! This is the one crate that a program depends on. The macro comes from here, and its documentation is the reference
+//! of the language: [`bond_graph!`](bond_graph). Generated code names this crate only, which re-exports [`nalgebra`]
+//! and [`serde`] for it.
 //!
 //! | to | see |
 //! |---|---|
@@ -81,14 +81,15 @@
 //!
 //! # Without `std`
 //!
-//! With `default-features = false` the crate needs an allocator only, and lacks the modules `extended`, `run` and `sensitivity`. A run has the
-//! same bits; a start that closes joints, and algebraic loops that are not linear, are the same to rounding.
+//! With `default-features = false` the crate needs an allocator only, and lacks the modules `extended`, `run` and
+//! `sensitivity`. A run has the same bits; a start that closes joints, and algebraic loops that are not linear, are the
+//! same to rounding.
 //!
 //! # Conventions
 //!
 //! SI units. Power is positive along the half arrow. A guard below zero calls for the first branch of its `if`;
-//! `negative[k]` says that switch `k` is in it. Nothing is allocated inside a step. Sums have a fixed order and elementary
-//! functions come from `libm`, so debug and release builds give the same bytes.
+//! `negative[k]` says that switch `k` is in it. Nothing is allocated inside a step. Sums have a fixed order and
+//! elementary functions come from `libm`, so debug and release builds give the same bytes.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 

@@ -1,7 +1,8 @@
-//! What only generated code calls, under one name. It may change with every version: the macro and this crate are of one.
+//! What only generated code calls, under one name. It may change with every version: the macro and this crate are of
+//! one.
 //!
-//! Generated code calls besides: the public traits, tables and errors of this crate, the arithmetic of series, nalgebra and
-//! serde.
+//! Generated code calls besides: the public traits, tables and errors of this crate, the arithmetic of series, nalgebra
+//! and serde.
 
 pub use alloc::vec;
 

@@ -1,7 +1,7 @@
 //! Errors that show their sentence wherever they are shown.
 //!
-//! A program whose `main` gives back an error prints it by `Debug`, and so do `unwrap` and `expect`: what a user sees there has
-//! to be what `Display` says. Programs read the fields.
+//! A program whose `main` gives back an error prints it by `Debug`, and so do `unwrap` and `expect`: what a user sees
+//! there has to be what `Display` says. Programs read the fields.
 
 /// Lets `Debug` of a type say what its `Display` says.
 macro_rules! debug_is_display {

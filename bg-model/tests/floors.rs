@@ -1,5 +1,5 @@
-//! The floors of the run time: what a mechanism is (`model`) builds on nothing that drives it (`solve`), and no folder or
-//! file of either on one above it.
+//! The floors of the run time: what a mechanism is (`model`) builds on nothing that drives it (`solve`), and no folder
+//! or file of either on one above it.
 //!
 //! Imports are read from the source, as paths from the crate's root. Modules of tests are left out.
 

@@ -1,4 +1,5 @@
-//! Generated code and run time are of one version: the one that generated code may name is this crate's, and all packages ask for it.
+//! Generated code and run time are of one version: the one that generated code may name is this crate's, and all
+//! packages ask for it.
 
 /// The crate's version, as every package of the library has it.
 const VERSION: &str = env!("CARGO_PKG_VERSION");

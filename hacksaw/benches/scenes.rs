@@ -1,7 +1,7 @@
 //! What every scene costs, and how the paper's compares with a hand-written model: prints a table.
 //!
-//! `cargo bench -p hacksaw --bench scenes`. Times are minima: of [`BATCHES`] batches of rate evaluations over states along
-//! the scene's own trajectory, the models taking turns so that all see the same machine; of [`RUNS`] runs of 5 s.
+//! `cargo bench -p hacksaw --bench scenes`. Times are minima: of [`BATCHES`] batches of rate evaluations over states
+//! along the scene's own trajectory, the models taking turns so that all see the same machine; of [`RUNS`] runs of 5 s.
 #![allow(missing_docs)]
 
 use std::hint::black_box;

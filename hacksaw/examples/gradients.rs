@@ -1,9 +1,9 @@
 //! What a gradient of the hacksaw costs: prints a table.
 //!
-//! `cargo run --release -p hacksaw --example gradients [-- RUNS]`: the derivatives of the last place of the frame over 5 s of the scene
-//! `motion` by 1, 8 and all parameters, by slopes that follow the run and by the run followed backwards, over the run alone: minima of
-//! RUNS (7 unless given), and how far both are apart. With a name after it, only that is made, once, for a profiler: `run`,
-//! `forward` or `adjoint`.
+//! `cargo run --release -p hacksaw --example gradients [-- RUNS]`: the derivatives of the last place of the frame over
+//! 5 s of the scene `motion` by 1, 8 and all parameters, by slopes that follow the run and by the run followed
+//! backwards, over the run alone: minima of RUNS (7 unless given), and how far both are apart. With a name after it,
+//! only that is made, once, for a profiler: `run`, `forward` or `adjoint`.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};

@@ -1,8 +1,9 @@
 //! What it gains to make runs of the hacksaw side by side: prints a table.
 //!
-//! `cargo run --release -p hacksaw --example lanes [-- RUNS]`: RUNS (1000 unless given) runs over 5 s of the scene `motion`, in which torque,
-//! cutting resistance and two stiffnesses differ, and of `rigid`, in which torque, start and both resistances do, in lanes and each by itself; CPU
-//! time of a run, the least of several pieces, and the largest error of a pose at the end against DOP853 at 1e-13. Then two threads over one.
+//! `cargo run --release -p hacksaw --example lanes [-- RUNS]`: RUNS (1000 unless given) runs over 5 s of the scene
+//! `motion`, in which torque, cutting resistance and two stiffnesses differ, and of `rigid`, in which torque, start and
+//! both resistances do, in lanes and each by itself; CPU time of a run, the least of several pieces, and the largest
+//! error of a pose at the end against DOP853 at 1e-13. Then two threads over one.
 
 use std::time::Instant;
 

@@ -1,7 +1,8 @@
 //! Makes the reference solutions in `hacksaw/reference` anew: a table and its certificate for each case.
 //!
-//! `cargo run --release -p hacksaw --example make_references -- [NAME]...` with names of `paper`, `full_offset`, `rigid`,
-//! `free_run`; all of them without a name. `full_offset` is stiff and takes up to half an hour, the others seconds.
+//! `cargo run --release -p hacksaw --example make_references -- [NAME]...` with names of `paper`, `full_offset`,
+//! `rigid`, `free_run`; all of them without a name. `full_offset` is stiff and takes up to half an hour, the others
+//! seconds.
 
 use std::error::Error;
 use std::fs::{File, write};

@@ -1,8 +1,9 @@
 //! What derivatives of the hacksaw cost, and how exact they are: prints two tables.
 //!
-//! `cargo run --release -p hacksaw --example sensitivities [-- SECONDS]`: a run of the scene `motion` with derivatives by eight
-//! parameters over the run alone, minima of several; then the derivatives at the end by three parameters against five-point
-//! differences of runs in double-double arithmetic over the SECONDS (0.3 unless given; 5 takes two minutes of one core).
+//! `cargo run --release -p hacksaw --example sensitivities [-- SECONDS]`: a run of the scene `motion` with derivatives
+//! by eight parameters over the run alone, minima of several; then the derivatives at the end by three parameters
+//! against five-point differences of runs in double-double arithmetic over the SECONDS (0.3 unless given; 5 takes two
+//! minutes of one core).
 
 use std::time::{Duration, Instant};
 

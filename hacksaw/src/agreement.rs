@@ -1,9 +1,9 @@
 //! How far a scene is from the literal model: the measured side of what the compiler proves about it.
 //!
-//! In: a scene, parameter values, the steps to take. Out: for each output that the literal model has as well the largest
-//! difference over the run. Both take the same method and tolerances; the energy integrals, which not every scene has,
-//! have no part in the choice of the steps. The literal counterpart of a scene without a contact has that contact's
-//! coefficients at zero and does not watch its switch.
+//! In: a scene, parameter values, the steps to take. Out: for each output that the literal model has as well the
+//! largest difference over the run. Both take the same method and tolerances; the energy integrals, which not every
+//! scene has, have no part in the choice of the steps. The literal counterpart of a scene without a contact has that
+//! contact's coefficients at zero and does not watch its switch.
 
 use std::error::Error;
 
@@ -25,8 +25,8 @@ use crate::scenes::Scene;
 /// The steps that both models take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Steps {
-    /// Those of the run, Dormand and Prince's method of order 8 with steps by the estimated error: relative and absolute
-    /// tolerance. Rounding in the estimate makes them differ a little between two models.
+    /// Those of the run, Dormand and Prince's method of order 8 with steps by the estimated error: relative and
+    /// absolute tolerance. Rounding in the estimate makes them differ a little between two models.
     ByError {
         /// Relative.
         rtol: f64,
@@ -102,8 +102,8 @@ pub fn compare(
 
 /// How long a comparison of `scene` means something, s: the paper's 5 s; with the blade off the work 1 s.
 ///
-/// Without the blade's resistance the crank speeds up and the motion turns chaotic: between 1 and 1.5 s a difference in the
-/// last bit grows by a factor of some 1e5, and by 2 s no digit is left, whatever the formulation.
+/// Without the blade's resistance the crank speeds up and the motion turns chaotic: between 1 and 1.5 s a difference in
+/// the last bit grows by a factor of some 1e5, and by 2 s no digit is left, whatever the formulation.
 #[must_use]
 pub fn horizon(scene: Scene) -> f64 {
     if scene == Scene::FreeRun { 1.0 } else { 5.0 }

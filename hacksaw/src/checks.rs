@@ -13,13 +13,13 @@ use crate::columns::{AXES, continued};
 /// What stands still moves less than this: m, rad or a part of the moving component. The model is exact there; what is
 /// left is rounding.
 const STILL: f64 = 1e-9;
-/// A path is a circle where its radius is off by less than this part. The crank's pin is compliant: in the paper's case it
-/// gives way by 0.7 mm, a fiftieth of the radius.
+/// A path is a circle where its radius is off by less than this part. The crank's pin is compliant: in the paper's case
+/// it gives way by 0.7 mm, a fiftieth of the radius.
 const ROUND: f64 = 0.05;
 /// What moves, moves by more than this, m or rad: a fiftieth of the crank's throw of 0.075 m.
 const MOVING: f64 = 1.5e-3;
-/// Frame and guide move together where their angles differ by less than this part of the frame's swing. Their coupling is
-/// compliant: in the paper's case it gives way by a twelfth.
+/// Frame and guide move together where their angles differ by less than this part of the frame's swing. Their coupling
+/// is compliant: in the paper's case it gives way by a twelfth.
 const TOGETHER: f64 = 0.2;
 /// "At the start" is the first part of a run, s.
 const START: f64 = 1.0;

@@ -12,7 +12,8 @@ pub const LINKS: [u8; 4] = [2, 3, 4, 5];
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The columns of the reference trajectory after `t`: for each link L the position `CL` of its centre of mass, its
-/// orientation `RL` (body to inertial, row by row), its momentum `pL` and its angular momentum `hL` about the centre of mass.
+/// orientation `RL` (body to inertial, row by row), its momentum `pL` and its angular momentum `hL` about the centre of
+/// mass.
 #[must_use]
 pub fn reference_columns() -> Vec<String> {
     let vector = |symbol: char, link: u8| AXES.map(|axis| format!("{symbol}{link}_{axis}"));

@@ -40,7 +40,8 @@ pub fn program() -> Program<Hacksaw> {
     program
 }
 
-/// Does what the arguments ask for and gives the exit code. All that it calls is compiled here, once, since nothing of it is generic.
+/// Does what the arguments ask for and gives the exit code. All that it calls is compiled here, once, since nothing of
+/// it is generic.
 pub fn main(arguments: ArgsOs) -> ExitCode {
     program().main(arguments)
 }

@@ -1,8 +1,8 @@
 //! Bad input: what every integrator says to input that cannot be, and to rates and guards that break.
 //!
-//! Each trial holds: a typed error or a right result, no panic, no more attempted steps than the limit; the last good state
-//! is finite if the start was, inside the span, and where the trial says. `bad_input/messages.snap` has all messages
-//! together.
+//! Each trial holds: a typed error or a right result, no panic, no more attempted steps than the limit; the last good
+//! state is finite if the start was, inside the span, and where the trial says. `bad_input/messages.snap` has all
+//! messages together.
 
 mod models;
 mod rates;

@@ -57,8 +57,8 @@ fn growth() -> Vec<Trial> {
     vec![
         Trial::new("a pole at 1 s", StopsAtUnlessFixed(1.0, 1e-5), smooth(|_, x| [x[0] * x[0], 0.0]), two()),
         Trial::new("growth with 1e12 1/s", StopsAtUnlessFixed(0.0, 1e-6), smooth(|_, x| [1e12 * x[0], 0.0]), two()),
-        // Known limits: an L-stable method steps over what grows faster than its smallest step, and a fixed step over what
-        // grows faster than itself; no error estimate sees it.
+        // Known limits: an L-stable method steps over what grows faster than its smallest step, and a fixed step over
+        // what grows faster than itself; no error estimate sees it.
         Trial::new("growth with 1e200 1/s", Either, smooth(|_, x| [1e200 * x[0], 0.0]), two()),
         Trial::new("decay to cos t with 1e20 1/s", EndsOrStops(libm::cos(2.0)), decay(1e20), two()),
         Trial::new("decay to cos t with 1e60 1/s", EndsOrStops(libm::cos(2.0)), decay(1e60), two()),

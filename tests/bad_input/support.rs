@@ -31,7 +31,8 @@ pub enum Expected {
     Ends(f64),
     /// Does, or stops with an error.
     EndsOrStops(f64),
-    /// Stops with an error, its last good state within the given distance of this time, s, a fixed step before it at most.
+    /// Stops with an error, its last good state within the given distance of this time, s, a fixed step before it at
+    /// most.
     StopsAt(f64, f64),
     /// The same with error control; else stops or comes to the end, since a fixed step may step over it.
     StopsAtUnlessFixed(f64, f64),

@@ -1,10 +1,10 @@
 //! What `auto` takes beside the best method by name, and how far its result is off: prints a table.
 //!
-//! `cargo bench -p bond-graph-tests --bench auto [-- WORD]`, for all models or those whose name contains the word. Times are those of the
-//! processor, minima of [`ROUNDS`] rounds in which the methods take turns. Runs of less than a millisecond show what the trials cost.
-//! The error is the largest difference of an output to a run at [`TIGHT`] at 21 instants, over the largest value in its unit, in parts
-//! of the tolerance; that of the fastest method by name stands beside it. Forces and torques do not count: reactions near a dead centre have
-//! spikes as narrow as a step.
+//! `cargo bench -p bond-graph-tests --bench auto [-- WORD]`, for all models or those whose name contains the word.
+//! Times are those of the processor, minima of [`ROUNDS`] rounds in which the methods take turns. Runs of less than a
+//! millisecond show what the trials cost. The error is the largest difference of an output to a run at [`TIGHT`] at 21
+//! instants, over the largest value in its unit, in parts of the tolerance; that of the fastest method by name stands
+//! beside it. Forces and torques do not count: reactions near a dead centre have spikes as narrow as a step.
 #![allow(missing_docs)]
 
 use bg_model::integrator::Integrator;
@@ -29,8 +29,8 @@ const TOLERANCES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 
 /// The relative tolerance of the run that errors are measured by, and its instants.
 const TIGHT: f64 = 1e-13;
 const INSTANTS: f64 = 20.0;
-/// `auto`, then those that it is held against: where nothing is strongly damped, and where something is. The last is right at
-/// [`TIGHT`].
+/// `auto`, then those that it is held against: where nothing is strongly damped, and where something is. The last is
+/// right at [`TIGHT`].
 const EXPLICIT: &[Integrator] =
     &[Integrator::Auto, Integrator::Dop853, Integrator::Cfmr7, Integrator::Nystrom, Integrator::Taylor];
 const IMPLICIT: &[Integrator] = &[Integrator::Auto, Integrator::Ark5, Integrator::Radau9];

@@ -1,9 +1,9 @@
-//! The hard cases with every integrator at four tolerances, the hacksaw's other measurements, and the long-term behaviour of
-//! conservative scenes: one report, as text, JSON and a page.
+//! The hard cases with every integrator at four tolerances, the hacksaw's other measurements, and the long-term
+//! behaviour of conservative scenes: one report, as text, JSON and a page.
 //!
-//! `cargo bench -p bond-graph-tests --bench stability -- [--only PART] [--limit STEPS] [--periods COUNT] [FOLDER]` writes into
-//! the folder, `target/stability` by default. `--only` takes the cases and sheets whose name contains it; `--periods` is
-//! the length of the longest runs, 1e6 by default.
+//! `cargo bench -p bond-graph-tests --bench stability -- [--only PART] [--limit STEPS] [--periods COUNT] [FOLDER]`
+//! writes into the folder, `target/stability` by default. `--only` takes the cases and sheets whose name contains it;
+//! `--periods` is the length of the longest runs, 1e6 by default.
 
 use std::error::Error;
 use std::fs;

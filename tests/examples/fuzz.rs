@@ -1,7 +1,8 @@
 //! Random inputs for the macro's compiler and the hacksaw's parameter reading, in any number.
 //!
-//! `cargo run --release -p bond-graph-tests --example fuzz -- --inputs 1000000 --seed 1`. The same numbers give the same
-//! inputs. A panic, a hang or a broken promise is printed with its input, kept in `--keep`, and the exit code is 1.
+//! `cargo run --release -p bond-graph-tests --example fuzz -- --inputs 1000000 --seed 1`. The same numbers give the
+//! same inputs. A panic, a hang or a broken promise is printed with its input, kept in `--keep`, and the exit code is
+//! 1.
 
 use std::collections::BTreeSet;
 use std::error::Error;

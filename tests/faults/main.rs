@@ -488,7 +488,8 @@ fn all_faults_of_a_stage_come_at_once() {
 
 #[test]
 fn all_faults_of_causality_come_at_once() {
-    // A derivative storage, a junction that two sources determine, a law the wrong way round, a junction without a cause.
+    // A derivative storage, a junction that two sources determine, a law the wrong way round, a junction without a
+    // cause.
     check_all(
         "graph G {\n1 a: translation; I i = 1; I ▸k = 2; a -> i; a -> k;\n0 b: translation; Se s = 1; Se ▸u = 2; s -> b; u -> b;\n\
          1 c: translation; Sf f = 1; R ▸r(effort e) = e / 2; f -> c -> r;\n1 ▸d: translation; Se e = 1; e -> d;\n\
@@ -514,8 +515,8 @@ fn all_algebraic_loops_come_at_once() {
 
 #[test]
 fn all_domains_that_are_missing_come_at_once() {
-    // Three parts without units; in the third the transformer's parameter takes those of one side to the other. A fourth
-    // part has two domains, a fifth a law that fits none.
+    // Three parts without units; in the third the transformer's parameter takes those of one side to the other. A
+    // fourth part has two domains, a fifth a law that fits none.
     let text = "graph G {\nparam ratio: m/rad = 2; param k: N/m = 3;\n\
          Se a = 1; 1 j; I b = 2; a -> ▸j -> b;\nSe c = 1; 0 l; R d = 2; c -> ▸l -> d;\n\
          Se e = 1; 1 m; TF g = ratio; 1 n; I h = 2; R q = 3; e -> ▸m -> g -> n -> h; m -> q;\n\

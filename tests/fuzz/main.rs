@@ -1,7 +1,8 @@
 //! Random inputs: no panic, every fault with a code and a place, and nothing that was ever kept goes wrong again.
 //!
-//! The corpus under `corpus/` has an input for each code that random inputs reached, shortened, what was ever found to go
-//! wrong, and edges. `cargo run --release -p bond-graph-tests --example fuzz -- --help` hands in any number of inputs.
+//! The corpus under `corpus/` has an input for each code that random inputs reached, shortened, what was ever found to
+//! go wrong, and edges. `cargo run --release -p bond-graph-tests --example fuzz -- --help` hands in any number of
+//! inputs.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;

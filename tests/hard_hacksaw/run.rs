@@ -9,8 +9,9 @@ use bond_graph_tests::hard_hacksaw::request;
 use bond_graph_tests::hard_hacksaw::sampling::sampled;
 use bond_graph_tests::hardcases::integrator;
 
-/// The tilts that the disturbance makes stay, since the springs that hold them start unloaded; nothing else does. Measured
-/// over 5 s: 2.5 times the disturbance, whatever the integrator and the tolerance, but for 8.6 times by Radau IIA 9 at 1e-4.
+/// The tilts that the disturbance makes stay, since the springs that hold them start unloaded; nothing else does.
+/// Measured over 5 s: 2.5 times the disturbance, whatever the integrator and the tolerance, but for 8.6 times by Radau
+/// IIA 9 at 1e-4.
 #[test]
 fn a_disturbance_out_of_the_plane_does_not_grow() {
     let case = disturbed().until(0.1);

@@ -1,5 +1,5 @@
-//! Verdicts: who reaches the reference, that nobody is wrong without saying so, and what it costs in counts, which are equal
-//! on every machine and in every build.
+//! Verdicts: who reaches the reference, that nobody is wrong without saying so, and what it costs in counts, which are
+//! equal on every machine and in every build.
 
 use std::fmt::Write;
 

@@ -10,7 +10,8 @@ use bond_graph_tests::hardcases::pendulums::{
 };
 use bond_graph_tests::hardcases::slider_crank::{compliant_slider_crank, soft_slider_cranks};
 
-/// `departure`: a bound of the softest joints', not ten times too large; `beyond`: a bound of the extrapolation's error.
+/// `departure`: a bound of the softest joints', not ten times too large; `beyond`: a bound of the extrapolation's
+/// error.
 fn holds(case: Case, problems: &Extrapolated, departure: f64, beyond: f64) {
     for name in ["auto", "radau5"] {
         let found = law(&case, problems, integrator(name), 1e-7);

@@ -20,7 +20,8 @@ const MISSED: &[(&str, &str)] = &[];
 
 /// Integrators whose dense output is wrong between steps whose ends are right. The stiff component of Prothero's and
 /// Robinson's problem follows cos t at the steps' ends, which lie up to 3 s apart; no polynomial through a few stages
-/// follows it in between, and no error estimate looks there. A largest step, such as the distance of the samples, helps.
+/// follows it in between, and no error estimate looks there. A largest step, such as the distance of the samples,
+/// helps.
 const WRONG_BETWEEN: &[(&str, &str)] = &[
     ("prothero-robinson", "auto"),
     ("prothero-robinson", "rodas5p"),
@@ -94,9 +95,9 @@ fn dense_output_is_right_but_for_these() {
     are(WRONG_BETWEEN, |outcome| outcome.is_wrong_between);
 }
 
-/// Rounding, not truncation: in RODAS5P y2 - y3 - y4 = 0 is lost to 1e-21, where Radau's iteration keeps it to 1e-25. The
-/// error at the end is then 1e-6 to 1e-5 whatever the tolerance, and no error says so. Two refinements of each linear
-/// solve leave 1.2e-6, so it is the sums of the stages as well.
+/// Rounding, not truncation: in RODAS5P y2 - y3 - y4 = 0 is lost to 1e-21, where Radau's iteration keeps it to 1e-25.
+/// The error at the end is then 1e-6 to 1e-5 whatever the tolerance, and no error says so. Two refinements of each
+/// linear solve leave 1.2e-6, so it is the sums of the stages as well.
 #[test]
 fn e5_is_beyond_rodas5p_at_tight_tolerances() {
     let case = kinetics::e5();

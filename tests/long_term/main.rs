@@ -21,8 +21,8 @@ fn gauss_keeps_quadratic_invariants_to_rounding() {
     assert!(found.energy().whole < 4e-12, "{:?}", found.energy());
 }
 
-/// The energy of the spring pendulum is no such invariant: its error falls with the sixth power of the step, and stays the
-/// same from the first hundredth of the run on.
+/// The energy of the spring pendulum is no such invariant: its error falls with the sixth power of the step, and stays
+/// the same from the first hundredth of the run on.
 #[test]
 fn gauss_keeps_other_energies_within_bounds() {
     let scene = scenes::spring_pendulum();

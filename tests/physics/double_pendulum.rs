@@ -5,7 +5,8 @@ use bond_graph_tests::support::record::{Record, instants, record};
 
 use super::truth::{dot, within};
 
-/// Inertia matrix at angle difference `between`, and the weight's moments per sine of each angle, of the rigid pendulum.
+/// Inertia matrix at angle difference `between`, and the weight's moments per sine of each angle, of the rigid
+/// pendulum.
 fn rigid(p: &Parameters, between: f64) -> ([[f64; 2]; 2], [f64; 2]) {
     let upper = p.upper_length * p.upper_length * (p.upper_mass / 3.0 + p.lower_mass);
     let coupling = 0.5 * p.lower_mass * p.upper_length * p.lower_length * between.cos();

@@ -1,7 +1,7 @@
 //! The double four-bar through its ten flat poses, by methods, tolerances and largest steps: does every run end well?
 //!
-//! In each flat pose two loops could go another way, the reactions of the joints grow without bound, and where a step ends beside it
-//! is a matter of tolerances. So one run says little: these are 96 of each form.
+//! In each flat pose two loops could go another way, the reactions of the joints grow without bound, and where a step
+//! ends beside it is a matter of tolerances. So one run says little: these are 96 of each form.
 
 use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method, Tolerances};
 use bg_model::simulation::{Part, Recorder, Samples, Settings, Span, integrate};
@@ -10,7 +10,8 @@ use bond_graph_tests::models::mechanisms::{
     DoubleFourBar, DoubleFourBarParameters, FourBarsBySpeeds, FourBarsBySpeedsParameters,
 };
 
-/// How far the energy may depart, in parts of it: a run that leaves its branch departs by more than 1. At 1e-4 runs err by 0.04.
+/// How far the energy may depart, in parts of it: a run that leaves its branch departs by more than 1. At 1e-4 runs err
+/// by 0.04.
 const DEPARTURE: f64 = 0.1;
 
 /// A run of 10 s; gives the largest relative departure of the energy.

@@ -1,7 +1,7 @@
 //! The N-four-bar mechanism of IFToMM (A02) with forty loops: 81 rods, 121 rigid joints.
 //!
-//! The scene's equations are made by the compiler and evaluated by its interpreter: so no build of the suites has to compile
-//! 243 states.
+//! The scene's equations are made by the compiler and evaluated by its interpreter: so no build of the suites has to
+//! compile 243 states.
 
 use bg_compiler::expr::{Environment, Id, evaluate};
 use bg_compiler::pipeline::{self, Arranged};
@@ -143,8 +143,9 @@ impl Joints<f64, STATES, 0> for Forty {
     }
 }
 
-/// All posts turn alike, theta'' = -11.059099 cos(theta) in the posts' angle; the first post's upper end at 5 s by Jacobi's elliptic
-/// functions to 34 digits. It has then passed five flat poses, in each of which all forty loops could go another way.
+/// All posts turn alike, theta'' = -11.059099 cos(theta) in the posts' angle; the first post's upper end at 5 s by
+/// Jacobi's elliptic functions to 34 digits. It has then passed five flat poses, in each of which all forty loops could
+/// go another way.
 #[test]
 fn forty_four_bars_in_a_row_pass_their_flat_poses() {
     let model = Forty::new();

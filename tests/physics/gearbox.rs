@@ -35,7 +35,8 @@ fn a_rigid_gearbox_makes_one_flywheel_of_two() {
     }
 }
 
-/// The torque that accelerates the flywheel is its inertia times its acceleration, at the start that of the blocked current.
+/// The torque that accelerates the flywheel is its inertia times its acceleration, at the start that of the blocked
+/// current.
 #[test]
 fn the_tooth_hands_on_what_the_flywheel_takes() {
     let p = Parameters::default();

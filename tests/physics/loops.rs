@@ -79,7 +79,8 @@ fn a_loop_with_a_switch_takes_the_branch_of_its_solution() {
     within("energy", run.imbalance() / run.last("supplied"), 1e-9);
 }
 
-/// The current is where resistor, diode and capacitor take what the source gives: s = R i + d + u with i = i0 (exp(d / n) - 1).
+/// The current is where resistor, diode and capacitor take what the source gives: s = R i + d + u with i = i0 (exp(d /
+/// n) - 1).
 #[test]
 fn a_diode_in_a_loop_lets_current_through_one_way() {
     let p = ChargerParameters { saturation: 1e-9, thermal: 0.05, ..ChargerParameters::default() };

@@ -32,9 +32,10 @@ fn double_four_bars(end: f64, samples: u32) -> [Record; 2] {
     [record(&all, &times, 1e-10), record(&closing, &times, 1e-10)]
 }
 
-/// IFToMM A02 for 10 s: ten flat poses, in each of which two loops could go another way. All posts turn alike, so the first one
-/// is a pendulum, theta'' = -11.445 cos(theta); position and velocity of its upper end at 5 and 10 s by Jacobi's elliptic
-/// functions to 34 digits. EXUDYN's published 0.3284573768, 0.9445187937 for 10 s are of steps of 1.25e-4 s.
+/// IFToMM A02 for 10 s: ten flat poses, in each of which two loops could go another way. All posts turn alike, so the
+/// first one is a pendulum, theta'' = -11.445 cos(theta); position and velocity of its upper end at 5 and 10 s by
+/// Jacobi's elliptic functions to 34 digits. EXUDYN's published 0.3284573768, 0.9445187937 for 10 s are of steps of
+/// 1.25e-4 s.
 #[test]
 fn the_double_four_bar_passes_its_flat_poses() {
     let truth = [
@@ -65,8 +66,8 @@ fn gaps_of_closed_loops_stay_at_rounding() {
     }
 }
 
-/// IFToMM A01 for 10 s, and on to 1000 s, of which a debug build runs 50: energy from the end, which moves as a point mass does,
-/// and its distance from the pin. Reference by Jacobi's elliptic functions.
+/// IFToMM A01 for 10 s, and on to 1000 s, of which a debug build runs 50: energy from the end, which moves as a point
+/// mass does, and its distance from the pin. Reference by Jacobi's elliptic functions.
 #[test]
 fn a_rigid_pendulum_keeps_its_energy_and_its_length() {
     let model = RigidPendulum::new(RigidPendulumParameters::default()).unwrap();
@@ -85,8 +86,8 @@ fn a_rigid_pendulum_keeps_its_energy_and_its_length() {
     within("gap at the end", gap(long.last("x"), long.last("y")), 1e-12);
 }
 
-/// Radau IIA of orders 13 and 17 in quad precision, github RehabEngGroup/MBSbenchmarksInOpenSim (c76fa61), A05. The dampers
-/// make it stiff; a debug build ends at 1 s.
+/// Radau IIA of orders 13 and 17 in quad precision, github RehabEngGroup/MBSbenchmarksInOpenSim (c76fa61), A05. The
+/// dampers make it stiff; a debug build ends at 1 s.
 #[test]
 fn the_flyball_governor_sinks_as_published() {
     let seconds = if cfg!(debug_assertions) { 1 } else { 5 };
@@ -193,8 +194,8 @@ impl Crank {
     }
 }
 
-/// Through both dead centres several times; with a rod as long as the crank also through the pose in which the slider is over
-/// the crank's axis, where rod and crank could go on as one piece.
+/// Through both dead centres several times; with a rod as long as the crank also through the pose in which the slider
+/// is over the crank's axis, where rod and crank could go on as one piece.
 #[test]
 fn the_slider_crank_turns_through_its_dead_centres() {
     for (crank, rod) in [(0.1, 0.35), (0.12, 0.3), (0.2, 0.2)] {

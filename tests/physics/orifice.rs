@@ -29,8 +29,8 @@ fn run(model: &Orifice, integrator: Integrator, t_end: f64) -> SVector<f64, M> {
     outputs(model, t_end, &finish.x)
 }
 
-/// Under a pressure that rises evenly the tank comes to take in rise * capacity, at the drop p with p^4 = (p^2 + l^2) r^4, where r is
-/// the root of the drop that the flow asks for.
+/// Under a pressure that rises evenly the tank comes to take in rise * capacity, at the drop p with p^4 = (p^2 + l^2)
+/// r^4, where r is the root of the drop that the flow asks for.
 #[test]
 fn it_starts_at_rest_and_comes_to_the_flow_that_the_tank_takes() {
     let p = Parameters::default();

@@ -5,7 +5,8 @@ use bond_graph_tests::support::record::{Record, instants, record};
 
 use super::truth::within;
 
-/// Late enough for most of the vibration of the start to be gone; what is left of it is part of what beyond 1/k remains.
+/// Late enough for most of the vibration of the start to be gone; what is left of it is part of what beyond 1/k
+/// remains.
 fn run(parameters: &Parameters) -> Record {
     let mut times = vec![0.0];
     times.extend(instants(0.4, 40).iter().map(|t| 0.2 + t));

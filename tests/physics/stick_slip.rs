@@ -9,8 +9,8 @@ use bond_graph_tests::models::stick_slip::{StickSlip, StickSlipParameters as Par
 
 use super::truth::within;
 
-/// When it lets go first, how long it slips, how long it sticks: until the spring pulls with the static friction, then half an
-/// oscillation about the place of the kinetic one.
+/// When it lets go first, how long it slips, how long it sticks: until the spring pulls with the static friction, then
+/// half an oscillation about the place of the kinetic one.
 fn course(p: &Parameters) -> [f64; 3] {
     let frequency = (p.stiffness / p.mass).sqrt();
     let excess = (p.still - p.kinetic) / p.stiffness;

@@ -10,8 +10,8 @@ use super::twin::{Deviations, Table, compared, instants, run, run_unswitched, va
 const STEP: f64 = 1e-4;
 
 /// Positions, angles, energies to 1e-12. Rounding of poses makes the joints of 1e8 N/m vibrate at 1e4 1/s: speeds and
-/// momenta are held to 2e-10, forces to 5e-6 N, a stretch of 5e-14 m. The literal model departs as far from itself when a
-/// parameter changes in its last digit.
+/// momenta are held to 2e-10, forces to 5e-6 N, a stretch of 5e-14 m. The literal model departs as far from itself when
+/// a parameter changes in its last digit.
 fn small(worst: &Deviations) {
     assert!(worst.motion.0 < 1e-12 && worst.rates.0 < 2e-10 && worst.forces.0 < 5e-6, "{worst:?}");
 }

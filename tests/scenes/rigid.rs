@@ -151,8 +151,8 @@ fn a_top_about_a_rigid_point_precesses_regularly() {
     }
 }
 
-/// A state at an event is projected until that moves it no more: a projection that left a guard on either side of its zero made the
-/// branches change without end.
+/// A state at an event is projected until that moves it no more: a projection that left a guard on either side of its
+/// zero made the branches change without end.
 #[test]
 fn loose_tolerances_find_the_branches_of_the_rigid_hacksaw() {
     const EVENTS: u64 = 36;

@@ -133,8 +133,8 @@ pub struct Deviations {
     pub forces: (f64, &'static str),
 }
 
-/// Compares each of the scene's columns with the full one's, by `of` where the full model has it under another name, and
-/// prints the largest deviations.
+/// Compares each of the scene's columns with the full one's, by `of` where the full model has it under another name,
+/// and prints the largest deviations.
 pub fn compared(what: &str, full: &Table, scene: &Table, of: impl Fn(&str) -> Option<Vec<f64>>) -> Deviations {
     let mut worst = Deviations { motion: (0.0, ""), rates: (0.0, ""), forces: (0.0, "") };
     for (name, unit) in scene.names.iter().zip(&scene.units) {

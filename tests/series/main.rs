@@ -1,7 +1,7 @@
 //! Generated Taylor series are those of the generated rates: the derivative of the polynomial is the rate along it.
 //!
-//! Held for every example and every scene of the hacksaw at random states, every switch in either branch, over a time so short
-//! that what the polynomial leaves out is below rounding, and so long that its later terms are not.
+//! Held for every example and every scene of the hacksaw at random states, every switch in either branch, over a time
+//! so short that what the polynomial leaves out is below rounding, and so long that its later terms are not.
 
 use bg_model::capability::Series;
 use bg_model::input::Input;
@@ -88,7 +88,8 @@ where
     agrees_at(model, &points, 1e-6);
 }
 
-/// Holds the polynomials at these times, states and branches. Rates are compared as if each had at least the part `floor` of the largest.
+/// Holds the polynomials at these times, states and branches. Rates are compared as if each had at least the part
+/// `floor` of the largest.
 fn agrees_at<Mo, const N: usize, const G: usize, const M: usize>(
     model: &Mo,
     points: &[(f64, SVector<f64, N>, [bool; G])],

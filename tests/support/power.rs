@@ -48,8 +48,8 @@ fn is_of_one_rotation(one: &StateInfo, other: &StateInfo) -> bool {
     one.element == other.element && [one, other].iter().all(|state| matches!(state.kind, StateKind::Orientation(..)))
 }
 
-/// A state drawn at random: storages and positions anywhere near their start, orientations any rotation; about z, where a scene
-/// integrates less than the whole matrix.
+/// A state drawn at random: storages and positions anywhere near their start, orientations any rotation; about z, where
+/// a scene integrates less than the whole matrix.
 pub fn state<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, draw: &mut Draw) -> SVector<f64, N>
 where
     Mo: Model<f64, N, G, M>,
@@ -72,7 +72,8 @@ where
 /// |d(stored)/dt - supplied + dissipated| at time `t` and state `x`, divided by the sum of the magnitudes of all powers
 /// into single states: what rounding leaves of a balance that holds.
 ///
-/// The rate of the energy is a sum of exact derivatives: one pass with dual numbers for each state, and one for the time.
+/// The rate of the energy is a sum of exact derivatives: one pass with dual numbers for each state, and one for the
+/// time.
 pub fn imbalance<A, B, const N: usize, const G: usize, const M: usize>(
     model: &A,
     twin: &B,

@@ -134,7 +134,8 @@ where
     Ok(Record { times, events, statistics: finish.statistics, recording })
 }
 
-/// Times, states and branches of switches at 20 even instants of a run by DOP853 from the start, the last one before `end`, s.
+/// Times, states and branches of switches at 20 even instants of a run by DOP853 from the start, the last one before
+/// `end`, s.
 ///
 /// # Panics
 /// The start does not close, or the run fails.

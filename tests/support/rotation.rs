@@ -1,7 +1,7 @@
 //! Rotation matrices.
 
-/// The rotation matrix of a unit quaternion, real part first, row by row; of another one that of its direction times the
-/// square of its length.
+/// The rotation matrix of a unit quaternion, real part first, row by row; of another one that of its direction times
+/// the square of its length.
 #[must_use]
 pub fn matrix([a, b, c, d]: [f64; 4]) -> [f64; 9] {
     [

@@ -60,8 +60,8 @@ fn a_slider_that_sticks_stops_with_an_error_where_it_sticks() {
 
 #[test]
 fn a_slow_slide_is_no_hang() {
-    // x falls by 0.999 within 1 s, then slowly to zero, where it slides: the rounding errors of its guard are large beside
-    // what it does there in a millionth of a millionth of the run.
+    // x falls by 0.999 within 1 s, then slowly to zero, where it slides: the rounding errors of its guard are large
+    // beside what it does there in a millionth of a millionth of the run.
     for slope in [1.0, 1e-4, 1e-8] {
         let rate = move |_: f64, _: &[f64; 1], negative: &[bool; 2]| match negative {
             [_, false] => [-0.999],

@@ -25,8 +25,9 @@ const VALLEYS: [(f64, Guard); 8] = [
     (-1e-9, |_, x| valley(x[0], -1e-9)),
     (-1e-3, |_, x| valley(x[0], -1e-3)),
 ];
-/// A dip that is shallower than this part of the guard's largest value, 0.5, may be taken for a touch: a state that is wrong
-/// by as much has a dip or has none. What the branch would have done is then missing, here half the width of the dip.
+/// A dip that is shallower than this part of the guard's largest value, 0.5, may be taken for a touch: a state that is
+/// wrong by as much has a dip or has none. What the branch would have done is then missing, here half the width of the
+/// dip.
 const SHALLOW: f64 = 1e-10;
 
 #[test]

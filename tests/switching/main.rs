@@ -1,8 +1,8 @@
 //! Switching: what every integrator makes of events whose times are known.
 //!
 //! The problems are in `cases`. Five things are held: event times follow the tolerance, or the order of a fixed-step
-//! method, down to rounding; several events in one step are all found and in order; a graze leaves no wrong branch; events
-//! at the start, at the end and at samples are no special case; events without end give an error and no hang.
+//! method, down to rounding; several events in one step are all found and in order; a graze leaves no wrong branch;
+//! events at the start, at the end and at samples are no special case; events without end give an error and no hang.
 
 mod accumulation;
 mod ends;

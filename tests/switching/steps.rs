@@ -65,8 +65,8 @@ fn one_guard_is_met_as_often_as_it_crosses() {
     });
 }
 
-/// A known limit: a guard that waves faster than the steps, which nothing in the rates makes shorter, is not seen. The largest
-/// step must then be below a quarter of its period.
+/// A known limit: a guard that waves faster than the steps, which nothing in the rates makes shorter, is not seen. The
+/// largest step must then be below a quarter of its period.
 #[test]
 fn a_wave_that_no_state_shows_needs_a_largest_step() {
     let rate = |negative: &[bool; 1]| if negative[0] { -1.0 } else { 1.0 };

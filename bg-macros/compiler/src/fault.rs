@@ -1,7 +1,7 @@
 //! What a user can do wrong, as data.
 //!
-//! Every stage has an enum of its faults that implements [`Explain`]; a [`Fault`] is one of them at a place in the source.
-//! A stage collects its faults and raises them together at its end.
+//! Every stage has an enum of its faults that implements [`Explain`]; a [`Fault`] is one of them at a place in the
+//! source. A stage collects its faults and raises them together at its end.
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;

@@ -10,8 +10,8 @@
 //! | [`program`] | -> [`program::Programs`] | order left open: flat single assignment |
 //! | [`emit`] | [`pipeline::Compiled`] -> tokens | |
 //!
-//! Under them are [`expr`], the expressions of package `bg-expressions`, which know nothing of bond graphs, and [`fault`].
-//! [`stages::stages`] gives every stage's result as text.
+//! Under them are [`expr`], the expressions of package `bg-expressions`, which know nothing of bond graphs, and
+//! [`fault`]. [`stages::stages`] gives every stage's result as text.
 
 pub mod emit;
 pub mod fault;
@@ -29,10 +29,11 @@ use proc_macro2::TokenStream;
 use crate::fault::compile_errors;
 use crate::source::{part, syntax};
 
-/// Compiles one macro call. Faults come out as compile errors at their tokens, together with stubs of the promised items.
+/// Compiles one macro call. Faults come out as compile errors at their tokens, together with stubs of the promised
+/// items.
 ///
-/// Where the call uses a part of another call that has not been asked yet, the result is the question: a call of that part's
-/// macro, which calls `bond_graph!` again, with the part in front of the tokens.
+/// Where the call uses a part of another call that has not been asked yet, the result is the question: a call of that
+/// part's macro, which calls `bond_graph!` again, with the part in front of the tokens.
 #[must_use]
 pub fn compile(tokens: TokenStream) -> TokenStream {
     let (source, faults) = syntax::parse_leniently(tokens.clone());

@@ -1,7 +1,7 @@
 //! The stages in their order, each named once.
 //!
-//! In: the tree of a macro call. Out: a [`Compiled`] for every model: the literal graph and each of its scenes. Code is made of
-//! it by [`crate::emit`], text by [`crate::stages`]; both only read it, so what is printed is what is emitted.
+//! In: the tree of a macro call. Out: a [`Compiled`] for every model: the literal graph and each of its scenes. Code is
+//! made of it by [`crate::emit`], text by [`crate::stages`]; both only read it, so what is printed is what is emitted.
 //!
 //! Every stage raises all its faults at once; a later stage sees only what an earlier one accepted.
 
@@ -70,8 +70,8 @@ pub struct Compiled {
     pub programs: Programs,
 }
 
-/// All models of a macro call. With `scenes only;` the literal graph is none: its stages end with the state equations. A
-/// fault of a literal graph is not repeated for its scenes, one of a part not for its uses.
+/// All models of a macro call. With `scenes only;` the literal graph is none: its stages end with the state equations.
+/// A fault of a literal graph is not repeated for its scenes, one of a part not for its uses.
 ///
 /// # Errors
 /// The faults of all parts and graphs.
@@ -110,8 +110,8 @@ fn of_graphs(flattened: &Flattened) -> Staged<Vec<Compiled>> {
     if faults.is_empty() { Ok(models) } else { Err(faults) }
 }
 
-/// The faults of names, shapes and units of a part that no graph uses. What its user bonds to it is not there, so that faults of
-/// bonds count for nothing.
+/// The faults of names, shapes and units of a part that no graph uses. What its user bonds to it is not there, so that
+/// faults of bonds count for nothing.
 fn of_part(part: &Graph) -> Faults {
     let resolved = mechanism::expand(part).and_then(|expanded| graph::resolve(&expanded));
     let mut faults = resolved.err().unwrap_or_default();

@@ -21,7 +21,8 @@ use crate::system::jacobian::Jacobian;
 use crate::system::second_order::SecondOrder;
 use crate::system::sizes::Sizes;
 
-/// The names of the stages, in their order. `reduction` and `reduced` are of scenes only, `pairs` is there where it pays.
+/// The names of the stages, in their order. `reduction` and `reduced` are of scenes only, `pairs` is there where it
+/// pays.
 pub const NAMES: [&str; 15] = [
     "source",
     "expanded",

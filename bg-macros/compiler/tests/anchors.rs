@@ -1,5 +1,5 @@
-//! What editors find: every name of a description, where it is declared and where it is used, stands at its place in the
-//! generated code, and no word of the language does.
+//! What editors find: every name of a description, where it is declared and where it is used, stands at its place in
+//! the generated code, and no word of the language does.
 //!
 //! Names of the texts begin with `n_`. `tests/editor` asks rust-analyzer what it makes of this.
 

@@ -1,10 +1,11 @@
 //! Curves with no more points than the eye can tell apart at the drawn size.
 //!
-//! In: points of a curve. Out: fewer points that draw the same. A curve over time keeps, in every column of the drawing,
-//! its first, lowest, highest and last point (the M4 aggregation of Jugel et al., VLDB 2014); a path keeps points that are
-//! a visible distance apart.
+//! In: points of a curve. Out: fewer points that draw the same. A curve over time keeps, in every column of the
+//! drawing, its first, lowest, highest and last point (the M4 aggregation of Jugel et al., VLDB 2014); a path keeps
+//! points that are a visible distance apart.
 
-/// The points of a curve over time, at most four for each of `columns` equal intervals of time. `points` ascend in time.
+/// The points of a curve over time, at most four for each of `columns` equal intervals of time. `points` ascend in
+/// time.
 pub fn over_time(points: &[(f64, f64)], columns: usize) -> Vec<(f64, f64)> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return Vec::new() };
     if points.len() <= 4 * columns {
@@ -29,8 +30,8 @@ fn extremes(chunk: &[(f64, f64)]) -> Vec<(f64, f64)> {
     kept.into_iter().map(|index| chunk[index]).collect()
 }
 
-/// The points of a path that are at least `distance` apart along it, and its last one; every n-th of them where they are
-/// more than `most`.
+/// The points of a path that are at least `distance` apart along it, and its last one; every n-th of them where they
+/// are more than `most`.
 pub fn along_path(points: &[(f64, f64)], distance: f64, most: usize) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::new();
     for &point in points {

@@ -1,4 +1,5 @@
-//! A bench in place of a machine: a motor on whose load a weight hangs, of which the observer does not know, and what sensors make of it.
+//! A bench in place of a machine: a motor on whose load a weight hangs, of which the observer does not know, and what
+//! sensors make of it.
 
 use bg_model::fixed_step::{FixedStep, NotFinite};
 use bg_model::input::Input;
@@ -56,8 +57,8 @@ impl Bench {
         y.data.0[0]
     }
 
-    /// What is measured now, with the voltage until the next sample, to whose time the machine moves on: 12 V, back and forth,
-    /// with a pause of a quarter of a second in between.
+    /// What is measured now, with the voltage until the next sample, to whose time the machine moves on: 12 V, back and
+    /// forth, with a pause of a quarter of a second in between.
     ///
     /// # Errors
     /// A state that would not be a finite number.

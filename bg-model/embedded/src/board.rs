@@ -1,7 +1,7 @@
 //! A Cortex-M4F: its allocator, its clock, its stack, the desktop on which QEMU runs.
 //!
-//! Counted are instructions in QEMU with `-icount shift=0`, where each takes a nanosecond: SysTick counts 25 million ticks in a
-//! second, one for 40 instructions.
+//! Counted are instructions in QEMU with `-icount shift=0`, where each takes a nanosecond: SysTick counts 25 million
+//! ticks in a second, one for 40 instructions.
 
 #![expect(
     unsafe_code,

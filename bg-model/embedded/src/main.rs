@@ -1,5 +1,5 @@
-//! Runs the bench for two seconds and prints the states' bits: the same text on a controller and on a desktop. On a controller then what
-//! a sample takes at most.
+//! Runs the bench for two seconds and prints the states' bits: the same text on a controller and on a desktop. On a
+//! controller then what a sample takes at most.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

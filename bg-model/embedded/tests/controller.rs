@@ -11,7 +11,8 @@ const QEMU: &str = "qemu-system-arm";
 
 /// Where the controller's memory begins; flash is below.
 const MEMORY: u64 = 0x2000_0000;
-/// The most that the program may take: bytes of flash, of statics, of stack; instructions of a sample in `f64` and `f32`.
+/// The most that the program may take: bytes of flash, of statics, of stack; instructions of a sample in `f64` and
+/// `f32`.
 const FLASH: u64 = 40 * 1024;
 const STATICS: u64 = 2 * 1024;
 const STACK: u64 = 1024;
@@ -52,8 +53,8 @@ fn numbers(line: &str) -> Vec<u64> {
     line.split(' ').filter_map(|word| word.parse().ok()).collect()
 }
 
-/// Asserts that a program prints on the controller what it prints on this desktop, so many lines; gives what it says besides, or none
-/// where it cannot be run.
+/// Asserts that a program prints on the controller what it prints on this desktop, so many lines; gives what it says
+/// besides, or none where it cannot be run.
 fn compared(name: &str, desktop: &str, lines: usize) -> Option<Vec<String>> {
     let text = printed(&program(name)?)?;
     let (costs, bits): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| line.starts_with('#'));

@@ -5,8 +5,8 @@ use bg_model::mechanism::Mechanism;
 use bg_model::scalar::Scalar;
 use motor_observer::{Bench, Drive, DriveParameters, Estimator, Fault};
 
-/// What two seconds tell: the root mean square of what the estimated speed of the load differs from the machine's, rad/s, and the
-/// torque that the observer makes of it at the end, N*m.
+/// What two seconds tell: the root mean square of what the estimated speed of the load differs from the machine's,
+/// rad/s, and the torque that the observer makes of it at the end, N*m.
 fn told<S: Scalar<Switch = bool>>(parameters: DriveParameters) -> Result<[f64; 2], Fault> {
     let (mut bench, mut estimator) = (Bench::new()?, Estimator::<S>::new(parameters)?);
     let (mut sum, mut torque) = (0.0, 0.0);

@@ -19,8 +19,8 @@ impl Coefficients<f64> {
 }
 
 impl<S: Scalar> Coefficients<S> {
-    /// A stage's instant is the sum of its weights of rates. Its first weight of second derivatives makes their sum half
-    /// the instant's square.
+    /// A stage's instant is the sum of its weights of rates. Its first weight of second derivatives makes their sum
+    /// half the instant's square.
     pub fn from_unknowns(unknowns: &[S]) -> Self {
         let mut left = unknowns.iter().copied();
         let first: Vec<Vec<S>> = (0..=STAGES).map(|row| left.by_ref().take(row).collect()).collect();

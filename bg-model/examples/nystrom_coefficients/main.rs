@@ -2,11 +2,12 @@
 //!
 //! `cargo run --release -p bg-model --example nystrom_coefficients`
 //!
-//! In: four digits of each coefficient, `start.rs`. Out: the coefficients as they stand in `nystrom/tableau.rs`. It exits with 1
-//! where one of them differs from the tableau.
-//! Method: the least sum of squares of the order conditions' violations, of the errors on model oscillators (`oscillators.rs`) and
-//! of the distances from the start (`search.rs`). The weights at the end of the step and of the error estimate then move as
-//! little as possible to meet their linear conditions (`nearest.rs`). The dense output follows from its conditions alone.
+//! In: four digits of each coefficient, `start.rs`. Out: the coefficients as they stand in `nystrom/tableau.rs`. It
+//! exits with 1 where one of them differs from the tableau.
+//! Method: the least sum of squares of the order conditions' violations, of the errors on model oscillators
+//! (`oscillators.rs`) and of the distances from the start (`search.rs`). The weights at the end of the step and of the
+//! error estimate then move as little as possible to meet their linear conditions (`nearest.rs`). The dense output
+//! follows from its conditions alone.
 
 mod coefficients;
 mod nearest;
@@ -74,7 +75,8 @@ fn of_positions(order: usize) -> f64 {
     1.0 / (order * (order + 1)) as f64
 }
 
-/// Singular values below this are of conditions that depend on the others, but for what the search leaves of their violation.
+/// Singular values below this are of conditions that depend on the others, but for what the search leaves of their
+/// violation.
 const NEARLY_DEPENDENT: f64 = 1e-5;
 /// The weight of the dense output's conditions up to order 4, for a weight 1 of those of order 5.
 const DENSE_WEIGHT: f64 = 1e3;
@@ -84,8 +86,8 @@ fn blind(start: &[f64], conditions: &[Condition], instants: &[DoubleDouble], ord
     nearest(&nearest(start, conditions, NEARLY_DEPENDENT), &quadrature(instants, order, |_| 0.0), 0.0)
 }
 
-/// A row of the dense output: the conditions up to order 4 hold, those of order 5 in the least squares. A tree of order 4 or 5
-/// gives these parts of its exact value, others give nothing. The last weight is that of the rate at the end.
+/// A row of the dense output: the conditions up to order 4 hold, those of order 5 in the least squares. A tree of order
+/// 4 or 5 gives these parts of its exact value, others give nothing. The last weight is that of the rate at the end.
 fn dense(trees: &[Tree], at_stages: &[Vec<DoubleDouble>], instants: &[DoubleDouble], parts: [f64; 2]) -> Vec<f64> {
     let condition = |(tree, weights): (&Tree, &Vec<DoubleDouble>)| {
         let scale = if tree.order == 5 { 1.0 } else { DENSE_WEIGHT };

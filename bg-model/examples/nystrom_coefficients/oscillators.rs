@@ -1,7 +1,7 @@
 //! The errors of one step on linear oscillators that follow a slow motion.
 //!
-//! In: a method's coefficients. Out: the errors of positions and momenta after a step of length 1 from the exact state. Forces move
-//! each oscillator along t^3 / 6: of a slow motion's powers of time the lowest that a stage can miss.
+//! In: a method's coefficients. Out: the errors of positions and momenta after a step of length 1 from the exact state.
+//! Forces move each oscillator along t^3 / 6: of a slow motion's powers of time the lowest that a stage can miss.
 
 use bg_model::scalar::Scalar;
 
@@ -9,7 +9,8 @@ use crate::STAGES;
 use crate::coefficients::Coefficients;
 use crate::trees::dot;
 
-/// A unit mass on a spring and a damper, with a state that relaxes: q'' = -z^2 (1 + s t) (q - Q) - 2 d z (1 + w t) (q' - Q')
+/// A unit mass on a spring and a damper, with a state that relaxes: q'' = -z^2 (1 + s t) (q - Q) - 2 d z (1 + w t) (q'
+/// - Q')
 /// - c z^2 (r - Q) + Q'', r' = -2 (r - Q) + 2 (q - Q) + Q', with the motion Q.
 #[derive(Clone, Copy)]
 struct Oscillator {

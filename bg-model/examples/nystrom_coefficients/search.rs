@@ -1,9 +1,10 @@
-//! The unknowns with the least sum of squares of the order conditions' violations, of the errors on model oscillators, and of the
-//! distances from the start.
+//! The unknowns with the least sum of squares of the order conditions' violations, of the errors on model oscillators,
+//! and of the distances from the start.
 //!
-//! Method: Levenberg-Marquardt. The violations, their derivatives and the gradient are calculated in double-double arithmetic
-//! with dual numbers, so that the minimum is found to the last digits; a triangular factor in double precision gives the steps.
-//! Source: J. J. More, The Levenberg-Marquardt algorithm, Lecture Notes in Mathematics 630 (1978), 105-116.
+//! Method: Levenberg-Marquardt. The violations, their derivatives and the gradient are calculated in double-double
+//! arithmetic with dual numbers, so that the minimum is found to the last digits; a triangular factor in double
+//! precision gives the steps. Source: J. J. More, The Levenberg-Marquardt algorithm, Lecture Notes in Mathematics 630
+//! (1978), 105-116.
 
 use bg_model::nalgebra::{DMatrix, DVector};
 use bg_model::scalar::{DoubleDouble, Dual, Scalar};
@@ -104,8 +105,8 @@ pub fn largest_violation(trees: &[Tree], found: &Coefficients<DoubleDouble>, ask
     asked.map(|(_, violation)| violation.abs().to_f64()).fold(0.0, f64::max)
 }
 
-/// The violations of the trees up to order 5, and of those of order 6 in which no force acts by the momenta, in parts of their
-/// values: for the momenta and, whose order is one more, for the positions.
+/// The violations of the trees up to order 5, and of those of order 6 in which no force acts by the momenta, in parts
+/// of their values: for the momenta and, whose order is one more, for the positions.
 fn violations<'a, S: Scalar>(trees: &'a [Tree], found: &Coefficients<S>) -> Vec<(&'a Tree, S)> {
     let Coefficients { instants, first, second } = found;
     let of = |row: &[S], weight: &[S], exact: f64| dot(row, weight) / S::from_f64(exact) - S::from_f64(1.0);

@@ -1,10 +1,10 @@
 //! What is given: four digits of each coefficient where the search starts, and of the error estimates.
 //!
-//! An earlier search left them, by nonlinear least squares over errors of one step on linear oscillators. Its program is lost. The
-//! conditions and the errors on the model oscillators decide on all further digits.
+//! An earlier search left them, by nonlinear least squares over errors of one step on linear oscillators. Its program
+//! is lost. The conditions and the errors on the model oscillators decide on all further digits.
 
-/// For states of second order, stage by stage from the third one on, then the end of the step. A stage's first weight follows
-/// from its instant and the others.
+/// For states of second order, stage by stage from the third one on, then the end of the step. A stage's first weight
+/// follows from its instant and the others.
 pub const SECOND: [&[f64]; 8] = [
     &[0.02534],
     &[0.01047, 0.01957],
@@ -32,7 +32,7 @@ pub const FIRST: [&[f64]; 9] = [
 /// The difference to the embedded method, for states of second order.
 pub const SECOND_ERROR: [f64; 9] = [0.4143, -0.2275, -0.5325, 0.4518, -0.1033, -0.02942, 0.02607, 0.001054, -0.0004224];
 
-/// The difference to the embedded method, for the others. The conditions up to order 4 leave two directions. A scan of the angle
-/// between them gave this one, in which the estimate of an oscillation stays far above its error and every tree of order 5 is
-/// seen, and its size: 20 times the error of an undamped oscillation at 6 in frequency times step.
+/// The difference to the embedded method, for the others. The conditions up to order 4 leave two directions. A scan of
+/// the angle between them gave this one, in which the estimate of an oscillation stays far above its error and every
+/// tree of order 5 is seen, and its size: 20 times the error of an undamped oscillation at 6 in frequency times step.
 pub const FIRST_ERROR: [f64; 9] = [-9.799, 8.637, 5.626, -6.83, 3.428, -0.154, -0.7936, -0.5848, 0.47];

@@ -1,7 +1,8 @@
 //! A unit as a file: the archive of a library and its description.
 //!
 //! In: a model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml`, the
-//! library in the folder of its platform, and what tells variables that belong together, if any do. Source: FMI 3.0.1, section 2.5, and 2.0.4, section 2.3.
+//! library in the folder of its platform, and what tells variables that belong together, if any do. Source: FMI 3.0.1,
+//! section 2.5, and 2.0.4, section 2.3.
 
 use std::io::{self, Cursor, Error, Write};
 
@@ -13,8 +14,8 @@ use crate::exported::Described;
 /// How hard the compressor tries, of 10.
 const LEVEL: u8 = 6;
 
-/// The folder of a unit that has the libraries of this platform: `x86_64-linux` in FMI 3.0 (3.0.1, section 2.5.1.4.1), `linux64` in
-/// FMI 2.0 (2.0.4, section 2.3), which does not tell processors apart.
+/// The folder of a unit that has the libraries of this platform: `x86_64-linux` in FMI 3.0 (3.0.1, section 2.5.1.4.1),
+/// `linux64` in FMI 2.0 (2.0.4, section 2.3), which does not tell processors apart.
 #[must_use]
 pub fn platform(version: Version) -> String {
     let system = match std::env::consts::OS {

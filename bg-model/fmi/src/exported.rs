@@ -33,7 +33,8 @@ pub trait Described {
     /// For each state the states on which its derivative may depend; none where that is not known.
     fn dependencies(&self) -> Option<Vec<Vec<usize>>>;
 
-    /// How large each state is to be taken for, in its unit, above zero; none where the default start cannot be assembled.
+    /// How large each state is to be taken for, in its unit, above zero; none where the default start cannot be
+    /// assembled.
     fn nominals(&self) -> Option<Vec<f64>>;
 }
 

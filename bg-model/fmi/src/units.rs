@@ -1,7 +1,8 @@
 //! Units as FMI has them: powers of the SI base units.
 //!
-//! In: a unit as a model's description writes it. Out: its exponents. Only coherent SI units exist there, so none has a factor.
-//! Source: the SI Brochure, 9th edition, tables 2 and 4; of FMI 3.0 section 2.4.3, which counts rad among the bases.
+//! In: a unit as a model's description writes it. Out: its exponents. Only coherent SI units exist there, so none has a
+//! factor. Source: the SI Brochure, 9th edition, tables 2 and 4; of FMI 3.0 section 2.4.3, which counts rad among the
+//! bases.
 
 /// The symbols of the bases, in the order of the exponents: the names of the attributes of `BaseUnit`.
 pub(crate) const BASES: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];

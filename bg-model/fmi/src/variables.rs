@@ -1,7 +1,7 @@
 //! The variables of a unit: names, value references, what each is.
 //!
-//! In: a model's description. Out: its variables in the order of their value references, which count from 0 without a gap: time,
-//! parameters, inputs, outputs, states, their derivatives, event indicators.
+//! In: a model's description. Out: its variables in the order of their value references, which count from 0 without a
+//! gap: time, parameters, inputs, outputs, states, their derivatives, event indicators.
 
 use std::collections::BTreeSet;
 
@@ -97,8 +97,8 @@ impl Counts {
     }
 }
 
-/// The names of all variables, in the order of their value references. Inputs and outputs keep theirs, then states; a parameter
-/// or state of a name that is taken gets its kind after it, as `angle_parameter`.
+/// The names of all variables, in the order of their value references. Inputs and outputs keep theirs, then states; a
+/// parameter or state of a name that is taken gets its kind after it, as `angle_parameter`.
 pub(crate) fn names(description: &Description) -> Vec<String> {
     let counts = Counts::of(description);
     let mut taken = BTreeSet::from(["time".to_owned()]);

@@ -101,8 +101,8 @@ pub fn in_order_of_the_tree(robot: &mut Robot, ground: usize) -> Result<(), Stri
     Ok(())
 }
 
-/// Makes the child of each fixed joint a piece of its parent; each parent before its children, so that a chain ends in one
-/// link.
+/// Makes the child of each fixed joint a piece of its parent; each parent before its children, so that a chain ends in
+/// one link.
 fn one_bodies(robot: &mut Robot, keep_fixed: bool) {
     // Where each link is now: in which other one, and its frame in that.
     let mut homes: Vec<(usize, Pose)> = (0..robot.links.len()).map(|link| (link, Pose::identity())).collect();

@@ -1,4 +1,5 @@
-//! What a WebAssembly module of a `bg-workbench` program exports: a question goes in as text, its answer comes out as text.
+//! What a WebAssembly module of a `bg-workbench` program exports: a question goes in as text, its answer comes out as
+//! text.
 //!
 //! ```text
 //! main(0, 0)                         once: the program registers what answers
@@ -7,9 +8,9 @@
 //! length = bg_live_length()          of it, in bytes
 //! ```
 //!
-//! A program that panics traps; the module is then used up, and another instance of it must be made. Nothing here is unsafe but
-//! that the exported names could clash with others: the host reads and writes the memory, this code does not read through
-//! pointers.
+//! A program that panics traps; the module is then used up, and another instance of it must be made. Nothing here is
+//! unsafe but that the exported names could clash with others: the host reads and writes the memory, this code does not
+//! read through pointers.
 
 use std::cell::RefCell;
 

@@ -191,8 +191,8 @@ impl Model {
     /// Run the model; parameters are keyword arguments, inputs numbers or names of CSV files.
     ///
     /// Gives a table with the time `t` in s every `step` s until `t_end` s, and all outputs of the scene. `set` takes
-    /// parameters whose names are no Python names. Raises ValueError where something cannot be, RunFailed where the run stops
-    /// before its end.
+    /// parameters whose names are no Python names. Raises ValueError where something cannot be, RunFailed where the run
+    /// stops before its end.
     #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, rtol=None, atol=None, fixed_step=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn run(
@@ -227,7 +227,8 @@ impl Model {
 
     /// Linearise where the run is at `at` s, or at the equilibrium near the start.
     ///
-    /// Gives a dict: the matrices `a`, `b`, `c`, `d`, names with units of `states`, `inputs`, `outputs`, the `modes` and the `point`.
+    /// Gives a dict: the matrices `a`, `b`, `c`, `d`, names with units of `states`, `inputs`, `outputs`, the `modes`
+    /// and the `point`.
     #[pyo3(signature = (scene=None, *, at=None, inputs=None, set=None, **parameters))]
     fn linearize<'py>(
         &self,
@@ -249,8 +250,9 @@ impl Model {
 
     /// Run the model and differentiate: how outputs change with parameters, exactly and through events.
     ///
-    /// Gives a table with the time `t` in s and a column `d(output)/d(parameter)` for each of the `outputs` and each parameter in
-    /// `by`; without them for all outputs, by all parameters of the scene. Raises ValueError where something cannot be.
+    /// Gives a table with the time `t` in s and a column `d(output)/d(parameter)` for each of the `outputs` and each
+    /// parameter in `by`; without them for all outputs, by all parameters of the scene. Raises ValueError where
+    /// something cannot be.
     #[pyo3(signature = (scene=None, *, by=None, outputs=None, t_end=None, step=None, method=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn sensitivity(
@@ -279,7 +281,8 @@ impl Model {
         Table::new(py, std::iter::once(t).chain(courses), info)
     }
 
-    /// The parameters by name, each a dict of default, unit, lower and upper end of its range, doc; those of a scene, or all.
+    /// The parameters by name, each a dict of default, unit, lower and upper end of its range, doc; those of a scene,
+    /// or all.
     #[pyo3(signature = (scene=None))]
     fn parameters<'py>(&self, py: Python<'py>, scene: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -312,8 +315,9 @@ impl Model {
 
     /// Make the runs of a plan into the folder `out`: a path of a TOML file, or the same as a dict.
     ///
-    /// What is there is not made again; `shard=(i, n)` makes the i-th of n parts, counted from 1. Gives a dict of counts:
-    /// `runs` of the whole sweep, `made` and `failed` ones now, `files` made now and `found` before. `read_sweep` gives the rows.
+    /// What is there is not made again; `shard=(i, n)` makes the i-th of n parts, counted from 1. Gives a dict of
+    /// counts: `runs` of the whole sweep, `made` and `failed` ones now, `files` made now and `found` before.
+    /// `read_sweep` gives the rows.
     #[pyo3(signature = (plan, out, *, shard=(1, 1), threads=0))]
     fn sweep<'py>(
         &self,

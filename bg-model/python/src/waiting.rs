@@ -1,6 +1,7 @@
 //! How Ctrl-C reaches what runs without Python.
 //!
-//! In: something to do that asks from time to time whether to go on. Out: what it gives, or Python's `KeyboardInterrupt`.
+//! In: something to do that asks from time to time whether to go on. Out: what it gives, or Python's
+//! `KeyboardInterrupt`.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;

@@ -15,8 +15,8 @@ use crate::model::holding::{Redundancy, Slipping};
 use crate::model::nearest::nearest;
 use crate::model::requirement::Impossible;
 
-/// The largest gap of a closed joint, as a part of the largest sum of parts of which a gap in its unit (m or rad) consists, and of 1 m or
-/// rad at least: of the size of the machine.
+/// The largest gap of a closed joint, as a part of the largest sum of parts of which a gap in its unit (m or rad)
+/// consists, and of 1 m or rad at least: of the size of the machine.
 pub const CLOSED: f64 = 1e-10;
 
 /// One residual row: a component of the gap of a joint.
@@ -133,12 +133,13 @@ fn also_open(others: &[OpenGap]) -> String {
 
 /// The coordinates nearest to `guess`, to first order, at which all gaps are closed to rounding.
 ///
-/// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates, `terms` the sum of the
-/// absolute values of its terms. Redundant gaps and coordinates without influence are allowed. With `U = 0` the gaps are only checked. Allocates.
+/// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates, `terms` the sum
+/// of the absolute values of its terms. Redundant gaps and coordinates without influence are allowed. With `U = 0` the
+/// gaps are only checked. Allocates.
 ///
 /// # Errors
-/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 of the machine's size, and of 1 m or rad at least), [`AssemblyError::NonFinite`] if a gap is
-/// not a number.
+/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 of the machine's size, and of 1 m or rad at least),
+/// [`AssemblyError::NonFinite`] if a gap is not a number.
 pub fn close<const U: usize>(
     guess: [f64; U],
     gaps: &'static [Gap],

@@ -1,8 +1,8 @@
 //! Capabilities: what a system knows of itself beyond its rate.
 //!
-//! In: nothing. Out: a trait for each capability, which [`System`](crate::system::System) hands over where it has it. What
-//! a system lacks is `None` of the type [`Absent`], which has no values: an absent capability cannot be called, and the
-//! compiler removes the code that would call it.
+//! In: nothing. Out: a trait for each capability, which [`System`](crate::system::System) hands over where it has it.
+//! What a system lacks is `None` of the type [`Absent`], which has no values: an absent capability cannot be called,
+//! and the compiler removes the code that would call it.
 
 use core::ops::Range;
 
@@ -20,8 +20,8 @@ pub trait Linearised<S: Scalar, const N: usize, const G: usize> {
         Sparsity::Full
     }
 
-    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`. With unknowns beside the states,
-    /// df/dt is that of the rates with what the unknowns change in it.
+    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`. With unknowns beside
+    /// the states, df/dt is that of the rates with what the unknowns change in it.
     fn jacobian(
         &self,
         t: S,
@@ -36,8 +36,8 @@ pub trait Linearised<S: Scalar, const N: usize, const G: usize> {
         self.sparsity()
     }
 
-    /// Writes the entries of df/dx that say what dampers do, in the order of [`Linearised::damping_sparsity`], into `entries`: at
-    /// least those among states that are not of second order. By default all of them.
+    /// Writes the entries of df/dx that say what dampers do, in the order of [`Linearised::damping_sparsity`], into
+    /// `entries`: at least those among states that are not of second order. By default all of them.
     fn damping(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]) {
         let mut slope = *x;
         self.jacobian(t, x, negative, entries, &mut slope);
@@ -55,16 +55,17 @@ pub trait Elimination<S: Scalar, const N: usize> {
     /// How many numbers the factors of I - c J are.
     fn factors(&self) -> usize;
 
-    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it did: not
-    /// where a pivot cancels to below [`SMALLEST_PIVOT`](crate::linear::SMALLEST_PIVOT) of the largest value its place has had.
+    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it
+    /// did: not where a pivot cancels to below [`SMALLEST_PIVOT`](crate::linear::SMALLEST_PIVOT) of the largest value
+    /// its place has had.
     fn eliminate<F: Field<S>>(&self, c: F, entries: &[S], factors: &mut [F]) -> bool;
 
     /// Replaces `b` by the solution y of (I - c J) y = b, with the `factors` of I - c J.
     fn substitute<F: Field<S>>(&self, factors: &[F], b: &mut [F; N]);
 }
 
-/// A system some of whose states are of second order: displacements and orientations, whose rates are smooth functions of
-/// states alone.
+/// A system some of whose states are of second order: displacements and orientations, whose rates are smooth functions
+/// of states alone.
 pub trait SecondOrder<S: Scalar, const N: usize, const G: usize> {
     /// The states of second order, side by side.
     fn states(&self) -> Range<usize>;
@@ -72,8 +73,8 @@ pub trait SecondOrder<S: Scalar, const N: usize, const G: usize> {
     /// Replaces the rates `dx` of these states at state `x` by their second derivatives with respect to time, per s^2.
     fn second_derivatives(&self, x: &SVector<S, N>, dx: &mut SVector<S, N>);
 
-    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second
-    /// derivatives: what the rate and then [`SecondOrder::second_derivatives`] give, to rounding.
+    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their
+    /// second derivatives: what the rate and then [`SecondOrder::second_derivatives`] give, to rounding.
     fn forces(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);
 
     /// The operations of a rate and of [`SecondOrder::forces`]; none by default. `auto` compares methods by them.
@@ -92,8 +93,8 @@ pub trait Series<S: Scalar, const N: usize, const G: usize> {
         None
     }
 
-    /// Writes the Taylor series of the states from time `t` (s) on: `series[0]` is the state there, `series[k]` becomes the
-    /// coefficient of the k-th power of (time - `t`) / `h`, which has the state's unit. `rows` has at least
+    /// Writes the Taylor series of the states from time `t` (s) on: `series[0]` is the state there, `series[k]` becomes
+    /// the coefficient of the k-th power of (time - `t`) / `h`, which has the state's unit. `rows` has at least
     /// [`Series::width`] numbers for each `k` but the last.
     fn expand(&self, t: S, h: S, negative: &[S::Switch; G], rows: &mut [S], series: &mut [SVector<S, N>]);
 }
@@ -121,8 +122,8 @@ pub trait Joints<S: Scalar, const N: usize, const G: usize> {
         &[]
     }
 
-    /// Writes the relative flows of these motions, and what the reactions of rigid joints change, into `entries`: in the order
-    /// and of the length of [`Held`].
+    /// Writes the relative flows of these motions, and what the reactions of rigid joints change, into `entries`: in
+    /// the order and of the length of [`Held`].
     fn hold(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]);
 
     /// Whether [`Joints::inlined_hold`] is inlined: not where it is too long.
@@ -130,8 +131,8 @@ pub trait Joints<S: Scalar, const N: usize, const G: usize> {
         false
     }
 
-    /// As [`Joints::hold`], inlined where that is short enough: where numbers are vectors of a machine that not every build is for, its operations
-    /// are calls elsewhere.
+    /// As [`Joints::hold`], inlined where that is short enough: where numbers are vectors of a machine that not every
+    /// build is for, its operations are calls elsewhere.
     #[inline(always)]
     fn inlined_hold(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]) {
         self.hold(t, x, negative, entries);
@@ -148,8 +149,8 @@ pub trait Impacts<S: Scalar, const N: usize, const G: usize> {
         &[]
     }
 
-    /// Writes what an impact at time `t` (s) and state `x` is calculated from into `entries`: in the order and of the length of
-    /// [`Stops`].
+    /// Writes what an impact at time `t` (s) and state `x` is calculated from into `entries`: in the order and of the
+    /// length of [`Stops`].
     fn impact(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], entries: &mut [S]);
 }
 
@@ -158,14 +159,15 @@ pub trait Storages<S: Scalar, const N: usize, const G: usize> {
     /// What each state is.
     fn states(&self) -> &'static [StateInfo];
 
-    /// The stored energy E at time `t` (s) and state `x`, J, as far as it is known; writes d2E/dx2 by each momentum and displacement,
-    /// in J per the state's unit squared, into `curvatures`, and 0 for other states.
+    /// The stored energy E at time `t` (s) and state `x`, J, as far as it is known; writes d2E/dx2 by each momentum and
+    /// displacement, in J per the state's unit squared, into `curvatures`, and 0 for other states.
     fn energy(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], curvatures: &mut SVector<S, N>) -> S;
 }
 
-/// A model that knows its reverse sweeps: how a weighted sum of what a function gives depends on all that the function reads, at the cost of
-/// a few evaluations of it. What depends on the parameters only is a table of constants, by which each sweep adds its derivatives to
-/// `by_constants`: in the weights' unit times the result's, per the constant's. Branches are given.
+/// A model that knows its reverse sweeps: how a weighted sum of what a function gives depends on all that the function
+/// reads, at the cost of a few evaluations of it. What depends on the parameters only is a table of constants, by which
+/// each sweep adds its derivatives to `by_constants`: in the weights' unit times the result's, per the constant's.
+/// Branches are given.
 pub trait Reversed<S: Scalar, const N: usize, const G: usize, const M: usize> {
     /// The table of constants.
     fn constants(&self) -> &[S];
@@ -181,8 +183,8 @@ pub trait Reversed<S: Scalar, const N: usize, const G: usize, const M: usize> {
         by_constants: &mut [S],
     );
 
-    /// The sweep of the projection of the state `x`: replaces the weights of the projected states by those of the states before. By
-    /// default nothing is projected.
+    /// The sweep of the projection of the state `x`: replaces the weights of the projected states by those of the
+    /// states before. By default nothing is projected.
     #[inline]
     fn reverse_project(
         &self,
@@ -194,8 +196,8 @@ pub trait Reversed<S: Scalar, const N: usize, const G: usize, const M: usize> {
     ) {
     }
 
-    /// The sweep of the outputs, as that of the rate. Gives whether there is one: by default, and where outputs read reactions that
-    /// joints share, there is none.
+    /// The sweep of the outputs, as that of the rate. Gives whether there is one: by default, and where outputs read
+    /// reactions that joints share, there is none.
     #[inline]
     fn reverse_outputs(
         &self,

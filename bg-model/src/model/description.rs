@@ -85,7 +85,8 @@ pub struct StateInfo {
     pub unit: &'static str,
     /// What it is.
     pub kind: StateKind,
-    /// The element that stores it, or the junction that it follows; empty for an integral and for an angle that counts turns.
+    /// The element that stores it, or the junction that it follows; empty for an integral and for an angle that counts
+    /// turns.
     pub element: &'static str,
 }
 
@@ -102,7 +103,8 @@ pub enum StateKind {
     Orientation(usize, usize),
     /// The angle of a body that turns about one axis, rad.
     Angle,
-    /// The displacement of a scalar 1-junction, or the angle of a joint or body, rad, with its turns: where a law or an output reads it.
+    /// The displacement of a scalar 1-junction, or the angle of a joint or body, rad, with its turns: where a law or an
+    /// output reads it.
     Way,
     /// The integral that an output asks for.
     Integral,
@@ -151,7 +153,8 @@ pub struct SwitchInfo {
 /// A mechanism word: what a group of elements and junctions stands for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartInfo {
-    /// What it is: `ground`, `body`, `contact`, `spring`, `drive`, or a joint's kind with its axes, such as `revolute z`.
+    /// What it is: `ground`, `body`, `contact`, `spring`, `drive`, or a joint's kind with its axes, such as `revolute
+    /// z`.
     pub word: &'static str,
     /// Its name.
     pub name: &'static str,

@@ -1,6 +1,7 @@
 //! What joints hold: the motions, how they are stored, and what is wrong with them.
 //!
-//! In: nothing. Out: the tables that generated code fills, and the sentences of joints that are torn apart or hold the same.
+//! In: nothing. Out: the tables that generated code fills, and the sentences of joints that are torn apart or hold the
+//! same.
 
 use alloc::format;
 use alloc::string::String;
@@ -22,11 +23,11 @@ pub struct Slip {
 
 /// What the joints of a system hold.
 ///
-/// [`Joints::hold`](crate::capability::Joints::hold) writes, one after the other: the flow of each rigid motion, the flow of
-/// each compliant one, the gap of each rigid motion (its integral as the poses have it, 0 where they do not), its mobility (how
-/// much one unit of its reaction changes the rate of its flow while no other joint holds anything: A_ii where no rows are solved),
-/// the lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for each reaction how much one unit of it
-/// changes the rate of each moved state.
+/// [`Joints::hold`](crate::capability::Joints::hold) writes, one after the other: the flow of each rigid motion, the
+/// flow of each compliant one, the gap of each rigid motion (its integral as the poses have it, 0 where they do not),
+/// its mobility (how much one unit of its reaction changes the rate of its flow while no other joint holds anything:
+/// A_ii where no rows are solved), the lower triangle of the symmetric matrix A by rows (1, 2, 3 ... numbers), and for
+/// each reaction how much one unit of it changes the rate of each moved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Held {
     /// The motions that rigid joints hold, each with a reaction.
@@ -101,16 +102,17 @@ pub struct Stop {
 
 /// The stops of a system, and what impulses change.
 ///
-/// [`Impacts::impact`](crate::capability::Impacts::impact) writes, one after the other: the flow of each rigid motion and of each
-/// stop, positive towards it; of each stop the restitution, the speed of a rebound below which something rests on it (-1 where
-/// the accuracy of the run decides), and the rate of its flow; the mobility of each rigid motion; the lower triangle of the symmetric, negative definite matrix A
-/// by rows, where impulses L change the flows by A L; and for each row by how much one unit of its impulse changes the moved
-/// states, then the integrals.
+/// [`Impacts::impact`](crate::capability::Impacts::impact) writes, one after the other: the flow of each rigid motion
+/// and of each stop, positive towards it; of each stop the restitution, the speed of a rebound below which something
+/// rests on it (-1 where the accuracy of the run decides), and the rate of its flow; the mobility of each rigid motion;
+/// the lower triangle of the symmetric, negative definite matrix A by rows, where impulses L change the flows by A L;
+/// and for each row by how much one unit of its impulse changes the moved states, then the integrals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stops {
     /// How many motions rigid joints hold: the first rows.
     pub rigid: usize,
-    /// Those of them that may follow from others, each with its place in [`Impacts::kept`](crate::capability::Impacts::kept).
+    /// Those of them that may follow from others, each with its place in
+    /// [`Impacts::kept`](crate::capability::Impacts::kept).
     pub closing: &'static [(usize, usize)],
     /// The stops: the rows after those.
     pub stops: &'static [Stop],

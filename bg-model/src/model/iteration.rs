@@ -1,10 +1,10 @@
 //! The unknowns of an algebraic loop that is not linear.
 //!
 //! In: equations with their derivatives. Out: a solution to rounding, or numbers that are none.
-//! Method: Newton's iteration with the affine-invariant choice of the part of a step that is taken (Deuflhard 2004, Newton Methods
-//! for Nonlinear Problems, section 3.3.2): the correction at the new place, by the old derivatives, has to be smaller; of one
-//! unknown, between places at which the residual has opposite signs. It begins at zero; where that leads nowhere, at some other
-//! places in a fixed order, so that the same state always gives the same bits.
+//! Method: Newton's iteration with the affine-invariant choice of the part of a step that is taken (Deuflhard 2004,
+//! Newton Methods for Nonlinear Problems, section 3.3.2): the correction at the new place, by the old derivatives, has
+//! to be smaller; of one unknown, between places at which the residual has opposite signs. It begins at zero; where
+//! that leads nowhere, at some other places in a fixed order, so that the same state always gives the same bits.
 
 use nalgebra::{Const, DimMin, SMatrix, SVector};
 
@@ -131,9 +131,9 @@ impl Point {
     }
 }
 
-/// The solution of one equation: two places between which the residual changes its sign are looked for along Newton's steps,
-/// lengthened, then they are brought together by these steps and by halves (Dekker 1969, Finding a zero by means of successive
-/// linear interpolation).
+/// The solution of one equation: two places between which the residual changes its sign are looked for along Newton's
+/// steps, lengthened, then they are brought together by these steps and by halves (Dekker 1969, Finding a zero by means
+/// of successive linear interpolation).
 fn bracketed(point: &mut impl FnMut(f64) -> Point) -> Option<f64> {
     let start = STARTS.iter().map(|&start| point(start)).find(|start| !start.residual.is_nan())?;
     let (mut near, mut reach) = (start, start.step);

@@ -1,6 +1,7 @@
 //! Tables of several models, joined to one in other numbers.
 //!
-//! In: models of the same kind, one of their tables. Out: the table each of whose numbers is made of those of all models.
+//! In: models of the same kind, one of their tables. Out: the table each of whose numbers is made of those of all
+//! models.
 
 use alloc::vec::Vec;
 

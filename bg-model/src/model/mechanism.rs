@@ -39,8 +39,8 @@ pub trait Mechanism: Clone {
     fn visit_lifted<S: Scalar, T: Scalar, V: LiftedVisitor<S, T>>(&self, visitor: V) -> V::Output;
 }
 
-/// A mechanism with the models of its graph: of the literal model with all scenes, of a scene with itself alone. In a graph
-/// with `scenes only;` the first scene has the others.
+/// A mechanism with the models of its graph: of the literal model with all scenes, of a scene with itself alone. In a
+/// graph with `scenes only;` the first scene has the others.
 pub trait Scenes: Mechanism + 'static {
     /// How many models there are: the mechanism itself and its scenes.
     const MODELS: usize;
@@ -48,14 +48,15 @@ pub trait Scenes: Mechanism + 'static {
     /// Whether the mechanism itself is the graph as it stands, not a scene of it.
     const LITERAL: bool;
 
-    /// Hands the type of model `index` to `visitor`: 0 is the mechanism itself; then come its scenes, in the order of the text.
+    /// Hands the type of model `index` to `visitor`: 0 is the mechanism itself; then come its scenes, in the order of
+    /// the text.
     ///
     /// # Panics
     /// `index` is not below [`Scenes::MODELS`].
     fn model<V: MechanismVisitor>(index: usize, visitor: V) -> V::Output;
 
-    /// Hands the type of model `INDEX` to `visitor`, as [`model`](Scenes::model) does. What the visitor does with the other models
-    /// is not compiled.
+    /// Hands the type of model `INDEX` to `visitor`, as [`model`](Scenes::model) does. What the visitor does with the
+    /// other models is not compiled.
     ///
     /// # Panics
     /// `INDEX` is not below [`Scenes::MODELS`].
@@ -73,14 +74,15 @@ pub trait ModelVisitor<S: Scalar> {
         Mo: Model<S, N, G, M> + Clone + 'static;
 }
 
-/// Something to do with a model and with the same model of other numbers, such as dual ones, of which several may be joined to one in
-/// numbers of a second kind. Of each kind only what the visitor calls is compiled.
+/// Something to do with a model and with the same model of other numbers, such as dual ones, of which several may be
+/// joined to one in numbers of a second kind. Of each kind only what the visitor calls is compiled.
 pub trait LiftedVisitor<S: Scalar, T: Scalar> {
     /// What results.
     type Output;
 
-    /// Is handed the model, a function that makes it of other values of its parameters, one that makes it of a value in `S` for each, both
-    /// in the order of their table, and one that makes each number of a model in `T` of those of several such models.
+    /// Is handed the model, a function that makes it of other values of its parameters, one that makes it of a value in
+    /// `S` for each, both in the order of their table, and one that makes each number of a model in `T` of those of
+    /// several such models.
     fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
         self,
         model: &Mo,

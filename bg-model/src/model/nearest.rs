@@ -1,9 +1,9 @@
 //! The nearest coordinates at which residuals vanish.
 //!
-//! In: guessed coordinates and their residuals. Out: the coordinates nearest to them, to first order, at which the norm of
-//! the residuals falls no further.
-//! Method: Gauss-Newton with a pseudo-inverse step (least norm, so coordinates that no residual depends on stay where they
-//! are), damped as Levenberg and Marquardt do where the plain step does not shrink the residuals.
+//! In: guessed coordinates and their residuals. Out: the coordinates nearest to them, to first order, at which the norm
+//! of the residuals falls no further.
+//! Method: Gauss-Newton with a pseudo-inverse step (least norm, so coordinates that no residual depends on stay where
+//! they are), damped as Levenberg and Marquardt do where the plain step does not shrink the residuals.
 
 use alloc::vec::Vec;
 
@@ -44,16 +44,18 @@ pub(crate) fn nearest<E, const U: usize>(
     Ok((coordinates.data.0[0], sizes))
 }
 
-/// The coordinates `found`, nearest to `guess`, in another scalar: with the derivatives that follow from those of the guess and of
-/// the residuals, by the implicit function theorem. The same numbers where there are none.
+/// The coordinates `found`, nearest to `guess`, in another scalar: with the derivatives that follow from those of the
+/// guess and of the residuals, by the implicit function theorem. The same numbers where there are none.
 ///
-/// Exact where the residuals determine all coordinates, or the guess is not moved; else to first order in how far it is.
+/// Exact where the residuals determine all coordinates, or the guess is not moved; else to first order in how far it
+/// is.
 pub fn lifted<S: Scalar, const U: usize>(
     guess: [S; U],
     found: [f64; U],
     residual: impl Fn(&[S; U]) -> Vec<S>,
 ) -> [S; U] {
-    // The first solves for derivatives in `f64`; the second takes away what rounding leaves where these have more digits.
+    // The first solves for derivatives in `f64`; the second takes away what rounding leaves where these have more
+    // digits.
     const SOLUTIONS: usize = 2;
     let zero = S::from_f64(0.0);
     let beyond = |value: S| value - S::from_f64(value.to_f64());

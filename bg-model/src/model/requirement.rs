@@ -1,7 +1,7 @@
 //! What physics asks of the values that a model's parameters give, such as a mass above 0.
 //!
-//! In: a model's table of requirements and the values of their scalars. Out: nothing, or the first that does not hold. What
-//! numbers alone decide, the compiler has decided.
+//! In: a model's table of requirements and the values of their scalars. Out: nothing, or the first that does not hold.
+//! What numbers alone decide, the compiler has decided.
 
 use alloc::format;
 use alloc::string::String;

@@ -339,7 +339,8 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         Ok(x)
     }
 
-    /// The guards in some branches; to those of stops, which are places in their first branches, belongs the size of the machine.
+    /// The guards in some branches; to those of stops, which are places in their first branches, belongs the size of
+    /// the machine.
     fn guards<const G: usize, const M: usize>(&self, x: &SVector<f64, N>, negative: &[bool; G]) -> Rows
     where
         Mo: Model<f64, N, G, M>,

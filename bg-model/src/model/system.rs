@@ -26,22 +26,23 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// negative guard. Allocates nothing.
     fn rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);
 
-    /// As [`System::rate`], inlined where it is compiled for the vectors of the machine, which methods call, but for rates that are
-    /// too long. By default there is no difference.
+    /// As [`System::rate`], inlined where it is compiled for the vectors of the machine, which methods call, but for
+    /// rates that are too long. By default there is no difference.
     #[inline(always)]
     fn inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
         self.rate(t, x, negative, dx);
     }
 
-    /// As [`System::rate`], inlined whatever its length: where numbers are vectors of a machine that not every build is for, its
-    /// operations are calls elsewhere. By default as [`System::inlined_rate`].
+    /// As [`System::rate`], inlined whatever its length: where numbers are vectors of a machine that not every build is
+    /// for, its operations are calls elsewhere. By default as [`System::inlined_rate`].
     #[inline(always)]
     fn always_inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
         self.inlined_rate(t, x, negative, dx);
     }
 
-    /// As [`System::rate`], inlined whatever its length, in pairs of operations where that pays: for the one function in which a rate
-    /// that is too long for steps has the machine's vectors. By default as [`System::always_inlined_rate`].
+    /// As [`System::rate`], inlined whatever its length, in pairs of operations where that pays: for the one function
+    /// in which a rate that is too long for steps has the machine's vectors. By default as
+    /// [`System::always_inlined_rate`].
     #[inline(always)]
     fn paired_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
         self.always_inlined_rate(t, x, negative, dx);
@@ -50,16 +51,16 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
     fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G], _guards: &mut SVector<S, G>) {}
 
-    /// The branches from which the search for those at the start of a run begins: each guard's sign under them decides, again
-    /// until nothing changes. All positive by default; a switch whose guard depends on its own branch, as that of dry friction
-    /// which slides or sticks, may have to begin on the other side.
+    /// The branches from which the search for those at the start of a run begins: each guard's sign under them decides,
+    /// again until nothing changes. All positive by default; a switch whose guard depends on its own branch, as that of
+    /// dry friction which slides or sticks, may have to begin on the other side.
     fn first_branches(&self) -> [bool; G] {
         [false; G]
     }
 
-    /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal orientations,
-    /// closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before the rate at the
-    /// new state is evaluated, and for each sample inside a step.
+    /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal
+    /// orientations, closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before
+    /// the rate at the new state is evaluated, and for each sample inside a step.
     fn project(&self, _t: S, _negative: &[S::Switch; G], _x: &mut SVector<S, N>) {}
 
     /// As [`System::project`], inlined as [`System::always_inlined_rate`] is. By default there is no difference.
@@ -68,14 +69,15 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         self.project(t, negative, x);
     }
 
-    /// The first instant after `t` (s) at which a step must end, because the rate follows another law from there on: a kink
-    /// of an input. The rate is continuous there. Infinity, as by default, where there is none.
+    /// The first instant after `t` (s) at which a step must end, because the rate follows another law from there on: a
+    /// kink of an input. The rate is continuous there. Infinity, as by default, where there is none.
     fn next_break(&self, _t: f64) -> f64 {
         f64::INFINITY
     }
 
-    /// Whether numbers of several runs side by side give in each place what a run gives by itself, and faster: not where something is
-    /// found by iteration, where an input is more than a number, or where the rate is too long to be inlined.
+    /// Whether numbers of several runs side by side give in each place what a run gives by itself, and faster: not
+    /// where something is found by iteration, where an input is more than a number, or where the rate is too long to be
+    /// inlined.
     fn runs_in_lanes(&self) -> bool {
         true
     }
@@ -85,13 +87,14 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         "state"
     }
 
-    /// The comparison of switch `index` and whose it is, such as ``if v < 0` of `valve``, for messages; by default none.
+    /// The comparison of switch `index` and whose it is, such as ``if v < 0` of `valve``, for messages; by default
+    /// none.
     fn switch_name(&self, _index: usize) -> Option<&'static str> {
         None
     }
 
-    /// The first input or element, in the order of evaluation, whose value at time `t` (s) and state `x` is not finite; asked for
-    /// where a run stops. By default none is known.
+    /// The first input or element, in the order of evaluation, whose value at time `t` (s) and state `x` is not finite;
+    /// asked for where a run stops. By default none is known.
     fn not_finite(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G]) -> Option<Origin> {
         None
     }
@@ -133,11 +136,11 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     }
 }
 
-/// The branches that the signs of the guards call for, and the guards under them; `guards` gives their values under some
-/// branches.
+/// The branches that the signs of the guards call for, and the guards under them; `guards` gives their values under
+/// some branches.
 ///
-/// Guards may depend on the branches: repeated from `first` on until they agree, at most once for each switch and once more. A
-/// guard that is zero counts as positive in the first round; later it leaves its switch the branch that it has.
+/// Guards may depend on the branches: repeated from `first` on until they agree, at most once for each switch and once
+/// more. A guard that is zero counts as positive in the first round; later it leaves its switch the branch that it has.
 pub fn branches_by_sign<S: Scalar, const G: usize>(
     first: [bool; G],
     mut guards: impl FnMut(&[bool; G]) -> SVector<S, G>,
@@ -192,14 +195,14 @@ pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: Syst
     /// what others hold already.
     fn start(&self) -> Result<SVector<S, N>, AssemblyError>;
 
-    /// The rigid joints that hold what others hold already, in all poses: they share reactions of least norm. None where the
-    /// start pose does not close.
+    /// The rigid joints that hold what others hold already, in all poses: they share reactions of least norm. None
+    /// where the start pose does not close.
     fn redundant(&self) -> Vec<Redundancy> {
         Vec::new()
     }
 
-    /// What the start pose decides for all of a run: for each row that closes a loop whether it takes part, 1 or 0; for each loop that is
-    /// closed by a root on which side of zero this is, 1 or -1.
+    /// What the start pose decides for all of a run: for each row that closes a loop whether it takes part, 1 or 0; for
+    /// each loop that is closed by a root on which side of zero this is, 1 or -1.
     fn decided(&self) -> Vec<f64> {
         Vec::new()
     }

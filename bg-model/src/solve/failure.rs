@@ -123,8 +123,8 @@ pub enum Cause {
         /// When, s.
         t: f64,
     },
-    /// A rigid joint holds a motion that no other does any more. At the start it followed from the others, so that it took
-    /// no part since.
+    /// A rigid joint holds a motion that no other does any more. At the start it followed from the others, so that it
+    /// took no part since.
     #[error(
         "at t = {t:?} s {slipping}: at the start other rigid joints held this as well, now they do not; make the joint \
          compliant, or start in another pose"

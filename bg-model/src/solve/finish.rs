@@ -15,8 +15,8 @@ pub struct Finish<const N: usize, const G: usize> {
     pub negative: [bool; G],
     /// Why the run ended.
     pub ended: Ended,
-    /// The states whose errors were never controlled: above rounding, and smaller than their absolute tolerance all the time. Not
-    /// looked at in runs side by side, in pieces, and of steps of a fixed size.
+    /// The states whose errors were never controlled: above rounding, and smaller than their absolute tolerance all the
+    /// time. Not looked at in runs side by side, in pieces, and of steps of a fixed size.
     pub uncontrolled: [bool; N],
     /// What the run has cost.
     pub statistics: Statistics,

@@ -1,8 +1,9 @@
 //! Steps of one size and a known greatest cost, for controllers and other clocks.
 //!
-//! In: a system, its state, the step. Out: the state one step later. Method: the classical Runge-Kutta method of order 4, as
-//! [`Rk4`](crate::integrator::Rk4), in any scalar. Branches change where a step ends, not where a guard passes through zero, and no
-//! step is shortened: an event is late by up to a step, which costs accuracy, and the cost of a step stays the same.
+//! In: a system, its state, the step. Out: the state one step later. Method: the classical Runge-Kutta method of order
+//! 4, as [`Rk4`](crate::integrator::Rk4), in any scalar. Branches change where a step ends, not where a guard passes
+//! through zero, and no step is shortened: an event is late by up to a step, which costs accuracy, and the cost of a
+//! step stays the same.
 
 use nalgebra::SVector;
 use thiserror::Error;
@@ -14,8 +15,8 @@ use crate::solve::integrator::rk4;
 
 /// A run that moves on by one step at a time.
 ///
-/// Nothing is allocated, neither here nor in a generated model's rate. Between two steps the system may change: a new value of an
-/// input counts from the next step on. In `f64` without switches the states are to the bit those of
+/// Nothing is allocated, neither here nor in a generated model's rate. Between two steps the system may change: a new
+/// value of an input counts from the next step on. In `f64` without switches the states are to the bit those of
 /// [`integrate`](crate::simulation::integrate) with [`Rk4`](crate::integrator::Rk4) where both divide the time alike.
 ///
 /// ```
@@ -95,8 +96,8 @@ pub struct NotFinite {
 debug_is_display!(NotFinite);
 
 impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G> {
-    /// A run of `system` from `start` at time `t0` (s), in steps of `step` (s). The branches are those that the signs of the guards
-    /// call for.
+    /// A run of `system` from `start` at time `t0` (s), in steps of `step` (s). The branches are those that the signs
+    /// of the guards call for.
     ///
     /// # Errors
     /// [`Unfit`] says why not.
@@ -167,12 +168,12 @@ impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G
     }
 }
 
-/// The operations of one step of a model at most: four rates, its guards once for each switch and once more, its projection, and
-/// the sums of the method. None where an algebraic loop is solved by iteration, whose number of
+/// The operations of one step of a model at most: four rates, its guards once for each switch and once more, its
+/// projection, and the sums of the method. None where an algebraic loop is solved by iteration, whose number of
 /// rounds is not known.
 ///
-/// It is a sum of what the model's description says of its functions. What a step takes besides are copies, and one comparison
-/// with zero for each guard.
+/// It is a sum of what the model's description says of its functions. What a step takes besides are copies, and one
+/// comparison with zero for each guard.
 #[must_use]
 pub fn operations(of: &Description) -> Option<OperationCount> {
     let cost = |name: &str| {

@@ -9,8 +9,9 @@ pub struct Statistics {
     pub steps: u64,
     /// Attempts that were rejected: by the error estimate, or because a number was not finite.
     pub rejected: u64,
-    /// Accepted steps of explicit methods in which rounding of the states may make a larger error estimate than the tolerances allow,
-    /// by a look at every 64th step where the relative tolerance is at most 1e-10. A looser tolerance gives as good a result.
+    /// Accepted steps of explicit methods in which rounding of the states may make a larger error estimate than the
+    /// tolerances allow, by a look at every 64th step where the relative tolerance is at most 1e-10. A looser tolerance
+    /// gives as good a result.
     pub rounded: u64,
     /// Evaluations of the rate, but for those of Jacobians by differences.
     pub rate_evaluations: u64,

@@ -5,8 +5,8 @@ use bg_model::integrator::{Ark5, Dop853, Radau9, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
 
-/// Two masses of 1 kg and 2 kg with a damper of `r` (N s/m) between them, the first on a hardening spring that is pulled to and
-/// fro: momenta, kg m/s, and displacements, m.
+/// Two masses of 1 kg and 2 kg with a damper of `r` (N s/m) between them, the first on a hardening spring that is
+/// pulled to and fro: momenta, kg m/s, and displacements, m.
 fn damped(r: f64) -> impl Fn(f64, &SVector<f64, 4>, &[bool; 0]) -> [f64; 4] {
     move |t, x, _| {
         let (v, w) = (x[0], 0.5 * x[1]);
@@ -25,8 +25,8 @@ fn exact(r: f64) -> SVector<f64, 4> {
 
 #[test]
 fn it_has_order_5_where_dampers_are_implicit_and_where_nothing_is() {
-    // Without states that are damped stiffly it is an explicit method. With 80 N s/m the last step is too short for the dampers to
-    // be implicit: nothing shows where that begins.
+    // Without states that are damped stiffly it is an explicit method. With 80 N s/m the last step is too short for the
+    // dampers to be implicit: nothing shows where that begins.
     let steps = [64.0, 128.0, 256.0, 512.0].map(|parts: f64| 2.0 / parts);
     for r in [0.0, 80.0] {
         let errors =
@@ -90,7 +90,8 @@ fn a_strong_damper_may_turn() {
     let statistics = finish.statistics;
     let error = (finish.x - exact).amax();
     assert!(error < 1e-2, "{error:e}");
-    // Between two Jacobians the damper is followed: 5814 steps, 9 of them rejected. Kept as it was at the last one it costs 6777 and 117.
+    // Between two Jacobians the damper is followed: 5814 steps, 9 of them rejected. Kept as it was at the last one it
+    // costs 6777 and 117.
     assert!(statistics.steps < 6000 && 200 * statistics.rejected < statistics.steps, "{statistics:?}");
 }
 

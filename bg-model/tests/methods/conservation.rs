@@ -51,7 +51,8 @@ fn a_fixed_gauss_step_does_not_look_at_the_tolerances() {
 /// The end of 1000 revolutions about the sun.
 const REVOLUTIONS: f64 = 2000.0 * std::f64::consts::PI;
 
-/// The changes of energy and angular momentum over 1000 revolutions with eccentricity 0.6 (Hairer, Lubich, Wanner, section I.2.3).
+/// The changes of energy and angular momentum over 1000 revolutions with eccentricity 0.6 (Hairer, Lubich, Wanner,
+/// section I.2.3).
 fn keplers_changes(method: impl Method) -> [[f64; 2]; 2] {
     let invariants = |x: &SVector<f64, 4>| {
         let energy = 0.5 * (x[2] * x[2] + x[3] * x[3]) - 1.0 / x[0].hypot(x[1]);

@@ -232,8 +232,8 @@ fn a_stiff_switching_system_is_located_to_rounding() {
     }
 }
 
-/// A mass that is pushed back with a constant force: an event a rounding error before the end of a fixed step leaves a step of
-/// one rounding error, from whose polynomial nothing can be foreseen.
+/// A mass that is pushed back with a constant force: an event a rounding error before the end of a fixed step leaves a
+/// step of one rounding error, from whose polynomial nothing can be foreseen.
 #[test]
 fn a_sliver_of_a_step_does_not_spoil_the_next_one() {
     let system = switched([|_, x| x[0]], |_, x: &SVector<f64, 2>, negative: &[bool; 1]| {

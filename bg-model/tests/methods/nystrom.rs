@@ -138,7 +138,8 @@ fn the_dense_output_is_as_precise_as_the_steps() {
     assert!((4.5..6.5).contains(&order(errors)) && errors[1] < 1e-6, "{errors:?}");
 }
 
-/// A crank with a rod and a slider, rigid, driven by a torque that swells: the crank's angle (rad) and its momentum (N m s).
+/// A crank with a rod and a slider, rigid, driven by a torque that swells: the crank's angle (rad) and its momentum (N
+/// m s).
 struct SliderCrank {
     /// Whether the angle is handed over as a state of second order.
     is_second: bool,
@@ -278,7 +279,8 @@ impl SecondOrder<f64, 2, 0> for Tightened {
 
 #[test]
 fn steps_follow_the_frequency() {
-    // At rest but for 1e-12 m: nothing but stability limits the steps. The phase in ten seconds is 50 500 rad, either way.
+    // At rest but for 1e-12 m: nothing but stability limits the steps. The phase in ten seconds is 50 500 rad, either
+    // way.
     for frequency in [|t: f64| 100.0 + 990.0 * t, |t: f64| 10_000.0 - 990.0 * t] {
         let (finish, _) = run(&Tightened { frequency }, Nystrom::new(), [1e-12, 0.0], 10.0, &settings(1e-6));
         let Statistics { steps, rejected, .. } = finish.statistics;

@@ -47,8 +47,8 @@ fn prothero_robinson<M: Method>(method: impl Fn(f64) -> M, steps: &[f64]) -> Vec
 
 #[test]
 fn order_reduction_on_a_stiff_problem() {
-    // Both keep what their conditions for stiff problems promise: order 3 of the 5, and the full order 2, whose error is
-    // not divided by lambda, though.
+    // Both keep what their conditions for stiff problems promise: order 3 of the 5, and the full order 2, whose error
+    // is not divided by lambda, though.
     let errors = prothero_robinson(|_| Rodas5p::new(), &[0.1, 0.05, 0.025]);
     let found = orders(&errors);
     assert!(errors[0] < 5e-12 && found.iter().all(|order| (2.9..3.2).contains(order)), "{errors:?} {found:?}");

@@ -1,7 +1,7 @@
 //! Radau's methods on stiff test problems against reference solutions of many digits.
 //!
-//! References: shared collection of hard cases, A01 and A02, Radau IIA of orders 13 and 17 in quad precision, 18 and more
-//! digits. Problems: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.10.
+//! References: shared collection of hard cases, A01 and A02, Radau IIA of orders 13 and 17 in quad precision, 18 and
+//! more digits. Problems: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.10.
 
 use crate::problems::*;
 use bg_model::integrator::{Absolute, Method, Radau5, Radau9, Tolerances};

@@ -1,5 +1,5 @@
-//! The Taylor series method: its orders, also with time in the rate, precision near rounding, dense output, what a series
-//! cannot know, and systems without one.
+//! The Taylor series method: its orders, also with time in the rate, precision near rounding, dense output, what a
+//! series cannot know, and systems without one.
 
 use crate::problems::*;
 use bg_model::capability::Series;

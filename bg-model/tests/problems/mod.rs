@@ -65,7 +65,8 @@ pub fn kepler_start() -> SVector<f64, 4> {
 pub const KEPLER_AT_20: [f64; 4] =
     [-1.295_266_250_987_574_4, 0.400_393_896_379_232_2, -0.677_539_092_467_050_8, -0.127_083_815_427_868_72];
 
-/// Van der Pol's equation with epsilon = 1e-6 (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.1).
+/// Van der Pol's equation with epsilon = 1e-6 (Hairer, Wanner, Solving Ordinary Differential Equations II, section
+/// IV.1).
 pub fn van_der_pol() -> Flow<Rate<2, 0>, 0> {
     let rate: Rate<2, 0> = |_, x, _| [x[1], ((1.0 - x[0] * x[0]) * x[1] - x[0]) * 1e6];
     smooth(rate)

@@ -44,9 +44,11 @@ fn steps_samples_and_events_allocate_nothing() {
     let counts = |count: u64| (count, 3001, 13);
     assert_eq!(allocations(Dop853::new()), counts(2));
     assert_eq!(allocations(Rk4::new(0.01)), counts(2));
-    // Room for the Jacobian, its slope and its differences, its places, and its entries there and at the one before, once.
+    // Room for the Jacobian, its slope and its differences, its places, and its entries there and at the one before,
+    // once.
     assert_eq!(allocations(Ark5::new()), counts(12));
-    // Room for the Jacobian, its slope and its differences, two numbers for each of the real and the complex factors, once.
+    // Room for the Jacobian, its slope and its differences, two numbers for each of the real and the complex factors,
+    // once.
     assert_eq!(allocations(Radau5::new()), counts(10));
     assert_eq!(allocations(Radau9::new()), counts(12));
     assert_eq!(allocations(Gauss6::new(0.01)), counts(12));

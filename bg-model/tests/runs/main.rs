@@ -1,4 +1,5 @@
-//! Runs: the driver, events, samples, what ends them, what they say and that they allocate nothing; tables, values and drawings of a model.
+//! Runs: the driver, events, samples, what ends them, what they say and that they allocate nothing; tables, values and
+//! drawings of a model.
 
 mod allocation;
 mod decades;

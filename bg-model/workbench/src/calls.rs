@@ -1,7 +1,7 @@
 //! What a program does for another program: runs and linear models as values, without files and terminal.
 //!
-//! In: parameters, inputs and settings by name. Out: what the commands `run`, `linearize` and `sensitivity` make, or the sentence that they
-//! would refuse it with.
+//! In: parameters, inputs and settings by name. Out: what the commands `run`, `linearize` and `sensitivity` make, or
+//! the sentence that they would refuse it with.
 
 use std::collections::BTreeMap;
 
@@ -119,8 +119,8 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, asked: &Asked, at: Option<f6
     linearised(program, scene, &chosen, at).map_err(Refused)
 }
 
-/// A run with the derivatives of the outputs `of` by the parameters `by` over it; without names of all outputs, or by all that the
-/// scene leaves adjustable. It begins at the model's own start.
+/// A run with the derivatives of the outputs `of` by the parameters `by` over it; without names of all outputs, or by
+/// all that the scene leaves adjustable. It begins at the model's own start.
 ///
 /// # Errors
 /// It cannot be made, or has no derivatives.

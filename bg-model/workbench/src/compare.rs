@@ -1,7 +1,7 @@
 //! Two runs beside each other: how far each output of one is from that of the other.
 //!
-//! In: two recordings. Out: for each column that both have the largest difference, and when. Angles are compared without whole
-//! turns. Where one has samples that the other lacks, the instants of both count.
+//! In: two recordings. Out: for each column that both have the largest difference, and when. Angles are compared
+//! without whole turns. Where one has samples that the other lacks, the instants of both count.
 
 use std::f64::consts::TAU;
 

@@ -12,8 +12,8 @@ use crate::summary::{Additions, Entry, short};
 
 /// What a program adds to the workbench. Every method has a default that serves any mechanism.
 pub trait Extras {
-    /// The figures of a run of this model; `None` where it gets no figures and no overview page. Not in WebAssembly: a page draws
-    /// no figures.
+    /// The figures of a run of this model; `None` where it gets no figures and no overview page. Not in WebAssembly: a
+    /// page draws no figures.
     #[cfg(not(target_arch = "wasm32"))]
     fn figures(&self, model: &'static Description) -> Option<Vec<Figure>> {
         Some(outputs::figures(model))
@@ -32,7 +32,8 @@ pub trait Extras {
         None
     }
 
-    /// Where the value of the parameter called `name` is from, such as `paper` or `assumed`; empty where nothing is said.
+    /// Where the value of the parameter called `name` is from, such as `paper` or `assumed`; empty where nothing is
+    /// said.
     fn source(&self, _name: &str) -> &'static str {
         ""
     }
@@ -47,8 +48,8 @@ pub trait Extras {
         }
     }
 
-    /// The interval of the samples that figures and summary are made from, s, of a run until `t_end` (s); those of the CSV
-    /// file come on top.
+    /// The interval of the samples that figures and summary are made from, s, of a run until `t_end` (s); those of the
+    /// CSV file come on top.
     fn finest(&self, t_end: f64) -> f64 {
         t_end / 2500.0
     }

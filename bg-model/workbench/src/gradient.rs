@@ -1,7 +1,8 @@
 //! The gradient of one number of a run, by a run followed backwards: for programs that ask for it by
 //! [`Program::gradients`](crate::Program::gradients), since it is compiled for each of their models.
 //!
-//! In: a model with its parameters, what is differentiated, by what. Out: the number and its derivatives; the same as a table and as CSV.
+//! In: a model with its parameters, what is differentiated, by what. Out: the number and its derivatives; the same as a
+//! table and as CSV.
 
 use std::marker::PhantomData;
 
@@ -89,7 +90,8 @@ pub struct Slope {
     pub derivative: f64,
 }
 
-/// The table of a gradient: the parameters with an influence, the largest for a part of the parameter first. `value` is the number, in `unit`.
+/// The table of a gradient: the parameters with an influence, the largest for a part of the parameter first. `value` is
+/// the number, in `unit`.
 #[must_use]
 pub fn text(value: f64, unit: &str, slopes: &[Slope]) -> String {
     let mut sorted: Vec<&Slope> = slopes.iter().filter(|slope| slope.derivative != 0.0).collect();

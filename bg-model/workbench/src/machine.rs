@@ -1,7 +1,7 @@
 //! A scene's model with its parameters and inputs, whatever its type.
 //!
-//! In: a scene, values of all parameters, inputs. Out: the model as a trait object. Commands and pages ask it for runs and linear models, so
-//! that they are compiled once, and not for each model.
+//! In: a scene, values of all parameters, inputs. Out: the model as a trait object. Commands and pages ask it for runs
+//! and linear models, so that they are compiled once, and not for each model.
 
 use std::ops::ControlFlow;
 

@@ -1,7 +1,7 @@
 //! The files of a run: which there are, where they go, and writing them.
 //!
-//! In: the command line's choice of places. Out: files. All places are claimed before the run, so a long run is not lost to a
-//! directory that cannot be written. What goes wrong with one output does not keep the others back.
+//! In: the command line's choice of places. Out: files. All places are claimed before the run, so a long run is not
+//! lost to a directory that cannot be written. What goes wrong with one output does not keep the others back.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -164,8 +164,8 @@ pub struct Written {
 }
 
 impl Claimed {
-    /// Writes the CSV file from `output` and everything else from `run` and `summary`, whose list of files it fills. `texts` are
-    /// those of the page; `report` is what the report shows beside them, where one is wanted.
+    /// Writes the CSV file from `output` and everything else from `run` and `summary`, whose list of files it fills.
+    /// `texts` are those of the page; `report` is what the report shows beside them, where one is wanted.
     pub fn write(
         self,
         output: &Table<'_>,
@@ -215,8 +215,8 @@ impl Claimed {
     }
 }
 
-/// Writes the files of the folder at `path` and gives their number: the CSV file where there is an `output` to write, the
-/// page and what comes with it where there is one, and the summary.
+/// Writes the files of the folder at `path` and gives their number: the CSV file where there is an `output` to write,
+/// the page and what comes with it where there is one, and the summary.
 fn fill(
     mut folder: RunFolder,
     path: &Path,

@@ -1,7 +1,7 @@
 //! The overview page: one HTML file with all figures, the summary and the checks.
 //!
-//! In: the summary and the figures that were drawn. Out: HTML text. It links the figures' files beside it, so every image
-//! follows the reader's light or dark colour scheme, and needs nothing from elsewhere.
+//! In: the summary and the figures that were drawn. Out: HTML text. It links the figures' files beside it, so every
+//! image follows the reader's light or dark colour scheme, and needs nothing from elsewhere.
 
 use std::path::Path;
 
@@ -108,7 +108,8 @@ fn gallery(page: &mut String, texts: &Page, figures: &[Figure]) {
     *page += "</div>\n";
 }
 
-/// A relative path as the address of a link: every byte that is not plain as `%XX`, whatever the file's name is made of.
+/// A relative path as the address of a link: every byte that is not plain as `%XX`, whatever the file's name is made
+/// of.
 fn address(path: &Path) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte);
     let bytes = path.as_os_str().as_encoded_bytes().iter();

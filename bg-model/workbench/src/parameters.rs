@@ -1,7 +1,7 @@
 //! The parameters of a run: defaults, then a TOML file, then `--set`, each by name and each checked.
 //!
-//! In: the parameters' table of the model, a file's text, `NAME=VALUE` texts. Out: checked parameters, or one line that says
-//! what to change. Generic over the model's parameter struct, which is seen by name only.
+//! In: the parameters' table of the model, a file's text, `NAME=VALUE` texts. Out: checked parameters, or one line that
+//! says what to change. Generic over the model's parameter struct, which is seen by name only.
 
 use std::path::{Path, PathBuf};
 

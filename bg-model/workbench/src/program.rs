@@ -22,7 +22,8 @@ pub struct Program<Me> {
     pub(crate) scene: String,
     pub(crate) scenes: Vec<Scene>,
     pub(crate) cases: Vec<Case>,
-    /// The names of the cases that are measured unless others are asked for; of the scene that is run where there are none.
+    /// The names of the cases that are measured unless others are asked for; of the scene that is run where there are
+    /// none.
     pub(crate) measured: Vec<String>,
     pub(crate) extras: Box<dyn Extras>,
     /// What makes runs side by side, if the program has it.
@@ -52,8 +53,9 @@ impl<Me: Scenes> Default for Program<Me> {
 }
 
 impl<Me: Scenes> Program<Me> {
-    /// The program of any mechanism: it runs the graph as it stands, or where it has scenes only, the first one. Its command `precision`
-    /// has a case for each scene and measures the scene that is run, against solutions that it computes.
+    /// The program of any mechanism: it runs the graph as it stands, or where it has scenes only, the first one. Its
+    /// command `precision` has a case for each scene and measures the scene that is run, against solutions that it
+    /// computes.
     #[must_use]
     pub fn new() -> Self {
         // A page has no such command.
@@ -64,8 +66,8 @@ impl<Me: Scenes> Program<Me> {
         Self::with_cases(cases, &[])
     }
 
-    /// The same with these cases of `precision`, and the names of those that it measures unless others are asked for. With stored
-    /// solutions alone nothing is compiled for computing any.
+    /// The same with these cases of `precision`, and the names of those that it measures unless others are asked for.
+    /// With stored solutions alone nothing is compiled for computing any.
     #[must_use]
     pub fn with_cases(cases: Vec<Case>, measured: &[&str]) -> Self {
         let scenes = scenes::<Me>();
@@ -122,8 +124,9 @@ impl<Me: Scenes> Program<Me> {
         self
     }
 
-    /// Lets `sweep` make runs by the methods `nystrom`, `cfmr7` and `dop853` side by side, eight at a time on a machine with AVX-512, four with
-    /// AVX2; what they give is the same to the bit. It is compiled for each model twice, so a program has it only if it asks for it.
+    /// Lets `sweep` make runs by the methods `nystrom`, `cfmr7` and `dop853` side by side, eight at a time on a machine
+    /// with AVX-512, four with AVX2; what they give is the same to the bit. It is compiled for each model twice, so a
+    /// program has it only if it asks for it.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn lanes(mut self) -> Self {
@@ -131,8 +134,9 @@ impl<Me: Scenes> Program<Me> {
         self
     }
 
-    /// Gives the program the command `gradient`: one number of a run differentiated by all parameters, by the run followed backwards. It is
-    /// compiled for each model, so a program has it only if it asks for it. A page has no use for it.
+    /// Gives the program the command `gradient`: one number of a run differentiated by all parameters, by the run
+    /// followed backwards. It is compiled for each model, so a program has it only if it asks for it. A page has no use
+    /// for it.
     #[must_use]
     pub fn gradients(self) -> Self {
         cfg_select! {
@@ -141,9 +145,9 @@ impl<Me: Scenes> Program<Me> {
         }
     }
 
-    /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output failed,
-    /// 2 the input cannot be used. In WebAssembly there are no arguments: the program answers a page from then on, see
-    /// [`live`](crate::live).
+    /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output
+    /// failed, 2 the input cannot be used. In WebAssembly there are no arguments: the program answers a page from then
+    /// on, see [`live`](crate::live).
     pub fn main(self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cfg_select! {
             target_arch = "wasm32" => {

@@ -84,7 +84,8 @@ pub enum RequestFault {
 }
 
 impl Integration {
-    /// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file, and every `finest` (s) where that is given.
+    /// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file, and every `finest` (s) where that
+    /// is given.
     ///
     /// # Errors
     /// The first number that cannot be.

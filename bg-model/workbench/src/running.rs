@@ -1,6 +1,7 @@
 //! A run of a model: where it begins, how far it comes.
 //!
-//! In: a model, what is asked of the run, where it begins. Out: what it reached. The command line and a page make their runs here.
+//! In: a model, what is asked of the run, where it begins. Out: what it reached. The command line and a page make their
+//! runs here.
 
 use bg_model::run::{Request, RunError, State, Stopped, Trajectory};
 use serde::{Deserialize, Serialize};
@@ -71,8 +72,8 @@ pub fn at_rest(machine: &dyn Machine) -> Result<(State, Equilibrium), BeginError
     Ok((state, rest))
 }
 
-/// Makes the run from the state `from`, or from the model's own start, and tells `told` the time reached, s, after each step. One that
-/// stops before its end is no error.
+/// Makes the run from the state `from`, or from the model's own start, and tells `told` the time reached, s, after each
+/// step. One that stops before its end is no error.
 ///
 /// # Errors
 /// The run cannot start.

@@ -1,7 +1,7 @@
 //! The models of a graph by name: its scenes and the graph as it stands.
 //!
-//! In: a mechanism. Out: its models, each with its name on the command line; the parameters of one of them, from values of
-//! the whole table.
+//! In: a mechanism. Out: its models, each with its name on the command line; the parameters of one of them, from values
+//! of the whole table.
 
 use bg_model::description::Description;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};

@@ -1,7 +1,8 @@
 //! Which parameter moves which output: measures of each output and their derivatives by each parameter.
 //!
 //! In: a run with its derivatives. Out: a number for each output, measure and parameter, as a table and as CSV.
-//! The derivative of the largest value is that of the output where it is largest, since there the instant does not count.
+//! The derivative of the largest value is that of the output where it is largest, since there the instant does not
+//! count.
 
 use bg_model::description::{OutputInfo, ParameterInfo};
 use bg_model::sensitivity::Sensitivities;
@@ -22,7 +23,8 @@ pub enum Measure {
     Mean,
     /// The root of its mean square.
     Rms,
-    /// The root of the mean square over time; its derivative is that of the difference of two courses, and no sign is known.
+    /// The root of the mean square over time; its derivative is that of the difference of two courses, and no sign is
+    /// known.
     Course,
 }
 
@@ -131,8 +133,8 @@ pub(crate) fn quotient(unit: &str, per: &str) -> String {
     }
 }
 
-/// What is asked about: outputs by their places in the model's description, parameters with their values, in the order of the
-/// directions of `found`.
+/// What is asked about: outputs by their places in the model's description, parameters with their values, in the order
+/// of the directions of `found`.
 #[derive(Clone, Copy, Debug)]
 pub struct Question<'a> {
     /// The outputs, each with its place.
@@ -171,7 +173,8 @@ pub fn influences(found: &Sensitivities, question: &Question) -> Vec<Influence> 
     all
 }
 
-/// For each output and measure its value, and what moves it: parameters with an influence, the largest relative one first.
+/// For each output and measure its value, and what moves it: parameters with an influence, the largest relative one
+/// first.
 #[must_use]
 pub fn text(influences: &[Influence], most: usize) -> String {
     let mut rows =

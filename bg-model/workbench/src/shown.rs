@@ -1,7 +1,7 @@
 //! The page that shows a run, and the files that it comes with.
 //!
-//! In: a run, its figures, drawn, and what is known beyond it. Out: the overview page with links to its figures' files, or the
-//! report, which has everything in it.
+//! In: a run, its figures, drawn, and what is known beyond it. Out: the overview page with links to its figures' files,
+//! or the report, which has everything in it.
 
 use std::path::PathBuf;
 

@@ -1,6 +1,7 @@
 //! The summary of a run, for people and as JSON.
 //!
-//! In: a run, and what the program adds. Out: the numbers that say whether the run is to be trusted and what the machine does.
+//! In: a run, and what the program adds. Out: the numbers that say whether the run is to be trusted and what the
+//! machine does.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -136,8 +137,8 @@ fn as_map<S: Serializer>(entries: &[Entry], serializer: S) -> Result<S::Ok, S::E
 }
 
 impl Summary {
-    /// Summarises a run of the scene called `scene`; `failure` says why it stopped before its end, if it did. Files, changed
-    /// parameters and inputs are added by the caller.
+    /// Summarises a run of the scene called `scene`; `failure` says why it stopped before its end, if it did. Files,
+    /// changed parameters and inputs are added by the caller.
     #[must_use]
     pub fn new(scene: &str, run: &Trajectory, failure: Option<String>, additions: Additions) -> Self {
         let Request { method, fixed_step, t_end, rtol, .. } = run.request;

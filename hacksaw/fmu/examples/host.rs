@@ -5,9 +5,10 @@
 //! cargo run --release --target-dir target --manifest-path hacksaw/fmu/Cargo.toml --example host
 //! ```
 //!
-//! A host as small as one can be: it opens the library and calls the functions of the standard. 5 s of the scene `motion` at 1e-8;
-//! an output is read after every step. Times are the least of [`RUNS`] runs that take turns, so that all see the same machine.
-//! With `-- COUNT` one run of FMI 3.0 in so many steps a second and nothing else, for callgrind.
+//! A host as small as one can be: it opens the library and calls the functions of the standard. 5 s of the scene
+//! `motion` at 1e-8; an output is read after every step. Times are the least of [`RUNS`] runs that take turns, so that
+//! all see the same machine. With `-- COUNT` one run of FMI 3.0 in so many steps a second and nothing else, for
+//! callgrind.
 
 use std::error::Error;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -129,7 +130,8 @@ impl Host {
         let free: Symbol<'_, unsafe extern "C" fn(Instance)> = self.function(c"fmi3FreeInstance")?;
         let (mut value, h) = (f64::NAN, 1.0 / f64::from(per_second));
         let (mut event, mut end, mut early, mut reached) = (false, false, false, 0.0);
-        // SAFETY: as the standard wants it: the calls in this order, room for what is written, an instance that is freed once.
+        // SAFETY: as the standard wants it: the calls in this order, room for what is written, an instance that is
+        // freed once.
         let status = unsafe {
             let token = self.token.as_ptr();
             let unit = instantiate(

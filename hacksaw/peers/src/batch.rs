@@ -1,7 +1,8 @@
 //! Many runs: ours in lanes and heyoka's in batches, in turns.
 //!
-//! In: how many runs of 5 s, which differ in torque, cutting resistance and two stiffnesses. Out: a table of time a run by the wall clock, the
-//! least of the rounds, with the largest error of a pose at the end, m or rad, and the ratio at an error of at most 1e-6.
+//! In: how many runs of 5 s, which differ in torque, cutting resistance and two stiffnesses. Out: a table of time a run
+//! by the wall clock, the least of the rounds, with the largest error of a pose at the end, m or rad, and the ratio at
+//! an error of at most 1e-6.
 
 use std::path::Path;
 use std::time::Instant;

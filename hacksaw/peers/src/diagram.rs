@@ -136,7 +136,8 @@ fn key(area: &Area, lines: &[Drawn]) -> Result<(), String> {
     Ok(())
 }
 
-/// A mark: a disc, a triangle, a cross, a ring, a small disc, a large ring, a square, an open square, a diamond, in that order.
+/// A mark: a disc, a triangle, a cross, a ring, a small disc, a large ring, a square, an open square, a diamond, in
+/// that order.
 fn mark<'a, C: Clone + 'static>(line: &Drawn, at: C) -> DynElement<'static, SVGBackend<'a>, C> {
     let (size, thin, filled) = (5 * UNITS, line.colour.stroke_width(13), line.colour.filled());
     let square = vec![(-size, -size), (size, -size), (size, size), (-size, size)];

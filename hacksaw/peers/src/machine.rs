@@ -20,8 +20,8 @@ pub struct Machine {
     pub versions: BTreeMap<String, String>,
 }
 
-/// Whether this program was built for the processor at hand, by `RUSTFLAGS="-C target-cpu=native"`: a build for every x86-64 has no
-/// AVX2.
+/// Whether this program was built for the processor at hand, by `RUSTFLAGS="-C target-cpu=native"`: a build for every
+/// x86-64 has no AVX2.
 pub const IS_FOR_THIS_PROCESSOR: bool = cfg!(target_feature = "avx2");
 
 /// The crates whose versions matter.

@@ -23,8 +23,8 @@ pub const INTERVAL: f64 = 0.01;
 /// The samples: at 0, 0.01, .. 5 s.
 pub const SAMPLES: usize = 501;
 
-/// The absolute tolerance of every solver over its relative one: poses are of the order of 0.1 m and 1 rad, velocities of
-/// 1 m/s and 30 rad/s.
+/// The absolute tolerance of every solver over its relative one: poses are of the order of 0.1 m and 1 rad, velocities
+/// of 1 m/s and 30 rad/s.
 pub const ABSOLUTE: f64 = 1e-2;
 
 /// An instant that is a hundred times shorter than the shortest step of any solver here, s.
@@ -68,8 +68,8 @@ impl Problem {
         self.planar.rate_where(s, |slip| slip < 0.0)
     }
 
-    /// Whether the blade is cutting from `s` on: the sign of the slip velocity a moment later. The law is continuous where
-    /// that is zero, so either branch gives the same rate there.
+    /// Whether the blade is cutting from `s` on: the sign of the slip velocity a moment later. The law is continuous
+    /// where that is zero, so either branch gives the same rate there.
     pub fn cuts_after(&self, s: &State) -> bool {
         let rate = self.planar.rate(s, true);
         slip(&std::array::from_fn(|i| s[i] + MOMENT * rate[i])) < 0.0
@@ -118,8 +118,9 @@ impl<'a> Branch<'a> {
         self.problem.planar.rate(s, self.cutting.get())
     }
 
-    /// The slip velocity; at the beginning of the branch only its sign a moment later, so that the event which began the
-    /// branch is not found once more. That is +-1: beside a tiny number a secant would take the beginning for a zero.
+    /// The slip velocity; at the beginning of the branch only its sign a moment later, so that the event which began
+    /// the branch is not found once more. That is +-1: beside a tiny number a secant would take the beginning for a
+    /// zero.
     #[inline(always)]
     pub fn guard(&self, t: f64, s: &State) -> f64 {
         if t > self.since.get() + MOMENT {

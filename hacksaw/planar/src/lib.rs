@@ -1,9 +1,9 @@
-//! The hacksaw as an engineer writes it by hand for the plane: body poses (x, y, angle of each link) and their velocities,
-//! 24 states, the laws of the specification spelled out. What the generated scene is measured against.
+//! The hacksaw as an engineer writes it by hand for the plane: body poses (x, y, angle of each link) and their
+//! velocities, 24 states, the laws of the specification spelled out. What the generated scene is measured against.
 //!
 //! In: the parameters, a state, the stroke. Out: the state's rate, twice: [`Planar::rate`] plainly, point by point and
-//! force by force, and [`Planar::tuned_rate`] with every known zero and common factor taken out by hand. The benchmark of
-//! the scenes, the comparison with other solvers (`hacksaw/peers`) and the suite of the scenes use it.
+//! force by force, and [`Planar::tuned_rate`] with every known zero and common factor taken out by hand. The benchmark
+//! of the scenes, the comparison with other solvers (`hacksaw/peers`) and the suite of the scenes use it.
 
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
@@ -319,7 +319,8 @@ impl Planar {
 
     /// The pose state of a scene's state, which `get` gives by name.
     ///
-    /// The scene's slot spring, whose displacement is a state of its own there, has to be at the difference of the angles.
+    /// The scene's slot spring, whose displacement is a state of its own there, has to be at the difference of the
+    /// angles.
     pub fn state(&self, get: impl Fn(&str) -> f64) -> State {
         let mut state = [0.0; 24];
         for (link, name) in LINKS.iter().enumerate() {
@@ -370,8 +371,8 @@ pub const LINKS: [&str; 4] = ["crank", "rod", "frame", "guide"];
 
 /// A state of the paper's scene as poses with the stroke; both hand-written rates there are compared with the scene's.
 ///
-/// The slot's twist is a state of its own in the scene, which the integrator keeps near the difference of the two angles
-/// to its tolerance; here it is put there.
+/// The slot's twist is a state of its own in the scene, which the integrator keeps near the difference of the two
+/// angles to its tolerance; here it is put there.
 pub fn beside<M: Model<f64, N, 1, O>, const N: usize, const O: usize>(
     model: &M,
     parameters: &impl Parameters,

@@ -51,8 +51,9 @@ pub struct Figure {
 ///
 /// The paper's text fixes figures 4, 5, 7 (crank), 8, 10, 11 (rod), 14, 15 (frame) and 17 (guide); it calls the others
 /// "momenta, orientation and path of the links". Sixteen figures are four quantities of each of four links, link after
-/// link. For the crank 4, 5 and 7 leave 6 to the momentum; for the rod 8, 10 and 11 leave 9 to the momentum; for the frame
-/// 14 and 15 leave 12 and 13 to the momenta, in the rod's order; for the guide 17 in second place is the crank's order.
+/// link. For the crank 4, 5 and 7 leave 6 to the momentum; for the rod 8, 10 and 11 leave 9 to the momentum; for the
+/// frame 14 and 15 leave 12 and 13 to the momenta, in the rod's order; for the guide 17 in second place is the crank's
+/// order.
 pub const FIGURES: [Figure; 16] = {
     use Assignment::{Deduced, Stated};
     use Quantity::{AngularMomentum, Momentum, Orientation, Path};

@@ -1,4 +1,5 @@
-//! Figures of orientations: the paths of the tips of a link's unit vectors on the unit sphere, and its rotation over time.
+//! Figures of orientations: the paths of the tips of a link's unit vectors on the unit sphere, and its rotation over
+//! time.
 //!
 //! The sphere is seen from the front, a little from the right and from above (orthographic projection): x to the right,
 //! y up, z toward the reader. Beside it the angle about z and the tilt of the link's z axis away from the inertial one.

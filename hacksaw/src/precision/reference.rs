@@ -1,10 +1,10 @@
 //! Reference solutions: scenes integrated in double-double arithmetic, stored as tables with their own check.
 //!
-//! In: a scene with its parameters. Out: its outputs at the sample instants, rounded to `f64` once, at the end. The initial
-//! value problem is that of a run: the generated model in `DoubleDouble`, from the start state that the model has in `f64`.
-//! Method: [`bg_model::extended`]. The check of each is a second computation of another order and tolerance; the
-//! largest differences between the two are stored beside the table. `cargo run --release -p hacksaw --example
-//! make_references` makes both files anew.
+//! In: a scene with its parameters. Out: its outputs at the sample instants, rounded to `f64` once, at the end. The
+//! initial value problem is that of a run: the generated model in `DoubleDouble`, from the start state that the model
+//! has in `f64`. Method: [`bg_model::extended`]. The check of each is a second computation of another order and
+//! tolerance; the largest differences between the two are stored beside the table. `cargo run --release -p hacksaw
+//! --example make_references` makes both files anew.
 
 use std::error::Error;
 
@@ -98,8 +98,8 @@ impl Reference {
         }
     }
 
-    /// The accuracies of the stored computation and of its check. In the stiff case steps are short whatever the order, so
-    /// that few columns cost least.
+    /// The accuracies of the stored computation and of its check. In the stiff case steps are short whatever the order,
+    /// so that few columns cost least.
     #[must_use]
     pub const fn accuracies(self) -> [Accuracy; 2] {
         match self {
@@ -110,8 +110,8 @@ impl Reference {
         }
     }
 
-    /// The outputs at `instants` (s, ascending, from 0 on), integrated with `accuracy`. Compiled where it is called, since the program calls
-    /// it nowhere.
+    /// The outputs at `instants` (s, ascending, from 0 on), integrated with `accuracy`. Compiled where it is called,
+    /// since the program calls it nowhere.
     ///
     /// # Errors
     /// Instants that cannot be, and a run that fails.
@@ -231,8 +231,9 @@ mod tests {
                 independent.columns.push(Column { values, ..Column::new(format!("R{link}_{name}"), "") });
             }
         }
-        // Measured: positions 2.2e-15 m, orientations 3.3e-14, momenta 1.8e-12 kg m/s of 21, angular momenta 2.8e-13 kg m^2/s
-        // of 2.6. They grow with the time: the model's lengths and the start are those of the specification rounded to doubles.
+        // Measured: positions 2.2e-15 m, orientations 3.3e-14, momenta 1.8e-12 kg m/s of 21, angular momenta 2.8e-13 kg
+        // m^2/s of 2.6. They grow with the time: the model's lengths and the start are those of the specification
+        // rounded to doubles.
         for (kind, allowed) in [('C', 5e-15), ('R', 1e-13), ('p', 5e-12), ('h', 1e-12)] {
             let largest = largest_difference(&independent, &reference, kind);
             assert!(largest > 0.0 && largest <= allowed, "{kind} is off by {largest:e}");
@@ -243,8 +244,8 @@ mod tests {
     fn the_project_s_reference_in_double_precision_is_the_same_to_its_rounding() {
         let shared = samples::read(SHARED.as_bytes()).unwrap();
         assert_eq!((shared.times.len(), shared.columns.len()), (51, 72));
-        // Measured: positions 9e-14 m, orientations 1.4e-12, momenta 4.9e-11 kg m/s of 21, angular momenta 8.3e-12 kg m^2/s
-        // of 2.6: all grow with the time, as the rounding errors of a run in double precision do.
+        // Measured: positions 9e-14 m, orientations 1.4e-12, momenta 4.9e-11 kg m/s of 21, angular momenta 8.3e-12 kg
+        // m^2/s of 2.6: all grow with the time, as the rounding errors of a run in double precision do.
         for (kind, allowed) in [('C', 1e-12), ('R', 1e-11), ('p', 1e-10), ('h', 2e-11)] {
             let largest = largest_difference(&shared, &Reference::Paper.load(), kind);
             assert!(largest <= allowed, "{kind} is off by {largest:e}");

@@ -1,4 +1,5 @@
-//! The gradient of the hacksaw's motion by all of its parameters, by the run followed backwards, against slopes that follow the run.
+//! The gradient of the hacksaw's motion by all of its parameters, by the run followed backwards, against slopes that
+//! follow the run.
 
 use bg_model::integrator::Integrator;
 use bg_model::run::Request;

@@ -70,7 +70,8 @@ fn errors_and_counts_with_rigid_joints_are_pinned() {
     pinned(
         "rigid",
         [
-            // CFMR7osc makes these steps: where events are many, it matters that its attempts to locate one have fewer rates.
+            // CFMR7osc makes these steps: where events are many, it matters that its attempts to locate one have fewer
+            // rates.
             (Integrator::Auto, 1e-5, "2.0e-5", [1456, 259, 19193, 108, 4, 12, 96]),
             (Integrator::Auto, 1e-6, "2.1e-6", [1541, 284, 26413, 84, 4, 12, 96]),
         ],

@@ -1,8 +1,9 @@
 //! A reduced scene is the literal model: its outputs are those of the literal model to rounding, over the same steps.
 //!
-//! What rounding comes to is known from a control, measured on the literal model alone: with gravity changed in its last bit
-//! the same outputs change by C 4e-14 m, R 6e-13, p 9e-11 kg m/s, h 8e-12 N m s, F 9e-7 N, gaps 7e-15 m. The pins' stiffness
-//! of 1e8 N/m makes a force of 1e-8 N of the last bit of a position, and they ring at 1e4 rad/s almost without decay.
+//! What rounding comes to is known from a control, measured on the literal model alone: with gravity changed in its
+//! last bit the same outputs change by C 4e-14 m, R 6e-13, p 9e-11 kg m/s, h 8e-12 N m s, F 9e-7 N, gaps 7e-15 m. The
+//! pins' stiffness of 1e8 N/m makes a force of 1e-8 N of the last bit of a position, and they ring at 1e4 rad/s almost
+//! without decay.
 
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::{Mechanism, MechanismVisitor};
@@ -17,7 +18,8 @@ use hacksaw_planar as planar;
 /// The steps of both models, s: as many as the run takes at rtol 1e-10.
 const STEP: f64 = 1e-4;
 
-/// The allowed deviation over the larger of 1 and the magnitude of the kind: figures reached, with a factor of about two.
+/// The allowed deviation over the larger of 1 and the magnitude of the kind: figures reached, with a factor of about
+/// two.
 fn allowed(kind: &str) -> f64 {
     match kind {
         // Measured: positions 3e-14, orientations 5e-13, angles 8e-13, energies 1e-13 and less of their size.

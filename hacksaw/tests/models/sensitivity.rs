@@ -1,4 +1,5 @@
-//! Derivatives of the hacksaw's motion over its first switchings against differences of runs in double-double arithmetic.
+//! Derivatives of the hacksaw's motion over its first switchings against differences of runs in double-double
+//! arithmetic.
 
 use bg_model::extended::Accuracy;
 use bg_model::integrator::Integrator;

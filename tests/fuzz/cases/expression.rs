@@ -1,7 +1,7 @@
 //! Random scalar expressions whose units always fit.
 //!
-//! In: the names that may stand in it. Out: a text. Every name is multiplied by a bare number, so that the product takes
-//! any unit and the expression gets through to the stages after the check of units.
+//! In: the names that may stand in it. Out: a text. Every name is multiplied by a bare number, so that the product
+//! takes any unit and the expression gets through to the stages after the check of units.
 
 use fastrand::Rng;
 

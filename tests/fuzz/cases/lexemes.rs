@@ -1,7 +1,7 @@
 //! A text as lexemes, and back.
 //!
-//! In: any text. Out: words, numbers, marks, brackets, documentation comments; joined again, all brackets closed, so that
-//! a mutant is nearly always a token stream.
+//! In: any text. Out: words, numbers, marks, brackets, documentation comments; joined again, all brackets closed, so
+//! that a mutant is nearly always a token stream.
 
 /// Marks of two characters that stay together.
 const PAIRS: [&str; 8] = ["->", "<=", ">=", "==", "!=", "&&", "||", "**"];

@@ -1,7 +1,8 @@
 //! Random networks of junctions and elements that mostly make a valid graph.
 //!
-//! In: randomness. Out: a graph's text. Junctions form a tree, neighbours mostly of the other kind, an I at most 1-junctions
-//! and a C at most 0-junctions, so that integral causality is the rule; what breaks it is added now and then.
+//! In: randomness. Out: a graph's text. Junctions form a tree, neighbours mostly of the other kind, an I at most
+//! 1-junctions and a C at most 0-junctions, so that integral causality is the rule; what breaks it is added now and
+//! then.
 
 use fastrand::Rng;
 

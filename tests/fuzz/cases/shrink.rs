@@ -1,8 +1,8 @@
 //! A shorter input of the same kind.
 //!
 //! In: an input and what must stay true of it. Out: a shorter one of which it is still true.
-//! Method: delta debugging (Zeller, Hildebrandt 2002, Simplifying and isolating failure-inducing input), which leaves out
-//! ever smaller pieces.
+//! Method: delta debugging (Zeller, Hildebrandt 2002, Simplifying and isolating failure-inducing input), which leaves
+//! out ever smaller pieces.
 
 use super::Input;
 use super::lexemes::{joined, lexemes};
@@ -41,7 +41,8 @@ fn statements(lexemes: Vec<String>) -> Vec<Vec<String>> {
     groups
 }
 
-/// The parts without all pieces whose absence keeps `holds` true; the parts as they are where it is not true of any less.
+/// The parts without all pieces whose absence keeps `holds` true; the parts as they are where it is not true of any
+/// less.
 pub fn fewest<T: Clone>(mut parts: Vec<T>, holds: &mut dyn FnMut(&[T]) -> bool) -> Vec<T> {
     let mut piece = parts.len().div_ceil(2);
     while piece > 0 {

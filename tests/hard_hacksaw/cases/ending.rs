@@ -1,7 +1,7 @@
 //! A run that ends at a switching instant, one rounding before it and one after it.
 //!
-//! In: an integrator and a tolerance. Out: for each of the first switchings and each of the three ends, how far the end is
-//! from the same instant of a longer run, and how many switchings were told.
+//! In: an integrator and a tolerance. Out: for each of the first switchings and each of the three ends, how far the end
+//! is from the same instant of a longer run, and how many switchings were told.
 
 use bg_model::failure::Cause;
 use bg_model::integrator::Integrator;

@@ -1,7 +1,7 @@
 //! A long run of the paper's case: what is left of the energy balance and of the orthogonality, and what it costs.
 //!
-//! In: an integrator, a tolerance, a length. Out: the largest residuals over the samples, each second, and the cost of each
-//! tenth of the run, which stays the same where nothing builds up.
+//! In: an integrator, a tolerance, a length. Out: the largest residuals over the samples, each second, and the cost of
+//! each tenth of the run, which stays the same where nothing builds up.
 
 use bg_model::failure::Cause;
 use bg_model::integrator::Integrator;

@@ -1,5 +1,5 @@
-//! Every parameter of the paper's case at 1e-12, at 1e12 and at the ends of its range, one at a time: a right answer or a
-//! named error.
+//! Every parameter of the paper's case at 1e-12, at 1e12 and at the ends of its range, one at a time: a right answer or
+//! a named error.
 //!
 //! In: the length of a run and a limit of steps. Out: for each parameter and value the result. An answer is right where
 //! the default at a relative tolerance of 1e-6 agrees with Radau IIA 5 at 1e-8, and where the energies balance, both to

@@ -1,8 +1,8 @@
 //! The hacksaw as a problem that can be run, and what is observed of it.
 //!
-//! In: changed parameters, a disturbance of the start. Out: problems whose rows are the links' poses and two residuals: that
-//! of the energy balance and that of the orientations' orthogonality. A row's components are of one size, so that one
-//! absolute measure serves them all: m, sines and cosines of angles, and energy over a scale.
+//! In: changed parameters, a disturbance of the start. Out: problems whose rows are the links' poses and two residuals:
+//! that of the energy balance and that of the orientations' orthogonality. A row's components are of one size, so that
+//! one absolute measure serves them all: m, sines and cosines of angles, and energy over a scale.
 
 use bg_model::description::OutputInfo;
 use bg_model::input::Input;
@@ -53,8 +53,8 @@ pub enum Scale {
     Present,
 }
 
-/// The poses called `names`; (stored - supplied + dissipated energy, less what is stored in `start`, the outputs at the start)
-/// over the scale; max |R R^T - 1| of the links.
+/// The poses called `names`; (stored - supplied + dissipated energy, less what is stored in `start`, the outputs at the
+/// start) over the scale; max |R R^T - 1| of the links.
 fn observe<const M: usize>(
     outputs: &'static [OutputInfo],
     names: &[String],

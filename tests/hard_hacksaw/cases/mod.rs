@@ -1,5 +1,5 @@
-//! The hacksaw made hard: stiff, undamped, out of its plane, at rest, reversed, blunt, long, finely sampled, cut off at a
-//! switching instant, and with every parameter at its extremes.
+//! The hacksaw made hard: stiff, undamped, out of its plane, at rest, reversed, blunt, long, finely sampled, cut off at
+//! a switching instant, and with every parameter at its extremes.
 //!
 //! In: nothing. Out: cases like those of [`crate::hardcases`], and measures of what a case cannot hold. The suite
 //! `hard_hacksaw` and the bench `stability` use them.

@@ -1,8 +1,8 @@
 //! What the hacksaw's hard cases are held against.
 //!
-//! In: names of cases. Out: poses at instants: stored ones of this folder, made by [`make`] in double-double arithmetic, and
-//! those of the application, made likewise. A stored row ends with the largest difference to a second computation of
-//! another order and tolerance.
+//! In: names of cases. Out: poses at instants: stored ones of this folder, made by [`make`] in double-double
+//! arithmetic, and those of the application, made likewise. A stored row ends with the largest difference to a second
+//! computation of another order and tolerance.
 
 use std::fmt::Write;
 

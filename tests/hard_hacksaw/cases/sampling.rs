@@ -1,7 +1,7 @@
 //! Samples finer than the steps: what the dense output gives between the steps' ends.
 //!
-//! In: an integrator and a tolerance. Out: the error at the ends of the steps, the error of samples 1e-6 s apart, and by how
-//! much poses jump at a step's end. Truth: DOP853 with steps of 1e-6 s, which ends one at each sample and
+//! In: an integrator and a tolerance. Out: the error at the ends of the steps, the error of samples 1e-6 s apart, and
+//! by how much poses jump at a step's end. Truth: DOP853 with steps of 1e-6 s, which ends one at each sample and
 //! has no error but rounding.
 
 use bg_model::failure::Cause;

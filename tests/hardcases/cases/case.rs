@@ -1,12 +1,13 @@
 //! A hard case: what is run, what it is held against, and the result of a run.
 //!
 //! In: a case, an integrator and a tolerance. Out: the error reached, the counts and a verdict, whatever the number of
-//! states. The error is taken at the end of the run, where a step ends; what the dense output gave at the instants before
-//! it is kept apart.
+//! states. The error is taken at the end of the run, where a step ends; what the dense output gave at the instants
+//! before it is kept apart.
 //!
 //! What counts as wrong: an error above [`WRONG`] times the tolerance, times the case's `amplification`, without a word
 //! from the integrator. The amplification is how much the measure magnifies a relative disturbance of the state on the
-//! way, a property of the equations: no method can do without it. It is 1 but for orbits, a strong ring and free bodies.
+//! way, a property of the equations: no method can do without it. It is 1 but for orbits, a strong ring and free
+//! bodies.
 
 use bg_model::failure::{BadInput, Cause};
 use bg_model::integrator::Integrator;

@@ -1,9 +1,9 @@
 //! Compliant joints against a rigid reference, through the 1/k law.
 //!
-//! In: a mechanism with joints of stiffness k, 2 k and 4 k, damped so well that their ringing is over. Out: the limit of
-//! infinite stiffness by Richardson's extrapolation, as a problem like any other, and the law itself. What a mechanism
-//! with compliant joints lacks of the rigid one is a series in 1/k: (y(k) - 6 y(2 k) + 8 y(4 k)) / 3 leaves its third
-//! power.
+//! In: a mechanism with joints of stiffness k, 2 k and 4 k, damped so well that their ringing is over. Out: the limit
+//! of infinite stiffness by Richardson's extrapolation, as a problem like any other, and the law itself. What a
+//! mechanism with compliant joints lacks of the rigid one is a series in 1/k: (y(k) - 6 y(2 k) + 8 y(4 k)) / 3 leaves
+//! its third power.
 
 use bg_model::integrator::Integrator;
 use bg_model::statistics::Statistics;

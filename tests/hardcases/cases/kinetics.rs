@@ -1,7 +1,7 @@
 //! Chemical kinetics: Robertson, HIRES, E5, the Oregonator.
 //!
-//! In: nothing. Out: cases. Each is stiff with negative real eigenvalues, and held against Radau IIA of orders 13 and 17 in
-//! quad precision, whose two runs agree to 14 digits and more.
+//! In: nothing. Out: cases. Each is stiff with negative real eigenvalues, and held against Radau IIA of orders 13 and
+//! 17 in quad precision, whose two runs agree to 14 digits and more.
 
 use bg_model::capability::Linearised;
 use bg_model::nalgebra::SVector;

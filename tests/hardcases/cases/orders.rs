@@ -1,8 +1,9 @@
 //! Observed orders of the methods, with equal steps on a joint whose motion is known.
 //!
-//! In: an integrator and the joint. Out: the largest error of the velocity at the ends of the steps, for 10 to 320 steps
-//! in 1 s, and the orders that follow. On the stiff joint the order is what a method has left of its classical one
-//! (order reduction, A. Prothero, A. Robinson 1974). It shows in the velocity: positions are divided by the stiffness.
+//! In: an integrator and the joint. Out: the largest error of the velocity at the ends of the steps, for 10 to 320
+//! steps in 1 s, and the orders that follow. On the stiff joint the order is what a method has left of its classical
+//! one (order reduction, A. Prothero, A. Robinson 1974). It shows in the velocity: positions are divided by the
+//! stiffness.
 
 use bg_model::integrator::Integrator;
 

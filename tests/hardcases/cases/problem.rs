@@ -59,8 +59,8 @@ pub trait Problem {
 
 /// A problem of one system, which can be followed at any samples.
 pub trait Followable: Problem {
-    /// Runs it from t = 0 to the last instant of `request` with `integrator`; `each` is given the rows at `samples`, not
-    /// at the instants, with their times (s).
+    /// Runs it from t = 0 to the last instant of `request` with `integrator`; `each` is given the rows at `samples`,
+    /// not at the instants, with their times (s).
     fn follow(
         &self,
         integrator: Integrator,

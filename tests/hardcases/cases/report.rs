@@ -1,7 +1,8 @@
 //! What came of the cases as one table: text, JSON and a page.
 //!
-//! In: rows of case, integrator, tolerance and outcome; sheets of other measurements. Out: text. The page is one file that
-//! needs nothing from elsewhere: a table of verdicts for each case, integrators down, tolerances across, then the sheets.
+//! In: rows of case, integrator, tolerance and outcome; sheets of other measurements. Out: text. The page is one file
+//! that needs nothing from elsewhere: a table of verdicts for each case, integrators down, tolerances across, then the
+//! sheets.
 
 use std::fmt::Write;
 
@@ -63,7 +64,8 @@ fn cells(row: &Row) -> [String; HEAD.len()] {
     ]
 }
 
-/// The rows as a table of text, with a `!` after a wrong error of the dense output, and the errors that ended runs below it.
+/// The rows as a table of text, with a `!` after a wrong error of the dense output, and the errors that ended runs
+/// below it.
 #[must_use]
 pub fn table(rows: &[Row]) -> String {
     let lines: Vec<Vec<String>> =

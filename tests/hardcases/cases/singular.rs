@@ -1,5 +1,5 @@
-//! Singular perturbations and prescribed solutions: van der Pol, Prothero-Robinson, Kaps, Kvaerno-Prothero-Robinson, and
-//! the stiff joint with known solution.
+//! Singular perturbations and prescribed solutions: van der Pol, Prothero-Robinson, Kaps, Kvaerno-Prothero-Robinson,
+//! and the stiff joint with known solution.
 //!
 //! In: nothing. Out: cases. But for van der Pol's the solutions are closed forms, so that errors are exact.
 

@@ -79,8 +79,8 @@ fn agree(network: &Network, text: &str, expected: Option<strokes::Strokes>) -> V
     }
 }
 
-/// All efforts, flows, rates, energies and powers against the dense solution, at states drawn from `seed`. What is refused because its
-/// equations have no solution must have none.
+/// All efforts, flows, rates, energies and powers against the dense solution, at states drawn from `seed`. What is
+/// refused because its equations have no solution must have none.
 #[must_use]
 pub fn signals(network: &Network, seed: u64) -> Verdict {
     let mut rng = Rng::with_seed(seed);
@@ -203,7 +203,8 @@ fn expected(network: &Network, states: &[Option<DVector<f64>>], solution: &Solut
     values
 }
 
-/// The same values from the compiler's equations, by its interpreter. It has bonds and storages in the order of the text.
+/// The same values from the compiler's equations, by its interpreter. It has bonds and storages in the order of the
+/// text.
 fn found(network: &Network, mut equations: StateEquations, states: &[Option<DVector<f64>>]) -> Vec<f64> {
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let rates_of_states = (0..).map(Symbol::State).zip(rates.iter().copied());

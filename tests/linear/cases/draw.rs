@@ -102,7 +102,8 @@ impl Sketch {
         }
         let mut before = from;
         for place in 0..[0, 0, 0, 1, 1, 2][self.rng.usize(..6)] {
-            // A law of a variable does not hand the number of components on, so only one of two in a chain may have one.
+            // A law of a variable does not hand the number of components on, so only one of two in a chain may have
+            // one.
             let may_be_of = place == 0;
             let node = match self.rng.u32(..3) {
                 0 => self.gyrator(),

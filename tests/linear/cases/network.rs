@@ -1,7 +1,7 @@
 //! A linear bond graph as data, and as text of the language.
 //!
-//! In: nodes and half arrows. Out: the text of a graph. The data are what the independent solutions read; nothing of the
-//! compiler is between the two.
+//! In: nodes and half arrows. Out: the text of a graph. The data are what the independent solutions read; nothing of
+//! the compiler is between the two.
 
 use std::fmt::Write;
 
@@ -42,8 +42,8 @@ pub enum Law {
         /// The variable, unless the law works both ways.
         of: Option<Role>,
     },
-    /// f out = A f in and e in = A^T e out where the variable is the flow, or there is none; e out = A e in and f in = A^T f
-    /// out where it is the effort.
+    /// f out = A f in and e in = A^T e out where the variable is the flow, or there is none; e out = A e in and f in =
+    /// A^T f out where it is the effort.
     Transformer {
         /// A.
         matrix: DMatrix<f64>,

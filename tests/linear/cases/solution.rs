@@ -1,10 +1,11 @@
-//! The efforts and flows of all bonds as the solution of one dense system: the equations of all nodes, as they are written, and
-//! their derivatives with respect to time.
+//! The efforts and flows of all bonds as the solution of one dense system: the equations of all nodes, as they are
+//! written, and their derivatives with respect to time.
 //!
-//! In: a [`Network`], the states of its storages, those whose states are not given. Out: efforts and flows. No strokes, no order,
-//! no substitution.
-//! Method: a row for every component of every port, and one for its rate; a storage links the rate of one variable to the other one.
-//! The rates are eliminated first, with the largest entry of a column as pivot; then efforts and flows must each have a pivot.
+//! In: a [`Network`], the states of its storages, those whose states are not given. Out: efforts and flows. No strokes,
+//! no order, no substitution.
+//! Method: a row for every component of every port, and one for its rate; a storage links the rate of one variable to
+//! the other one. The rates are eliminated first, with the largest entry of a column as pivot; then efforts and flows
+//! must each have a pivot.
 
 use bg_model::nalgebra::{DMatrix, DVector};
 
@@ -39,8 +40,8 @@ struct System<'a> {
     rows: Vec<Vec<f64>>,
 }
 
-/// Solves a graph; `states` are the momentum or displacement of every node that stores, or nothing where others determine them.
-/// None where there is no unique solution.
+/// Solves a graph; `states` are the momentum or displacement of every node that stores, or nothing where others
+/// determine them. None where there is no unique solution.
 #[must_use]
 pub fn solve(network: &Network, states: &[Option<DVector<f64>>]) -> Option<Solution> {
     let mut starts = Vec::new();
@@ -69,8 +70,9 @@ pub fn solve(network: &Network, states: &[Option<DVector<f64>>]) -> Option<Solut
 /// The coefficients are of order one; what cancels leaves some roundings.
 const NOTHING: f64 = 1e-10;
 
-/// The last `size` unknowns, by Gaussian elimination with row exchanges; none where they are not unique or the rows disagree. Of the
-/// unknowns before them some may be open. Rows without an entry in the pivot's column, which are most, stay as they are.
+/// The last `size` unknowns, by Gaussian elimination with row exchanges; none where they are not unique or the rows
+/// disagree. Of the unknowns before them some may be open. Rows without an entry in the pivot's column, which are most,
+/// stay as they are.
 fn eliminate(mut rows: Vec<Vec<f64>>, size: usize) -> Option<Vec<f64>> {
     let columns = rows[0].len() - 1;
     let mut used = 0;

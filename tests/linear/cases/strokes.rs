@@ -11,8 +11,8 @@ pub type Strokes = Vec<bool>;
 /// The most bonds of a graph whose assignments are tried.
 pub const MOST: usize = 13;
 
-/// The first valid assignment in the order in which a stroke at a half arrow's start comes before one at its end, earlier
-/// bonds counting more. None where no assignment is valid.
+/// The first valid assignment in the order in which a stroke at a half arrow's start comes before one at its end,
+/// earlier bonds counting more. None where no assignment is valid.
 ///
 /// # Panics
 /// Where the graph has more bonds than [`MOST`].
@@ -30,8 +30,8 @@ fn first_where(network: &Network, is_integral: &dyn Fn(usize) -> bool) -> Option
     Some((0..count).map(|bond| found & bit(count, bond) != 0).collect())
 }
 
-/// The first valid assignment in which each storage in turn has integral causality where those before it leave that open: first
-/// those with laws of a variable, then the others, in their order.
+/// The first valid assignment in which each storage in turn has integral causality where those before it leave that
+/// open: first those with laws of a variable, then the others, in their order.
 #[must_use]
 pub fn preferred(network: &Network) -> Option<Strokes> {
     let mut storages: Vec<usize> = (0..network.nodes.len())
@@ -90,7 +90,8 @@ impl Rule {
     }
 }
 
-/// The rules of all nodes but those that take either causality; of storages only those that `is_integral` names have one.
+/// The rules of all nodes but those that take either causality; of storages only those that `is_integral` names have
+/// one.
 fn rules(network: &Network, is_integral: &dyn Fn(usize) -> bool) -> Vec<Rule> {
     let count = network.bonds.len();
     let of = |node: usize| -> Option<Rule> {

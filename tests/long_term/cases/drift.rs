@@ -1,8 +1,9 @@
 //! Drift: how far an invariant moves from its start in a long run.
 //!
-//! In: a scene, an integrator, how exact, how many periods. Out: the largest deviation of each invariant, looked at after
-//! every step, in the first hundredth, the first tenth and the whole of the run. A deviation that is bounded is the same
-//! in all three; one that grows as a random walk is 10^(1/2) times, one that grows linearly 10 times as large each time.
+//! In: a scene, an integrator, how exact, how many periods. Out: the largest deviation of each invariant, looked at
+//! after every step, in the first hundredth, the first tenth and the whole of the run. A deviation that is bounded is
+//! the same in all three; one that grows as a random walk is 10^(1/2) times, one that grows linearly 10 times as large
+//! each time.
 
 use bg_model::failure::Cause;
 use bg_model::integrator::Integrator;

@@ -24,7 +24,8 @@ pub fn settings() -> Vec<(&'static str, [Exactness; 3])> {
     ]
 }
 
-/// The drift after `periods` with three steps or tolerances, and the order in which the energy's falls with the mean step.
+/// The drift after `periods` with three steps or tolerances, and the order in which the energy's falls with the mean
+/// step.
 #[must_use]
 pub fn against_step(periods: f64, progress: &mut dyn FnMut(&str)) -> Sheet {
     let mut rows = Vec::new();

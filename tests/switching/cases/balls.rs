@@ -50,8 +50,8 @@ pub fn bounces(count: usize) -> Vec<f64> {
     times
 }
 
-/// x' = -sgn x + 2 sgn y, y' = -2 sgn x - sgn y: |x| + |y| falls by 2 each second, each quarter turn takes a third of the
-/// one before. Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, 1988, section 12.
+/// x' = -sgn x + 2 sgn y, y' = -2 sgn x - sgn y: |x| + |y| falls by 2 each second, each quarter turn takes a third of
+/// the one before. Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, 1988, section 12.
 #[must_use]
 pub fn spiral() -> Zeno {
     let rate = |_: f64, _: &[f64; 2], negative: &[bool; 2]| {
@@ -63,8 +63,8 @@ pub fn spiral() -> Zeno {
 }
 
 /// x'' = -sgn(x + c v |v|) with c = 0.3, between the spiral (c = 0) and the sliding along a parabola (c = 1/2): the
-/// switchings come in geometric progression (Fuller's phenomenon). On the curve x = -c v |v|, v goes over into -q v with
-/// q^2 = (1/2 - c) / (1/2 + c) while the acceleration is 1, which takes (1 + q) |v|.
+/// switchings come in geometric progression (Fuller's phenomenon). On the curve x = -c v |v|, v goes over into -q v
+/// with q^2 = (1/2 - c) / (1/2 + c) while the acceleration is 1, which takes (1 + q) |v|.
 #[must_use]
 pub fn fuller() -> Zeno {
     const C: f64 = 0.3;

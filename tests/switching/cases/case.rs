@@ -164,8 +164,8 @@ pub struct Case {
 }
 
 impl Case {
-    /// The largest error of an event time, s, by `integrator` at `tolerance` or with steps of `step` (s); infinite where not
-    /// all events were found, or others.
+    /// The largest error of an event time, s, by `integrator` at `tolerance` or with steps of `step` (s); infinite
+    /// where not all events were found, or others.
     #[must_use]
     pub fn error(&self, integrator: Integrator, tolerance: f64, step: f64) -> f64 {
         let request = Request { span: [0.0, self.end], tolerance, fixed_step: step, ..Request::default() };

@@ -1,7 +1,8 @@
 //! Switching: problems whose events are known in closed form.
 //!
-//! In: nothing. Out: [`cases`], to be run with any integrator at any tolerance, and the error of the event times that come
-//! out of it; [`balls`], whose events accumulate at a known instant. The suites `switching` and `bad_input` use them.
+//! In: nothing. Out: [`cases`], to be run with any integrator at any tolerance, and the error of the event times that
+//! come out of it; [`balls`], whose events accumulate at a known instant. The suites `switching` and `bad_input` use
+//! them.
 
 pub mod balls;
 pub mod case;

@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 use super::case::{Case, started};
 use super::flow::Flow;
 
-/// A mass that is pushed back with a constant force: parabolas, which every method of order 2 follows exactly. What is left
-/// is the error of the location alone.
+/// A mass that is pushed back with a constant force: parabolas, which every method of order 2 follows exactly. What is
+/// left is the error of the location alone.
 #[must_use]
 pub fn relay() -> Case {
     let rate = |_: f64, x: &[f64; 2], negative: &[bool; 1]| [x[1], if negative[0] { 1.0 } else { -1.0 }];

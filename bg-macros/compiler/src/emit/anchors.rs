@@ -1,8 +1,9 @@
 //! What an editor knows of the names in a macro call: hover, definition, references, rename, completion.
 //!
 //! In: the source as written, the models that it gives. Out: a hidden module for rust-analyzer alone, which sets
-//! `cfg(rust_analyzer)`; rustc takes it away unread. Method: a struct for each graph and part with a field for everything that
-//! is declared, at its place in the source, and for every use an expression that reads the field at the place of the use.
+//! `cfg(rust_analyzer)`; rustc takes it away unread. Method: a struct for each graph and part with a field for
+//! everything that is declared, at its place in the source, and for every use an expression that reads the field at the
+//! place of the use.
 //!
 //! Only what means something is mentioned, so that rust-analyzer finds no faults of its own.
 
@@ -32,8 +33,9 @@ pub fn anchors(source: &Source, models: &[Compiled]) -> TokenStream {
     scopes.module(&scopes.names(source, models))
 }
 
-/// The module of a macro call with faults. The name where the caret may be stands in front of all else, so that what is in front
-/// of it does not change with it: rust-analyzer compares the tokens with and without its own word at the caret.
+/// The module of a macro call with faults. The name where the caret may be stands in front of all else, so that what is
+/// in front of it does not change with it: rust-analyzer compares the tokens with and without its own word at the
+/// caret.
 #[must_use]
 pub fn anchors_with_faults(source: &Source, faults: &[Fault]) -> TokenStream {
     let scopes = Scopes::of(source);
@@ -156,7 +158,8 @@ enum At<'c> {
 }
 
 impl<'c> Meaning<'c> {
-    /// The struct of a graph or part, and what it mentions. `model` has the structs that its parameters and inputs are fields of.
+    /// The struct of a graph or part, and what it mentions. `model` has the structs that its parameters and inputs are
+    /// fields of.
     fn scope(&self, scope: &'c Scope, model: Option<&Compiled>) -> TokenStream {
         // The place of a graph's name is that of the generated model.
         let is_part = self.parts.iter().any(|part| std::ptr::eq(part, scope));

@@ -1,11 +1,12 @@
 //! Long straight-line code in blocks.
 //!
-//! In: the assignments of a long routine. Out: groups of them, of which those that repeat themselves are loops, and each group as it is written.
-//! What a group hands to others, or as a result, is in the array `v`; all else are its own `let`s. Each `let` is a scope inside the one
-//! before, and LLVM's stack overflows over some thousands of them; places of an array take rustc's check ten times as long as `let`s.
+//! In: the assignments of a long routine. Out: groups of them, of which those that repeat themselves are loops, and
+//! each group as it is written. What a group hands to others, or as a result, is in the array `v`; all else are its own
+//! `let`s. Each `let` is a scope inside the one before, and LLVM's stack overflows over some thousands of them; places
+//! of an array take rustc's check ten times as long as `let`s.
 //!
-//! An iteration reads windows: places of an array side by side, whose first one goes on in even steps or stands in a table. So bounds are checked
-//! once for a window, if at all, and what stands in it has no place to calculate.
+//! An iteration reads windows: places of an array side by side, whose first one goes on in even steps or stands in a
+//! table. So bounds are checked once for a window, if at all, and what stands in it has no place to calculate.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,8 +36,8 @@ impl<'a> Group<'a> {
         assignments.chunks(BLOCK).map(|assignments| Self { assignments, period: assignments.len() })
     }
 
-    /// The groups of assignments, with loops where they repeat themselves. Operands of which one is of a kind and the other is not do not
-    /// stand at the same place of an iteration.
+    /// The groups of assignments, with loops where they repeat themselves. Operands of which one is of a kind and the
+    /// other is not do not stand at the same place of an iteration.
     pub(super) fn of(assignments: &'a [Assignment], kind: &dyn Fn(&Operand) -> bool) -> Vec<Self> {
         let (mut groups, mut from) = (Vec::new(), 0);
         for repetition::Run { start, period, count } in repetition::runs(assignments, kind) {
@@ -183,7 +184,8 @@ impl Part<'_> {
     }
 }
 
-/// The definition of a place in iteration `i`: in even steps, from which LLVM knows that it is in bounds, or from a table.
+/// The definition of a place in iteration `i`: in even steps, from which LLVM knows that it is in bounds, or from a
+/// table.
 fn places_of(name: &str, places: &[usize]) -> String {
     let first = places[0];
     let step = places[1].checked_sub(first);
@@ -200,7 +202,8 @@ fn places_of(name: &str, places: &[usize]) -> String {
 /// What an iteration reads side by side from one array.
 struct Window {
     array: &'static str,
-    /// Temporaries of the loop, each with its place in the array in each iteration. Their distances are always the same.
+    /// Temporaries of the loop, each with its place in the array in each iteration. Their distances are always the
+    /// same.
     inputs: Vec<(u32, Vec<usize>)>,
 }
 

@@ -1,6 +1,7 @@
 //! The items of a model: its structs and the modules that they are in.
 //!
-//! In: parameters, inputs, the tokens of the model's own struct. Out: structs with units and docs, and their access by name.
+//! In: parameters, inputs, the tokens of the model's own struct. Out: structs with units and docs, and their access by
+//! name.
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -60,12 +61,12 @@ pub(super) fn number_text(value: f64) -> String {
 }
 
 impl Given<'_> {
-    /// The items of a model: its structs, `definition` among them, and what is implemented for them, `code`, in modules of their
-    /// own.
+    /// The items of a model: its structs, `definition` among them, and what is implemented for them, `code`, in modules
+    /// of their own.
     ///
-    /// Neither module sees names of the user's but those of the structs, and `code` knows these as `Model`, `Parameters` and
-    /// `Inputs` only. So what is called `Option`, `f64` or `S` by the user, as a model or beside one, is no other thing for
-    /// the generated code; and without a prelude of the user's there is still its own.
+    /// Neither module sees names of the user's but those of the structs, and `code` knows these as `Model`,
+    /// `Parameters` and `Inputs` only. So what is called `Option`, `f64` or `S` by the user, as a model or beside one,
+    /// is no other thing for the generated code; and without a prelude of the user's there is still its own.
     pub(super) fn items(&self, definition: &TokenStream, code: &TokenStream) -> TokenStream {
         // Not at the declaration, which is the struct's.
         let (visibility, name) = (self.visibility, identifier(&self.name.text));

@@ -1,7 +1,7 @@
 //! What the names of things have after their dot, as an editor shows it.
 //!
-//! In: an item's kind. Out: its quantities with shape, unit and meaning: those of the language's reference. A test compiles
-//! a graph that observes each of them.
+//! In: an item's kind. Out: its quantities with shape, unit and meaning: those of the language's reference. A test
+//! compiles a graph that observes each of them.
 
 use crate::source::ast::{ElementKind, Item, Joint, JointKind, JunctionKind};
 

@@ -1,7 +1,7 @@
 //! The model type and its constructors.
 //!
-//! In: a [`Compiled`]. Out: a type that implements `bg_model::System`, its capabilities and `bg_model::Model`, generic over
-//! the scalar; flat single assignments over fixed-size vectors. Each trait has a file of its own in this folder.
+//! In: a [`Compiled`]. Out: a type that implements `bg_model::System`, its capabilities and `bg_model::Model`, generic
+//! over the scalar; flat single assignments over fixed-size vectors. Each trait has a file of its own in this folder.
 
 mod capabilities;
 mod impacts;
@@ -42,8 +42,8 @@ struct Emission<'a> {
     shape: Shape,
 }
 
-/// The numbers of states, switches, outputs and parameters, as they stand in types: a name there shows in documentation as the whole
-/// text of the macro's call.
+/// The numbers of states, switches, outputs and parameters, as they stand in types: a name there shows in documentation
+/// as the whole text of the macro's call.
 struct Shape {
     n: Literal,
     g: Literal,

@@ -1,9 +1,9 @@
 //! Parts for other macro calls, of this crate and of others.
 //!
-//! In: the parts of a call. Out: for each public one a `macro_rules!` that hands its tokens to whoever asks, re-exported under
-//! the part's own name, so that its path is that of an item. Whoever meets a path asks: it calls that macro with its own tokens,
-//! and the macro calls `bond_graph!` with the part in front of them. Method: tokens carried by callbacks, as in the crate
-//! `macro_magic` (Sam Johnson, 2023).
+//! In: the parts of a call. Out: for each public one a `macro_rules!` that hands its tokens to whoever asks,
+//! re-exported under the part's own name, so that its path is that of an item. Whoever meets a path asks: it calls that
+//! macro with its own tokens, and the macro calls `bond_graph!` with the part in front of them. Method: tokens carried
+//! by callbacks, as in the crate `macro_magic` (Sam Johnson, 2023).
 //!
 //! All exported macros of a crate stand in one place, so that the name of each has the part's place in the source.
 

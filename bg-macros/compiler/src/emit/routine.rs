@@ -1,8 +1,8 @@
 //! Straight-line code as text and as tokens.
 //!
-//! In: a [`Routine`] and the text of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`; a long
-//! routine is cut into `blocks`. Statements are written as text, which becomes tokens at once: inside of rustc each piece that is
-//! quoted is handed over and copied several times, which takes three times as long.
+//! In: a [`Routine`] and the text of what it refers to. Out: one `let` for each assignment, generic over a scalar `S`;
+//! a long routine is cut into `blocks`. Statements are written as text, which becomes tokens at once: inside of rustc
+//! each piece that is quoted is handed over and copied several times, which takes three times as long.
 
 extern crate proc_macro;
 
@@ -25,7 +25,8 @@ pub struct Names<'a> {
     pub switch: &'a dyn Fn(u32) -> String,
 }
 
-/// The tokens of generated text. Inside of rustc its own lexer reads them; that of `proc_macro2` would read them first, to be sure.
+/// The tokens of generated text. Inside of rustc its own lexer reads them; that of `proc_macro2` would read them first,
+/// to be sure.
 pub(super) fn parsed(text: &str) -> TokenStream {
     const FAILED: &str = "generated text is made of tokens";
     if proc_macro::is_available() {

@@ -1,13 +1,13 @@
 //! The Taylor series of the rates as tokens.
 //!
-//! In: the routine of the rates. Out: the body of `expand` of `Series`: its assignments once for the values at the start, and once, in
-//! a loop over the orders, for the coefficients. Products, quotients and functions need the coefficients of lower orders as
-//! well, which rows of a work table keep; see `bg_model::series`. What does not change has no coefficients after the
-//! start: nothing is left of it in the loop.
+//! In: the routine of the rates. Out: the body of `expand` of `Series`: its assignments once for the values at the
+//! start, and once, in a loop over the orders, for the coefficients. Products, quotients and functions need the
+//! coefficients of lower orders as well, which rows of a work table keep; see `bg_model::series`. What does not change
+//! has no coefficients after the start: nothing is left of it in the loop.
 //!
-//! What iterations find is a number at the start only. A step of Newton's iteration on series gives the coefficient of an order
-//! where all lower ones are right and that one is 0 (Brent and Kung 1978, Fast algorithms for manipulating formal power series),
-//! so each order is gone through twice: for that coefficient, then with it.
+//! What iterations find is a number at the start only. A step of Newton's iteration on series gives the coefficient of
+//! an order where all lower ones are right and that one is 0 (Brent and Kung 1978, Fast algorithms for manipulating
+//! formal power series), so each order is gone through twice: for that coefficient, then with it.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};

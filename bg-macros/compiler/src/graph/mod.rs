@@ -1,6 +1,7 @@
 //! The multibond graph: nodes, bonds and expressions with every name resolved, every unit known.
 //!
-//! In: `ast` of bond-graph words. Out: [`BondGraph`]. No longer occurs: names, missing ports, unknown cardinalities, units.
+//! In: `ast` of bond-graph words. Out: [`BondGraph`]. No longer occurs: names, missing ports, unknown cardinalities,
+//! units.
 
 pub mod causality;
 mod domains;

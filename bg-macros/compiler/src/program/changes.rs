@@ -1,6 +1,7 @@
 //! What of a routine changes with time.
 //!
-//! In: its steps. Out: which temporaries and pairs change. Inputs and constants do not; a pair changes where one of its numbers does.
+//! In: its steps. Out: which temporaries and pairs change. Inputs and constants do not; a pair changes where one of its
+//! numbers does.
 
 use std::collections::BTreeSet;
 

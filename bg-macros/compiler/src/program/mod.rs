@@ -1,7 +1,7 @@
 //! The programs of a model: what each generated function evaluates, in order.
 //!
-//! In: equations and their derivatives. Out: [`Programs`], straight-line code for each function, and a [`Tape`] for pictures.
-//! Method: `bg_expressions::schedule`.
+//! In: equations and their derivatives. Out: [`Programs`], straight-line code for each function, and a [`Tape`] for
+//! pictures. Method: `bg_expressions::schedule`.
 
 mod changes;
 mod programs;

@@ -1,7 +1,7 @@
 //! The programs of a model's functions.
 //!
-//! In: equations, the derivatives of the rates and the second derivatives. Out: what every generated function evaluates, in order,
-//! with its table of constants.
+//! In: equations, the derivatives of the rates and the second derivatives. Out: what every generated function
+//! evaluates, in order, with its table of constants.
 
 use std::ops::Range;
 
@@ -26,8 +26,8 @@ pub struct Programs {
     pub reversed: Option<Reversed>,
     /// The derivatives of the rates, with a constant table of their own.
     pub jacobian: Program<1>,
-    /// The derivatives among states that are not of second order, with a constant table of their own, where all of them are many:
-    /// what dampers do.
+    /// The derivatives among states that are not of second order, with a constant table of their own, where all of them
+    /// are many: what dampers do.
     pub damping: Option<Program<1>>,
     /// What there is for states of second order, with a constant table of its own.
     pub second_order: Option<SecondOrderPrograms>,
@@ -39,7 +39,8 @@ pub struct Programs {
     pub sizes: Program<1>,
     /// Functions of parameters and unknowns, from which the start is made.
     pub starting: Starting,
-    /// The scalars of what is asked of values, in the order of the requirements: in `new`, in `start`. None where nothing is asked.
+    /// The scalars of what is asked of values, in the order of the requirements: in `new`, in `start`. None where
+    /// nothing is asked.
     pub required: [Option<Program<1>>; 2],
     /// What the laws give that can make numbers which are not finite, with its own constants.
     pub not_finite: Program<1>,
@@ -81,8 +82,8 @@ pub struct SecondOrderPrograms {
     pub constants: Routine,
     /// The second derivatives, from states and rates.
     pub second_derivatives: Routine,
-    /// The rates with second derivatives in their places, where rates are inlined: otherwise rates and second derivatives, one
-    /// after the other, take as long.
+    /// The rates with second derivatives in their places, where rates are inlined: otherwise rates and second
+    /// derivatives, one after the other, take as long.
     pub forces: Option<Routine>,
     /// The forces in pairs of operations, where that pays.
     pub paired_forces: Option<Paired>,

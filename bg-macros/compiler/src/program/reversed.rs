@@ -1,7 +1,8 @@
 //! The reverse sweeps of a model's functions.
 //!
-//! In: the programs of the running model. Out: for each function that a run is made of how a weighted sum of its results depends on states and
-//! constants. Adjoint gradients follow a run backwards with them. Their operations are those of the functions, in no other order.
+//! In: the programs of the running model. Out: for each function that a run is made of how a weighted sum of its
+//! results depends on states and constants. Adjoint gradients follow a run backwards with them. Their operations are
+//! those of the functions, in no other order.
 
 use super::programs::Running;
 use super::{Operand, Reverse, Routine, reverse};
@@ -27,8 +28,8 @@ impl Reversed {
     }
 }
 
-/// The reverse sweeps of the functions of a model with so many states. None where rates are not inlined: of longer ones the sweeps, three
-/// times as long, are too much to check in each build.
+/// The reverse sweeps of the functions of a model with so many states. None where rates are not inlined: of longer ones
+/// the sweeps, three times as long, are too much to check in each build.
 pub fn reversed(running: &Running, states: usize) -> Option<Reversed> {
     let of = |routine: &Routine| reverse(routine, routine.results.len(), &format!("reverse_{}", routine.name));
     running.is_inlined().then(|| Reversed {

@@ -1,8 +1,8 @@
 //! A tape: values that are wanted for pictures only, as a table that is interpreted and not as code that is compiled.
 //!
-//! In: quantities of the equations. Out: a [`Tape`]. Every step of it gives one value from values of earlier steps; its words
-//! are those of `bg_model::drawing`, which reads it. A table of numbers costs the user's build next to nothing, and a picture
-//! asks for few evaluations.
+//! In: quantities of the equations. Out: a [`Tape`]. Every step of it gives one value from values of earlier steps; its
+//! words are those of `bg_model::drawing`, which reads it. A table of numbers costs the user's build next to nothing,
+//! and a picture asks for few evaluations.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,7 @@
 //! The source as a tree: what a user wrote, with the span of every name, before any name means anything.
 //!
-//! One tree serves both vocabularies; after `part::flatten` parts and repetitions no longer occur, after `mechanism::expand` the
-//! items of the second vocabulary.
+//! One tree serves both vocabularies; after `part::flatten` parts and repetitions no longer occur, after
+//! `mechanism::expand` the items of the second vocabulary.
 
 use std::fmt::{Debug, Formatter, Result};
 
@@ -329,8 +329,8 @@ pub enum Direction {
 /// The variable of a nonlinear law.
 #[derive(Clone, Debug)]
 pub struct LawVariable {
-    /// `effort` or `flow` in front of the name; without it an R's law is of its flow, a C's of its displacement, an I's of
-    /// its momentum.
+    /// `effort` or `flow` in front of the name; without it an R's law is of its flow, a C's of its displacement, an I's
+    /// of its momentum.
     pub role: Option<Role>,
     /// The variable's name.
     pub name: Name,
@@ -464,7 +464,8 @@ pub struct Scene {
     pub rigid: Rigid,
     /// `angles;`: orientations that turn about one axis only are integrated as angles.
     pub angles: bool,
-    /// `all reactions;`: what rigid joints determine of bodies stays in the states, with a reaction for each row of each joint.
+    /// `all reactions;`: what rigid joints determine of bodies stays in the states, with a reaction for each row of
+    /// each joint.
     pub all_reactions: bool,
     /// `dependent { rod }`: bodies of which loops give the orientations.
     pub dependent: Vec<Name>,
@@ -764,8 +765,8 @@ impl Friction {
     }
 }
 
-/// The ends of a free axis or of a junction's displacement: one-sided springs with dampers, or rigid with a coefficient of
-/// restitution.
+/// The ends of a free axis or of a junction's displacement: one-sided springs with dampers, or rigid with a coefficient
+/// of restitution.
 #[derive(Clone, Debug)]
 pub struct Stop {
     /// Its name (no dots).
@@ -780,7 +781,8 @@ pub struct Stop {
     pub stiffness: Option<Expression>,
     /// `damping E;`
     pub damping: Option<Expression>,
-    /// `restitution E;` in the place of stiffness and damping: the part of its speed with which something leaves that hits it.
+    /// `restitution E;` in the place of stiffness and damping: the part of its speed with which something leaves that
+    /// hits it.
     pub restitution: Option<Expression>,
     /// `rest below E;` the speed of a rebound below which it rests.
     pub rest: Option<Expression>,
@@ -856,8 +858,8 @@ pub enum ExpressionKind {
     Name(Name),
     /// `-a`
     Negate(Box<Expression>),
-    /// `a + b - c` or `a * b / c`: operators that bind alike, from left to right. The first operand is neither, so that a chain
-    /// of any length is one level of the tree.
+    /// `a + b - c` or `a * b / c`: operators that bind alike, from left to right. The first operand is neither, so that
+    /// a chain of any length is one level of the tree.
     Chain(Box<Expression>, Vec<Operation>),
     /// `f(a, b)`
     Call(Name, Vec<Expression>),

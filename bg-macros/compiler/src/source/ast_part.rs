@@ -118,7 +118,8 @@ pub enum StartKind {
     Spin,
 }
 
-/// `for INDEX in FROM..TO { ... }`: the statements once for each whole number from the first to the one before the last.
+/// `for INDEX in FROM..TO { ... }`: the statements once for each whole number from the first to the one before the
+/// last.
 #[derive(Clone, Debug)]
 pub struct For {
     /// What the number is called inside.

@@ -1,8 +1,8 @@
-//! What a value in a user's clause must be, such as the mass of a body: its words, its shape, what it may depend on, and what
-//! physics allows.
+//! What a value in a user's clause must be, such as the mass of a body: its words, its shape, what it may depend on,
+//! and what physics allows.
 //!
-//! In: the clause that an expansion binds to a name. Out: faults at the user's own token where shape or dependence are wrong
-//! (`graph`), and requirements of the value (`requirements`).
+//! In: the clause that an expansion binds to a name. Out: faults at the user's own token where shape or dependence are
+//! wrong (`graph`), and requirements of the value (`requirements`).
 
 /// A user's clause.
 #[derive(Clone, Debug)]
@@ -53,8 +53,8 @@ pub enum Allowed {
     Fraction,
     /// The way to the end of a stop, which is not negative but for what closing the joints leaves of it.
     Clearance,
-    /// The inertia of a rigid body: principal moments or a symmetric matrix, positive, none of the moments larger than the other
-    /// two together.
+    /// The inertia of a rigid body: principal moments or a symmetric matrix, positive, none of the moments larger than
+    /// the other two together.
     Inertia,
     /// A rotation matrix.
     Rotation,

@@ -1,7 +1,8 @@
 //! What a mechanism looks like: its bodies with their solids and points, its joints with their forces.
 //!
 //! In: nothing. Out: a [`Drawing`] of whatever stands for a quantity in a stage: an expression of the tree, a term, the
-//! scalars of the equations, a place in a table. The mechanism words fill it; a graph in bond-graph words has an empty one.
+//! scalars of the equations, a place in a table. The mechanism words fill it; a graph in bond-graph words has an empty
+//! one.
 
 use super::ast::Axis;
 

@@ -1,7 +1,7 @@
 //! The tree as text in one canonical layout, so that parsing the text gives an equal tree.
 //!
-//! In: any tree of [`crate::source::ast`]. Out: its text: four blanks per level, one statement per line, no parenthesis and no
-//! digit more than needed. No text ends with a line feed but that of a whole source.
+//! In: any tree of [`crate::source::ast`]. Out: its text: four blanks per level, one statement per line, no parenthesis
+//! and no digit more than needed. No text ends with a line feed but that of a whole source.
 
 use std::fmt::{Display, Formatter, Result};
 

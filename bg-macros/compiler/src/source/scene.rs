@@ -1,7 +1,7 @@
 //! Scenes: the uses of one mechanism, each a graph of its own.
 //!
-//! In: one `ast::Graph` with scenes. Out: the literal graph, and for each scene the graph without what it leaves out and
-//! with what it watches. No longer occurs: `Item::Scene`, `Item::ScenesOnly`.
+//! In: one `ast::Graph` with scenes. Out: the literal graph, and for each scene the graph without what it leaves out
+//! and with what it watches. No longer occurs: `Item::Scene`, `Item::ScenesOnly`.
 
 use crate::fault::{Explain, Fault, Staged, near_miss};
 use crate::source::ast::{ElementKind, Expectation, Graph, Item, Name, Rigid, Scene};
@@ -115,7 +115,8 @@ fn no_scene(source: &Graph) -> Option<Fault> {
     (!source.items.iter().any(|item| matches!(item, Item::Scene(_)))).then(|| Fault::new(span, &F::NoScene))
 }
 
-/// The fault of a model that keeps a parameter adjustable which the first one does not: each with its name and parameters.
+/// The fault of a model that keeps a parameter adjustable which the first one does not: each with its name and
+/// parameters.
 #[must_use]
 pub fn adjusts_more((scene, own): (&Name, Vec<&str>), (first, of_first): (&Name, Vec<&str>)) -> Option<Fault> {
     let name = own.into_iter().find(|name| !of_first.contains(name))?.to_owned();

@@ -1,7 +1,7 @@
 //! Every name and every value of a statement.
 //!
-//! In: an [`Item`]. Out: each of its names and expressions in turn, handed to a function that may change it. What is only known
-//! inside of the item, such as a body's points, is not met.
+//! In: an [`Item`]. Out: each of its names and expressions in turn, handed to a function that may change it. What is
+//! only known inside of the item, such as a body's points, is not met.
 
 use crate::source::ast::{
     Body, Element, Ends, Expression, ExpressionKind, Friction, Item, LawVariable, Name, Observation, Point, Port,

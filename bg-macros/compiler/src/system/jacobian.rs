@@ -3,12 +3,13 @@
 //! In: [`StateEquations`]. Out: the places where df/dx can differ from zero, each with its expression, and df/dt, in a
 //! [`Jacobian`] with a pool of its own, so that no other function's order of operations depends on it. An entry that is
 //! identically zero has no place.
-//! Method: forward accumulation, one sweep for each column (Griewank & Walther 2008, Evaluating Derivatives, ch. 3). What
-//! the rates share, such as the force in a joint, is differentiated once for all rows, as equal expressions are one node.
-//! The reactions of rigid joints couple every state with every other, while the equations that give them are sparse. So these
-//! stand beside the rates, and the reactions beside the states: df/dx is f_x - f_l (r_l)^-1 r_x of the rates f(x, l) with
-//! r(x, l) = 0, and nobody has to multiply it out. Dry friction among them keeps df/dx itself, by the implicit function
-//! theorem from the factors that solve for the reactions: where others hold already what sticks, r_l has no inverse.
+//! Method: forward accumulation, one sweep for each column (Griewank & Walther 2008, Evaluating Derivatives, ch. 3).
+//! What the rates share, such as the force in a joint, is differentiated once for all rows, as equal expressions are
+//! one node. The reactions of rigid joints couple every state with every other, while the equations that give them are
+//! sparse. So these stand beside the rates, and the reactions beside the states: df/dx is f_x - f_l (r_l)^-1 r_x of the
+//! rates f(x, l) with r(x, l) = 0, and nobody has to multiply it out. Dry friction among them keeps df/dx itself, by
+//! the implicit function theorem from the factors that solve for the reactions: where others hold already what sticks,
+//! r_l has no inverse.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -22,8 +23,8 @@ use crate::system::equations::solution::Solution;
 pub struct Jacobian {
     /// The expressions.
     pub pool: Pool,
-    /// The reactions that stand beside the states, each with the equation that gives it: rows and columns after those of
-    /// the states.
+    /// The reactions that stand beside the states, each with the equation that gives it: rows and columns after those
+    /// of the states.
     pub unknowns: Vec<Symbol>,
     /// The entries, row by row, in each row by column.
     pub entries: Vec<Entry>,

@@ -1,7 +1,7 @@
 //! How large the parts are of which an expression consists.
 //!
-//! In: expressions. Out: each with the magnitudes of all parts added up: no sum or difference cancels. What rounding leaves of an
-//! expression that should be zero is a small part of this.
+//! In: expressions. Out: each with the magnitudes of all parts added up: no sum or difference cancels. What rounding
+//! leaves of an expression that should be zero is a small part of this.
 
 use std::collections::BTreeMap;
 

@@ -1,11 +1,11 @@
 //! Back onto what rigid joints hold, after a step.
 //!
-//! In: equations whose reactions are solved for. Out: the same with `projections`, which close the gaps that truncation has
-//! left, and `settled`, which then bring the flows to zero.
-//! Method: one Newton step each, the smallest in the metric of kinetic energy. Impulses L with A L = -v change the momenta
-//! by what they move, and so take away just the flows v; the same impulses for the gaps q in place of v give velocities
-//! with which the pose moves for one unit of time (Bayo and Ledesma 1996, Augmented Lagrangian and mass-orthogonal
-//! projection methods, Nonlinear Dynamics 9). What is left of a gap is of the order of its square.
+//! In: equations whose reactions are solved for. Out: the same with `projections`, which close the gaps that truncation
+//! has left, and `settled`, which then bring the flows to zero.
+//! Method: one Newton step each, the smallest in the metric of kinetic energy. Impulses L with A L = -v change the
+//! momenta by what they move, and so take away just the flows v; the same impulses for the gaps q in place of v give
+//! velocities with which the pose moves for one unit of time (Bayo and Ledesma 1996, Augmented Lagrangian and
+//! mass-orthogonal projection methods, Nonlinear Dynamics 9). What is left of a gap is of the order of its square.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,8 @@ use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::equations::definite::Factors;
 use crate::system::equations::{Holding, Kind, StateEquations};
 
-/// D over the mobility, the squared sine of the angle between a row and those before it, at which the projection is damped by half.
+/// D over the mobility, the squared sine of the angle between a row and those before it, at which the projection is
+/// damped by half.
 const NEAR: f64 = 1e-8;
 
 /// Adds the projection onto what rigid joints hold, unless Baumgarte's terms stand for it.
@@ -36,8 +37,8 @@ pub fn complete(equations: &mut StateEquations) {
     close_gaps(equations, pseudo);
 }
 
-/// 1 / D of a row that may follow from others: 0 where it does, small where it nearly does. Near a singular pose a gap is
-/// closed over several steps.
+/// 1 / D of a row that may follow from others: 0 where it does, small where it nearly does. Near a singular pose a gap
+/// is closed over several steps.
 fn damped(pool: &mut Pool, kept: u32, pivot: Id, mobility: Id) -> Id {
     let kept = pool.symbol(Symbol::Kept(kept));
     let (square, least) = (pool.powi(pivot, 2), pool.powi(mobility, 2));
@@ -192,7 +193,8 @@ mod tests {
             let states = [pivot, mobility];
             evaluate(&pool, &[inverse], &Environment { states: &states, ..Environment::default() })[0] * pivot
         };
-        // The part of a gap that a step closes: all far from such a pose, half where the pivot is 1e-8 of the mobility, none in it.
+        // The part of a gap that a step closes: all far from such a pose, half where the pivot is 1e-8 of the mobility,
+        // none in it.
         for (pivot, mobility, part) in
             [(3.0, 3.0, 1.0), (2e-4, 2.0, 1.0), (2e-8, 2.0, 0.5), (2e-9, 2.0, 1.0 / 101.0), (0.0, 2.0, 0.0)]
         {

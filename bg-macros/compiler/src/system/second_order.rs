@@ -1,9 +1,9 @@
 //! The states of second order and their second derivatives.
 //!
-//! In: [`StateEquations`]. Out: the same with their states arranged; then the displacements and orientations that follow the
-//! momenta, each with d2x/dt2 as a function of the states and their rates, in a [`SecondOrder`] with a pool of its own. In a bond graph
-//! these are the kinematics: where things are follows from how they move. What a resistor moves, as a spring in series with a damper, is
-//! of first order.
+//! In: [`StateEquations`]. Out: the same with their states arranged; then the displacements and orientations that
+//! follow the momenta, each with d2x/dt2 as a function of the states and their rates, in a [`SecondOrder`] with a pool
+//! of its own. In a bond graph these are the kinematics: where things are follows from how they move. What a resistor
+//! moves, as a spring in series with a damper, is of first order.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -24,9 +24,9 @@ pub struct SecondOrder {
     pub forces: Vec<Id>,
 }
 
-/// Puts states of second order side by side, and of these and the others together what is of one kind and unit. Sums over states
-/// then have one weight for many; what comes in twos, as x and y, stays at even places, for pairs, if odd numbers come after.
-/// Integrals that only watch come last.
+/// Puts states of second order side by side, and of these and the others together what is of one kind and unit. Sums
+/// over states then have one weight for many; what comes in twos, as x and y, stays at even places, for pairs, if odd
+/// numbers come after. Integrals that only watch come last.
 pub fn arrange(equations: &mut StateEquations) {
     let states = &equations.states;
     let is_second: Vec<bool> = (0..states.len()).map(|index| is_of_second_order(equations, index)).collect();
@@ -54,7 +54,8 @@ pub fn arrange(equations: &mut StateEquations) {
     equations.pool.renumber_states(&to);
 }
 
-/// Finds the states of second order, which [`arrange`] has put side by side, and differentiates their rates along the flow.
+/// Finds the states of second order, which [`arrange`] has put side by side, and differentiates their rates along the
+/// flow.
 #[must_use]
 pub fn differentiate(equations: &StateEquations) -> SecondOrder {
     let mut pool = equations.pool.clone();
@@ -75,8 +76,8 @@ pub fn differentiate(equations: &StateEquations) -> SecondOrder {
     SecondOrder { pool, states, derivatives, forces }
 }
 
-/// Whether the state is a displacement or orientation whose rate is a function of momenta, positions and orientations alone,
-/// without branches, and of one momentum at least.
+/// Whether the state is a displacement or orientation whose rate is a function of momenta, positions and orientations
+/// alone, without branches, and of one momentum at least.
 fn is_of_second_order(equations: &StateEquations, index: usize) -> bool {
     let (pool, state): (&Pool, &State) = (&equations.pool, &equations.states[index]);
     let kind = |index: u32| equations.states[index as usize].origin.kind();

@@ -1,8 +1,8 @@
 //! How large the states of storages are beside the energy in all of them.
 //!
-//! In: [`StateEquations`]. Out: the stored energy E as far as the model knows it, and d2E/dx2 by each momentum and displacement, in
-//! [`Sizes`] with a pool of its own. A state x changes the energy by E where it changes by sqrt(2 E / (d2E/dx2)): that size depends
-//! neither on units nor on how large the machine is, and error norms measure by it.
+//! In: [`StateEquations`]. Out: the stored energy E as far as the model knows it, and d2E/dx2 by each momentum and
+//! displacement, in [`Sizes`] with a pool of its own. A state x changes the energy by E where it changes by sqrt(2 E /
+//! (d2E/dx2)): that size depends neither on units nor on how large the machine is, and error norms measure by it.
 
 use crate::expr::{Id, Pool, Symbol, partial};
 use crate::system::equations::{Kind, StateEquations};

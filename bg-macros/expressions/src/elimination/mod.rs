@@ -1,10 +1,11 @@
 //! The elimination of I - c J along the pattern of J.
 //!
-//! In: the places of J, and of the equations of unknowns beside the states, if there are any. Out: an [`Elimination`]: the order of the pivots and the operations of factorisation and solution
-//! in single steps, without a search and without loops. No place that stays zero occurs in them.
-//! Method: L U with pivots on the diagonal (`order`), each place of L and U calculated at once as in Doolittle's algorithm
-//! (`steps`; Golub, Van Loan, Matrix Computations, 4th edition, section 3.2), fill found on the way (Duff, Erisman, Reid,
-//! Direct Methods for Sparse Matrices, 2nd edition 2017, chapters 5 and 7).
+//! In: the places of J, and of the equations of unknowns beside the states, if there are any. Out: an [`Elimination`]:
+//! the order of the pivots and the operations of factorisation and solution in single steps, without a search and
+//! without loops. No place that stays zero occurs in them. Method: L U with pivots on the diagonal (`order`), each
+//! place of L and U calculated at once as in Doolittle's algorithm (`steps`; Golub, Van Loan, Matrix Computations, 4th
+//! edition, section 3.2), fill found on the way (Duff, Erisman, Reid, Direct Methods for Sparse Matrices, 2nd edition
+//! 2017, chapters 5 and 7).
 
 mod order;
 mod pattern;
@@ -16,9 +17,9 @@ use pattern::Pattern;
 
 use crate::schedule::Counts;
 
-/// How I - c J is factored and solved: with unknowns, the matrix of the rows (I - c f_x, -c f_l) of states and (r_x, r_l) of
-/// unknowns, whose right sides are zero. A slot is an index into the factors: the places of L and U beside the diagonal, and
-/// the reciprocals of the pivots that are not 1.
+/// How I - c J is factored and solved: with unknowns, the matrix of the rows (I - c f_x, -c f_l) of states and (r_x,
+/// r_l) of unknowns, whose right sides are zero. A slot is an index into the factors: the places of L and U beside the
+/// diagonal, and the reciprocals of the pivots that are not 1.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Elimination {
     /// The pivots' rows in order.

@@ -2,9 +2,9 @@
 //!
 //! In: a pattern. Out: orders that promise little fill, the natural one among them.
 //! Method: greedy, the next pivot being that with the least Markowitz count (r - 1)(c - 1) or with the least fill, ties
-//! broken by another measure and then by the index (Duff, Erisman, Reid, Direct Methods for Sparse Matrices, 2nd edition
-//! 2017, chapter 7; Davis, Direct Methods for Sparse Linear Systems, 2006, section 7.1). Pivots stay on the diagonal, so
-//! one permutation orders rows and columns.
+//! broken by another measure and then by the index (Duff, Erisman, Reid, Direct Methods for Sparse Matrices, 2nd
+//! edition 2017, chapter 7; Davis, Direct Methods for Sparse Linear Systems, 2006, section 7.1). Pivots stay on the
+//! diagonal, so one permutation orders rows and columns.
 
 use std::collections::BTreeSet;
 

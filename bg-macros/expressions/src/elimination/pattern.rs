@@ -41,8 +41,8 @@ impl Pattern {
         filled
     }
 
-    /// Eliminates a pivot: fills what that fills, then takes its row and column out. Gives the pivots whose updates or fill that may
-    /// have changed: those of the rows and columns that it has changed, and those that fill the rows.
+    /// Eliminates a pivot: fills what that fills, then takes its row and column out. Gives the pivots whose updates or
+    /// fill that may have changed: those of the rows and columns that it has changed, and those that fill the rows.
     pub(super) fn eliminate(&mut self, pivot: usize) -> BTreeSet<usize> {
         for place in self.fill_of(pivot) {
             self.fill(place);

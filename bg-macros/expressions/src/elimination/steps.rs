@@ -1,9 +1,9 @@
 //! The operations of an elimination in a given order.
 //!
 //! In: the order of the pivots, the places of J and of the unknowns' equations. Out: an [`Elimination`].
-//! Method: row by row in the order of the pivots; u_ij = a_ij - sum l_ik u_kj and l_ij likewise, k ascending (Golub, Van
-//! Loan, Matrix Computations, 4th edition, section 3.2). The product l_ik u_kj takes the pivot's reciprocal once: it goes
-//! into the column of L or the row of U, whichever is shorter, and the solution takes it on the other side.
+//! Method: row by row in the order of the pivots; u_ij = a_ij - sum l_ik u_kj and l_ij likewise, k ascending (Golub,
+//! Van Loan, Matrix Computations, 4th edition, section 3.2). The product l_ik u_kj takes the pivot's reciprocal once:
+//! it goes into the column of L or the row of U, whichever is shorter, and the solution takes it on the other side.
 
 use std::collections::BTreeMap;
 
@@ -55,8 +55,8 @@ impl Filled {
     }
 }
 
-/// The steps without those that subtract what is zero, as the right sides of unknowns are, and without those that no state
-/// needs.
+/// The steps without those that subtract what is zero, as the right sides of unknowns are, and without those that no
+/// state needs.
 fn needed(mut steps: Vec<Substep>, rows: usize, n: usize) -> Vec<Substep> {
     let rows_of = |step: &Substep| match *step {
         Substep::Subtract { row, column, .. } => (row, column),

@@ -133,7 +133,8 @@ fn dense_unknowns(n: usize, places: &[(usize, usize)], entries: &[f64], y: &[f64
     z
 }
 
-/// What dense elimination in the same order fills, all entries positive and the diagonal large, so that nothing cancels.
+/// What dense elimination in the same order fills, all entries positive and the diagonal large, so that nothing
+/// cancels.
 fn dense_fill(n: usize, places: &[(usize, usize)], order: &[usize]) -> BTreeSet<(usize, usize)> {
     let mut rows = vec![vec![false; n]; n];
     places.iter().for_each(|&(row, column)| rows[row][column] = true);

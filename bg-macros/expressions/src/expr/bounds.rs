@@ -1,7 +1,8 @@
 //! Between which numbers a value is.
 //!
 //! In: a node and the bounds of its symbols. Out: its bounds, for all values of the symbols in theirs.
-//! Method: interval arithmetic (Moore 1966, Interval Analysis), rounded to nearest: bounds are right to rounding. They can be too wide.
+//! Method: interval arithmetic (Moore 1966, Interval Analysis), rounded to nearest: bounds are right to rounding. They
+//! can be too wide.
 
 use super::domain::{Domain, known};
 use super::{Function, Id, Pool, Symbol};

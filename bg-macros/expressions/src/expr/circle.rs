@@ -1,9 +1,9 @@
 //! Shorter sums where cosines and sines of the same angles are in them.
 //!
 //! In: nodes, pairs of a cosine and a sine. Out: the same nodes, written shorter where that is possible.
-//! Method: from below, each sum is expanded into monomials. The square of a cosine becomes 1 - s^2; cosines and sines of two angles are
-//! put together to those of their difference and sum, which many sums then share; common factors are taken out. What costs
-//! fewer operations than before is taken.
+//! Method: from below, each sum is expanded into monomials. The square of a cosine becomes 1 - s^2; cosines and sines
+//! of two angles are put together to those of their difference and sum, which many sums then share; common factors are
+//! taken out. What costs fewer operations than before is taken.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
 //! What is known of a value without its symbols' values.
 //!
 //! In: a node, what is known of its symbols. Out: what is known of it, in a [`Domain`] such as signs or bounds.
-//! Method: the operations are followed in the domain (P. Cousot, R. Cousot, Abstract Interpretation, POPL 1977). It can say too much, never too
-//! little.
+//! Method: the operations are followed in the domain (P. Cousot, R. Cousot, Abstract Interpretation, POPL 1977). It can
+//! say too much, never too little.
 
 use rustc_hash::FxHashMap;
 

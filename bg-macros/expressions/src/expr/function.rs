@@ -35,8 +35,8 @@ impl Pool {
         if negative == positive { negative } else { self.intern(Node::Select { switch, negative, positive }) }
     }
 
-    /// The square root of `x` with the sign of `x`, linear for `x` small beside `laminar`: x / (x^2 + laminar^2)^(1/4). Odd,
-    /// monotone and differentiable any number of times for `laminar` above 0.
+    /// The square root of `x` with the sign of `x`, linear for `x` small beside `laminar`: x / (x^2 + laminar^2)^(1/4).
+    /// Odd, monotone and differentiable any number of times for `laminar` above 0.
     /// Source: Modelica Standard Library, `Modelica.Fluid.Utilities.regRoot`.
     pub fn laminar_root(&mut self, x: Id, laminar: Id) -> Id {
         let squares = [self.powi(x, 2), self.powi(laminar, 2)];

@@ -1,13 +1,13 @@
 //! Linear systems in symbols.
 //!
-//! In: the rows of a square matrix and the right side. Out: the solution as expressions, with the pivots that may vanish; or what
-//! has none.
-//! Method: Gaussian elimination on sparse rows. Of the entries that cannot vanish, numbers before others, the pivot is the one with
-//! the least product of other entries in its row and column (Markowitz 1957, The Elimination Form of the Inverse, Management Science
-//! 3); none is taken that is much smaller than another in its column, each as a share of the largest that its row had: an equation
-//! may be written in any unit. The first in order decides what is left open. An entry is zero where it is within rounding at
-//! arbitrary values of its symbols, by running error analysis: so a system that has no solution whatever its parameters is known as
-//! such, although its coefficients are rounded.
+//! In: the rows of a square matrix and the right side. Out: the solution as expressions, with the pivots that may
+//! vanish; or what has none.
+//! Method: Gaussian elimination on sparse rows. Of the entries that cannot vanish, numbers before others, the pivot is
+//! the one with the least product of other entries in its row and column (Markowitz 1957, The Elimination Form of the
+//! Inverse, Management Science 3); none is taken that is much smaller than another in its column, each as a share of
+//! the largest that its row had: an equation may be written in any unit. The first in order decides what is left open.
+//! An entry is zero where it is within rounding at arbitrary values of its symbols, by running error analysis: so a
+//! system that has no solution whatever its parameters is known as such, although its coefficients are rounded.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,8 +17,8 @@ use crate::random::Random;
 /// What rounding leaves of parts that cancel, relative to the sum of their sizes.
 const RESIDUE: f64 = 64.0 * f64::EPSILON;
 
-/// An entry is no pivot beside one in its column with a share of its row larger by more than this factor, at arbitrary values of the
-/// symbols.
+/// An entry is no pivot beside one in its column with a share of its row larger by more than this factor, at arbitrary
+/// values of the symbols.
 const GROWTH: f64 = 10.0;
 
 /// A linear system; a row has its entries by their columns.
@@ -254,7 +254,8 @@ mod tests {
     #[test]
     fn a_row_in_another_unit_does_not_change_the_pivots() {
         let mut pool = Pool::new();
-        // An inertia and a resistor that a transformer of 3.5 has between them: 1 + 613 and 2.2 * 3.5 * 175 / 2.2 nearly cancel.
+        // An inertia and a resistor that a transformer of 3.5 has between them: 1 + 613 and 2.2 * 3.5 * 175 / 2.2
+        // nearly cancel.
         for unit in [1.0, 1e-3, 1e3] {
             let rows = [[2.2, 7.7], [175.2674, 1.0 + 613.4359]].map(|row| row.map(|entry| unit * entry));
             let numbers = system(&mut pool, &[&[2.2, 7.7], &rows[1]], &[0.0; 2]);

@@ -27,16 +27,18 @@ pub enum Symbol {
     Flow(u32),
     /// A component of the reaction of a residual sink.
     Multiplier(u32),
-    /// Whether a row of the rigid joints takes part, 1 or 0: one that follows from the others does not. Known before a run.
+    /// Whether a row of the rigid joints takes part, 1 or 0: one that follows from the others does not. Known before a
+    /// run.
     Kept(u32),
     /// On which side of zero a root is by which a loop is closed, 1 or -1. Known before a run.
     Side(u32),
-    /// 1, or 0 where it is proved that the state that counts the turns of an angle is the angle itself. No longer there where code is made.
+    /// 1, or 0 where it is proved that the state that counts the turns of an angle is the angle itself. No longer there
+    /// where code is made.
     Turned(u32),
     /// A bond variable or state whose equation is not solved yet.
     Unsolved(u32),
-    /// What an iteration has found for a bond variable, nearly its value. It has no derivatives: the last step of the iteration,
-    /// which is in the equations, has them.
+    /// What an iteration has found for a bond variable, nearly its value. It has no derivatives: the last step of the
+    /// iteration, which is in the equations, has them.
     Found(u32),
     /// The derivative of an input with respect to time.
     Slope(u32),

@@ -128,8 +128,8 @@ impl Pool {
         self.reachable(roots).into_iter().any(|id| matches!(self.node(id), Node::Select { .. }))
     }
 
-    /// Gives each state another index, `to[k]` for `k`; the indices are the same as a set. Nodes keep their ids, and so the
-    /// order of what they are sums and products of.
+    /// Gives each state another index, `to[k]` for `k`; the indices are the same as a set. Nodes keep their ids, and so
+    /// the order of what they are sums and products of.
     pub fn renumber_states(&mut self, to: &[u32]) {
         let mut renumbered = Vec::new();
         for (node, id) in self.nodes.iter_mut().zip((0..).map(Id)) {

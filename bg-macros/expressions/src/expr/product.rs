@@ -2,8 +2,9 @@
 //!
 //! In: nodes with whole exponents. Out: a number, a node, a [`Node::Product`], or one of these times a number.
 //! Numbers and signs stand in front of the product, powers of one base are one factor, an inner product is flattened,
-//! the square of a square root is its argument, and `x^2/abs(x)` is `abs(x)`. `x/x` is 1 for every x; a zero factor makes the product 0, and 1/0
-//! is the number infinity. A power beyond [`MOST_EXPONENT`] is a call of `pow`, so that exponents never overflow.
+//! the square of a square root is its argument, and `x^2/abs(x)` is `abs(x)`. `x/x` is 1 for every x; a zero factor
+//! makes the product 0, and 1/0 is the number infinity. A power beyond [`MOST_EXPONENT`] is a call of `pow`, so that
+//! exponents never overflow.
 
 use std::collections::BTreeMap;
 
@@ -99,7 +100,8 @@ impl Pool {
         })
     }
 
-    /// `abs(x)` that the square of `x` is divided by, and `x`: derivatives of `x*abs(x)` have it, and a value at 0 without it.
+    /// `abs(x)` that the square of `x` is divided by, and `x`: derivatives of `x*abs(x)` have it, and a value at 0
+    /// without it.
     fn square_over_size(&self, draft: &Draft) -> Option<(Id, Id)> {
         draft.factors.iter().find_map(|(&id, &exponent)| match self.node(id) {
             Node::Call(Function::Abs, arguments) if exponent < 0 => {

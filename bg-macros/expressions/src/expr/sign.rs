@@ -1,8 +1,8 @@
 //! Which signs a value can have.
 //!
 //! In: a node and the signs of its symbols. Out: its signs, for all values of the symbols of theirs.
-//! Method: interval arithmetic with the intervals below, at and above zero (Moore 1966, Interval Analysis); it can say too much, never
-//! too little, but for underflow.
+//! Method: interval arithmetic with the intervals below, at and above zero (Moore 1966, Interval Analysis); it can say
+//! too much, never too little, but for underflow.
 
 use super::domain::{Domain, known};
 use super::{Function, Id, Pool, Symbol};

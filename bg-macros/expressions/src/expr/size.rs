@@ -1,7 +1,7 @@
 //! How large a value is beside what it is added up from.
 //!
-//! In: a node, numbers for its symbols. Out: its value and the sum of the sizes of its parts: a value far below that is what rounding
-//! leaves of parts that cancel.
+//! In: a node, numbers for its symbols. Out: its value and the sum of the sizes of its parts: a value far below that is
+//! what rounding leaves of parts that cancel.
 //! Method: running error analysis (Higham 2002, Accuracy and Stability of Numerical Algorithms, sec. 3.3).
 
 use rustc_hash::FxHashMap;

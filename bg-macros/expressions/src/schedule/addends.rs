@@ -1,7 +1,7 @@
 //! Common pairs of terms in the sums of a graph.
 //!
-//! In: a [`Graph`]. Out: the same graph, in which each pair of terms that several sums have up to a factor is a sum of its
-//! own; the order of the cores no longer is children first.
+//! In: a [`Graph`]. Out: the same graph, in which each pair of terms that several sums have up to a factor is a sum of
+//! its own; the order of the cores no longer is children first.
 //! Method: greedy elimination (`greedy`).
 
 use rustc_hash::FxHashMap;

@@ -2,8 +2,8 @@
 //!
 //! In: the terms of one sum. Out: its value, with x*a + x*b as x*(a + b) where that saves multiplications.
 //! Method: greedy choice of the literal with the largest saving, as in Brayton, McMullen 1982 (the decomposition and
-//! factorization of Boolean expressions), for algebraic literals: a coefficient, a factor, or a divisor. A product that is
-//! needed elsewhere, too, is saved by that share only.
+//! factorization of Boolean expressions), for algebraic literals: a coefficient, a factor, or a divisor. A product that
+//! is needed elsewhere, too, is saved by that share only.
 
 use std::collections::BTreeMap;
 

@@ -1,9 +1,9 @@
 //! Common pairs of factors in the products of a plan.
 //!
-//! In: a [`Plan`]. Out: the same plan, in which each pair of factors that several products have, or one product has more
-//! than once, is a product of its own; a divisor of many products is one reciprocal.
-//! Method: greedy elimination (`greedy`) on monomials, most frequent pair first; powers are pairs of equal factors, so that
-//! they are taken by squaring.
+//! In: a [`Plan`]. Out: the same plan, in which each pair of factors that several products have, or one product has
+//! more than once, is a product of its own; a divisor of many products is one reciprocal.
+//! Method: greedy elimination (`greedy`) on monomials, most frequent pair first; powers are pairs of equal factors, so
+//! that they are taken by squaring.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,8 @@ use super::plan::{Cell, Plan};
 /// Two factors: ascending if they are multiplied (`true`), dividend and divisor otherwise.
 type Pair = (u32, u32, bool);
 
-/// Products with the same divisor from which on one reciprocal of it is cheaper: with two it would save one division for
-/// two multiplications, which is no fewer operations.
+/// Products with the same divisor from which on one reciprocal of it is cheaper: with two it would save one division
+/// for two multiplications, which is no fewer operations.
 const RECIPROCAL: usize = 3;
 
 struct Products<'p> {

@@ -1,7 +1,7 @@
 //! From a plan to assignments of one operation each.
 //!
-//! In: a [`Plan`]. Out: a [`Routine`] whose assignments stand in depth-first order from the results, and the constants that
-//! it uses, in a table.
+//! In: a [`Plan`]. Out: a [`Routine`] whose assignments stand in depth-first order from the results, and the constants
+//! that it uses, in a table.
 //! Method: long sums and products are combined in pairs, the two operands that are ready first (Huffman 1952, with
 //! the depth as weight), which gives the shortest chain of dependent operations.
 

@@ -67,7 +67,8 @@ fn enqueue<E: Elimination>(from: &mut E, mut found: Vec<E::Pair>, queue: &mut Bi
 #[derive(Debug)]
 pub(super) struct Seen<P> {
     lines: FxHashMap<P, Vec<u32>>,
-    /// In how many lines each member was initially; a member of one line forms no common pair. Members beyond the end are new.
+    /// In how many lines each member was initially; a member of one line forms no common pair. Members beyond the end
+    /// are new.
     members: Vec<u32>,
 }
 

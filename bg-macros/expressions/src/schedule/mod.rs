@@ -1,11 +1,11 @@
 //! The order of evaluation: expressions become routines of single assignments.
 //!
-//! In: the roots of each routine in a [`Pool`]. Out: a [`Program`]; no parameter, no dead and no repeated operation occurs
-//! in its routines, and everything that only depends on parameters is in its constant table.
+//! In: the roots of each routine in a [`Pool`]. Out: a [`Program`]; no parameter, no dead and no repeated operation
+//! occurs in its routines, and everything that only depends on parameters is in its constant table.
 //! Method: each routine becomes a graph of dynamic cores with static coefficients (`build`), common factors come out of
 //! sums (`rebuild`, `factor`), common pairs of terms and of factors become values of their own (`addends`, `factors`;
-//! Hosangadi, Fallah, Kastner 2006), signs go where they are free (`signs`), and the rest is put in order (`flat`). As the
-//! greedy choices depend on each other, each way of grouping is tried and the cheapest result taken.
+//! Hosangadi, Fallah, Kastner 2006), signs go where they are free (`signs`), and the rest is put in order (`flat`). As
+//! the greedy choices depend on each other, each way of grouping is tried and the cheapest result taken.
 
 mod addends;
 mod build;
@@ -197,7 +197,8 @@ impl<T: Copy> Operation<T> {
     }
 }
 
-/// Rounds of grouping and sharing; a third one saves less than 0.02 % of the operations of the random graphs in the tests.
+/// Rounds of grouping and sharing; a third one saves less than 0.02 % of the operations of the random graphs in the
+/// tests.
 const ROUNDS: usize = 2;
 
 /// Routines of the requests with few operations. The pool gains nodes of parameters and numbers.

@@ -1,8 +1,9 @@
 //! The operations of a routine with any number of operands, coefficients being operands, too.
 //!
-//! In: a [`Graph`]. Out: cells of sums, products, functions and choices; children have smaller indices than parents, until
-//! products are shared.
-//! Method: one sweep; a coefficient in front of a sum that is used once and multiplies each of its terms goes into them.
+//! In: a [`Graph`]. Out: cells of sums, products, functions and choices; children have smaller indices than parents,
+//! until products are shared.
+//! Method: one sweep; a coefficient in front of a sum that is used once and multiplies each of its terms goes into
+//! them.
 
 use super::graph::{Core, Graph, ONE, Value};
 use super::rebuild::has_unit;

@@ -1,9 +1,10 @@
 //! Repetition in long straight-line code.
 //!
 //! In: assignments. Out: the runs in which the same piece follows itself, and the piece with what each iteration reads.
-//! Two stretches are the same piece where their operations are, and where each operand is made at the same place of the piece, or
-//! in both outside of it. Method: a table of hashes tells where what stands at a place begins again, which gives periods; each is held
-//! by comparing. The first place where a run begins is taken, with the period that saves most.
+//! Two stretches are the same piece where their operations are, and where each operand is made at the same place of the
+//! piece, or in both outside of it. Method: a table of hashes tells where what stands at a place begins again, which
+//! gives periods; each is held by comparing. The first place where a run begins is taken, with the period that saves
+//! most.
 
 use std::hash::{Hash, Hasher};
 
@@ -106,8 +107,8 @@ const SHORTEST: usize = 128;
 /// Longer ones are no piece: it is one scope inside of the other for each of them.
 const LONGEST: usize = 2000;
 
-/// The runs in assignments, in their order. Operands of which one is of a kind and the other is not do not stand at the same place
-/// of a piece.
+/// The runs in assignments, in their order. Operands of which one is of a kind and the other is not do not stand at the
+/// same place of a piece.
 #[must_use]
 pub fn runs(assignments: &[Assignment], kind: &dyn Fn(&Operand) -> bool) -> Vec<Run> {
     let shapes = shapes(assignments, kind);

@@ -1,9 +1,10 @@
 //! The reverse sweep of straight-line code: how a weighted sum of its results depends on all that it reads, at once.
 //!
-//! In: a [`Routine`]. Out: a [`Reverse`], whose results are the derivatives of the sum by states, parameters and constants; the weights are
-//! [`Symbol::Weight`]. Method: reverse accumulation (Griewank & Walther 2008, Evaluating Derivatives, section 3.2). The operations are followed
-//! backwards; each hands the derivative by its value on to its operands. Signs stay beside the values until a sum takes them up,
-//! equal operations are made once, and operations of the routine whose values no derivative needs are dropped.
+//! In: a [`Routine`]. Out: a [`Reverse`], whose results are the derivatives of the sum by states, parameters and
+//! constants; the weights are [`Symbol::Weight`]. Method: reverse accumulation (Griewank & Walther 2008, Evaluating
+//! Derivatives, section 3.2). The operations are followed backwards; each hands the derivative by its value on to its
+//! operands. Signs stay beside the values until a sum takes them up, equal operations are made once, and operations of
+//! the routine whose values no derivative needs are dropped.
 
 use std::collections::BTreeMap;
 
@@ -17,11 +18,13 @@ use crate::expr::{Function, Symbol};
 pub struct Reverse {
     /// The routine's operations as far as they are needed, then those of the sweep. Its results belong to the leaves.
     pub routine: Routine,
-    /// What the sum is differentiated by, each once: states, then parameters, then constants. It does not depend on others.
+    /// What the sum is differentiated by, each once: states, then parameters, then constants. It does not depend on
+    /// others.
     pub leaves: Vec<Operand>,
 }
 
-/// The reverse sweep of the first `weighted` results of a routine. Time, inputs, and what is found or known before a run, are given.
+/// The reverse sweep of the first `weighted` results of a routine. Time, inputs, and what is found or known before a
+/// run, are given.
 #[must_use]
 pub fn reverse(routine: &Routine, weighted: usize, name: &str) -> Reverse {
     let mut sweep = Sweep::over(&routine.assignments);

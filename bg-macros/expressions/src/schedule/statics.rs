@@ -1,8 +1,8 @@
 //! Arithmetic of the values that are known before a routine runs.
 //!
-//! In: nodes of numbers (and, in a routine, parameters). Out: their signs, magnitudes, common factors and exact quotients.
-//! Method: each is read as a monomial, number * product of node^exponent. A common factor never needs a division by a
-//! parameter, which may be zero.
+//! In: nodes of numbers (and, in a routine, parameters). Out: their signs, magnitudes, common factors and exact
+//! quotients. Method: each is read as a monomial, number * product of node^exponent. A common factor never needs a
+//! division by a parameter, which may be zero.
 
 use rustc_hash::FxHashMap;
 

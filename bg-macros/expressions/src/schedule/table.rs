@@ -44,8 +44,8 @@ impl<T> Store<T> {
         self.items.len()
     }
 
-    /// All items under the roots, children first, in depth-first order from the roots in order. `children` hands each child
-    /// of an item to its last argument, in order.
+    /// All items under the roots, children first, in depth-first order from the roots in order. `children` hands each
+    /// child of an item to its last argument, in order.
     pub(super) fn post_order(
         &self,
         roots: impl DoubleEndedIterator<Item = u32>,

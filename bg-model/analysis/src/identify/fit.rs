@@ -1,11 +1,11 @@
 //! Least squares with bounds by Levenberg's and Marquardt's method.
 //!
-//! In: what gives residuals, alone and with their derivatives, where the variables start, their bounds. Out: the variables at which
-//! the sum of squares falls no further, with residuals and derivatives there.
-//! Method: steps (J'J + l D) d = -J'r with D the diagonal of J'J (J. J. More, The Levenberg-Marquardt algorithm, Lecture Notes in
-//! Mathematics 630 (1978)), solved by singular values of [J; sqrt(l D)]; a step is cut at the bounds, and a variable at a bound
-//! towards which the sum falls stays there. A step is tried without derivatives, which are taken where it has helped. Ours, since the
-//! crate `levenberg-marquardt` has no bounds.
+//! In: what gives residuals, alone and with their derivatives, where the variables start, their bounds. Out: the
+//! variables at which the sum of squares falls no further, with residuals and derivatives there.
+//! Method: steps (J'J + l D) d = -J'r with D the diagonal of J'J (J. J. More, The Levenberg-Marquardt algorithm,
+//! Lecture Notes in Mathematics 630 (1978)), solved by singular values of [J; sqrt(l D)]; a step is cut at the bounds,
+//! and a variable at a bound towards which the sum falls stays there. A step is tried without derivatives, which are
+//! taken where it has helped. Ours, since the crate `levenberg-marquardt` has no bounds.
 
 use bg_model::nalgebra::{DMatrix, DVector};
 
@@ -29,15 +29,15 @@ pub struct Fitted {
     pub has_converged: bool,
 }
 
-/// The damping at the start, its factors after steps that help and that do not, the smallest and the largest. The smallest one hinders no
-/// step along what the residuals determine to seven digits.
+/// The damping at the start, its factors after steps that help and that do not, the smallest and the largest. The
+/// smallest one hinders no step along what the residuals determine to seven digits.
 const DAMPING: f64 = 1e-4;
 const LESS: f64 = 0.1;
 const MORE: f64 = 10.0;
 const SMALLEST: f64 = 1e-14;
 const LARGEST: f64 = 1e12;
-/// A step below this part of a variable's size is none, nor one by which the sum of squares is to fall by less than this part of one
-/// residual's square: a hundred thousandth of a standard deviation.
+/// A step below this part of a variable's size is none, nor one by which the sum of squares is to fall by less than
+/// this part of one residual's square: a hundred thousandth of a standard deviation.
 const STEP: f64 = 1e-9;
 const FALL: f64 = 1e-10;
 /// A step that differs by less than this part of it from one that did not help is not tried.
@@ -61,7 +61,8 @@ pub trait Problem {
     fn linear(&mut self, x: &DVector<f64>) -> Result<Linear, Self::Error>;
 }
 
-/// Fits the variables from `start` on between `lower` and `upper`, by at most `most` evaluations. `sizes` are what steps are measured with.
+/// Fits the variables from `start` on between `lower` and `upper`, by at most `most` evaluations. `sizes` are what
+/// steps are measured with.
 ///
 /// # Errors
 /// That of the problem at the start.
@@ -156,7 +157,8 @@ fn step(residuals: &DVector<f64>, jacobian: &DMatrix<f64>, held: &[bool], dampin
 mod tests {
     use super::*;
 
-    /// Rosenbrock's valley: residuals 10 (y - x^2), 1 - x and a rest that jitters; how often residuals and derivatives were asked for.
+    /// Rosenbrock's valley: residuals 10 (y - x^2), 1 - x and a rest that jitters; how often residuals and derivatives
+    /// were asked for.
     #[derive(Default)]
     struct Valley {
         rest: f64,

@@ -1,9 +1,9 @@
 //! Identification: the parameters with which a model comes nearest to what was measured.
 //!
-//! In: a model, measured columns, which parameters may change. Out: their values with confidence intervals and correlations, what
-//! the data do not say, residuals. Method: least squares ([`fit()`]) on exact derivatives
-//! ([`bg_model::sensitivity`]). A residual counts in parts of its column's noise, which is what the column's residuals come to:
-//! the fit is repeated until that settles. A parameter that is positive is fitted by its logarithm.
+//! In: a model, measured columns, which parameters may change. Out: their values with confidence intervals and
+//! correlations, what the data do not say, residuals. Method: least squares ([`fit()`]) on exact derivatives
+//! ([`bg_model::sensitivity`]). A residual counts in parts of its column's noise, which is what the column's residuals
+//! come to: the fit is repeated until that settles. A parameter that is positive is fitted by its logarithm.
 
 mod data;
 pub mod fit;
@@ -88,8 +88,8 @@ pub struct Estimate {
     pub variable: Variable,
     /// The value found, in its unit.
     pub value: f64,
-    /// The ends of the interval that has the true value with 95 % confidence, where the model and normal noise hold; none where the
-    /// data do not determine it, or what is left of a column is no noise.
+    /// The ends of the interval that has the true value with 95 % confidence, where the model and normal noise hold;
+    /// none where the data do not determine it, or what is left of a column is no noise.
     pub interval: Option<[f64; 2]>,
     /// Whether it is at a bound.
     pub is_held: bool,
@@ -113,8 +113,8 @@ pub struct Identified {
     pub estimates: Vec<Estimate>,
     /// The correlation of the errors of each two of them; not a number where the data do not determine them.
     pub correlations: DMatrix<f64>,
-    /// Combinations of parameters that the data do not determine: each with the parts of their sizes by which they change together,
-    /// the largest first.
+    /// Combinations of parameters that the data do not determine: each with the parts of their sizes by which they
+    /// change together, the largest first.
     pub undetermined: Vec<Vec<(&'static str, f64)>>,
     /// The columns of the data with the model's values.
     pub columns: Vec<Column>,
@@ -141,17 +141,19 @@ const FITS: usize = 4;
 const SETTLED: f64 = 0.02;
 /// Noise below this part of a column's size is rounding and the run's own error.
 const EXACT: f64 = 1e-9;
-/// The run's own error in parts of a column's size: so many relative tolerances of a step, since errors of steps add up, and at most this.
+/// The run's own error in parts of a column's size: so many relative tolerances of a step, since errors of steps add
+/// up, and at most this.
 const OWN_ERROR: f64 = 1e3;
 const MOST_OWN: f64 = 1e-3;
-/// Singular values of the derivatives, each column of length one, below this part of the largest: the data do not determine what is
-/// along them.
+/// Singular values of the derivatives, each column of length one, below this part of the largest: the data do not
+/// determine what is along them.
 const SAME: f64 = 1e-7;
 /// The part of a parameter in a combination above which it is named.
 const NAMED: f64 = 0.1;
 
-/// Fits the `variables` of `model`, whose other parameters stay, to `data`; `request` says how runs are integrated. `told` is told
-/// of each run the parameters' values and the root of the mean square of residuals in parts of the noise.
+/// Fits the `variables` of `model`, whose other parameters stay, to `data`; `request` says how runs are integrated.
+/// `told` is told of each run the parameters' values and the root of the mean square of residuals in parts of the
+/// noise.
 ///
 /// # Errors
 /// [`IdentifyError`].
@@ -354,7 +356,8 @@ fn identified(
     let largest = svd.singular_values.max();
     let right = svd.v_t.as_ref().expect("it was asked for");
     let is_weak = |k: &usize| svd.singular_values[*k] <= SAME * largest;
-    // In parts of the variables' sizes, the largest 1; nothing of those that move no residual at all, which come by themselves.
+    // In parts of the variables' sizes, the largest 1; nothing of those that move no residual at all, which come by
+    // themselves.
     let parts = |row: usize| {
         let part = |k: usize| if norms[k] > 0.0 { right[(row, k)] / (norms[k] * variables[k].size()) } else { 0.0 };
         let mut parts: Vec<(usize, f64)> = (0..parameters).map(|k| (k, part(k))).collect();
@@ -405,8 +408,9 @@ fn identified(
     }
 }
 
-/// The number that a variable of Student's distribution with so many degrees of freedom stays below in magnitude with 95 %:
-/// expansion 26.7.5 of Abramowitz and Stegun, Handbook of Mathematical Functions (1964); within 1e-3 from 5 degrees on.
+/// The number that a variable of Student's distribution with so many degrees of freedom stays below in magnitude with
+/// 95 %: expansion 26.7.5 of Abramowitz and Stegun, Handbook of Mathematical Functions (1964); within 1e-3 from 5
+/// degrees on.
 fn student(freedom: f64) -> f64 {
     const NORMAL: f64 = 1.959_963_984_540_054;
     let x = NORMAL;

@@ -27,7 +27,8 @@ pub(super) fn independent<R: Ord + Copy>(matrix: &DMatrix<f64>, rank: &[R]) -> I
     chosen(scaled, &lengths, rank)
 }
 
-/// The independent rows of `matrix`, the largest first, as they are: of two that can stand for each other the longer one.
+/// The independent rows of `matrix`, the largest first, as they are: of two that can stand for each other the longer
+/// one.
 pub(super) fn longest(matrix: &DMatrix<f64>) -> Vec<usize> {
     let lengths = DVector::repeat(matrix.nrows(), 1.0);
     chosen(by_columns(matrix), &lengths, &vec![0; matrix.nrows()]).rows

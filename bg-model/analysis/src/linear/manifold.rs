@@ -196,8 +196,9 @@ struct Allowed {
 }
 
 impl Allowed {
-    /// `held` are the derivatives of the held flows (rows) by the momenta (columns), `moved` those of the rates of the pose. Those are bound
-    /// that the flows depend on most in the metric of kinetic energy: a link that does not turn in this pose tells nothing of the others.
+    /// `held` are the derivatives of the held flows (rows) by the momenta (columns), `moved` those of the rates of the
+    /// pose. Those are bound that the flows depend on most in the metric of kinetic energy: a link that does not turn
+    /// in this pose tells nothing of the others.
     fn by(held: &DMatrix<f64>, moved: &DMatrix<f64>) -> Self {
         let momenta = held.ncols();
         let mut weighed = held.transpose();

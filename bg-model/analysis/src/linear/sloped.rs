@@ -1,7 +1,7 @@
 //! A model in numbers with slopes, seen without the numbers of its states, switches and outputs.
 //!
-//! In: a mechanism. Out: its rates, outputs, guards and what its rigid joints hold, of states as slices, in [`Gradient`]. What linearises
-//! is compiled once, not once for each mechanism.
+//! In: a mechanism. Out: its rates, outputs, guards and what its rigid joints hold, of states as slices, in
+//! [`Gradient`]. What linearises is compiled once, not once for each mechanism.
 
 use bg_model::capability::Joints;
 use bg_model::mechanism::{Mechanism, ModelVisitor};

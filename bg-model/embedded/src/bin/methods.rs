@@ -1,5 +1,5 @@
-//! Runs the observer's model by every method of `integrate` and prints the bits where each comes to: the same text on a controller and
-//! on a desktop.
+//! Runs the observer's model by every method of `integrate` and prints the bits where each comes to: the same text on a
+//! controller and on a desktop.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -1,5 +1,5 @@
-//! What these units do not have: variables of other types than Float64, clocks, scheduled execution, configuration, dependencies by
-//! call. The functions are there, since a library without one of them is none.
+//! What these units do not have: variables of other types than Float64, clocks, scheduled execution, configuration,
+//! dependencies by call. The functions are there, since a library without one of them is none.
 
 use std::ffi::{c_char, c_void};
 

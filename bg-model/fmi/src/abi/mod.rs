@@ -1,8 +1,9 @@
 //! The functions of FMI 3.0 and 2.0, as a host finds them in a library: pointers in, slices on to [`Instance`].
 //!
-//! In: calls of a host. Out: a status; on an error or worse a sentence in its log. A panic ends here as the status Fatal; of an
-//! instance that has panicked only what frees it works. Source of names and types: FMI 3.0.1, sections 2.2 to 4 and its headers;
-//! for `two` FMI 2.0.4. The functions that make instances are in [`export!`](crate::export) and `absent`.
+//! In: calls of a host. Out: a status; on an error or worse a sentence in its log. A panic ends here as the status
+//! Fatal; of an instance that has panicked only what frees it works. Source of names and types: FMI 3.0.1, sections 2.2
+//! to 4 and its headers; for `two` FMI 2.0.4. The functions that make instances are in [`export!`](crate::export) and
+//! `absent`.
 
 #![allow(non_snake_case, reason = "the names are those of the standard")]
 #![allow(clippy::missing_safety_doc, reason = "the caller is a host that keeps to the standard, see `Handle::call`")]
@@ -98,8 +99,8 @@ impl Handle {
     /// Calls `then` with the instance that `pointer` points to.
     ///
     /// # Safety
-    /// As the standard asks of a host: `pointer` is null or comes from an instantiation and has not been freed, and no other call
-    /// with it is under way. Arrays have the lengths that are given with them, results have room.
+    /// As the standard asks of a host: `pointer` is null or comes from an instantiation and has not been freed, and no
+    /// other call with it is under way. Arrays have the lengths that are given with them, results have room.
     unsafe fn call(pointer: *mut c_void, then: impl FnOnce(&mut Instance) -> Result<(), Fault>) -> Status {
         // SAFETY: not freed and not in use, by the above.
         let Some(handle) = (unsafe { pointer.cast::<Self>().as_mut() }) else { return ERROR };

@@ -1,7 +1,8 @@
 //! The ends of joints as terminals: the force and the moment that a joint hands on, and how its ends move.
 //!
-//! In: a model's variables. Out: for each joint a terminal with one for each end inside it. Method: the point at which a joint holds a
-//! body is the one whose arm the law of the joint's transformer has; a joint without one holds the centre of mass.
+//! In: a model's variables. Out: for each joint a terminal with one for each end inside it. Method: the point at which
+//! a joint holds a body is the one whose arm the law of the joint's transformer has; a joint without one holds the
+//! centre of mass.
 
 use bg_model::description::PartInfo;
 

@@ -68,8 +68,8 @@ pub fn model_description(model: &dyn Described, packing: &Packing) -> String {
     text(model, packing, &token(model))
 }
 
-/// What tells this model, its variables and their order from all others: a hash of its description, packed in the usual way. It is
-/// the same in all versions of the standard.
+/// What tells this model, its variables and their order from all others: a hash of its description, packed in the usual
+/// way. It is the same in all versions of the standard.
 #[must_use]
 pub fn token(model: &dyn Described) -> String {
     let text = text(model, &Packing::default(), "");

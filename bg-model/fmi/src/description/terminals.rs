@@ -1,9 +1,10 @@
 //! `terminalsAndIcons.xml`: which variables of a unit belong together.
 //!
-//! In: a model. Out: the bonds whose effort and flow are both variables, the bodies whose pose is, joints by their ends (`joints`), and
-//! the text that tells hosts so.
-//! A bond that an input drives is a port: the host stands where the source does. All others are closed inside the unit, to be read
-//! only. Source: FMI 3.0.1, section 2.4.9 and its schema; the file stands in the same place in a unit of FMI 2.0.
+//! In: a model. Out: the bonds whose effort and flow are both variables, the bodies whose pose is, joints by their ends
+//! (`joints`), and the text that tells hosts so.
+//! A bond that an input drives is a port: the host stands where the source does. All others are closed inside the unit,
+//! to be read only. Source: FMI 3.0.1, section 2.4.9 and its schema; the file stands in the same place in a unit of FMI
+//! 2.0.
 
 use std::io;
 
@@ -95,8 +96,8 @@ impl Variables {
         let mut members = [efforts, flows];
         let (rule, description) = if let Some((source, _)) = driven {
             let is_inward = source.name == from;
-            // Velocities are the same where mechanisms meet and their forces balance; in all other domains efforts are the same and
-            // flows balance, as in the connectors of Modelica.
+            // Velocities are the same where mechanisms meet and their forces balance; in all other domains efforts are
+            // the same and flows balance, as in the connectors of Modelica.
             let balanced = usize::from(!matches!(flow, "m/s" | "rad/s"));
             members[balanced].iter_mut().for_each(|member| member.kind = if is_inward { "inflow" } else { "outflow" });
             let direction = if is_inward { "into" } else { "out of" };
@@ -175,7 +176,8 @@ fn shares(node: &ElementInfo) -> [bool; 2] {
     }
 }
 
-/// What outputs call the effort, 0, or the flow, 1, that each bond of a node has: of the axis of a joint also the joint's speed.
+/// What outputs call the effort, 0, or the flow, 1, that each bond of a node has: of the axis of a joint also the
+/// joint's speed.
 fn written(node: &ElementInfo, quantity: usize) -> Vec<String> {
     if !shares(node)[quantity] {
         return Vec::new();

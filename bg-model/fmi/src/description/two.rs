@@ -1,6 +1,7 @@
 //! `modelDescription.xml` of FMI 2.0.
 //!
-//! Variables are told apart by their places in the list there, counted from 1. Source: FMI 2.0.4, section 2.2 and its schemas.
+//! Variables are told apart by their places in the list there, counted from 1. Source: FMI 2.0.4, section 2.2 and its
+//! schemas.
 
 use std::io;
 

@@ -1,4 +1,5 @@
-//! Partial derivatives of derivatives, outputs and event indicators by states and inputs, along a direction and against it.
+//! Partial derivatives of derivatives, outputs and event indicators by states and inputs, along a direction and against
+//! it.
 //!
 //! In: unknowns, knowns, seeds. Out: sensitivities: J s, or J^T s. The latter takes a column of J for each known.
 

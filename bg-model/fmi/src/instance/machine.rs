@@ -1,7 +1,7 @@
 //! A model where it stands, without the numbers of its states in its type.
 //!
-//! In: a model with its parameters. Out: rates, outputs, guards at a time and state; what an event makes of branches and state; the
-//! state a piece of time later, by a run that goes on from piece to piece.
+//! In: a model with its parameters. Out: rates, outputs, guards at a time and state; what an event makes of branches
+//! and state; the state a piece of time later, by a run that goes on from piece to piece.
 
 use bg_model::failure::Origin;
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
@@ -50,8 +50,8 @@ pub(crate) trait Machine {
     /// # Errors
     /// It is so far off that no step leads there.
     fn drifts(&self, rtol: f64) -> Result<bool, Fault>;
-    /// An event: projects the state, lets it jump where something hits a stop, finds the branches that hold from here on. Gives
-    /// whether the state has changed.
+    /// An event: projects the state, lets it jump where something hits a stop, finds the branches that hold from here
+    /// on. Gives whether the state has changed.
     fn settle(&mut self, rtol: f64) -> Result<bool, Fault>;
     /// The first instant after the time at which a step must end, s; infinity where there is none.
     fn next_break(&self) -> f64;

@@ -1,7 +1,8 @@
 //! An instance of a model: what FMI 3.0 asks of one, in safe Rust.
 //!
-//! In: values by reference, calls in the order of the standard's state machine. Out: values, derivatives, events, steps.
-//! Source: Functional Mock-up Interface Specification 3.0.1, sections 2.2 (common), 3 (Model Exchange), 4 (Co-Simulation).
+//! In: values by reference, calls in the order of the standard's state machine. Out: values, derivatives, events,
+//! steps. Source: Functional Mock-up Interface Specification 3.0.1, sections 2.2 (common), 3 (Model Exchange), 4
+//! (Co-Simulation).
 
 mod derivatives;
 mod fault;
@@ -267,8 +268,8 @@ impl Instance {
         self.check_finite(guards, |model, index| (model.switches[index].name.to_owned(), None))
     }
 
-    /// The host has completed a step. Gives whether an event is needed: the state has drifted off its joints and orientations by
-    /// more than the tolerance, and is to be moved back.
+    /// The host has completed a step. Gives whether an event is needed: the state has drifted off its joints and
+    /// orientations by more than the tolerance, and is to be moved back.
     ///
     /// # Errors
     /// [`Fault::Mode`], [`Fault::Misplaced`].
@@ -278,7 +279,8 @@ impl Instance {
         self.machine()?.drifts(rtol)
     }
 
-    /// Makes a step of Co-Simulation, from time `t` of length `h` (s). On failure the time is that of the last good state.
+    /// Makes a step of Co-Simulation, from time `t` of length `h` (s). On failure the time is that of the last good
+    /// state.
     ///
     /// # Errors
     /// Why the run stopped; an unusable step.

@@ -1,8 +1,8 @@
 //! A saved state of an instance: a copy in memory, from which it goes on with the same steps, and the same as bytes.
 //!
-//! In: an instance. Out: a copy; bytes, and a copy of them again. What the method of a run keeps from step to step is not among
-//! the bytes: an instance that is restored from them finds its rate anew, in the same branches and with the same step
-//! size.
+//! In: an instance. Out: a copy; bytes, and a copy of them again. What the method of a run keeps from step to step is
+//! not among the bytes: an instance that is restored from them finds its rate anew, in the same branches and with the
+//! same step size.
 
 use serde::{Deserialize, Serialize};
 

@@ -20,7 +20,8 @@ impl Cell {
     }
 }
 
-/// The values of all inputs, each in its unit, and how fast they change along the direction in which derivatives are asked for.
+/// The values of all inputs, each in its unit, and how fast they change along the direction in which derivatives are
+/// asked for.
 #[derive(Clone, Debug)]
 pub struct Signals {
     cells: Arc<[(Cell, Cell)]>,

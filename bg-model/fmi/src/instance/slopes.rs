@@ -1,8 +1,8 @@
 //! Exact derivatives of a model along a direction, without the numbers of its states in its type.
 //!
-//! In: a time, a state, branches, how fast states and inputs are to change. Out: how fast rates, outputs and guards change with
-//! them. Method: dual numbers along the states, and along time for inputs, whose tangents are the direction; what changes with time by
-//! itself is taken away again.
+//! In: a time, a state, branches, how fast states and inputs are to change. Out: how fast rates, outputs and guards
+//! change with them. Method: dual numbers along the states, and along time for inputs, whose tangents are the
+//! direction; what changes with time by itself is taken away again.
 
 use bg_model::mechanism::ModelVisitor;
 use bg_model::nalgebra::SVector;

@@ -1,5 +1,5 @@
-//! Units as hosts find them, where these are installed: packed, validated and simulated by FMPy (`pip install fmpy`), in steps by libcosim
-//! (`pip install libcosimpy`). The variable `FMPY_PYTHON` names a Python that is not `python3`.
+//! Units as hosts find them, where these are installed: packed, validated and simulated by FMPy (`pip install fmpy`),
+//! in steps by libcosim (`pip install libcosimpy`). The variable `FMPY_PYTHON` names a Python that is not `python3`.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,9 +1,9 @@
-//! What pictures show of a model beside its outputs: the solids of its bodies and how they move, the forces of its joints,
-//! effort and flow of every bond.
+//! What pictures show of a model beside its outputs: the solids of its bodies and how they move, the forces of its
+//! joints, effort and flow of every bond.
 //!
-//! In: the tables that the compiler left in a model's description. Out: where each quantity stands among the values that
-//! [`Model::shown`](crate::system::Model::shown) gives at a time and a state. A scene that leaves out a state does not know
-//! what depends on it: such a quantity has no place.
+//! In: the tables that the compiler left in a model's description. Out: where each quantity stands among the values
+//! that [`Model::shown`](crate::system::Model::shown) gives at a time and a state. A scene that leaves out a state does
+//! not know what depends on it: such a quantity has no place.
 
 mod tape;
 

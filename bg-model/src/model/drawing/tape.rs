@@ -1,7 +1,7 @@
 //! A tape: expressions as a table of numbers, read by an interpreter.
 //!
-//! In: the steps that the compiler wrote, a moment of a run. Out: values. A step is an operation and its operands, each a
-//! word; its value is at hand for all later steps.
+//! In: the steps that the compiler wrote, a moment of a run. Out: values. A step is an operation and its operands, each
+//! a word; its value is at hand for all later steps.
 //!
 //! | operation | operands | value |
 //! |---|---|---|

@@ -56,8 +56,9 @@ impl Input {
         Self { law: Law::FunctionAndRate(Arc::new(value), Arc::new(rate)) }
     }
 
-    /// `value` at time t (s), at rest; what `t` has beyond the `f64` nearest to it enters times `along`, in the input's unit per s. In dual
-    /// numbers whose time has the slope 1 so are derivatives by the input, without a rate that the model could read.
+    /// `value` at time t (s), at rest; what `t` has beyond the `f64` nearest to it enters times `along`, in the input's
+    /// unit per s. In dual numbers whose time has the slope 1 so are derivatives by the input, without a rate that the
+    /// model could read.
     pub fn with_tangent(
         value: impl Fn(f64) -> f64 + Send + Sync + 'static,
         along: impl Fn(f64) -> f64 + Send + Sync + 'static,

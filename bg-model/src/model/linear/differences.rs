@@ -1,15 +1,15 @@
 //! The Jacobian by differences, for systems that do not know theirs.
 //!
 //! In: a rate. Out: its derivatives by every state, column by column, and by time. Source of the increments: the
-//! subroutine RADCOR of Hairer's `radau5.f`, sqrt(rounding unit * max(1e-5, |x_j|)); but at least 1e-12 |x_j|, since that one
-//! is lost in the rounding of a large x_j. The 1e-5 is in the state's own unit: of a hand-written system that is all
-//! that is known, and one whose states are smaller gives its Jacobian.
+//! subroutine RADCOR of Hairer's `radau5.f`, sqrt(rounding unit * max(1e-5, |x_j|)); but at least 1e-12 |x_j|, since
+//! that one is lost in the rounding of a large x_j. The 1e-5 is in the state's own unit: of a hand-written system that
+//! is all that is known, and one whose states are smaller gives its Jacobian.
 
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::root;
 
-/// Writes df/dx into `entries`, column by column, and df/dt into `slope`. Evaluates the rate once for each state and twice more. `room` has a
-/// place for each state.
+/// Writes df/dx into `entries`, column by column, and df/dt into `slope`. Evaluates the rate once for each state and
+/// twice more. `room` has a place for each state.
 pub(crate) fn differences<S: Scalar>(
     mut rate: impl FnMut(S, &[S], &mut [S]),
     t: S,

@@ -1,7 +1,8 @@
 //! What the Jacobian of a system and its elimination are made of.
 //!
-//! In: nothing. Out: the pattern of a Jacobian, the numbers an elimination calculates with, the pivots of a generated one. A
-//! generated model eliminates along the known pattern, in an order chosen at compile time and without a search for pivots.
+//! In: nothing. Out: the pattern of a Jacobian, the numbers an elimination calculates with, the pivots of a generated
+//! one. A generated model eliminates along the known pattern, in an order chosen at compile time and without a search
+//! for pivots.
 
 mod differences;
 mod field;
@@ -25,8 +26,8 @@ pub enum Sparsity {
     /// At these places only, with unknowns l beside the states that equations r(x, l) = 0 give: df/dx is
     /// f_x - f_l (r_l)^-1 r_x of the rates f(x, l).
     Bordered {
-        /// Row and column of every entry, in the order of storage: those of the unknowns and their equations are after those
-        /// of the states.
+        /// Row and column of every entry, in the order of storage: those of the unknowns and their equations are after
+        /// those of the states.
         places: &'static [(u16, u16)],
         /// How many unknowns there are.
         unknowns: usize,
@@ -53,7 +54,8 @@ impl Sparsity {
         }
     }
 
-    /// The `n` by `n` matrix df/dx of these entries; where the unknowns are not determined, numbers that are not finite.
+    /// The `n` by `n` matrix df/dx of these entries; where the unknowns are not determined, numbers that are not
+    /// finite.
     #[must_use]
     pub fn matrix(&self, n: usize, entries: &[f64]) -> DMatrix<f64> {
         let unknowns = if let Self::Bordered { unknowns, .. } = self { *unknowns } else { 0 };
@@ -74,6 +76,6 @@ impl Sparsity {
     }
 }
 
-/// A pivot below this part of the largest value that its place has had during the elimination, 1 included, counts as too
-/// small: rounding leaves fewer than half of its digits. The measure does not depend on the units of the states.
+/// A pivot below this part of the largest value that its place has had during the elimination, 1 included, counts as
+/// too small: rounding leaves fewer than half of its digits. The measure does not depend on the units of the states.
 pub const SMALLEST_PIVOT: f64 = 1e-8;

@@ -1,9 +1,9 @@
 //! A place of the diagonal during an elimination without row exchanges.
 //!
-//! In: its first value and the products that are subtracted from it. Out: its reciprocal, and whether it is large enough.
-//! Method: a pivot has lost digits where its value is far below what it was before; the values that it had are unchanged
-//! by a scaling of the states (d_i a_ij / d_j), as are the products that are subtracted. Duff, Erisman, Reid, Direct
-//! Methods for Sparse Matrices, 2nd edition 2017, section 4.3, on growth as the measure of stability.
+//! In: its first value and the products that are subtracted from it. Out: its reciprocal, and whether it is large
+//! enough. Method: a pivot has lost digits where its value is far below what it was before; the values that it had are
+//! unchanged by a scaling of the states (d_i a_ij / d_j), as are the products that are subtracted. Duff, Erisman, Reid,
+//! Direct Methods for Sparse Matrices, 2nd edition 2017, section 4.3, on growth as the measure of stability.
 
 use super::{Field, SMALLEST_PIVOT};
 use crate::model::scalar::Scalar;

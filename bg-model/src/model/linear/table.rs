@@ -1,7 +1,8 @@
 //! Factorisation and solution by tables of steps, for patterns that are too large to be unrolled.
 //!
-//! In: the steps that the compiler planned. Out: the same values, in the same order of operations, as unrolled code has.
-//! Method: compressed rows (Davis, Direct Methods for Sparse Linear Systems, 2006, section 2.1) of products of factors.
+//! In: the steps that the compiler planned. Out: the same values, in the same order of operations, as unrolled code
+//! has. Method: compressed rows (Davis, Direct Methods for Sparse Linear Systems, 2006, section 2.1) of products of
+//! factors.
 
 use super::{Field, Pivot};
 use crate::model::scalar::Scalar;
@@ -59,8 +60,8 @@ pub fn eliminate<S: Scalar, F: Field<S>>(
     is_regular
 }
 
-/// Replaces `b` by the solution. A step (row, factor, column) subtracts factor times `b[column]` from `b[row]`, or, where row
-/// and column are equal, multiplies `b[row]` by the factor.
+/// Replaces `b` by the solution. A step (row, factor, column) subtracts factor times `b[column]` from `b[row]`, or,
+/// where row and column are equal, multiplies `b[row]` by the factor.
 pub fn substitute<S: Scalar, F: Field<S>>(steps: &[(u32, u32, u32)], factors: &[F], b: &mut [F]) {
     for steps in steps.chunk_by(|(one, ..), (next, ..)| one == next) {
         let (row, ..) = steps[0];

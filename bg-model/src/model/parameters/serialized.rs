@@ -1,7 +1,7 @@
 //! Parameters as serde sees them: a struct of numbers by name.
 //!
-//! In: the names of a parameter struct. Out: what `Serialize` and `Deserialize` of a generated struct do. Unknown and repeated
-//! names are refused, missing ones keep their defaults.
+//! In: the names of a parameter struct. Out: what `Serialize` and `Deserialize` of a generated struct do. Unknown and
+//! repeated names are refused, missing ones keep their defaults.
 
 use alloc::string::String;
 use alloc::vec;

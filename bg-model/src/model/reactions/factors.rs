@@ -1,9 +1,9 @@
 //! A = L D L^T of a symmetric definite matrix, with the rows that follow from those before them.
 //!
-//! Method: Golub and Van Loan, Matrix Computations, algorithm 4.1.2, without pivots, as in the generated rates. D_i over the
-//! mobility of row i is the squared sine of the angle between this row of the constraints and the plane of those before it, in the
-//! metric of the inverse masses. The mobility is A_ii where the matrix has all rows; where rows are solved it has those that are left
-//! beside these, and A_ii itself vanishes where one follows from them.
+//! Method: Golub and Van Loan, Matrix Computations, algorithm 4.1.2, without pivots, as in the generated rates. D_i
+//! over the mobility of row i is the squared sine of the angle between this row of the constraints and the plane of
+//! those before it, in the metric of the inverse masses. The mobility is A_ii where the matrix has all rows; where rows
+//! are solved it has those that are left beside these, and A_ii itself vanishes where one follows from them.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -77,8 +77,8 @@ impl<S: Scalar> Factors<S> {
         factors.follows.iter().filter(|&&follows| !follows).count()
     }
 
-    /// Replaces the factors by those of a matrix; `follows` says of a row, its pivot and its mobility whether it takes no part.
-    /// Allocates nothing.
+    /// Replaces the factors by those of a matrix; `follows` says of a row, its pivot and its mobility whether it takes
+    /// no part. Allocates nothing.
     pub fn factor_where(&mut self, matrix: Matrix<'_, S>, follows: impl Fn(usize, f64, f64) -> bool) {
         self.rows.copy_from_slice(matrix.lower);
         for i in 0..self.follows.len() {
@@ -88,7 +88,8 @@ impl<S: Scalar> Factors<S> {
         }
     }
 
-    /// The factors of a matrix without the rows that are `dropped`, inlined; writes the pivot and the mobility of each row.
+    /// The factors of a matrix without the rows that are `dropped`, inlined; writes the pivot and the mobility of each
+    /// row.
     #[cfg(feature = "std")]
     #[inline(always)]
     pub fn factor_without(&mut self, matrix: Matrix<'_, S>, dropped: &[bool], pivots: &mut [[S; 2]]) {

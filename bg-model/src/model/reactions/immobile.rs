@@ -2,8 +2,8 @@
 //!
 //! In: a system in its start pose, with what its joints hold. Out: the joints that clash, where nothing can move.
 //!
-//! Joints hold as many independent motions as there are momenta: no motion is left. That is no fault where a source gives a
-//! flow, nor of bodies each of which one joint fixes, such as a frame.
+//! Joints hold as many independent motions as there are momenta: no motion is left. That is no fault where a source
+//! gives a flow, nor of bodies each of which one joint fixes, such as a frame.
 
 use alloc::vec::Vec;
 
@@ -11,7 +11,8 @@ use super::Hold;
 use super::factors::Factors;
 use crate::model::scalar::Scalar;
 
-/// The joints that leave no motion; none where there is one, or none is meant to be. `factors` are those of the matrix of `hold`.
+/// The joints that leave no motion; none where there is one, or none is meant to be. `factors` are those of the matrix
+/// of `hold`.
 pub(super) fn immobile<S: Scalar>(hold: &Hold<S>, factors: &Factors<S>) -> Option<Vec<&'static str>> {
     let held = hold.held;
     let rank = (0..held.rigid.len()).filter(|&row| !factors.follows(row)).count();

@@ -1,15 +1,16 @@
 //! Impacts on stops: how the state jumps where something hits one.
 //!
-//! In: a system with stops ([`Impacts`]), the state before, the stops that are reached. Out: the state after, and how each
-//! stop comes out of it.
+//! In: a system with stops ([`Impacts`]), the state before, the stops that are reached. Out: the state after, and how
+//! each stop comes out of it.
 //!
-//! Newton's law: a flow v towards a stop becomes -e v, or leaves faster. Impulses L of the stops, which do not pull, and of the
-//! rigid joints, whose flows stay zero, change the flows by A L, with A = -J M^-1 J^T of all of them. Which of several stops
-//! give an impulse is a linear complementarity problem: an impulse that pulls is taken away, a stop that is passed gets one,
-//! of several the last, until none is wrong. What leaves a stop too slowly to be seen is kept there. Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts
-//! (1996), chapter 8; C. Glocker, Set-Valued Force Laws (2001), chapter 9; K. G. Murty, Note on a Bard-type scheme for solving the
-//! complementarity problem, Opsearch 11 (1974), whose choice of the last ends. Impulses of dry friction are none: what it
-//! can hold is bounded.
+//! Newton's law: a flow v towards a stop becomes -e v, or leaves faster. Impulses L of the stops, which do not pull,
+//! and of the rigid joints, whose flows stay zero, change the flows by A L, with A = -J M^-1 J^T of all of them. Which
+//! of several stops give an impulse is a linear complementarity problem: an impulse that pulls is taken away, a stop
+//! that is passed gets one, of several the last, until none is wrong. What leaves a stop too slowly to be seen is kept
+//! there. Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter 8; C. Glocker,
+//! Set-Valued Force Laws (2001), chapter 9; K. G. Murty, Note on a Bard-type scheme for solving the complementarity
+//! problem, Opsearch 11 (1974), whose choice of the last ends. Impulses of dry friction are none: what it can hold is
+//! bounded.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -54,7 +55,8 @@ pub(crate) struct Collision<S> {
     part: Vec<S>,
     /// The flow that each row is to have after it.
     target: Vec<S>,
-    /// Of each stop whether it is reached, gives an impulse, gives back nothing, keeps what would leave too slowly to be seen.
+    /// Of each stop whether it is reached, gives an impulse, gives back nothing, keeps what would leave too slowly to
+    /// be seen.
     closed: Vec<bool>,
     active: Vec<bool>,
     plastic: Vec<bool>,
@@ -101,9 +103,10 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
         self.table.stops.iter().map(|stop| stop.switch)
     }
 
-    /// Lets the state `x` at time `t` (s) jump where the stops whose switches are `closed` are reached. `is_low` says of a switch
-    /// whether a rebound is as good as none that rises so far from the stop, in the unit of its displacement, and whether the
-    /// accuracy of the run decides that or only rounding. Gives whether it jumps. Allocates nothing.
+    /// Lets the state `x` at time `t` (s) jump where the stops whose switches are `closed` are reached. `is_low` says
+    /// of a switch whether a rebound is as good as none that rises so far from the stop, in the unit of its
+    /// displacement, and whether the accuracy of the run decides that or only rounding. Gives whether it jumps.
+    /// Allocates nothing.
     pub fn strike<I, const N: usize, const G: usize>(
         &mut self,
         impacts: &I,

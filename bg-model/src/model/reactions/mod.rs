@@ -1,12 +1,12 @@
-//! The reactions of joints: whether start velocities fit, what impulses change, whether the reactions of rigid joints have
-//! unique values.
+//! The reactions of joints: whether start velocities fit, what impulses change, whether the reactions of rigid joints
+//! have unique values.
 //!
-//! In: a system that says what its joints hold ([`Joints::held`], [`Joints::hold`]). Out: a start state that fits, or the
-//! joint that is torn apart; the joints that hold the same motion, and reactions that they share.
+//! In: a system that says what its joints hold ([`Joints::held`], [`Joints::hold`]). Out: a start state that fits, or
+//! the joint that is torn apart; the joints that hold the same motion, and reactions that they share.
 //!
-//! The reactions l of rigid joints are solved from A l + b = 0, where A_ij is how much reaction j changes the rate of the
-//! flow that joint i keeps at zero: J M^-1 J^T up to the sign. An impulse obeys the same equations, with the flow in
-//! place of b: it changes the flows by A l and the momenta by what the reactions move.
+//! The reactions l of rigid joints are solved from A l + b = 0, where A_ij is how much reaction j changes the rate of
+//! the flow that joint i keeps at zero: J M^-1 J^T up to the sign. An impulse obeys the same equations, with the flow
+//! in place of b: it changes the flows by A l and the momenta by what the reactions move.
 
 mod factors;
 mod immobile;
@@ -100,8 +100,9 @@ impl<S: Scalar> Hold<S> {
 }
 
 /// The start state of a system with joints: guessed velocities such that the joints fit, then, with `impulse`, the
-/// impulses of the rigid joints. `start` gives the state for unknowns, of which those at `speeds` are velocities. Derivatives
-/// that the unknowns have go into the state: those of the velocities are such that the joints fit. Allocates.
+/// impulses of the rigid joints. `start` gives the state for unknowns, of which those at `speeds` are velocities.
+/// Derivatives that the unknowns have go into the state: those of the velocities are such that the joints fit.
+/// Allocates.
 ///
 /// # Errors
 /// [`AssemblyError::Torn`] where velocities do not fit, [`AssemblyError::Redundant`] where reactions are not unique,
@@ -237,8 +238,8 @@ where
 }
 
 /// The state after the impulses that bring the flows of rigid joints to zero, with the energy that they take: half of
-/// impulse times flow before, as in a perfectly plastic impact. One solution is exact where momenta are linear in flows;
-/// elsewhere it is repeated while it helps.
+/// impulse times flow before, as in a perfectly plastic impact. One solution is exact where momenta are linear in
+/// flows; elsewhere it is repeated while it helps.
 fn strike<S: Scalar, const N: usize>(mut x: SVector<S, N>, read: &impl Fn(&SVector<S, N>) -> Hold<S>) -> Started<S, N> {
     let (zero, half) = (S::from_f64(0.0), S::from_f64(0.5));
     let mut lost = zero;

@@ -1,9 +1,9 @@
 //! Joints that close loops, looked at after each step.
 //!
-//! In: the ends of accepted steps. Out: an end of the run in place of a wrong result, where a motion that was found to follow
-//! from others follows no more, and where steps creep into a singular pose. Such a pose is passed in an instant: a step
-//! that is made from rates alone goes over it. One whose equations need the rates' derivatives, which grow without bound
-//! there, may come so near that the joints no longer say which way the mechanism goes on.
+//! In: the ends of accepted steps. Out: an end of the run in place of a wrong result, where a motion that was found to
+//! follow from others follows no more, and where steps creep into a singular pose. Such a pose is passed in an instant:
+//! a step that is made from rates alone goes over it. One whose equations need the rates' derivatives, which grow
+//! without bound there, may come so near that the joints no longer say which way the mechanism goes on.
 
 #[cfg(feature = "std")]
 use alloc::vec;
@@ -29,11 +29,12 @@ fn followed<S: Scalar>(others: S) -> S {
     others.times(FASTER) + others.alike(FOLLOWING)
 }
 
-/// A pivot below this part of its row's mobility is of a pose 1e-4 rad from a singular one. Two steps in a row that end there creep.
+/// A pivot below this part of its row's mobility is of a pose 1e-4 rad from a singular one. Two steps in a row that end
+/// there creep.
 const NEAR: f64 = 1e-8;
 
-/// A pivot below this part of its row's mobility is of a pose in whose neighbourhood steps err much in what joints hold, some 6 degrees from
-/// a singular one.
+/// A pivot below this part of its row's mobility is of a pose in whose neighbourhood steps err much in what joints
+/// hold, some 6 degrees from a singular one.
 const AROUND: f64 = 1e-2;
 
 /// What is wrong.
@@ -146,8 +147,8 @@ impl<V: Vector> LoopsInLanes<V> {
         is_fit.then(|| Self { hold: Hold::new(held), factors, pivots, dropped })
     }
 
-    /// A bit for each run whose pose at time `t` (s) and state `x` is not in the neighbourhood of a singular one, and none of whose motions
-    /// has come apart.
+    /// A bit for each run whose pose at time `t` (s) and state `x` is not in the neighbourhood of a singular one, and
+    /// none of whose motions has come apart.
     #[inline(always)]
     pub fn whole<J, const N: usize, const G: usize>(
         &mut self,

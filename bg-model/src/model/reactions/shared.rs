@@ -1,11 +1,11 @@
 //! Rigid joints that hold the same motion: which rows take no part, and how the reactions are shared.
 //!
-//! In: a system whose joints close loops ([`Held::closing`]). Out: for each of these rows whether it follows from the others
-//! in all poses, as one of two hinges of a door does; reactions of least norm; the joints by name.
+//! In: a system whose joints close loops ([`Held::closing`]). Out: for each of these rows whether it follows from the
+//! others in all poses, as one of two hinges of a door does; reactions of least norm; the joints by name.
 //!
-//! Rows follow from others in a singular pose, too, such as that of a parallelogram that lies flat; there they do for an
-//! instant only. So what follows at the start has to follow in poses near it as well: the mechanism is moved a little, with
-//! velocities that its joints allow, and closed again.
+//! Rows follow from others in a singular pose, too, such as that of a parallelogram that lies flat; there they do for
+//! an instant only. So what follows at the start has to follow in poses near it as well: the mechanism is moved a
+//! little, with velocities that its joints allow, and closed again.
 
 use alloc::vec::Vec;
 

@@ -1,7 +1,8 @@
-//! Numbers with their derivatives along several directions at once. Exact first derivatives by many parameters in one pass.
+//! Numbers with their derivatives along several directions at once. Exact first derivatives by many parameters in one
+//! pass.
 //!
-//! As [`Dual`](super::Dual) with more slopes, of [`Gradient`] [`Gradient::WIDTH`] of them: the value is calculated once, the slopes side
-//! by side in vectors. The values are those of `f64`, to the bit, whatever the vectors.
+//! As [`Dual`](super::Dual) with more slopes, of [`Gradient`] [`Gradient::WIDTH`] of them: the value is calculated
+//! once, the slopes side by side in vectors. The values are those of `f64`, to the bit, whatever the vectors.
 
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};

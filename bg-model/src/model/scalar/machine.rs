@@ -1,13 +1,14 @@
 //! Calculations in the vectors of the machine at hand.
 //!
-//! In: a calculation. Out: what it gives, compiled twice: for the vectors of every machine of its kind, and for AVX2. The results are
-//! the same to the bit, as nothing is fused.
+//! In: a calculation. Out: what it gives, compiled twice: for the vectors of every machine of its kind, and for AVX2.
+//! The results are the same to the bit, as nothing is fused.
 
 use pulp::NullaryFnOnce;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 use pulp::x86::V3;
 
-/// The vectors that steps are compiled for. Not [`pulp::Arch`], which has those of AVX-512 besides: one run gains nothing by them.
+/// The vectors that steps are compiled for. Not [`pulp::Arch`], which has those of AVX-512 besides: one run gains
+/// nothing by them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Arch {
     /// Those of every machine of its kind.

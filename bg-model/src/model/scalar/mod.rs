@@ -54,7 +54,8 @@ pub trait Scalar:
     fn from_f64(value: f64) -> Self;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
-    /// The number nearest to `value`, where there is a number already: for numbers in vectors of a machine that is cheaper.
+    /// The number nearest to `value`, where there is a number already: for numbers in vectors of a machine that is
+    /// cheaper.
     #[must_use]
     #[inline(always)]
     fn alike(self, value: f64) -> Self {

@@ -1,7 +1,7 @@
 //! Two numbers that generated code calculates with at once.
 //!
-//! In: two numbers. Out: the same operations on both, each rounded as if it were alone. Pairs of `f64` are vectors of the
-//! machine where it has them in every build; elsewhere, and for other scalars, one number is done after the other.
+//! In: two numbers. Out: the same operations on both, each rounded as if it were alone. Pairs of `f64` are vectors of
+//! the machine where it has them in every build; elsewhere, and for other scalars, one number is done after the other.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};

@@ -1,7 +1,8 @@
 //! `f32` as a scalar: what the floating-point units of small controllers calculate with.
 //!
-//! Elementary functions come from `libm`, so the same input gives the same bits on every machine here too. Values have seven digits:
-//! enough for the steps of a controller's clock, too few for tight tolerances, which no method of this crate has in `f32`.
+//! Elementary functions come from `libm`, so the same input gives the same bits on every machine here too. Values have
+//! seven digits: enough for the steps of a controller's clock, too few for tight tolerances, which no method of this
+//! crate has in `f32`.
 
 use super::{Both, Scalar};
 

@@ -1,16 +1,17 @@
 //! Derivatives side by side, in vectors of a machine.
 //!
-//! In: nothing. Out: the operations on them that numbers with slopes need, and the vectors that every machine of its kind has; those of
-//! AVX2 and AVX-512 are [`super::lanes`]'s. Each product and each sum is rounded alone, in the same order: the results are the
-//! same to the bit.
+//! In: nothing. Out: the operations on them that numbers with slopes need, and the vectors that every machine of its
+//! kind has; those of AVX2 and AVX-512 are [`super::lanes`]'s. Each product and each sum is rounded alone, in the same
+//! order: the results are the same to the bit.
 
 use core::fmt::Debug;
 
 use pulp::NullaryFnOnce;
 use wide::f64x2;
 
-/// The number of derivatives of a [`Gradient`](super::Gradient): what one vector of every machine has. More would make every function
-/// of a model so many times as long, for what is calculated seldom: steps, where the time goes, have vectors of their own.
+/// The number of derivatives of a [`Gradient`](super::Gradient): what one vector of every machine has. More would make
+/// every function of a model so many times as long, for what is calculated seldom: steps, where the time goes, have
+/// vectors of their own.
 pub const WIDTH: usize = 2;
 
 /// Derivatives side by side.
@@ -20,7 +21,8 @@ pub trait Slopes: Copy + Debug + 'static {
 
     /// How many there are.
     const LANES: usize;
-    /// Whether operations are instructions only where they are inlined into code compiled for them, by [`vectorized`](Slopes::vectorized).
+    /// Whether operations are instructions only where they are inlined into code compiled for them, by
+    /// [`vectorized`](Slopes::vectorized).
     const MUST_BE_INLINED: bool;
 
     /// Whether the machine at hand has such vectors: to be asked before there is one.
@@ -52,7 +54,8 @@ pub trait Slopes: Copy + Debug + 'static {
     /// The magnitudes.
     #[must_use]
     fn abs(self) -> Self;
-    /// The larger one of each; where one of them is none, in the vectors of AVX2 and AVX-512 that of `other`, elsewhere either.
+    /// The larger one of each; where one of them is none, in the vectors of AVX2 and AVX-512 that of `other`, elsewhere
+    /// either.
     #[must_use]
     fn larger(self, other: Self) -> Self;
 

@@ -1,10 +1,11 @@
-//! Taylor series of what a rate is made of: the arithmetic of the generated [`System::series`](crate::system::System::series).
+//! Taylor series of what a rate is made of: the arithmetic of the generated
+//! [`System::series`](crate::system::System::series).
 //!
-//! In: the coefficients of the operands up to an order `k`. Out: the coefficient of order `k` of a product, a quotient or a
-//! function. Sums, and products with numbers, need none of this: they act on each order alone.
-//! Method: the recurrences of power series (Moore 1966, Interval Analysis, chapter 11; Griewank & Walther 2008, Evaluating
-//! Derivatives, section 13.2; Knuth, The Art of Computer Programming 2, section 4.7). What later orders ask for is kept in
-//! rows, one for each order: each operation has places of its own in them, from `at` on.
+//! In: the coefficients of the operands up to an order `k`. Out: the coefficient of order `k` of a product, a quotient
+//! or a function. Sums, and products with numbers, need none of this: they act on each order alone.
+//! Method: the recurrences of power series (Moore 1966, Interval Analysis, chapter 11; Griewank & Walther 2008,
+//! Evaluating Derivatives, section 13.2; Knuth, The Art of Computer Programming 2, section 4.7). What later orders ask
+//! for is kept in rows, one for each order: each operation has places of its own in them, from `at` on.
 
 mod functions;
 #[cfg(test)]
@@ -46,7 +47,8 @@ pub fn first_product<S: Scalar, const W: usize>(rows: &mut [[S; W]], left: usize
     a * b
 }
 
-/// The coefficient of order `k` of one of `P` products, from that of the factors and what [`InnerProducts`] gives for it.
+/// The coefficient of order `k` of one of `P` products, from that of the factors and what [`InnerProducts`] gives for
+/// it.
 #[inline(always)]
 pub fn next_product<S: Scalar, const P: usize, const W: usize>(
     inner: &[S; P],
@@ -60,7 +62,8 @@ pub fn next_product<S: Scalar, const P: usize, const W: usize>(
     inner[at] + (a * rows[0][P + at] + rows[0][at] * b)
 }
 
-/// The first coefficients of two products side by side: their left factors are kept from the place `left` on, the right ones from `right` on.
+/// The first coefficients of two products side by side: their left factors are kept from the place `left` on, the right
+/// ones from `right` on.
 #[inline(always)]
 pub fn first_products<S: Scalar, const W: usize>(
     rows: &mut [[S; W]],
@@ -102,11 +105,12 @@ fn put<S: Scalar>(to: &mut [S], at: usize, pair: S::Pair) {
     store(to, at, [pair.first(), pair.second()]);
 }
 
-/// The parts of `P` products at an order `k` that only need the orders from 1 to `k` - 1 of their factors: what is added to them is
-/// left of order 0 times right of order `k` and the other way round. `P` is a multiple of 4.
+/// The parts of `P` products at an order `k` that only need the orders from 1 to `k` - 1 of their factors: what is
+/// added to them is left of order 0 times right of order `k` and the other way round. `P` is a multiple of 4.
 ///
-/// Many products in one loop do not wait for each other; nor do they wait for the factors of order `k`. What is read for one order serves
-/// the next one, too: its sums are made at the same time, but for the products with the factors of order `k`.
+/// Many products in one loop do not wait for each other; nor do they wait for the factors of order `k`. What is read
+/// for one order serves the next one, too: its sums are made at the same time, but for the products with the factors of
+/// order `k`.
 #[derive(Debug)]
 pub struct InnerProducts<S, const P: usize> {
     sums: [S; P],
@@ -123,8 +127,8 @@ impl<S: Scalar, const P: usize> InnerProducts<S, P> {
         Self { sums: zeros, next: zeros }
     }
 
-    /// The sums of the order `k`, after those of the order before it. In `rows`, of orders 0 to `k` - 1, the left factors have the first
-    /// places, the right ones the next.
+    /// The sums of the order `k`, after those of the order before it. In `rows`, of orders 0 to `k` - 1, the left
+    /// factors have the first places, the right ones the next.
     #[inline(always)]
     pub fn at_next_order<const W: usize>(&mut self, rows: &[[S; W]]) -> &[S; P] {
         if let [_, first, .., last] = rows {
@@ -140,7 +144,8 @@ impl<S: Scalar, const P: usize> InnerProducts<S, P> {
                 *sum = only[i] * only[P + i];
             }
         }
-        // Else the sums stand side by side in the order in which they are read, and what they are made of has to be put in that order.
+        // Else the sums stand side by side in the order in which they are read, and what they are made of has to be put
+        // in that order.
         core::hint::black_box(&mut *self);
         &self.sums
     }

@@ -45,7 +45,8 @@ impl<const G: usize> EventMonitor<G> {
     }
 
     /// Decides the branches of the guards that are exactly zero at the start of the run, by steps that are small
-    /// compared with `step` (s); where these leave the guard zero, the positive branch holds. Those that are `known` stay.
+    /// compared with `step` (s); where these leave the guard zero, the positive branch holds. Those that are `known`
+    /// stay.
     pub fn begin_by_probe<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
@@ -86,7 +87,8 @@ impl<const G: usize> EventMonitor<G> {
         }
     }
 
-    /// Decides the branches of `switches` and of those that follow; gives all of them, with the guards at the start read.
+    /// Decides the branches of `switches` and of those that follow; gives all of them, with the guards at the start
+    /// read.
     fn follow<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
@@ -143,8 +145,8 @@ impl<const G: usize> EventMonitor<G> {
         }
     }
 
-    /// Which of `switches` are in a branch that disagrees with its guard a little later. Where the rate is no number, as that
-    /// of a root on the wrong side of its zero by rounding, all of them are.
+    /// Which of `switches` are in a branch that disagrees with its guard a little later. Where the rate is no number,
+    /// as that of a root on the wrong side of its zero by rounding, all of them are.
     fn wrong_branches<Sys, M, const N: usize>(
         &self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
@@ -165,8 +167,9 @@ impl<const G: usize> EventMonitor<G> {
         core::array::from_fn(|k| switches[k] && signs[k].is_some_and(|negative| negative != stepper.negative[k]))
     }
 
-    /// Whether the guards of all `switches` beyond doubt move to the side of their present branches: after Euler's step as long as the first
-    /// small one they are there, and their changes at the rates at both of its ends are much alike. One rate in place of a method's.
+    /// Whether the guards of all `switches` beyond doubt move to the side of their present branches: after Euler's step
+    /// as long as the first small one they are there, and their changes at the rates at both of its ends are much
+    /// alike. One rate in place of a method's.
     fn agree<Sys, M, const N: usize>(
         &self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
@@ -219,7 +222,8 @@ impl<const G: usize> EventMonitor<G> {
     }
 }
 
-/// The size (s) of a small step from time `t` (s): a part of `reach` (s), and long enough to be seen in the time as well.
+/// The size (s) of a small step from time `t` (s): a part of `reach` (s), and long enough to be seen in the time as
+/// well.
 fn small(part: f64, reach: f64, t: f64) -> f64 {
     (part * reach).max(1024.0 * f64::EPSILON * t.abs())
 }

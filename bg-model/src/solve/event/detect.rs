@@ -43,8 +43,8 @@ pub(super) enum Course {
     Crosses(Bracket),
 }
 
-/// Bernstein's coefficients of the quartic through a guard's clearances at both ends and in the `middle` of a step, and its
-/// changes in a step at the rates there: they enclose it.
+/// Bernstein's coefficients of the quartic through a guard's clearances at both ends and in the `middle` of a step, and
+/// its changes in a step at the rates there: they enclose it.
 #[inline(always)]
 pub(super) fn enclosing<S: Scalar>([from, to]: [S; 2], middle: S, [leaving, arriving]: [S; 2]) -> [S; 5] {
     let (leave, arrive) = (from + leaving.times(0.25), to - arriving.times(0.25));
@@ -59,8 +59,8 @@ fn is_far(coefficients: &[f64]) -> bool {
     low > FAR * (high - low)
 }
 
-/// Whether the quartic with these Bernstein coefficients, of which the first is zero, rises from there on: its mean slope since the start,
-/// a cubic, is far from zero.
+/// Whether the quartic with these Bernstein coefficients, of which the first is zero, rises from there on: its mean
+/// slope since the start, a cubic, is far from zero.
 fn rises(&[_, first, second, third, fourth]: &[f64; 5]) -> bool {
     is_far(&[4.0 * first, 2.0 * second, 4.0 / 3.0 * third, fourth])
 }
@@ -129,8 +129,9 @@ impl<const G: usize> EventMonitor<G> {
         Ok(self.first_crossing(step, courses))
     }
 
-    /// Takes over a step of size `h` (s) at whose ends and in whose `middle` all guards keep to their sides; gives whether they do,
-    /// which counts three evaluations, as [`EventMonitor::inspect`] does. Nothing changes where they may not.
+    /// Takes over a step of size `h` (s) at whose ends and in whose `middle` all guards keep to their sides; gives
+    /// whether they do, which counts three evaluations, as [`EventMonitor::inspect`] does. Nothing changes where they
+    /// may not.
     #[cfg(feature = "std")]
     pub fn pass(
         &mut self,
@@ -163,7 +164,8 @@ impl<const G: usize> EventMonitor<G> {
         (self.start.value, self.start.slope) = (value, slope);
     }
 
-    /// Whether nothing is known of the guards but what they are at the start of the step: no noise there, nothing that events have left.
+    /// Whether nothing is known of the guards but what they are at the start of the step: no noise there, nothing that
+    /// events have left.
     #[cfg(feature = "std")]
     pub fn is_plain(&self) -> bool {
         self.start.noise == [0.0; G] && self.remainder == [0.0; G]

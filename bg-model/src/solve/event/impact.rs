@@ -1,12 +1,12 @@
 //! Impacts: the state jumps where something reaches a stop.
 //!
-//! In: a point at which the guards of stops are at zero. Out: the state after the impact ([`Collision`]), with the branches of
-//! these stops. Where something is left without speed it rests if the load presses it there: of several stops which bear one,
-//! one whose effort would pull is taken away, one towards which something would move is added, of several the last, until none
-//! is wrong.
+//! In: a point at which the guards of stops are at zero. Out: the state after the impact ([`Collision`]), with the
+//! branches of these stops. Where something is left without speed it rests if the load presses it there: of several
+//! stops which bear one, one whose effort would pull is taken away, one towards which something would move is added, of
+//! several the last, until none is wrong.
 //!
-//! A rebound is none where it rises less than [`LOW`] of what the tolerances allow for its place, unless the stop says below
-//! which speed it is none, or where rounding does not let its end be found.
+//! A rebound is none where it rises less than [`LOW`] of what the tolerances allow for its place, unless the stop says
+//! below which speed it is none, or where rounding does not let its end be found.
 
 use nalgebra::SVector;
 
@@ -34,8 +34,8 @@ pub(crate) struct Struck<const G: usize> {
 }
 
 impl<const G: usize> EventMonitor<G> {
-    /// Lets the state at the start of the next step jump if a stop is reached there: `switches` are those whose guards have come
-    /// to zero.
+    /// Lets the state at the start of the next step jump if a stop is reached there: `switches` are those whose guards
+    /// have come to zero.
     pub fn strike<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
@@ -108,8 +108,8 @@ impl<const G: usize> EventMonitor<G> {
         }
     }
 
-    /// Lets the state jump where the stops of these switches are reached, and dry friction slide that an impact moves; what it
-    /// brings to rest is added to `switches`. Gives whether the state jumps.
+    /// Lets the state jump where the stops of these switches are reached, and dry friction slide that an impact moves;
+    /// what it brings to rest is added to `switches`. Gives whether the state jumps.
     fn collide<Sys, M, const N: usize>(
         &mut self,
         stepper: &mut Stepper<'_, Sys, M, N, G>,
@@ -158,8 +158,8 @@ impl<const G: usize> EventMonitor<G> {
     }
 }
 
-/// How much each guard, which has this value at the start of the step, changes where the states are off by what the tolerances
-/// allow.
+/// How much each guard, which has this value at the start of the step, changes where the states are off by what the
+/// tolerances allow.
 fn allowed<Sys, M, const N: usize, const G: usize>(
     stepper: &mut Stepper<'_, Sys, M, N, G>,
     value: &SVector<f64, G>,

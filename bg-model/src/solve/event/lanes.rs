@@ -1,7 +1,7 @@
 //! Guards of runs side by side: in which of them nothing happens in a step, beyond doubt.
 //!
-//! In: steps side by side. Out: the readings at their ends and in the middle, and the places at which all guards keep to their
-//! sides as [`EventMonitor::inspect`](super::EventMonitor::inspect) finds without a closer look.
+//! In: steps side by side. Out: the readings at their ends and in the middle, and the places at which all guards keep
+//! to their sides as [`EventMonitor::inspect`](super::EventMonitor::inspect) finds without a closer look.
 
 use nalgebra::SVector;
 

@@ -11,8 +11,8 @@ use super::noise::larger;
 use super::zero::{Precision, Search, zero};
 use super::{Crossing, EventMonitor, clearance};
 
-/// The part of a guard's values around a zero up to which what is left of it there is rounding, of the states that stiff forces
-/// lead to, where it stops falling. A guard of which more is left jumps there.
+/// The part of a guard's values around a zero up to which what is left of it there is rounding, of the states that
+/// stiff forces lead to, where it stops falling. A guard of which more is left jumps there.
 const REMAINDER: f64 = 1e-7;
 
 /// A crossing that the dense output foresees: where the guard of `switch` comes to zero after `guess` (s) of the step.
@@ -23,7 +23,8 @@ struct Foreseen {
     search: Search,
 }
 
-/// A step that is being shortened to its first event: it says which size it is to be tried with, and looks at what that gives.
+/// A step that is being shortened to its first event: it says which size it is to be tried with, and looks at what that
+/// gives.
 #[derive(Clone, Debug)]
 pub(crate) struct Shortening<const G: usize> {
     courses: [Course; G],
@@ -47,8 +48,9 @@ impl<const G: usize> Shortening<G> {
         self.size
     }
 
-    /// Looks at the step, which has this size; gives whether it ends at the first event: where the guard that was foreseen vanishes, or
-    /// one that turns out to cross before it. Else it is to be tried again, with another size unless that is the same.
+    /// Looks at the step, which has this size; gives whether it ends at the first event: where the guard that was
+    /// foreseen vanishes, or one that turns out to cross before it. Else it is to be tried again, with another size
+    /// unless that is the same.
     pub fn take<const N: usize>(&mut self, monitor: &EventMonitor<G>, step: &mut impl Guarded<N, G>) -> bool {
         let end = *step.end();
         self.value = step.guards(end.t, &end.x);
@@ -172,8 +174,9 @@ impl<const G: usize> EventMonitor<G> {
     }
 }
 
-/// How exactly the zero of a guard is looked for that has values of this size near it, this noise, and in the time that the
-/// run has lasted would change by `drift` at the slope that it has there: an instant is not known better than the time is.
+/// How exactly the zero of a guard is looked for that has values of this size near it, this noise, and in the time that
+/// the run has lasted would change by `drift` at the slope that it has there: an instant is not known better than the
+/// time is.
 fn precise_to(size: f64, noise: f64, drift: f64) -> Precision {
     let drift = f64::EPSILON * drift.abs();
     Precision {

@@ -1,8 +1,9 @@
 //! The minimum of a function of one variable inside an interval.
 //!
-//! In: the interval, and a value that is low enough. Out: the lowest point found, to half of the digits of the argument, as
-//! far as rounding lets a minimum be told. Method: parabolas through three points with the golden section where they fail,
-//! from R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 5 (procedure localmin).
+//! In: the interval, and a value that is low enough. Out: the lowest point found, to half of the digits of the
+//! argument, as far as rounding lets a minimum be told. Method: parabolas through three points with the golden section
+//! where they fail, from R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 5 (procedure
+//! localmin).
 
 /// The lowest point of `f` between `low` and `high`, and its value; the first one whose value is below `enough`.
 pub(super) fn minimum(mut low: f64, mut high: f64, enough: f64, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {

@@ -4,8 +4,8 @@
 //! a guard has the sign of the other branch, and the switches concerned; then the branches that hold from there on.
 //!
 //! A guard counts as crossed where it is on the wrong side by more than rounding makes of it at that point (`noise`): a
-//! remainder of that size, which an event leaves behind, does not trigger another one. A branch is decided by the sign of the guard after the
-//! event, under that branch, and not by the direction of the crossing.
+//! remainder of that size, which an event leaves behind, does not trigger another one. A branch is decided by the sign
+//! of the guard after the event, under that branch, and not by the direction of the crossing.
 
 mod branch;
 mod condition;
@@ -32,7 +32,8 @@ pub(crate) use locate::{Found, Shortening};
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;
 const INSTANT: f64 = 1e-12;
-/// The part of a step for the difference that gives a guard's derivative: it keeps nine digits and its truncation error is as small.
+/// The part of a step for the difference that gives a guard's derivative: it keeps nine digits and its truncation error
+/// is as small.
 const AHEAD: f64 = 1e-6;
 /// A guard's sign is taken for certain above this multiple of its rounding error.
 const CERTAIN: f64 = 16.0;

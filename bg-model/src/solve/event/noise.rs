@@ -1,8 +1,9 @@
 //! Noise: how far rounding alone may take a guard from zero.
 //!
-//! In: a point of the step. Out: how much each guard changes there if the time and the states are displaced by what rounding
-//! may have done to them. It is a matter of this point alone: of the states and of their changes in this step, not of how
-//! large a guard has been. A guard that jumps there is not noisy, so of the two directions the smaller change counts.
+//! In: a point of the step. Out: how much each guard changes there if the time and the states are displaced by what
+//! rounding may have done to them. It is a matter of this point alone: of the states and of their changes in this step,
+//! not of how large a guard has been. A guard that jumps there is not noisy, so of the two directions the smaller
+//! change counts.
 
 use nalgebra::SVector;
 
@@ -15,8 +16,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 const MARGIN: f64 = 4.0;
 
 impl<const G: usize> EventMonitor<G> {
-    /// How far each guard may be on the wrong side by rounding alone at time `t` (s) and state `x`, where they have this
-    /// `value`, in a step that begins where `step` does. Evaluates the guards twice.
+    /// How far each guard may be on the wrong side by rounding alone at time `t` (s) and state `x`, where they have
+    /// this `value`, in a step that begins where `step` does. Evaluates the guards twice.
     pub(super) fn noise<const N: usize>(
         &self,
         step: &mut impl Guarded<N, G>,
@@ -64,8 +65,9 @@ impl<const G: usize> EventMonitor<G> {
     }
 }
 
-/// Factors for states, of size 1/2 to 1: of irregular sizes and signs, so that what states have in common does not cancel. Source of the
-/// sequence: multiples of the golden ratio (Knuth, The Art of Computer Programming 3, section 6.4).
+/// Factors for states, of size 1/2 to 1: of irregular sizes and signs, so that what states have in common does not
+/// cancel. Source of the sequence: multiples of the golden ratio (Knuth, The Art of Computer Programming 3, section
+/// 6.4).
 struct Irregular<const N: usize>;
 
 impl<const N: usize> Irregular<N> {
@@ -93,7 +95,8 @@ mod tests {
     use super::*;
     use crate::solve::integrator::Point;
 
-    /// A step of a state from 2 at the time 0.5, of 0.25 s at the rate 4, with guards: a jump of the time, and the state itself.
+    /// A step of a state from 2 at the time 0.5, of 0.25 s at the rate 4, with guards: a jump of the time, and the
+    /// state itself.
     struct Step {
         start: Point<1>,
         jump: f64,

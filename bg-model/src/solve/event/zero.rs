@@ -9,8 +9,8 @@ pub(super) struct Precision {
     pub rounding: f64,
 }
 
-/// The search for the zero of a function between `right`, where it is positive, and `wrong`, where it is not: it says where it asks for a
-/// value and is told it.
+/// The search for the zero of a function between `right`, where it is positive, and `wrong`, where it is not: it says
+/// where it asks for a value and is told it.
 ///
 /// Newton's method from a guess with a slope there, then secants, inside the narrowing bracket; bisection where that
 /// fails. At a jump the point on the wrong side. The bracket's ends are not evaluated. A value that is not a number

@@ -1,5 +1,5 @@
-//! Branches: which one a switch takes where its guard is zero, as in a run ([`crate::simulation::integrate`]): a guard is
-//! followed for small steps under a branch, which is right if the guard then has its sign.
+//! Branches: which one a switch takes where its guard is zero, as in a run ([`crate::simulation::integrate`]): a guard
+//! is followed for small steps under a branch, which is right if the guard then has its sign.
 
 use nalgebra::SVector;
 
@@ -31,8 +31,8 @@ where
         }
     }
 
-    /// Decides the branches of `switches`, whose guards have come to zero, with the other branch as the candidate. Other
-    /// switches whose guards that moves to the wrong side follow at once.
+    /// Decides the branches of `switches`, whose guards have come to zero, with the other branch as the candidate.
+    /// Other switches whose guards that moves to the wrong side follow at once.
     pub(super) fn switch(&mut self, mut switches: [bool; G]) -> Result<(), Fault> {
         let before = self.negative;
         self.negative = std::array::from_fn(|k| before[k] != switches[k]);

@@ -2,8 +2,8 @@
 //!
 //! Gragg: On extrapolation algorithms for ordinary initial value problems. SIAM Journal on Numerical Analysis 2, 1965;
 //! Bulirsch, Stoer: Numerical treatment of ordinary differential equations by extrapolation methods. Numerische
-//! Mathematik 8, 1966; Hairer, Norsett, Wanner: Solving Ordinary Differential Equations I, section II.9. Column j takes 2j
-//! substeps (Deuflhard's harmonic sequence); no smoothing, which costs a rate in each column and stability per rate.
+//! Mathematik 8, 1966; Hairer, Norsett, Wanner: Solving Ordinary Differential Equations I, section II.9. Column j takes
+//! 2j substeps (Deuflhard's harmonic sequence); no smoothing, which costs a rate in each column and stability per rate.
 
 use nalgebra::SVector;
 
@@ -25,8 +25,8 @@ impl<S: Scalar, const N: usize> Extrapolation<S, N> {
         Self { columns, row: vec![zero; columns], end: zero }
     }
 
-    /// Makes a step of size `h` (s) from `x` at `t` (s). `pass` is shown the substeps of the finest column, which are of
-    /// second order only.
+    /// Makes a step of size `h` (s) from `x` at `t` (s). `pass` is shown the substeps of the finest column, which are
+    /// of second order only.
     pub fn attempt(
         &mut self,
         t: S,
@@ -58,7 +58,8 @@ impl<S: Scalar, const N: usize> Extrapolation<S, N> {
         self.end = self.row[self.columns - 1];
     }
 
-    /// The largest difference between the two highest orders, over `tolerance` times 1 + |x|; not a number where the end is none.
+    /// The largest difference between the two highest orders, over `tolerance` times 1 + |x|; not a number where the
+    /// end is none.
     pub fn error(&self, x: &SVector<S, N>, tolerance: f64) -> f64 {
         let [.., lower, higher] = &self.row[..] else { return f64::NAN };
         let error = |i: usize| {

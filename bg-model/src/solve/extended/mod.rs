@@ -1,11 +1,11 @@
 //! Reference solutions: a system integrated in any [`Scalar`], such as [`crate::scalar::DoubleDouble`], far beyond the
 //! accuracy of the integrators for runs.
 //!
-//! In: a system, its start, a span, an accuracy, instants. Out: the state at the instants, told to an observer, and at the
-//! end. Method: Gragg's midpoint rule extrapolated after Bulirsch and Stoer ([`Accuracy::columns`] columns, order twice
-//! that) with steps by the estimated error. Steps end at the instants, at kinks of inputs and at the switchings, so nothing is interpolated;
-//! a switching is located by steps of other sizes until the guard vanishes to rounding. Explicit: a stiff system costs
-//! as many steps as its stability takes.
+//! In: a system, its start, a span, an accuracy, instants. Out: the state at the instants, told to an observer, and at
+//! the end. Method: Gragg's midpoint rule extrapolated after Bulirsch and Stoer ([`Accuracy::columns`] columns, order
+//! twice that) with steps by the estimated error. Steps end at the instants, at kinks of inputs and at the switchings,
+//! so nothing is interpolated; a switching is located by steps of other sizes until the guard vanishes to rounding.
+//! Explicit: a stiff system costs as many steps as its stability takes.
 
 mod branch;
 mod extrapolation;
@@ -26,7 +26,8 @@ use monitor::{Course, GuardMonitor};
 /// How exactly to integrate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// The columns of the extrapolation, 2 to 20; the order is twice as high. Rate evaluations of a step: their square + 1.
+    /// The columns of the extrapolation, 2 to 20; the order is twice as high. Rate evaluations of a step: their square
+    /// + 1.
     pub columns: usize,
     /// The error estimated for a step, at most this times 1 + |x| in each state's SI unit.
     pub tolerance: f64,
@@ -93,9 +94,10 @@ const SMALLEST: f64 = 1e-24;
 /// Events in a row, each nearer to the last one than [`CLOSEST`], that end a run.
 const CROWD: usize = 100;
 
-/// Integrates `system` from `start` at `span.t0` to `span.t_end`; gives time, state and branches at each of the `instants`
-/// (s, ascending, in the span) to `observe`. The start is projected onto the system's invariants first. Branches at the
-/// start follow from the guards' signs; a guard that is exactly zero is decided by its sign a little later.
+/// Integrates `system` from `start` at `span.t0` to `span.t_end`; gives time, state and branches at each of the
+/// `instants` (s, ascending, in the span) to `observe`. The start is projected onto the system's invariants first.
+/// Branches at the start follow from the guards' signs; a guard that is exactly zero is decided by its sign a little
+/// later.
 ///
 /// # Errors
 /// [`Fault`].
@@ -184,7 +186,8 @@ where
         }
     }
 
-    /// Steps until `target` (s) is reached, with a step's end at each instant from which on the system follows another law.
+    /// Steps until `target` (s) is reached, with a step's end at each instant from which on the system follows another
+    /// law.
     fn advance_over_breaks(&mut self, target: f64) -> Result<(), Fault> {
         loop {
             let next = self.system.next_break(self.t.to_f64());
@@ -233,8 +236,8 @@ where
         Ok(())
     }
 
-    /// Tries a step of size `h` (s) and looks at the guards on its way and at its projected end; gives the estimated error
-    /// over the tolerance.
+    /// Tries a step of size `h` (s) and looks at the guards on its way and at its projected end; gives the estimated
+    /// error over the tolerance.
     fn attempt(&mut self, h: S) -> f64 {
         let Self { system, negative, monitor, rate_evaluations, .. } = self;
         let rate = |t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>| {

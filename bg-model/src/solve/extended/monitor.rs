@@ -1,8 +1,8 @@
 //! Guards during a step: whether one changes its sign, and where.
 //!
 //! In: the guards at the substeps of the finest midpoint rule, roughly right, and at the step's ends, as exact as the
-//! step. Out: that all keep their sides, that the step is too long to tell, or the first crossing; then the step that ends
-//! there. A guard that comes near to zero and turns back inside the step calls for a shorter step, which tells.
+//! step. Out: that all keep their sides, that the step is too long to tell, or the first crossing; then the step that
+//! ends there. A guard that comes near to zero and turns back inside the step calls for a shorter step, which tells.
 
 use nalgebra::SVector;
 
@@ -145,8 +145,8 @@ where
     S: Scalar<Switch = bool>,
     Sys: System<S, N, G>,
 {
-    /// Shortens the step of size `h` (s) to `crossing`, or to one that turns out to be earlier; gives the step, which is
-    /// the last one tried, and the switches whose guards are at zero there.
+    /// Shortens the step of size `h` (s) to `crossing`, or to one that turns out to be earlier; gives the step, which
+    /// is the last one tried, and the switches whose guards are at zero there.
     pub(super) fn locate(&mut self, mut h: S, mut crossing: Crossing<S>) -> (S, [bool; G]) {
         for _ in 0..G {
             let (zero, slope) = self.zero(h, crossing);
@@ -161,7 +161,8 @@ where
     }
 
     /// The step of at most `h` (s) at whose end the guard of `crossing` vanishes to rounding, tried last, and the slope
-    /// there: Newton's method with the slope of the last two steps tried, inside a bracket that is halved where that fails.
+    /// there: Newton's method with the slope of the last two steps tried, inside a bracket that is halved where that
+    /// fails.
     fn zero(&mut self, h: S, crossing: Crossing<S>) -> (S, S) {
         // More than the bits of any scalar here.
         const STEPS: usize = 400;

@@ -1,7 +1,7 @@
 //! The integrators by name.
 //!
-//! In: a name and, for methods with a fixed step, the step. Out: the method. A program that reads names from a command line
-//! or a file needs nothing else.
+//! In: a name and, for methods with a fixed step, the step. Out: the method. A program that reads names from a command
+//! line or a file needs nothing else.
 
 use alloc::borrow::ToOwned;
 use alloc::string::String;

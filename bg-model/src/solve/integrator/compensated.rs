@@ -1,7 +1,7 @@
 //! Compensated sums of the states over the steps: what rounding keeps from a sum is added to the next step.
 //!
-//! In: a state and its change in a step. Out: their sum. Without it the momenta of long runs drift by a random walk. Source:
-//! W. Kahan, Communications of the ACM 8 (1965); Hairer, Lubich, Wanner, section VIII.5.
+//! In: a state and its change in a step. Out: their sum. Without it the momenta of long runs drift by a random walk.
+//! Source: W. Kahan, Communications of the ACM 8 (1965); Hairer, Lubich, Wanner, section VIII.5.
 
 use super::side_by_side::Padded;
 use crate::model::scalar::Scalar;

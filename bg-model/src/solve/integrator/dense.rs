@@ -2,10 +2,11 @@
 //!
 //! With theta the part of the step and p the coefficients, of which the first three follow from the ends, the state is
 //! x + theta (p0 + (1 - theta) (p1 + theta (p2 + (1 - theta) (p3 + theta (p4 + ...))))).
-//! Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, section II.6, and the function
-//! CONTD8 of `dop853.f`.
+//! Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, section II.6, and the
+//! function CONTD8 of `dop853.f`.
 //!
-//! Numbers of states are slices in here: what calculates is compiled once, for all models and methods, in the machine's vectors.
+//! Numbers of states are slices in here: what calculates is compiled once, for all models and methods, in the machine's
+//! vectors.
 
 use alloc::vec::Vec;
 
@@ -34,8 +35,8 @@ impl<const C: usize> Polynomial<C> {
         self.coefficients.iter_mut().for_each(|coefficient| coefficient.resize(states, 0.0));
     }
 
-    /// Sets the coefficients that follow from the ends of the step, and those after them to what `write` writes: it gets the
-    /// coefficients of the ends and the count of the one to be written, from the first after them.
+    /// Sets the coefficients that follow from the ends of the step, and those after them to what `write` writes: it
+    /// gets the coefficients of the ends and the count of the one to be written, from the first after them.
     pub fn set(
         &mut self,
         start: PointRef<'_>,
@@ -54,7 +55,8 @@ impl<const C: usize> Polynomial<C> {
         }
     }
 
-    /// Writes the state at the part `theta` of the step, of the first `count` coefficients, into `x`: in the vectors `arch`.
+    /// Writes the state at the part `theta` of the step, of the first `count` coefficients, into `x`: in the vectors
+    /// `arch`.
     pub fn evaluate(&self, arch: Arch, count: usize, start: PointRef<'_>, theta: f64, x: &mut [f64]) {
         let coefficients = self.coefficients.each_ref().map(|coefficient| &coefficient[..]);
         let states = x.len();
@@ -62,7 +64,8 @@ impl<const C: usize> Polynomial<C> {
     }
 }
 
-/// Replaces the state at the start, its rate and the rate at the end `end` of a step of size `h` (s) by the coefficients that follow.
+/// Replaces the state at the start, its rate and the rate at the end `end` of a step of size `h` (s) by the
+/// coefficients that follow.
 #[inline(never)]
 fn follow_from_ends(h: f64, end: &[f64], chord: &mut [f64], at_start: &mut [f64], at_end: &mut [f64]) {
     for (((end, chord), at_start), at_end) in end.iter().zip(chord).zip(at_start).zip(at_end) {

@@ -11,15 +11,15 @@ use alloc::vec::Vec;
 use super::collocation::{Collocation, GAUSS6};
 use super::{Flow, Method, PointRef, Scale, StepControl};
 
-/// What corrections of a fixed step are measured by in place of tolerances, which it has none of: a part of the sizes of the states, and
-/// this number in SI units where nothing is known of these.
+/// What corrections of a fixed step are measured by in place of tolerances, which it has none of: a part of the sizes
+/// of the states, and this number in SI units where nothing is known of these.
 const OF_FIXED: f64 = 1e-8;
 const UNKNOWN: f64 = 1e-10;
 /// A disagreement of this part of a state shows that a step's equations were not solved.
 const LOST: f64 = 1e-3;
 
-/// Gauss with three stages, of order 6 at the ends of steps. Samples between them are of order 4 only: to watch an energy take
-/// [`Samples::Steps`](crate::simulation::Samples::Steps), or instants that are ends of steps.
+/// Gauss with three stages, of order 6 at the ends of steps. Samples between them are of order 4 only: to watch an
+/// energy take [`Samples::Steps`](crate::simulation::Samples::Steps), or instants that are ends of steps.
 #[derive(Clone, Debug)]
 pub struct Gauss6 {
     pub(super) core: Collocation<3, 1>,
@@ -47,8 +47,8 @@ impl Gauss6 {
         Self { core: Collocation::new(&GAUSS6, true), control, own: NOTHING, by_polynomial: Vec::new() }
     }
 
-    /// Whether the quadrature disagrees with the polynomial, by a thousandth of the state and more than the tolerances: where
-    /// h J is so large that the rates at the stages are rounding errors, the equations have no solution in `f64`.
+    /// Whether the quadrature disagrees with the polynomial, by a thousandth of the state and more than the tolerances:
+    /// where h J is so large that the rates at the stages are rounding errors, the equations have no solution in `f64`.
     fn is_lost(&mut self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> bool {
         let polynomial = &mut self.by_polynomial;
         self.core.dense(start, 1.0, polynomial);

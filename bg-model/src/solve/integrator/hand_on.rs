@@ -1,7 +1,7 @@
 //! What a choice between methods, or a method built on another one, leaves to the one inside.
 
-/// Methods of [`Method`](super::Method) that hand on to the method inside: `present!((BORROW) self, method => ..)` calls it,
-/// borrowed as `BORROW`.
+/// Methods of [`Method`](super::Method) that hand on to the method inside: `present!((BORROW) self, method => ..)`
+/// calls it, borrowed as `BORROW`.
 macro_rules! hand_on {
     ($present:ident) => {
         fn name(&self) -> &'static str {

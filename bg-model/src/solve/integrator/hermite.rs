@@ -6,8 +6,8 @@
 use super::PointRef;
 use crate::model::scalar::Scalar;
 
-/// Writes the state at `start` plus the part `theta` (0 to 1) of the step of size `h` (s) into `x`. Inlined, so that a part that is a
-/// constant, as the middle for the guards, is folded into its weights.
+/// Writes the state at `start` plus the part `theta` (0 to 1) of the step of size `h` (s) into `x`. Inlined, so that a
+/// part that is a constant, as the middle for the guards, is folded into its weights.
 #[inline(always)]
 pub(crate) fn hermite(start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
     let n = x.len();

@@ -1,7 +1,7 @@
 //! Methods for runs side by side, each run with its own start, size of the step and branches.
 //!
-//! In: a system that calculates with numbers side by side, where the runs stand, what each run's method knows. Out: the steps that each
-//! run makes by itself, to the bit.
+//! In: a system that calculates with numbers side by side, where the runs stand, what each run's method knows. Out: the
+//! steps that each run makes by itself, to the bit.
 
 use std::ops::Range;
 
@@ -105,8 +105,8 @@ pub(crate) trait OfOne {
     /// What it carries over from step to step, state by state.
     fn compensation(&mut self) -> &mut [f64];
 
-    /// Takes over what it would keep of an attempt for its compensated sum, which `compensation` writes, and the rates of the attempt's stages,
-    /// of which `stage` writes each.
+    /// Takes over what it would keep of an attempt for its compensated sum, which `compensation` writes, and the rates
+    /// of the attempt's stages, of which `stage` writes each.
     fn keep(&mut self, compensation: &dyn Fn(&mut [f64]), stage: &dyn Fn(usize, &mut [f64]));
 
     /// The rates of an attempt, without that at its start.
@@ -148,7 +148,8 @@ pub(crate) enum AnyInLanes<V> {
 }
 
 impl<V: Vector> AnyInLanes<V> {
-    /// That of runs of so many states by `method`, its work space empty; none of a method whose runs cannot be side by side.
+    /// That of runs of so many states by `method`, its work space empty; none of a method whose runs cannot be side by
+    /// side.
     pub fn of(method: &AnyMethod, states: usize) -> Option<Self> {
         match method {
             AnyMethod::Cfmr7(_) => Some(Self::Cfmr7(Box::new(ExplicitInLanes::new(states)))),

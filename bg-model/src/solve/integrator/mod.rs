@@ -1,8 +1,8 @@
 //! Integration methods: how one step is made.
 //!
 //! In: a flow dx/dt = f(t, x) with its switches frozen, the step's start and its size. Out: the state at the end of the
-//! step with an error estimate, and on request the states in between. What steps are tried, accepted and recorded is the
-//! driver's business ([`crate::simulation`]).
+//! step with an error estimate, and on request the states in between. What steps are tried, accepted and recorded is
+//! the driver's business ([`crate::simulation`]).
 //!
 //! All methods calculate in `f64`. A method's coefficients are rounded to `f64`, so a wider number type would gain
 //! nothing. Every sum has a fixed order and nothing is fused: debug and release builds give the same bytes.
@@ -64,9 +64,9 @@ pub use tolerances::{Absolute, Scale, Tolerances};
 pub(crate) use tolerances::{displaced, rounding, smaller};
 pub(crate) use vectors::Arch;
 
-/// A smooth flow: a system with its switches frozen. Only the number of its states and the rate have to be written; what else it knows of
-/// itself it may say. States, and all that there is one of for each of them, are slices: methods are compiled once, in this crate, for any
-/// flow.
+/// A smooth flow: a system with its switches frozen. Only the number of its states and the rate have to be written;
+/// what else it knows of itself it may say. States, and all that there is one of for each of them, are slices: methods
+/// are compiled once, in this crate, for any flow.
 pub trait Flow {
     /// The number of states.
     fn states(&self) -> usize;
@@ -79,8 +79,8 @@ pub trait Flow {
         Sparsity::Full
     }
 
-    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`; by default by differences, for which room
-    /// is allocated.
+    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`; by default by
+    /// differences, for which room is allocated.
     fn jacobian(&self, t: f64, x: &[f64], entries: &mut [f64], slope: &mut [f64]) {
         differences(|t, x, dx| self.rate(t, x, dx), t, x, entries, slope, &mut vec![0.0; x.len()]);
     }
@@ -90,19 +90,20 @@ pub trait Flow {
         self.sparsity()
     }
 
-    /// Writes at least the entries of df/dx among states that are not of second order, in the order of [`Flow::damping_sparsity`],
-    /// into `entries`; by default all, with room for what [`Flow::jacobian`] gives beside.
+    /// Writes at least the entries of df/dx among states that are not of second order, in the order of
+    /// [`Flow::damping_sparsity`], into `entries`; by default all, with room for what [`Flow::jacobian`] gives beside.
     fn damping(&self, t: f64, x: &[f64], entries: &mut [f64]) {
         self.jacobian(t, x, entries, &mut vec![0.0; x.len()]);
     }
 
-    /// How many numbers the factors of I - c J are, along an elimination made for the sparsity; none where there is no such one.
+    /// How many numbers the factors of I - c J are, along an elimination made for the sparsity; none where there is no
+    /// such one.
     fn factors(&self) -> Option<usize> {
         None
     }
 
-    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it did: not where a pivot
-    /// is too small, and by default.
+    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it
+    /// did: not where a pivot is too small, and by default.
     fn eliminate(&self, _c: f64, _entries: &[f64], _factors: &mut [f64]) -> bool {
         false
     }
@@ -123,10 +124,12 @@ pub trait Flow {
         0..0
     }
 
-    /// Replaces the rates `dx` of the states of second order at state `x` by their second derivatives with respect to time, per s^2.
+    /// Replaces the rates `dx` of the states of second order at state `x` by their second derivatives with respect to
+    /// time, per s^2.
     fn second_derivatives(&self, _x: &[f64], _dx: &mut [f64]) {}
 
-    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second derivatives.
+    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their
+    /// second derivatives.
     #[inline(always)]
     fn forces(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.rate(t, x, dx);
@@ -143,9 +146,9 @@ pub trait Flow {
         None
     }
 
-    /// Writes the Taylor series of the states from time `t` (s) on: order by order, of each all states. Those of order 0 are the state there;
-    /// those of order k become the coefficients of the k-th power of the time passed in parts of `h` (s). `rows` is work space, of as many
-    /// numbers for each order but the first as the series is wide.
+    /// Writes the Taylor series of the states from time `t` (s) on: order by order, of each all states. Those of order
+    /// 0 are the state there; those of order k become the coefficients of the k-th power of the time passed in parts of
+    /// `h` (s). `rows` is work space, of as many numbers for each order but the first as the series is wide.
     fn expand(&self, _t: f64, _h: f64, _rows: &mut [f64], _series: &mut [f64]) {}
 
     /// Whether joints hold motions, so that the end of each step is moved back onto them.
@@ -153,7 +156,8 @@ pub trait Flow {
         false
     }
 
-    /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small pivot.
+    /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small
+    /// pivot.
     fn count_factorisation(&self, _is_fallback: bool) {}
 }
 
@@ -216,14 +220,14 @@ pub enum StepControl {
         /// The power of the step with which the error norm of a small step falls.
         order: f64,
     },
-    /// Steps by the error estimates of this step and the one before, which keeps them from swinging where stability limits
-    /// them.
+    /// Steps by the error estimates of this step and the one before, which keeps them from swinging where stability
+    /// limits them.
     Stabilised {
         /// As above.
         order: f64,
     },
-    /// Steps by the error estimates of this step and the one before, kept where they would grow by less than a fifth, so
-    /// that one factorisation serves several of them.
+    /// Steps by the error estimates of this step and the one before, kept where they would grow by less than a fifth,
+    /// so that one factorisation serves several of them.
     Predictive {
         /// As above.
         order: f64,
@@ -249,7 +253,8 @@ pub trait Method {
     /// How its steps are to be chosen.
     fn control(&self) -> StepControl;
 
-    /// Whether its steps are measured by a scale: those of a fixed size have no tolerances, unless they solve equations.
+    /// Whether its steps are measured by a scale: those of a fixed size have no tolerances, unless they solve
+    /// equations.
     fn measures(&self) -> bool {
         self.control().order().is_some()
     }
@@ -259,17 +264,18 @@ pub trait Method {
         false
     }
 
-    /// Makes room for so many states. To be called before the first attempt; changes nothing where there is room already.
+    /// Makes room for so many states. To be called before the first attempt; changes nothing where there is room
+    /// already.
     fn fit(&mut self, states: usize);
 
     /// Tries a step of size `h` (s) from `start`, whose rate is known, and writes the state reached into `end`.
     ///
-    /// Gives the norm of the error estimate: up to 1 the step satisfies the tolerances. A fixed-step method gives 0. Not
-    /// a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
+    /// Gives the norm of the error estimate: up to 1 the step satisfies the tolerances. A fixed-step method gives 0.
+    /// Not a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
     fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64;
 
-    /// The norm of what `project` leaves of the last attempt's error estimate; none where the method does not say. Joints that
-    /// hold a motion take away what a step errs in it.
+    /// The norm of what `project` leaves of the last attempt's error estimate; none where the method does not say.
+    /// Joints that hold a motion take away what a step errs in it.
     fn error_after(
         &mut self,
         _flow: &dyn Flow,
@@ -302,8 +308,8 @@ pub trait Method {
     fn faulty_rate(&self) -> Option<(usize, f64)>;
 
     /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
-    /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be nothing to
-    /// prepare.
+    /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be
+    /// nothing to prepare.
     fn prepare_dense(&mut self, _flow: &dyn Flow, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {}
 
     /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
@@ -319,6 +325,7 @@ pub(crate) fn first_not_finite(numbers: &[f64]) -> Option<(usize, f64)> {
 /// Whether all numbers are finite.
 #[inline(always)]
 pub(crate) fn is_finite(numbers: &[f64]) -> bool {
-    // What is finite times 0 is 0, all of whose bits are 0; anything else times 0 is no number. Vectors do this side by side.
+    // What is finite times 0 is 0, all of whose bits are 0; anything else times 0 is no number. Vectors do this side by
+    // side.
     numbers.iter().fold(0, |bits, value| bits | (value.abs() * 0.0).to_bits()) == 0
 }

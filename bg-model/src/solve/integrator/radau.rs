@@ -1,8 +1,8 @@
 //! Radau IIA: implicit methods for stiff systems, of order 5 and 9.
 //!
 //! In: a step. Out: the state after it with an error estimate, in between the collocation polynomial. L-stable and
-//! stiffly accurate: the last stage is the end of the step. For systems whose Jacobian is cheap beside the steps that an
-//! explicit method would need. Source: see `collocation`.
+//! stiffly accurate: the last stage is the end of the step. For systems whose Jacobian is cheap beside the steps that
+//! an explicit method would need. Source: see `collocation`.
 
 use super::collocation::{Collocation, RADAU5, RADAU9};
 use super::{Flow, Method, PointRef, Scale, StepControl};

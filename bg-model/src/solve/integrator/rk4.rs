@@ -29,8 +29,8 @@ const C: [f64; RATES - 1] = [0.5, 0.5, 1.0];
 /// Weights of the four stages.
 const B: [f64; RATES] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
-/// Writes the state after a step of size `h` (s) from time `t` (s) and state `x` into `end`, where the first of `rates` is the rate
-/// at the start; writes the others.
+/// Writes the state after a step of size `h` (s) from time `t` (s) and state `x` into `end`, where the first of `rates`
+/// is the rate at the start; writes the others.
 #[inline(always)]
 pub(crate) fn step<S: Scalar, const N: usize>(
     mut rate: impl FnMut(S, &SVector<S, N>, &mut SVector<S, N>),

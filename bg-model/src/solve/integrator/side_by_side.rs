@@ -1,10 +1,12 @@
 //! Numbers of all states in groups side by side.
 //!
-//! In: how many states there are. Out: numbers for each of them, and groups of these as arrays of a length that is known when this is
-//! compiled: what is calculated of a group becomes vectors of the machine however many states there are.
+//! In: how many states there are. Out: numbers for each of them, and groups of these as arrays of a length that is
+//! known when this is compiled: what is calculated of a group becomes vectors of the machine however many states there
+//! are.
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::iter::once;
 use core::ops::{Deref, DerefMut, Range};
 
 /// Numbers of a run in a group.
@@ -52,8 +54,8 @@ impl<S, const W: usize> DerefMut for Padded<S, W> {
     }
 }
 
-/// `R` rows of numbers for each state, as those of the stages of a step: of each group all rows stand together, so that a sum over rows finds
-/// them by one look at where the group is.
+/// `R` rows of numbers for each state, as those of the stages of a step: of each group all rows stand together, so that
+/// a sum over rows finds them by one look at where the group is.
 #[derive(Clone, Debug)]
 pub(crate) struct Stack<S, const W: usize, const R: usize> {
     /// The first state of each group, and its rows.
@@ -64,12 +66,12 @@ impl<S: Copy, const W: usize, const R: usize> Stack<S, W, R> {
     /// This number everywhere, in room for so many states and further groups.
     pub fn new(states: usize, further: usize, number: S) -> Self {
         let mut stack = Self { groups: Vec::with_capacity(states.div_ceil(W) + further) };
-        stack.arrange([0..states], number);
+        stack.arrange(once(0..states), number);
         stack
     }
 
     /// Makes groups of these states, none of which has states of two of the ranges; with this number everywhere.
-    pub fn arrange<const RANGES: usize>(&mut self, ranges: [Range<usize>; RANGES], number: S) {
+    pub fn arrange(&mut self, ranges: impl IntoIterator<Item = Range<usize>>, number: S) {
         self.groups.clear();
         let firsts = ranges.into_iter().flat_map(|states| states.step_by(W));
         self.groups.extend(firsts.map(|first| (first, [[number; W]; R])));
@@ -89,7 +91,8 @@ impl<S: Copy, const W: usize, const R: usize> Stack<S, W, R> {
         }
     }
 
-    /// The numbers of a row, each with its state, of groups of this many states or fewer: up to the first state of the next one.
+    /// The numbers of a row, each with its state, of groups of this many states or fewer: up to the first state of the
+    /// next one.
     pub fn row(&self, row: usize, states: usize) -> impl Iterator<Item = (usize, S)> {
         let ends = self.groups[1.min(self.groups.len())..].iter().map(|(first, _)| *first).chain([states]);
         self.groups.iter().zip(ends).flat_map(move |((first, rows), end)| (*first..end).zip(rows[row]))

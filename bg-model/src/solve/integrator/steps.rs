@@ -1,7 +1,7 @@
 //! What steps of explicit methods are made of, of one run or of several side by side.
 //!
-//! In: a flow. Out: its rates, and its second derivatives, for stages in any numbers. The numbers of runs side by side are those of each by
-//! itself, to the bit.
+//! In: a flow. Out: its rates, and its second derivatives, for stages in any numbers. The numbers of runs side by side
+//! are those of each by itself, to the bit.
 
 use core::ops::Range;
 
@@ -37,7 +37,8 @@ pub(crate) trait Forces<S>: Rates<S> {
     /// Replaces the rates `dx` of the states of second order at state `x` by their second derivatives.
     fn at_start(&self, x: &[S], dx: &mut [S]);
 
-    /// Writes the rates at time `t` (s) and state `x` into `dx`, of the states of second order their second derivatives.
+    /// Writes the rates at time `t` (s) and state `x` into `dx`, of the states of second order their second
+    /// derivatives.
     fn at_stage(&self, t: S, x: &[S], dx: &mut [S]);
 }
 

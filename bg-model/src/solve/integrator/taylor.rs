@@ -1,12 +1,12 @@
 //! The Taylor series method: explicit, of any order.
 //!
-//! In: a flow with its Taylor series ([`System::series`](crate::system::System::series)). Out: the state at the end of a
-//! step, its error estimate, and the series itself for what is in between. One series serves all attempts from its start.
-//! Error estimate: the last two terms, the one before the last raised to the power with which it would fall like the last
-//! (Jorba & Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
-//! Experimental Mathematics 14 (2005), section 3.2); and the defect at the end, which shows what the series cannot know: a
-//! kink, or a jump, inside the step. Where there is no series, as at the zero of a square root, BS5 makes the step, which
-//! needs no derivative: its error estimate makes it short.
+//! In: a flow with its Taylor series ([`System::series`](crate::system::System::series)). Out: the state at the end of
+//! a step, its error estimate, and the series itself for what is in between. One series serves all attempts from its
+//! start. Error estimate: the last two terms, the one before the last raised to the power with which it would fall like
+//! the last (Jorba & Zou, A software package for the numerical integration of ODEs by means of high-order Taylor
+//! methods, Experimental Mathematics 14 (2005), section 3.2); and the defect at the end, which shows what the series
+//! cannot know: a kink, or a jump, inside the step. Where there is no series, as at the zero of a square root, BS5
+//! makes the step, which needs no derivative: its error estimate makes it short.
 
 use alloc::vec::Vec;
 
@@ -96,8 +96,8 @@ impl Taylor {
         &self.series[k * n..][..n]
     }
 
-    /// The error of a step of the series of `h` (s) from `start`, in parts of the tolerances; infinite where there is none. The method
-    /// begins anew after it. The state that the step leads to becomes `end`.
+    /// The error of a step of the series of `h` (s) from `start`, in parts of the tolerances; infinite where there is
+    /// none. The method begins anew after it. The state that the step leads to becomes `end`.
     pub(super) fn error(
         &mut self,
         flow: &dyn Flow,
@@ -113,7 +113,8 @@ impl Taylor {
     }
 }
 
-/// Of the `series` at the part `theta` of the unit: the state less that at the start, and the slope of the series, in the state's unit.
+/// Of the `series` at the part `theta` of the unit: the state less that at the start, and the slope of the series, in
+/// the state's unit.
 struct Sums<'a> {
     series: &'a [f64],
     theta: f64,
@@ -139,8 +140,8 @@ impl OfEach for Sums<'_> {
     }
 }
 
-/// The largest of these coefficients of order `k`, each in parts of what is allowed, by `weights`, at the part `theta` of the unit.
-/// `errors` is work space.
+/// The largest of these coefficients of order `k`, each in parts of what is allowed, by `weights`, at the part `theta`
+/// of the unit. `errors` is work space.
 #[inline(always)]
 fn term(k: usize, coefficients: &[f64], theta: f64, weights: &[f64], errors: &mut [f64]) -> f64 {
     let power = if theta == 1.0 { 1.0 } else { libm::pow(theta, k as f64) };
@@ -293,6 +294,6 @@ impl Method for Taylor {
         for coefficients in self.series[n..].chunks_exact(n.max(1)).rev() {
             x.iter_mut().zip(coefficients).for_each(|(change, coefficient)| *change = (*change + coefficient) * theta);
         }
-        x.iter_mut().zip(start.x).for_each(|(x, start)| *x = start + *x);
+        x.iter_mut().zip(start.x).for_each(|(x, start)| *x += start);
     }
 }

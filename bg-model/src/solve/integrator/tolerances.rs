@@ -11,7 +11,8 @@ use super::{Flow, PointRef};
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::fraction;
 
-/// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`, with the value at the start of the step.
+/// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`, with the value at the start of the
+/// step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerances<const N: usize> {
     /// The part that grows with the state; from [`Tolerances::SMALLEST_RELATIVE`].
@@ -23,9 +24,10 @@ pub struct Tolerances<const N: usize> {
 /// An absolute tolerance, positive.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Absolute<const N: usize> {
-    /// A tenth of the relative tolerance of the largest value that each state has had so far, or a thousandth of it of the value at
-    /// which the state would count beside the energy stored so far, where that is more: the same steps in any units and at any
-    /// size of the machine. A driver of runs finds these sizes; a step by itself takes them to be zero.
+    /// A tenth of the relative tolerance of the largest value that each state has had so far, or a thousandth of it of
+    /// the value at which the state would count beside the energy stored so far, where that is more: the same steps in
+    /// any units and at any size of the machine. A driver of runs finds these sizes; a step by itself takes them to be
+    /// zero.
     OfSizes,
     /// The same for all states, each in its own unit.
     Scalar(f64),
@@ -69,8 +71,8 @@ pub struct Scale<S = f64> {
     pub absolute: Vec<S>,
     /// The largest allowed error of a state in parts of its size, where sizes are known: else also in its unit.
     pub coarsest: f64,
-    /// By how much the end of a step may have outgrown its start for its value to excuse the step's error: without bound where absolute
-    /// tolerances are given, since a state may start from zero.
+    /// By how much the end of a step may have outgrown its start for its value to excuse the step's error: without
+    /// bound where absolute tolerances are given, since a state may start from zero.
     pub growth: f64,
     /// What makes changes of different states comparable: one over the size at which each counts beside the others,
     /// per its unit; 0 where that is not known. 1 for all where absolute tolerances are given, which are in SI.
@@ -103,8 +105,9 @@ impl<S: Scalar> Scale<S> {
         self.absolute[i] + value.abs().times(self.relative)
     }
 
-    /// The same in a step between two values: by the larger one, but not by an end that has grown out of all proportion. Of a step far
-    /// beyond what is stable an explicit method's error estimate is small beside where it leads.
+    /// The same in a step between two values: by the larger one, but not by an end that has grown out of all
+    /// proportion. Of a step far beyond what is stable an explicit method's error estimate is small beside where it
+    /// leads.
     #[inline(always)]
     #[must_use]
     pub fn allowed_between(&self, i: usize, from: S, to: S) -> S {
@@ -178,8 +181,8 @@ pub(super) fn largest_of(count: usize, value: impl Fn(usize) -> f64) -> f64 {
 /// What [`displaced`] works with: a state, its rate, and the result. Each has a number for each state.
 pub(crate) type Displaced<'a> = [&'a mut [f64]; 3];
 
-/// Writes the largest change of each rate at `start` where every state is rounded up or down, in some patterns, into the last of `work`: what
-/// rounding may add to the rates. Not negative. Takes four rates.
+/// Writes the largest change of each rate at `start` where every state is rounded up or down, in some patterns, into
+/// the last of `work`: what rounding may add to the rates. Not negative. Takes four rates.
 pub(crate) fn rounding(flow: &dyn Flow, start: PointRef<'_>, work: Displaced<'_>) {
     displaced(flow, start, |i| start.x[i] * f64::EPSILON, work);
 }

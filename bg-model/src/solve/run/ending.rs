@@ -1,7 +1,7 @@
 //! What ends a run before its end: nothing, or a condition of its outputs.
 //!
-//! In: a model and its run. Out: the run with or without a condition. Which of the two is a type, so that a program which has no
-//! conditions compiles its models without them.
+//! In: a model and its run. Out: the run with or without a condition. Which of the two is a type, so that a program
+//! which has no conditions compiles its models without them.
 
 use std::ops::Index;
 

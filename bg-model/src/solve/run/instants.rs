@@ -2,8 +2,8 @@
 
 /// The instants `from`, the multiples of `step` after it, and `to`, s.
 ///
-/// Where `step` is the reciprocal of a whole number n, the multiples are the quotients k / n, so that they print as `0.3` and
-/// not as `0.30000000000000004`. `to` is the last instant even where it is no multiple of `step`.
+/// Where `step` is the reciprocal of a whole number n, the multiples are the quotients k / n, so that they print as
+/// `0.3` and not as `0.30000000000000004`. `to` is the last instant even where it is no multiple of `step`.
 #[must_use]
 pub fn sample_times(from: f64, step: f64, to: f64) -> Vec<f64> {
     // Rounding of a decimal step is below 1e-16 relative; anything nearer than this is meant to be the reciprocal.

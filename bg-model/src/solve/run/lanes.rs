@@ -1,7 +1,7 @@
 //! Many runs of a mechanism, each with its own parameters, side by side in the vectors of the machine.
 //!
-//! In: a mechanism, the values of its parameters in each run. Out: the trajectory of each run, the same to the bit as if it were
-//! made by itself.
+//! In: a mechanism, the values of its parameters in each run. Out: the trajectory of each run, the same to the bit as
+//! if it were made by itself.
 
 use std::ops::ControlFlow;
 
@@ -32,14 +32,15 @@ pub enum LaneError {
     Run(#[from] RunError),
 }
 
-/// Makes a run of `model` with each of these values of its parameters (in the order of their table), as it is asked for: eight at a
-/// time on a machine with AVX-512, four with AVX2. Each gives the bits that it gives by itself, but for the wall clock, of which
-/// each has an equal share.
+/// Makes a run of `model` with each of these values of its parameters (in the order of their table), as it is asked
+/// for: eight at a time on a machine with AVX-512, four with AVX2. Each gives the bits that it gives by itself, but for
+/// the wall clock, of which each has an equal share.
 ///
 /// They are made one after the other where that is not possible: on other machines, by another method than those of
-/// [`Integrator::is_for_lanes`](crate::integrator::Integrator::is_for_lanes), with a sample at each step, at relative tolerances up to 1e-10,
-/// of models with an input that changes, with an iteration in their rate, or of more than some 400 operations; and those that close a loop
-/// on another side than the first, or whose joints hold another motion twice.
+/// [`Integrator::is_for_lanes`](crate::integrator::Integrator::is_for_lanes), with a sample at each step, at relative
+/// tolerances up to 1e-10, of models with an input that changes, with an iteration in their rate, or of more than some
+/// 400 operations; and those that close a loop on another side than the first, or whose joints hold another motion
+/// twice.
 pub fn in_lanes<Me: Mechanism>(
     model: &Me,
     request: &Request,

@@ -1,9 +1,9 @@
 //! A run of a mechanism, asked for in words and given as columns by name: the face without const generics.
 //!
 //! In: a [`Mechanism`] and what is asked of the run. Out: a [`Trajectory`], from which the run can go on. Underneath is
-//! [`simulation::integrate`](crate::simulation::integrate), which allocates nothing in a step. This face records the samples
-//! and asks after each step whether to go on: 0.4 % more instructions than a `Recorder` by itself, counted on 5 s of the
-//! paper's hacksaw with 501 samples.
+//! [`simulation::integrate`](crate::simulation::integrate), which allocates nothing in a step. This face records the
+//! samples and asks after each step whether to go on: 0.4 % more instructions than a `Recorder` by itself, counted on 5
+//! s of the paper's hacksaw with 501 samples.
 
 mod clock;
 mod ending;
@@ -92,8 +92,8 @@ impl<'a, Me: Mechanism> Simulation<'a, Me> {
         Self { model, request, start: None, each_step, ending: Unconditional }
     }
 
-    /// Ends the run where `condition` passes through zero, in either direction; located like an event, by steps to its zero. A
-    /// condition that is zero at the start ends the run the next time.
+    /// Ends the run where `condition` passes through zero, in either direction; located like an event, by steps to its
+    /// zero. A condition that is zero at the start ends the run the next time.
     pub fn stop_when<F: FnMut(&Sample<'_>) -> f64>(self, condition: F) -> Simulation<'a, Me, When<F>> {
         let Self { model, request, start, each_step, ending: Unconditional } = self;
         Simulation { model, request, start, each_step, ending: When(condition) }
@@ -143,10 +143,10 @@ impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
         self
     }
 
-    /// Starts from `state` at its time, not from the model's own start. The parameters may be others than those that led to
-    /// it: what stays are the states (momenta, not velocities), and what sticks or rests as far as it can. The state is
-    /// checked as a start is: joints closed, orientations rotations, no stop passed; what rounding leaves of that is
-    /// closed.
+    /// Starts from `state` at its time, not from the model's own start. The parameters may be others than those that
+    /// led to it: what stays are the states (momenta, not velocities), and what sticks or rests as far as it can. The
+    /// state is checked as a start is: joints closed, orientations rotations, no stop passed; what rounding leaves of
+    /// that is closed.
     pub fn from(mut self, state: &State) -> Self {
         self.start = Some(state.clone());
         self

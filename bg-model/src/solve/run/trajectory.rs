@@ -24,7 +24,8 @@ pub struct Trajectory {
     pub ended: Ended,
     /// Steps, evaluations, factorisations, events.
     pub statistics: Statistics,
-    /// The states whose errors were never controlled: smaller than their absolute tolerance all the time, and no rounding.
+    /// The states whose errors were never controlled: smaller than their absolute tolerance all the time, and no
+    /// rounding.
     pub uncontrolled: Vec<&'static str>,
     /// The methods that made the steps, from when (s) on; the first from the start.
     pub methods: Vec<Change>,
@@ -72,8 +73,8 @@ impl Index<&str> for Trajectory {
 }
 
 impl Trajectory {
-    /// Goes on to `t_end` (s) from where the run has come to, and appends what is sampled. `model` may have other parameters:
-    /// what stays are the states (momenta, not velocities), and what sticks or rests as far as it can.
+    /// Goes on to `t_end` (s) from where the run has come to, and appends what is sampled. `model` may have other
+    /// parameters: what stays are the states (momenta, not velocities), and what sticks or rests as far as it can.
     ///
     /// # Errors
     /// As [`Simulation::run`]; what was reached is appended then as well.

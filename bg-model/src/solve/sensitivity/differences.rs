@@ -1,7 +1,8 @@
 //! Derivatives of a run by differences of runs in double-double arithmetic: what exact ones are checked with.
 //!
-//! In: a model, a parameter, a time. Out: the derivative of each output there. Method: five points, whose truncation error goes with the
-//! fourth power of their distance; rounding of the assembly, which is in `f64`, is 1e-16 over the distance.
+//! In: a model, a parameter, a time. Out: the derivative of each output there. Method: five points, whose truncation
+//! error goes with the fourth power of their distance; rounding of the assembly, which is in `f64`, is 1e-16 over the
+//! distance.
 
 use nalgebra::SVector;
 use thiserror::Error;
@@ -28,8 +29,9 @@ pub enum DifferencesError {
     Run(#[from] Fault),
 }
 
-/// The derivatives of the outputs of `model` at `t` (s) by the parameter of this index, in the output's unit per the parameter's: by runs at
-/// distances of `part` of its value; of its default where it is zero, and of 1 in its unit where that is zero, too.
+/// The derivatives of the outputs of `model` at `t` (s) by the parameter of this index, in the output's unit per the
+/// parameter's: by runs at distances of `part` of its value; of its default where it is zero, and of 1 in its unit
+/// where that is zero, too.
 ///
 /// # Errors
 /// [`DifferencesError`].

@@ -1,6 +1,7 @@
 //! Slopes that follow a run: from step to step, over events, into the outputs at the samples.
 //!
-//! In: what an observer of the run is told. Out: the derivatives of the outputs at each sample, and those of the states at the end.
+//! In: what an observer of the run is told. Out: the derivatives of the outputs at each sample, and those of the states
+//! at the end.
 
 use nalgebra::SVector;
 
@@ -46,8 +47,8 @@ impl<Li, const N: usize, const G: usize, const M: usize> Follower<Li, N, G, M>
 where
     Li: Model<Gradient, N, G, M>,
 {
-    /// From the start of a run at `t0` (s) along `directions`; `systems` have the slopes along a few of them each, `plain` along nothing,
-    /// and `steps` are those of the same system along all of them.
+    /// From the start of a run at `t0` (s) along `directions`; `systems` have the slopes along a few of them each,
+    /// `plain` along nothing, and `steps` are those of the same system along all of them.
     ///
     /// # Errors
     /// The start cannot be assembled.

@@ -1,10 +1,10 @@
 //! How slopes jump where branches change or something hits a stop.
 //!
 //! In: a state with slopes before, what has happened. Out: the slopes after it.
-//! Method: the instant t* of an event is that at which its guard g is zero, so dt*/dp = -(g_x S + g_p) / (g_x f + g_t), with the
-//! rate f before. The state at t*, which changes by S + f dt*/dp, goes through the impact, if there is one; from there the
-//! rate f+ leads back: S+ = dx+/dp - f+ dt*/dp. Without an impact that is S+ = S + (f - f+) dt*/dp. Source: E. N. Rozenwasser,
-//! R. Yusupov, Sensitivity of Automatic Control Systems (2000), chapter 3.
+//! Method: the instant t* of an event is that at which its guard g is zero, so dt*/dp = -(g_x S + g_p) / (g_x f + g_t),
+//! with the rate f before. The state at t*, which changes by S + f dt*/dp, goes through the impact, if there is one;
+//! from there the rate f+ leads back: S+ = dx+/dp - f+ dt*/dp. Without an impact that is S+ = S + (f - f+) dt*/dp.
+//! Source: E. N. Rozenwasser, R. Yusupov, Sensitivity of Automatic Control Systems (2000), chapter 3.
 
 use nalgebra::SVector;
 
@@ -15,8 +15,8 @@ use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::System;
 use crate::solve::simulation::Switching;
 
-/// The slopes after the event of the state `x`, which has its value before it; `plain` is the same system with slopes of nothing.
-/// None where no guard passes through zero with a speed: the derivative does not exist there.
+/// The slopes after the event of the state `x`, which has its value before it; `plain` is the same system with slopes
+/// of nothing. None where no guard passes through zero with a speed: the derivative does not exist there.
 pub(super) fn jumped<Sys, const N: usize, const G: usize>(
     system: &Sys,
     plain: &Sys,
@@ -55,7 +55,8 @@ where
     delays.iter().all(|delay| delay.is_finite()).then_some(delays)
 }
 
-/// The guard that decides on the instant, and how fast it passes through zero, in its unit per s. `plain` has slopes of nothing.
+/// The guard that decides on the instant, and how fast it passes through zero, in its unit per s. `plain` has slopes of
+/// nothing.
 pub(super) fn passed<Sys, const N: usize, const G: usize>(plain: &Sys, event: &Switching<N, G>) -> Option<(usize, f64)>
 where
     Sys: System<Gradient, N, G>,

@@ -1,9 +1,10 @@
 //! Derivatives of a run by parameters and start values, exact to the accuracy of the run, through events.
 //!
-//! In: a [`Mechanism`], what is asked of a run, directions. Out: the run, with the derivative of each output at each sample along
-//! each direction. Method: the model calculates with numbers that have slopes ([`Gradient`](crate::scalar::Gradient)), beside the run itself, whose steps,
-//! events and bytes are those without derivatives. The start pose, the rates, projections, guards, impacts and outputs are all
-//! differentiated; at events the slopes jump (`jump`).
+//! In: a [`Mechanism`], what is asked of a run, directions. Out: the run, with the derivative of each output at each
+//! sample along each direction. Method: the model calculates with numbers that have slopes
+//! ([`Gradient`](crate::scalar::Gradient)), beside the run itself, whose steps, events and bytes are those without
+//! derivatives. The start pose, the rates, projections, guards, impacts and outputs are all differentiated; at events
+//! the slopes jump (`jump`).
 //!
 //! ```
 //! use bg_model::bond_graph;
@@ -59,8 +60,8 @@ pub use differences::{DifferencesError, differences};
 use follow::Follower;
 use step::{Stepper, Steps, joined as joined_slopes};
 
-/// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's own steps, and
-/// the slopes would no longer be the derivatives of these.
+/// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's
+/// own steps, and the slopes would no longer be the derivatives of these.
 const PART: f64 = 1.0 / 1024.0;
 
 /// What a run is differentiated by.
@@ -102,7 +103,8 @@ pub struct Sensitivities {
 }
 
 impl Sensitivities {
-    /// The derivative of an output along a direction at each sample, if it was asked for, in the output's unit per the direction's.
+    /// The derivative of an output along a direction at each sample, if it was asked for, in the output's unit per the
+    /// direction's.
     ///
     /// # Panics
     /// There is no such direction or output.
@@ -163,7 +165,8 @@ pub enum SensitivityError {
     },
 }
 
-/// Makes a run of `model` from its own start, as it is asked for, with the derivatives of its outputs along `directions`.
+/// Makes a run of `model` from its own start, as it is asked for, with the derivatives of its outputs along
+/// `directions`.
 ///
 /// # Errors
 /// [`SensitivityError`].
@@ -176,8 +179,8 @@ pub fn sensitivities<Me: Mechanism>(
     sensitivities_of(model, request, directions, &all)
 }
 
-/// As [`sensitivities`], with the derivatives of these outputs alone, by their places in the model's description: of the others
-/// [`Sensitivities::of`] is empty.
+/// As [`sensitivities`], with the derivatives of these outputs alone, by their places in the model's description: of
+/// the others [`Sensitivities::of`] is empty.
 ///
 /// # Errors
 /// [`SensitivityError`].
@@ -256,7 +259,8 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
 }
 
 impl Following<'_> {
-    /// Makes the run, followed along `lanes` directions at a time by what `steps` makes. Compiled once for each model, whatever the vectors.
+    /// Makes the run, followed along `lanes` directions at a time by what `steps` makes. Compiled once for each model,
+    /// whatever the vectors.
     fn followed<Mo, Li, const N: usize, const G: usize, const M: usize>(
         &self,
         lanes: usize,
@@ -290,7 +294,8 @@ impl Following<'_> {
     }
 }
 
-/// Makes steps of the systems that have a few directions each, measured by the scale of the states and the size of each direction.
+/// Makes steps of the systems that have a few directions each, measured by the scale of the states and the size of each
+/// direction.
 type MakesSteps<'a, Li, const N: usize, const G: usize> = dyn Fn(&[&Li], Scale, &[f64]) -> Box<dyn Steps<N, G>> + 'a;
 
 /// Several observers of one kind.

@@ -1,13 +1,14 @@
 //! One step of a state with its derivatives along some directions.
 //!
-//! In: the start of a step that a run has made, a rate that takes numbers with slopes. Out: the state at its end, with slopes.
-//! Method: DOP853 on the state with its slopes, which is the same method on S' = J S + df/dp with the exact J and df/dp of every
-//! stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is. Steps of another method are divided into
-//! equal parts until the estimated error of the slopes is what is allowed: for a change of the direction by its size, what is allowed of the
-//! state (as in A. C. Hindmarsh and others, SUNDIALS, ACM TOMS 31 (2005), section 2.6).
+//! In: the start of a step that a run has made, a rate that takes numbers with slopes. Out: the state at its end, with
+//! slopes. Method: DOP853 on the state with its slopes, which is the same method on S' = J S + df/dp with the exact J
+//! and df/dp of every stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is.
+//! Steps of another method are divided into equal parts until the estimated error of the slopes is what is allowed: for
+//! a change of the direction by its size, what is allowed of the state (as in A. C. Hindmarsh and others, SUNDIALS, ACM
+//! TOMS 31 (2005), section 2.6).
 //!
-//! A step has vectors of its own: those of the machine, in which nothing else is calculated, and it keeps the state in them from step to
-//! step. All around it is [`Gradient`].
+//! A step has vectors of its own: those of the machine, in which nothing else is calculated, and it keeps the state in
+//! them from step to step. All around it is [`Gradient`].
 
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
@@ -38,7 +39,8 @@ const MOST_PARTS: u32 = 1 << 16;
 /// Errors below this let the next step have half as many parts: a twofold step errs 2^8 times as much.
 const SMALL: f64 = 1.0 / 512.0;
 
-/// A state that follows the steps of a run, whatever its vectors. Its slopes are seen in parts, each those of a [`Gradient`].
+/// A state that follows the steps of a run, whatever its vectors. Its slopes are seen in parts, each those of a
+/// [`Gradient`].
 pub(super) trait Steps<const N: usize, const G: usize> {
     /// Has come to the state `x`, as far as the slopes of this part are concerned.
     fn set(&mut self, part: usize, x: &Sloped<N>);
@@ -49,8 +51,8 @@ pub(super) trait Steps<const N: usize, const G: usize> {
     /// The state `x` with the slopes of this part where it has come to.
     fn now(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N>;
 
-    /// Goes on by a step of the run, from one state to the other, whose values it takes, in the branches `negative`. Gives whether it
-    /// did: not where the slopes stay too inexact or are not finite.
+    /// Goes on by a step of the run, from one state to the other, whose values it takes, in the branches `negative`.
+    /// Gives whether it did: not where the slopes stay too inexact or are not finite.
     fn pass(&mut self, negative: &[bool; G], start: &Point<N>, end: &Point<N>) -> bool;
 
     /// Looks at the time `to` (s) inside the last step, which started at `from`. Gives whether it could.
@@ -93,7 +95,8 @@ struct Stages<V, const N: usize> {
 }
 
 impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
-    /// Steps of this system. Errors, where they are estimated, are measured with the scale of the states and the size of each direction.
+    /// Steps of this system. Errors, where they are estimated, are measured with the scale of the states and the size
+    /// of each direction.
     pub fn new(system: Box<Sys>, is_estimated: bool, (scale, of_each): (Scale, &[f64])) -> Self {
         let nothing: Box<SlopedIn<V, N>> = Box::new(SVector::repeat(GradientIn::from_f64(0.0)));
         let k = Box::new(Stages { values: [[0.0; N]; STAGES], slopes: [[V::filled(0.0); N]; STAGES] });
@@ -227,7 +230,8 @@ impl<V: Slopes, const N: usize> Work<V, N> {
         false
     }
 
-    /// Writes the state at the end of one part, at whose start it is `x`, into `end`; gives the norm of its slopes' error.
+    /// Writes the state at the end of one part, at whose start it is `x`, into `end`; gives the norm of its slopes'
+    /// error.
     #[inline(always)]
     fn attempt<Sys, const G: usize>(
         &mut self,

@@ -26,28 +26,31 @@ pub struct Switching<const N: usize, const G: usize> {
 
 /// Is told what a run gives, in the order of time. Every method does nothing by default.
 pub trait Observer<const N: usize, const G: usize> {
-    /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there. At the instant of an impact it is
-    /// the state before it; at the start of a run the state after it.
+    /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there. At the instant of an
+    /// impact it is the state before it; at the start of a run the state after it.
     fn sample(&mut self, _t: f64, _x: &SVector<f64, N>, _negative: &[bool; G]) {}
 
-    /// What errors are measured by from here on: told at the start, and before a step whose end has outgrown the sizes of the states.
+    /// What errors are measured by from here on: told at the start, and before a step whose end has outgrown the sizes
+    /// of the states.
     fn measured(&mut self, _scale: &Scale) {}
 
-    /// A step was accepted, from `start` to `end` in the branches `negative`: told before the samples in it and before what happens
-    /// at its end. The rates at both ends are those of these branches.
+    /// A step was accepted, from `start` to `end` in the branches `negative`: told before the samples in it and before
+    /// what happens at its end. The rates at both ends are those of these branches.
     fn passed(&mut self, _start: &Point<N>, _end: &Point<N>, _negative: &[bool; G]) {}
 
-    /// Branches have changed, or the state has jumped, at the end of the last step: told before the events of the switches.
+    /// Branches have changed, or the state has jumped, at the end of the last step: told before the events of the
+    /// switches.
     fn switched(&mut self, _switching: &Switching<N, G>) {}
 
-    /// Switch `switch` has changed its branch at `t` (s) and state `x`, or its stop was hit and is left again; `negative` are the
-    /// branches after that, `x` the state after the impact.
+    /// Switch `switch` has changed its branch at `t` (s) and state `x`, or its stop was hit and is left again;
+    /// `negative` are the branches after that, `x` the state after the impact.
     fn event(&mut self, _t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {}
 
     /// A step was accepted that leads to `t` (s), on the way to `t_end` (s).
     fn step(&mut self, _t: f64, _t_end: f64, _statistics: &Statistics) {}
 
-    /// Whether the run ends here: asked after each accepted step, whose end then is the end of the run and its last sample.
+    /// Whether the run ends here: asked after each accepted step, whose end then is the end of the run and its last
+    /// sample.
     fn is_done(&self) -> bool {
         false
     }

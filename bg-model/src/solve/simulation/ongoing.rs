@@ -1,8 +1,9 @@
-//! A run that is made piece by piece, each to an end that is known only when the one before is done: co-simulation, control.
+//! A run that is made piece by piece, each to an end that is known only when the one before is done: co-simulation,
+//! control.
 //!
-//! In: a state, then one end after the other. Out: the state there. From piece to piece stay the rate, the branches, what is
-//! known of the guards, the size of the next step and what the method keeps; only where the system has changed in between is
-//! the start looked at anew, and then too the size of the step stays.
+//! In: a state, then one end after the other. Out: the state there. From piece to piece stay the rate, the branches,
+//! what is known of the guards, the size of the next step and what the method keeps; only where the system has changed
+//! in between is the start looked at anew, and then too the size of the step stays.
 
 use alloc::boxed::Box;
 

@@ -1,7 +1,7 @@
 //! A recording: the samples of a run of a model, as columns by name.
 //!
-//! In: a model and what is to be recorded of it. Out: an observer, and after the run a table: a value for each sample in every
-//! column, with the names and units of the model's description.
+//! In: a model and what is to be recorded of it. Out: an observer, and after the run a table: a value for each sample
+//! in every column, with the names and units of the model's description.
 
 use alloc::borrow::ToOwned;
 use alloc::format;

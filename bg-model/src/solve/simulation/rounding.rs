@@ -1,15 +1,17 @@
 //! Whether rounding, and not the method, makes the error of the steps.
 //!
-//! In: accepted steps. Out: how many of them have tolerances below rounding. The error estimate of an explicit method is a sum of
-//! rates times the step. Where forces are differences of nearly equal states (stiff joints), rounding of the states changes the
-//! rates so much that the estimate exceeds a tight tolerance: the steps become shorter, and the result no better.
+//! In: accepted steps. Out: how many of them have tolerances below rounding. The error estimate of an explicit method
+//! is a sum of rates times the step. Where forces are differences of nearly equal states (stiff joints), rounding of
+//! the states changes the rates so much that the estimate exceeds a tight tolerance: the steps become shorter, and the
+//! result no better.
 
 use super::sizes::SizeMonitor;
 use crate::model::system::System;
 use crate::solve::integrator::{Method, StepControl, rounding};
 use crate::solve::stepper::Stepper;
 
-/// Above this relative tolerance rounding makes nothing of a step's error: at most 1.5e-2 of what is allowed was measured at 1e-9.
+/// Above this relative tolerance rounding makes nothing of a step's error: at most 1.5e-2 of what is allowed was
+/// measured at 1e-9.
 const LOOSEST: f64 = 1e-10;
 /// Accepted steps from one look to the next.
 const WAIT: u64 = 64;

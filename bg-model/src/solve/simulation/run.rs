@@ -21,12 +21,13 @@ use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Method, StepControl, is_finite};
 use crate::solve::stepper::Stepper;
 
-/// The norm of a projection above which it is looked at more closely. It is below 2 where a step errs by as much as is allowed.
+/// The norm of a projection above which it is looked at more closely. It is below 2 where a step errs by as much as is
+/// allowed.
 pub(super) const MOVED: f64 = 10.0;
 /// How often a sample is projected at most.
 const PROJECTIONS: usize = 6;
-/// How much less another projection moves, at most, where the first one has led to the motion's own branch: about the error
-/// beside the distance of the branches.
+/// How much less another projection moves, at most, where the first one has led to the motion's own branch: about the
+/// error beside the distance of the branches.
 const AGAIN: f64 = 0.05;
 
 /// A run under way.
@@ -126,7 +127,8 @@ where
         self.loops.is_some()
     }
 
-    /// Whether joints close no loops, or ones that are looked at as `lanes` does, the last pose not near a singular one.
+    /// Whether joints close no loops, or ones that are looked at as `lanes` does, the last pose not near a singular
+    /// one.
     #[cfg(feature = "std")]
     pub fn has_loops_of<V: Vector>(&self, lanes: Option<&LoopsInLanes<V>>) -> bool {
         self.loops.as_ref().is_none_or(|loops| lanes.is_some_and(|lanes| loops.is_that_of(lanes)))
@@ -257,8 +259,9 @@ where
 
     /// Projects the end of the step; gives whether it is still on the branch of the motion on which the step began.
     ///
-    /// Near a singular pose steps err much in what joints hold, which the projection takes away. It is Newton's step, so
-    /// where the branches are far apart beside the error, another one moves by the error's square only, or by rounding.
+    /// Near a singular pose steps err much in what joints hold, which the projection takes away. It is Newton's step,
+    /// so where the branches are far apart beside the error, another one moves by the error's square only, or by
+    /// rounding.
     fn project(&mut self) -> bool {
         let moved = self.stepper.project();
         if moved <= MOVED || !self.is_around_singular() {
@@ -387,8 +390,8 @@ where
         jumps.map_err(|value| self.not_finite_monitored(Faulty::Condition(value), 0.0))
     }
 
-    /// Lets the switches whose guards are at zero find their branches at the start of the next step, where the state jumps if
-    /// something has hit a stop. Gives whether it does.
+    /// Lets the switches whose guards are at zero find their branches at the start of the next step, where the state
+    /// jumps if something has hit a stop. Gives whether it does.
     fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<bool, Cause> {
         let t = self.stepper.start.t;
         let (before, point, reached) = (self.stepper.negative, self.stepper.start, switches);

@@ -35,8 +35,8 @@ impl Span {
 pub struct Settings<const N: usize> {
     /// The error allowed in a step; without effect on a fixed-step method.
     pub tolerances: Tolerances<N>,
-    /// The first step, s; by default it is estimated. One beyond the end of the run is one to the end. Without effect on a
-    /// fixed-step method.
+    /// The first step, s; by default it is estimated. One beyond the end of the run is one to the end. Without effect
+    /// on a fixed-step method.
     pub first_step: Option<f64>,
     /// The largest step, s; infinity by default.
     pub largest_step: f64,
@@ -65,7 +65,8 @@ pub enum Samples {
     Steps,
     /// The start, the instants t0 + k dt, and the end of the run; of an infinite dt (s) the start and the end.
     Every(f64),
-    /// These instants only, s: ascending and inside the span. Those after the end of a run that ends early are not given.
+    /// These instants only, s: ascending and inside the span. Those after the end of a run that ends early are not
+    /// given.
     At(Vec<f64>),
 }
 

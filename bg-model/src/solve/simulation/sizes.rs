@@ -1,20 +1,21 @@
 //! How large states have been: what the absolute part of an error norm is measured by, where no other is asked for.
 //!
-//! In: the start of a run and its accepted steps. Out: for each state an error that no longer counts. It is a part of the largest value
-//! of the state so far; or, where that is more, a very small part of the size at which the state would count beside the others, or what
-//! rounding of all states makes of it in a step. All scale with the units and with the size of the machine, so that the steps depend
-//! on neither.
+//! In: the start of a run and its accepted steps. Out: for each state an error that no longer counts. It is a part of
+//! the largest value of the state so far; or, where that is more, a very small part of the size at which the state
+//! would count beside the others, or what rounding of all states makes of it in a step. All scale with the units and
+//! with the size of the machine, so that the steps depend on neither.
 //!
-//! - A momentum or displacement x counts beside sqrt(2 E / (d2E/dx2)), E the largest energy so far; at the start at least the work of
-//!   the forces there over the machine's length, or over a radian.
+//! - A momentum or displacement x counts beside sqrt(2 E / (d2E/dx2)), E the largest energy so far; at the start at
+//!   least the work of the forces there over the machine's length, or over a radian.
 //! - A component of an orientation and an angle count beside 1, a position beside the machine's length.
-//! - An integral, a way and what has no second derivative count beside the way that their rate leads in the time so far where the storages
-//!   are displaced by their sizes.
+//! - An integral, a way and what has no second derivative count beside the way that their rate leads in the time so far
+//!   where the storages are displaced by their sizes.
 //! - In a system that does not know what it stores, states count beside the largest of them.
 //!
 //! Of a first step, and of one from rest, the sizes are those of a way ahead on which the rates change little.
 //!
-//! The sizes are looked at anew where a state has outgrown them, or a step that of rounding: the steps between have one norm.
+//! The sizes are looked at anew where a state has outgrown them, or a step that of rounding: the steps between have one
+//! norm.
 
 use nalgebra::SVector;
 
@@ -25,26 +26,28 @@ use crate::model::system::{System, branches};
 use crate::solve::integrator::{Absolute, Dop853, Method, Point, Scale, Tolerances, displaced, rounding};
 use crate::solve::stepper::Stepper;
 
-/// The part of a state's largest value that its absolute tolerance is, over the relative one. A smaller one costs steps where states
-/// pass zero and gives no smaller an error for the same time.
+/// The part of a state's largest value that its absolute tolerance is, over the relative one. A smaller one costs steps
+/// where states pass zero and gives no smaller an error for the same time.
 const OWN: f64 = 0.1;
 /// The same part of its size beside the others.
 const BESIDE: f64 = 1e-9;
 /// The same part of the largest state, in a system that does not know what it stores.
 const AMONG: f64 = 1e-6;
-/// What rounding of the states may change the error of a step, in parts of the step times the change of the rate: the error estimates of
-/// explicit methods are two to four of them, and the next steps may be longer.
+/// What rounding of the states may change the error of a step, in parts of the step times the change of the rate: the
+/// error estimates of explicit methods are two to four of them, and the next steps may be longer.
 const NOISE: f64 = 64.0;
-/// The part of a size beside the others that orientations, and projections onto what joints hold, leave of rounding: they mix the states
-/// of all bodies, the more so the nearer a pose is to a singular one.
+/// The part of a size beside the others that orientations, and projections onto what joints hold, leave of rounding:
+/// they mix the states of all bodies, the more so the nearer a pose is to a singular one.
 const MIXED: f64 = 1e-12;
 /// By how much steps grow before rounding is looked at anew.
 const LONGER: f64 = 4.0;
-/// The part of a size beside the others that rounding is at most in methods which damp it, or take no differences of rates.
+/// The part of a size beside the others that rounding is at most in methods which damp it, or take no differences of
+/// rates.
 const DAMPED: f64 = 1e-13;
 /// By how much a state outgrows its size before the sizes are looked at anew.
 const OUTGROWN: f64 = 2.0;
-/// How far the rates of storages may change, in parts of themselves, on the way from which the sizes of a step from rest are taken.
+/// How far the rates of storages may change, in parts of themselves, on the way from which the sizes of a step from
+/// rest are taken.
 const LINEAR: f64 = 0.5;
 /// Below this part of its size beside the others a state is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -204,8 +207,8 @@ impl<const N: usize> SizeMonitor<N> {
         (0..N).fold(false, |is_outgrown, i| is_outgrown | (x.data.0[0][i].abs() > self.limit.data.0[0][i]))
     }
 
-    /// The magnitudes from which on states have outgrown their sizes, and the step (s) from which on it has outgrown the noise; infinite
-    /// where the scale is given.
+    /// The magnitudes from which on states have outgrown their sizes, and the step (s) from which on it has outgrown
+    /// the noise; infinite where the scale is given.
     #[cfg(feature = "std")]
     pub fn limits(&self) -> (SVector<f64, N>, f64) {
         if self.is_leading { (self.limit, self.longest) } else { (SVector::repeat(f64::INFINITY), f64::INFINITY) }
@@ -238,8 +241,8 @@ impl<const N: usize> SizeMonitor<N> {
         self.lead(&mut stepper.scale);
     }
 
-    /// States whose errors were never controlled, with the tolerances of this scale: above rounding, and below their tolerance all the
-    /// time.
+    /// States whose errors were never controlled, with the tolerances of this scale: above rounding, and below their
+    /// tolerance all the time.
     pub fn uncontrolled(&self, scale: &Scale) -> [bool; N] {
         core::array::from_fn(|i| {
             let rounding = ROUNDING * larger(self.sizes.beside[i], f64::MIN_POSITIVE);
@@ -324,7 +327,8 @@ impl<const N: usize> SizeMonitor<N> {
         None
     }
 
-    /// Raises the sizes of what has none by energy to the way of its rate in `elapsed` (s) where storages are displaced by theirs.
+    /// Raises the sizes of what has none by energy to the way of its rate in `elapsed` (s) where storages are displaced
+    /// by theirs.
     fn drift<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, point: &Point<N>, elapsed: f64)
     where
         Sys: System<f64, N, G>,
@@ -396,9 +400,9 @@ impl<const N: usize> SizeMonitor<N> {
     }
 }
 
-/// How large each state is to be taken for at time `t` (s) and state `x`, in its unit: where an error norm would take it to count, by its
-/// own value, the stored energy and what present forces can do; of a start at rest by what happens within a second. Zero where
-/// nothing is known. For the nominal values that other programs ask for.
+/// How large each state is to be taken for at time `t` (s) and state `x`, in its unit: where an error norm would take
+/// it to count, by its own value, the stored energy and what present forces can do; of a start at rest by what happens
+/// within a second. Zero where nothing is known. For the nominal values that other programs ask for.
 pub fn sizes<Sys, const N: usize, const G: usize>(system: &Sys, t: f64, x: &SVector<f64, N>) -> SVector<f64, N>
 where
     Sys: System<f64, N, G>,
@@ -421,8 +425,8 @@ fn length<const N: usize>(kinds: impl Iterator<Item = StateKind>, own: &SVector<
     positions.fold(0.0, |length, (_, &own)| larger(own, length))
 }
 
-/// What makes changes of storages comparable: the roots of the second derivatives of the energy. In a system that does not know what
-/// it stores all states are alike.
+/// What makes changes of storages comparable: the roots of the second derivatives of the energy. In a system that does
+/// not know what it stores all states are alike.
 fn weights<Sys, M, const N: usize, const G: usize>(stepper: &Stepper<'_, Sys, M, N, G>) -> SVector<f64, N>
 where
     Sys: System<f64, N, G>,

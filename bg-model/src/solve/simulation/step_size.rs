@@ -33,7 +33,8 @@ pub(super) const STRETCH: f64 = 0.01;
 /// A part of a fixed step that rounding may make: such a sliver is no step.
 const SLIVER: f64 = 1e-9;
 
-/// What the size of the next step follows from: the logarithm of an error norm, and the exponential of [`StepSizeController::exponent`] of it.
+/// What the size of the next step follows from: the logarithm of an error norm, and the exponential of
+/// [`StepSizeController::exponent`] of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Judgement {
     pub logarithm: f64,
@@ -141,7 +142,8 @@ impl StepSizeController {
         self.control = control;
     }
 
-    /// Takes an estimate of the first step, s; one that rounding does not allow is raised, and left to the error estimate.
+    /// Takes an estimate of the first step, s; one that rounding does not allow is raised, and left to the error
+    /// estimate.
     pub fn begin(&mut self, step: f64) {
         self.step = step.max(2.0 * self.least(self.span.t0)).min(self.largest);
     }
@@ -153,7 +155,8 @@ impl StepSizeController {
             let goal = if next_break < t_end { next_break } else { t_end };
             let stretched = t + (1.0 + STRETCH) * self.step >= goal;
             let reaches = stretched && goal - t <= (1.0 + 1e-9) * self.largest;
-            // Of a run that goes on all pieces end like that: two even steps, not a whole one and a rest that says little of the next.
+            // Of a run that goes on all pieces end like that: two even steps, not a whole one and a rest that says
+            // little of the next.
             let halves = !reaches && self.goes_on && goal - t < 2.0 * self.step;
             let end = if reaches { goal } else { t + if halves { 0.5 * (goal - t) } else { self.step } };
             self.is_cut = halves || reaches && (next_break < t_end || self.goes_on) && goal - t < self.step;
@@ -169,8 +172,8 @@ impl StepSizeController {
         end.min(t + self.short)
     }
 
-    /// The step `h` (s) to `t` (s) satisfied the tolerances with the error norm `error`. The next one is at least tried with
-    /// a size that rounding allows.
+    /// The step `h` (s) to `t` (s) satisfied the tolerances with the error norm `error`. The next one is at least tried
+    /// with a size that rounding allows.
     pub fn accept(&mut self, t: f64, h: f64, error: f64) {
         self.accept_by(t, h, if self.is_adaptive() { self.judge(error, true) } else { Judgement::NONE });
     }
@@ -193,8 +196,8 @@ impl StepSizeController {
         (h * bounded(factor)).max(self.step.min(h * SAFETY * factor))
     }
 
-    /// The step `h` (s) did not satisfy the tolerances; `error` is not a number where the step gave none, infinite where
-    /// an iteration did not converge.
+    /// The step `h` (s) did not satisfy the tolerances; `error` is not a number where the step gave none, infinite
+    /// where an iteration did not converge.
     pub fn reject(&mut self, h: f64, error: f64) {
         let ratio = match error {
             _ if error.is_nan() => NO_NUMBER,
@@ -239,8 +242,9 @@ impl StepSizeController {
         Judgement { logarithm, factor: libm::exp(self.exponent(logarithm, is_accepted)) }
     }
 
-    /// The exponent of the factor in the size of the next step, after an attempt whose error norm has this logarithm: an exponential, where
-    /// powers of the norms of this step and the one before would take a tenth of the hacksaw's time.
+    /// The exponent of the factor in the size of the next step, after an attempt whose error norm has this logarithm:
+    /// an exponential, where powers of the norms of this step and the one before would take a tenth of the hacksaw's
+    /// time.
     pub fn exponent(&self, logarithm: f64, is_accepted: bool) -> f64 {
         let before = self.accepted.map_or(0.0, |(_, before)| before);
         let combined = match self.control {
@@ -290,7 +294,8 @@ pub(super) fn shortening<S: Scalar>(factor: S) -> S {
     smaller(factor.alike(SAFETY), bounded(factor))
 }
 
-/// The combination of the logarithms of the error norms of an accepted step and of the one before, from which a stabilised control judges.
+/// The combination of the logarithms of the error norms of an accepted step and of the one before, from which a
+/// stabilised control judges.
 #[inline(always)]
 pub(super) fn stabilised<S: Scalar>(logarithm: S, before: S) -> S {
     logarithm.times(1.0 - 0.75 * DAMPING) - before.times(DAMPING)
@@ -377,7 +382,8 @@ mod tests {
         assert_eq!(controller(control, 1.01).next_end(98.995, f64::INFINITY), 100.0);
     }
 
-    /// Pieces of a run that goes on end in two even steps; a whole run ends as `dop853.f` does, in a whole step and the rest.
+    /// Pieces of a run that goes on end in two even steps; a whole run ends as `dop853.f` does, in a whole step and the
+    /// rest.
     #[test]
     fn a_piece_ends_in_even_steps() {
         let mut controller = controller(StepControl::Adaptive { order: 5.0 }, f64::INFINITY);

@@ -12,8 +12,8 @@ use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_
 use crate::solve::statistics::Statistics;
 use frozen::Frozen;
 
-/// How far a projection may move a state, in its unit or in parts of it, for the next one, whose change is the square, to be lost in
-/// rounding.
+/// How far a projection may move a state, in its unit or in parts of it, for the next one, whose change is the square,
+/// to be lost in rounding.
 const SETTLED: f64 = 1e-8;
 /// What rounding may leave of a projection, beside what another rounding of the same state changes.
 const ROUNDING: f64 = 10.0;
@@ -69,8 +69,8 @@ where
         (self.h, self.end, self.dense_is_ready) = (h, end, false);
     }
 
-    /// The norm of what the projection leaves of the last attempt's error, at most 1 where that is rounding; none where the
-    /// method does not say.
+    /// The norm of what the projection leaves of the last attempt's error, at most 1 where that is rounding; none where
+    /// the method does not say.
     pub fn error_after_projection(&mut self) -> Option<f64> {
         let (system, negative, h) = (self.system, self.negative, self.h);
         let (method, flow, start, end, scale) = self.split();
@@ -91,15 +91,15 @@ where
         Some(if error <= ROUNDING * rounding { error.min(1.0) } else { error })
     }
 
-    /// Moves the end of the step back onto the invariants. Gives the norm of what that changes where joints may be rigid:
-    /// it is of the size of the error, unless the step has led to another branch of the motion.
+    /// Moves the end of the step back onto the invariants. Gives the norm of what that changes where joints may be
+    /// rigid: it is of the size of the error, unless the step has led to another branch of the motion.
     pub fn project(&mut self) -> f64 {
         let Self { system, scale, negative, end, .. } = self;
         project(*system, scale, negative, end.t, &mut end.x)
     }
 
-    /// The same until it moves no more. What one of Newton's steps leaves is below the tolerances, but not below what a guard at zero
-    /// is known by: another projection would move a state at an event to either side of it.
+    /// The same until it moves no more. What one of Newton's steps leaves is below the tolerances, but not below what a
+    /// guard at zero is known by: another projection would move a state at an event to either side of it.
     pub fn settle(&mut self) {
         let moved = self.project();
         self.settle_further(moved);
@@ -127,8 +127,9 @@ where
         moved(self.system, &self.scale, before, after)
     }
 
-    /// The norm of what the projection makes of the rounding of a state `x` at the end of the step, which grows into a singular pose.
-    /// It is the difference to the same state rounded otherwise: what is left of its own rounding may be nothing by chance.
+    /// The norm of what the projection makes of the rounding of a state `x` at the end of the step, which grows into a
+    /// singular pose. It is the difference to the same state rounded otherwise: what is left of its own rounding may be
+    /// nothing by chance.
     pub fn rounding_of_projection(&self, x: &SVector<f64, N>) -> f64 {
         let [projected, otherwise] = [*x, rounded_otherwise(x)].map(|mut x| {
             self.system.project(self.end.t, &self.negative, &mut x);
@@ -160,8 +161,8 @@ where
         self.system.rate(*t, x, &self.negative, rate);
     }
 
-    /// The first state whose rate has a derivative at the start of the step that is not finite, and that derivative; none
-    /// where no derivative has been asked for.
+    /// The first state whose rate has a derivative at the start of the step that is not finite, and that derivative;
+    /// none where no derivative has been asked for.
     pub fn faulty_derivative(&self) -> Option<(usize, f64)> {
         let mut statistics = self.statistics;
         if statistics.jacobian_evaluations == 0 {
@@ -181,9 +182,9 @@ where
         entry.or_else(|| first_not_finite(&slope))
     }
 
-    /// The input or element that gives a number that is not finite at the start of the last attempt or on the way to its end, or for
-    /// `at_least` (s), as far as the system can tell: the way is that of the rate at the start. Of a step that rounding has ended the way
-    /// is followed further, since a stage may have been anywhere near it.
+    /// The input or element that gives a number that is not finite at the start of the last attempt or on the way to
+    /// its end, or for `at_least` (s), as far as the system can tell: the way is that of the rate at the start. Of a
+    /// step that rounding has ended the way is followed further, since a stage may have been anywhere near it.
     pub fn origin(&self, at_least: f64) -> Option<Origin> {
         const PARTS: u32 = 16;
         const FURTHER: [f64; 7] = [8.0, 64.0, 512.0, 4096.0, 32_768.0, 262_144.0, 2_097_152.0];
@@ -219,7 +220,8 @@ where
     }
 }
 
-/// Moves a state at time `t` (s) back onto the invariants; gives the norm of what that changes where joints may be rigid.
+/// Moves a state at time `t` (s) back onto the invariants; gives the norm of what that changes where joints may be
+/// rigid.
 #[inline(always)]
 fn project<const N: usize, const G: usize>(
     system: &impl System<f64, N, G>,

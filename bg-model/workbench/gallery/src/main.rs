@@ -1,4 +1,5 @@
-//! The gallery of the workbench's examples, from their head comments: `docs/gallery.md` with pictures, or a folder of pages.
+//! The gallery of the workbench's examples, from their head comments: `docs/gallery.md` with pictures, or a folder of
+//! pages.
 
 mod example;
 mod programs;

@@ -30,7 +30,8 @@ pub struct Cli {
 pub enum Command {
     /// Run the mechanism (also what the program alone does)
     Run(RunArguments),
-    /// Run the mechanism and write one HTML file that shows it: in motion, in charts, as a graph, with equations and parameters
+    /// Run the mechanism and write one HTML file that shows it: in motion, in charts, as a graph, with equations and
+    /// parameters
     Report(ReportArguments),
     /// List the scenes, or say what a scene left out of the literal model and why
     Scene {
@@ -64,7 +65,8 @@ pub enum Command {
     Identify(IdentifyArguments),
     /// Run for many values of parameters by a plan, into Parquet files; on all cores, or on many machines
     Sweep(SweepArguments),
-    /// Pack a scene as a functional mock-up unit for other programs: FMI 3.0 or 2.0, Model Exchange and Co-Simulation in one file
+    /// Pack a scene as a functional mock-up unit for other programs: FMI 3.0 or 2.0, Model Exchange and Co-Simulation
+    /// in one file
     Fmu(FmuArguments),
     /// Record a run as a golden output, or check that recorded runs are reproduced
     #[command(subcommand)]
@@ -142,9 +144,9 @@ pub struct ModelArguments {
     #[arg(long, value_name = "FILE.toml")]
     pub params: Option<PathBuf>,
 
-    /// Set an input of the model, 0 otherwise: to a number, or to the second column of a CSV file over the first, in s. A column
-    /// by its name as FILE.csv:COLUMN; straight lines between the rows, a spline with cubic:FILE.csv. The first line may be names or
-    /// numbers; outside the rows the value of the nearest one is held
+    /// Set an input of the model, 0 otherwise: to a number, or to the second column of a CSV file over the first, in s.
+    /// A column by its name as FILE.csv:COLUMN; straight lines between the rows, a spline with cubic:FILE.csv. The
+    /// first line may be names or numbers; outside the rows the value of the nearest one is held
     #[arg(long = "input", value_name = "NAME=VALUE|FILE.csv", allow_hyphen_values = true)]
     pub input: Vec<String>,
 }
@@ -210,8 +212,8 @@ pub struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
 
-    /// Folder for figures, index.html, summary.txt, summary.json and trajectory.csv; made if it is not there. They replace
-    /// the files of the run before as soon as all are written; other files stay
+    /// Folder for figures, index.html, summary.txt, summary.json and trajectory.csv; made if it is not there. They
+    /// replace the files of the run before as soon as all are written; other files stay
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
 
@@ -235,7 +237,8 @@ pub struct ReportArguments {
     #[arg(long, value_name = "FILE.wasm", num_args = 0..=1, require_equals = true)]
     pub live: Option<Option<PathBuf>>,
 
-    /// Linearise and show the modes: where the run is at this time, s; without a number at the equilibrium near the start
+    /// Linearise and show the modes: where the run is at this time, s; without a number at the equilibrium near the
+    /// start
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, value_parser = real, allow_negative_numbers = true)]
     pub modes: Option<Option<f64>>,
 
@@ -275,7 +278,8 @@ pub struct LinearizeArguments {
     #[arg(long, value_name = "NUMBER", default_value = "1e-8", value_parser = real, allow_negative_numbers = true)]
     pub rtol: f64,
 
-    /// Folder for modes.txt, linear.json, linear.npz, responses.csv and Bode diagrams, which replace those of the run before
+    /// Folder for modes.txt, linear.json, linear.npz, responses.csv and Bode diagrams, which replace those of the run
+    /// before
     #[arg(long, value_name = "DIR", default_value = "out/linear")]
     pub out: PathBuf,
 }

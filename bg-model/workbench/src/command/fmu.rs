@@ -1,7 +1,7 @@
 //! The command `fmu`: a scene as a functional mock-up unit, for other programs.
 //!
-//! In: a scene, the library that exports it. Out: one file. The library is a package of its own: what it needs beside the model is
-//! not compiled into the program.
+//! In: a scene, the library that exports it. Out: one file. The library is a package of its own: what it needs beside
+//! the model is not compiled into the program.
 
 use std::io;
 use std::path::{Path, PathBuf};

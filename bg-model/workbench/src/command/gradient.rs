@@ -1,4 +1,5 @@
-//! The command `gradient`: how one number of a run depends on all parameters, as table and CSV. Of programs that ask for it.
+//! The command `gradient`: how one number of a run depends on all parameters, as table and CSV. Of programs that ask
+//! for it.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -41,8 +42,8 @@ pub struct GradientArguments {
     #[arg(long, conflicts_with = "data")]
     pub integral: bool,
 
-    /// The squares of what these columns leave, in parts of each one's root mean square: a CSV file as `identify` takes it. The run ends at
-    /// its last time
+    /// The squares of what these columns leave, in parts of each one's root mean square: a CSV file as `identify` takes
+    /// it. The run ends at its last time
     #[arg(long, value_name = "FILE.csv", conflicts_with = "output")]
     pub data: Option<PathBuf>,
 

@@ -33,18 +33,18 @@ const FOUND: &str = "identified.toml";
 /// What is fitted to what.
 #[derive(Debug, Args)]
 pub struct IdentifyArguments {
-    /// What was measured: a CSV file whose first column is `t`, in s, and whose other columns have the names of outputs. Fields
-    /// may be empty
+    /// What was measured: a CSV file whose first column is `t`, in s, and whose other columns have the names of
+    /// outputs. Fields may be empty
     #[arg(value_name = "FILE.csv")]
     pub data: PathBuf,
 
-    /// The parameters to fit; several with commas. They start at their defaults, or at what --params and --set say; the others
-    /// stay there
+    /// The parameters to fit; several with commas. They start at their defaults, or at what --params and --set say; the
+    /// others stay there
     #[arg(long, value_name = "NAME", value_delimiter = ',', required = true)]
     pub fit: Vec<String>,
 
-    /// Bounds of a parameter inside its range, such as k=1e3..1e5; can be given again and again. One that cannot come below zero
-    /// is fitted by its logarithm
+    /// Bounds of a parameter inside its range, such as k=1e3..1e5; can be given again and again. One that cannot come
+    /// below zero is fitted by its logarithm
     #[arg(long, value_name = "NAME=LOWER..UPPER", allow_hyphen_values = true)]
     pub bounds: Vec<String>,
 

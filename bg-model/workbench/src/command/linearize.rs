@@ -48,7 +48,8 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArgumen
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
 }
 
-/// The linear model of a scene at `at`, s, or without it at the equilibrium near the start; or the sentence why there is none.
+/// The linear model of a scene at `at`, s, or without it at the equilibrium near the start; or the sentence why there
+/// is none.
 pub fn space<Me: Scenes>(
     program: &Program<Me>,
     scene: &Scene,
@@ -93,8 +94,8 @@ fn here<Me: Scenes>(
     linearised(&*machine(program, scene, chosen)?, arguments.at, |t| arguments.integration(t))
 }
 
-/// The linear model at `at`, s, and a sentence on where that is; without `at` it is the equilibrium near the start. A run to
-/// `t` (s) is made as `integration` says.
+/// The linear model at `at`, s, and a sentence on where that is; without `at` it is the equilibrium near the start. A
+/// run to `t` (s) is made as `integration` says.
 pub fn linearised(
     machine: &dyn Machine,
     at: Option<f64>,

@@ -1,7 +1,8 @@
 //! The command line: what a user asks for, and what results.
 //!
 //! In: arguments. Out: a run with its files and the summary on stdout, or one line `error: ...` on stderr.
-//! Exit codes: 0 done; 1 the run or an output failed, what could be written is; 2 the input cannot be used, nothing was run.
+//! Exit codes: 0 done; 1 the run or an output failed, what could be written is; 2 the input cannot be used, nothing was
+//! run.
 
 mod arguments;
 mod compare;

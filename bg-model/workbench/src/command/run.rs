@@ -109,7 +109,8 @@ pub fn machine<Me: Scenes>(
     })
 }
 
-/// A run from `from`, or from the model's own start, with its progress on the terminal. One that stops before its end is no error.
+/// A run from `from`, or from the model's own start, with its progress on the terminal. One that stops before its end
+/// is no error.
 pub fn follow(machine: &dyn Machine, request: Request, from: Option<&State>) -> Result<Outcome, RunError> {
     let bar = over_time(request.t_end);
     let outcome = running::follow(machine, request, from, |t| bar.set_position(ticks(t)));
@@ -189,7 +190,8 @@ fn report<Me>(
     Ok(written.faults)
 }
 
-/// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file, and every `finest` (s) where that is given.
+/// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file, and every `finest` (s) where that is
+/// given.
 pub fn request(arguments: &IntegrationArguments, t0: f64, finest: Option<f64>) -> Result<Request, InputError> {
     Ok(arguments.integration().request(t0, finest)?)
 }

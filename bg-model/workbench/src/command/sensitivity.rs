@@ -160,8 +160,8 @@ fn with_times(mut request: Request, at: &[f64]) -> Request {
     request
 }
 
-/// A run of a scene and the derivatives over it of outputs by parameters, given `by` and `of` their names; or the sentence why there
-/// are none.
+/// A run of a scene and the derivatives over it of outputs by parameters, given `by` and `of` their names; or the
+/// sentence why there are none.
 pub fn derivatives<Me: Scenes>(
     program: &Program<Me>,
     scene: &Scene,

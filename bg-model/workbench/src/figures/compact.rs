@@ -1,7 +1,7 @@
 //! A drawing in fewer bytes: its polylines as paths of relative moves.
 //!
-//! In: SVG text. Out: the same drawing. The points of a polyline are whole numbers with up to five digits each; the moves between
-//! them mostly have two.
+//! In: SVG text. Out: the same drawing. The points of a polyline are whole numbers with up to five digits each; the
+//! moves between them mostly have two.
 
 use std::fmt::Write;
 

@@ -1,7 +1,8 @@
 //! The figure of influences: parameters over outputs, a bar in each cell.
 //!
-//! In: how far each output's course moves with each parameter. Out: SVG. The length of a bar is the change of the course for a
-//! change of the parameter by its own size, over the course's size, on a logarithmic scale of four decades.
+//! In: how far each output's course moves with each parameter. Out: SVG. The length of a bar is the change of the
+//! course for a change of the parameter by its own size, over the course's size, on a logarithmic scale of four
+//! decades.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;

@@ -1,7 +1,8 @@
 //! Figures as SVG: curves over time, paths, speed against error; light or dark as the reader prefers.
 //!
-//! In: curves. Out: SVG text. Every figure has 16 : 9 and follows the reader's colour scheme (`palette`). Curves are thinned
-//! to what the eye can see at the drawn size ([`thinning`]), so a file stays below 300 kB whatever the output interval.
+//! In: curves. Out: SVG text. Every figure has 16 : 9 and follows the reader's colour scheme (`palette`). Curves are
+//! thinned to what the eye can see at the drawn size ([`thinning`]), so a file stays below 300 kB whatever the output
+//! interval.
 
 pub mod bode;
 pub mod canvas;

@@ -1,7 +1,7 @@
 //! Figures of a model's outputs: for each observed quantity its components over time, one panel each.
 //!
-//! In: a description. Out: the figures. The components of a vector share one scale, and so do those of a matrix, which has a
-//! panel for each row: there the colour says the column.
+//! In: a description. Out: the figures. The components of a vector share one scale, and so do those of a matrix, which
+//! has a panel for each row: there the colour says the column.
 
 use std::ops::Range;
 use std::sync::Arc;

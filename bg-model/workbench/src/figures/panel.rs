@@ -139,7 +139,8 @@ pub fn widened(range: Range<f64>, smallest: f64) -> Range<f64> {
     middle - half..middle + half
 }
 
-/// The plot of row `row` of `rows` with one time axis below them; `left` and `width` are those of the plot in the content.
+/// The plot of row `row` of `rows` with one time axis below them; `left` and `width` are those of the plot in the
+/// content.
 #[must_use]
 pub fn row_plot(row: i32, rows: i32, left: i32, width: i32) -> Rectangle {
     let content = Rectangle::CONTENT;
@@ -211,7 +212,8 @@ pub const LINE: u32 = 12;
 /// A chart with plain axes.
 pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 
-/// Axes, grid and labels about `plot`. `below` is written below the horizontal axis; without it that axis has no labels.
+/// Axes, grid and labels about `plot`. `below` is written below the horizontal axis; without it that axis has no
+/// labels.
 pub fn chart<'a, 'b>(
     area: &'a Area<'b>,
     plot: Rectangle,

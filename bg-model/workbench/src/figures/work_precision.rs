@@ -1,8 +1,8 @@
 //! The work-precision diagram: what an error costs, one curve for each integrator.
 //!
-//! In: for each integrator its points, error and cost. Out: SVG with both axes logarithmic, small errors at the right, as in
-//! the SciML benchmarks; lower and further right is better. The legend stands beside the diagram, in the order of the cost
-//! at the smallest common error as far as there is one.
+//! In: for each integrator its points, error and cost. Out: SVG with both axes logarithmic, small errors at the right,
+//! as in the SciML benchmarks; lower and further right is better. The legend stands beside the diagram, in the order of
+//! the cost at the smallest common error as far as there is one.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;

@@ -1,14 +1,14 @@
 //! A folder of results that is one run's or none's.
 //!
-//! In: a folder and the names of the files that a run will write. Out: the folder with these files, without those of the run
-//! before it, and with everything else that was there.
+//! In: a folder and the names of the files that a run will write. Out: the folder with these files, without those of
+//! the run before it, and with everything else that was there.
 //!
-//! A subfolder `.run` holds what this takes: `lock`, which a run keeps locked while it lasts; `unfinished`, where its files
-//! grow; `files`, the names of those that it has put into the folder. Only when all files are written are those of the
-//! earlier run removed and the new ones renamed into place, in this order. A program that is killed before leaves the earlier
-//! run's files, one that is killed then leaves a part of one run's, and a file is never cut. Only names on the list are
-//! removed; the list is there before the first of the files. Where no run has put anything into the folder its
-//! subfolder goes with the run, and so does the folder if the run has made it.
+//! A subfolder `.run` holds what this takes: `lock`, which a run keeps locked while it lasts; `unfinished`, where its
+//! files grow; `files`, the names of those that it has put into the folder. Only when all files are written are those
+//! of the earlier run removed and the new ones renamed into place, in this order. A program that is killed before
+//! leaves the earlier run's files, one that is killed then leaves a part of one run's, and a file is never cut. Only
+//! names on the list are removed; the list is there before the first of the files. Where no run has put anything into
+//! the folder its subfolder goes with the run, and so does the folder if the run has made it.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -102,8 +102,8 @@ impl RunFolder {
         self.write(name, |file| file.write_all(text.as_bytes()))
     }
 
-    /// Puts the files that were written in the place of the earlier run's, and gives their paths. The last one to be written
-    /// is the last one to appear.
+    /// Puts the files that were written in the place of the earlier run's, and gives their paths. The last one to be
+    /// written is the last one to appear.
     ///
     /// # Errors
     /// A file that cannot be removed or put into its place, or one of a name written here that has come from elsewhere

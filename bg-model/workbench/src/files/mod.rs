@@ -1,7 +1,8 @@
 //! How the results of a program reach the disk and the terminal: whole, or not at all and with a message.
 //!
-//! Nothing here knows a mechanism. [`RunFolder`] is a folder that is one run's or none's, [`whole`] writes a single file,
-//! [`console`] prints. What goes wrong is a [`FileError`]: one line with the place and, where there is one, what to do.
+//! Nothing here knows a mechanism. [`RunFolder`] is a folder that is one run's or none's, [`whole`] writes a single
+//! file, [`console`] prints. What goes wrong is a [`FileError`]: one line with the place and, where there is one, what
+//! to do.
 
 pub mod console;
 mod folder;
@@ -53,8 +54,8 @@ pub enum FileError {
     Standard(io::Error),
 }
 
-/// The CRC-32 of `bytes` in eight hexadecimal digits, by which files and values are told apart: it guards against mistakes, not against
-/// forgery.
+/// The CRC-32 of `bytes` in eight hexadecimal digits, by which files and values are told apart: it guards against
+/// mistakes, not against forgery.
 pub(crate) fn crc32(bytes: &[u8]) -> String {
     format!("{:08x}", rawzip::crc32(bytes))
 }

@@ -1,8 +1,8 @@
 //! A file that is written whole or not at all.
 //!
-//! In: a path and what fills the file. Out: the file. The bytes go into a new file beside it, which takes its name at the end,
-//! so a program that is killed leaves the file as it was. A power failure is not guarded against. What is no regular file,
-//! such as a pipe or `/dev/full`, is written through.
+//! In: a path and what fills the file. Out: the file. The bytes go into a new file beside it, which takes its name at
+//! the end, so a program that is killed leaves the file as it was. A power failure is not guarded against. What is no
+//! regular file, such as a pipe or `/dev/full`, is written through.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};

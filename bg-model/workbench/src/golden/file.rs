@@ -28,8 +28,8 @@ pub struct Tolerance {
 
 /// The same input gives the same bytes on every machine, so a tolerance is there for changes of the compiler or the
 /// integrator that reorder operations: they are to pass where the motion forgives them. 1e-9 is a tenth of the default
-/// tolerance of the steps. The absolute part is for units of which all values are rounding, as a user knows: a charge of
-/// 1e-12 C is none.
+/// tolerance of the steps. The absolute part is for units of which all values are rounding, as a user knows: a charge
+/// of 1e-12 C is none.
 impl Default for Tolerance {
     fn default() -> Self {
         Self { relative: 1e-9, absolute: 0.0 }

@@ -1,7 +1,8 @@
 //! Golden outputs: runs that are recorded once and have to be reproduced from then on.
 //!
 //! In: a folder. A golden output NAME in it is two files: NAME.csv has the trajectory, all outputs; NAME.toml says how
-//! it is run, its exact counts, and how far values of each unit may be off. Out: whether it is reproduced, or what differs.
+//! it is run, its exact counts, and how far values of each unit may be off. Out: whether it is reproduced, or what
+//! differs.
 //!
 //! | module | question |
 //! |---|---|

@@ -1,7 +1,7 @@
 //! Measured columns: a CSV file with gaps, matched to a model's outputs.
 //!
-//! In: a file whose first column is `t` (s), which output each column measures. Out: values at instants, none where a field is empty
-//! or `nan`.
+//! In: a file whose first column is `t` (s), which output each column measures. Out: values at instants, none where a
+//! field is empty or `nan`.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -63,8 +63,8 @@ pub enum DataError {
     },
 }
 
-/// Reads the file at `path`: columns of the names of `outputs` are these, others are what `named` says, in pairs of column and
-/// output; with `only` no other columns are used.
+/// Reads the file at `path`: columns of the names of `outputs` are these, others are what `named` says, in pairs of
+/// column and output; with `only` no other columns are used.
 ///
 /// # Errors
 /// [`Unusable`].

@@ -1,6 +1,7 @@
 //! What an identification found, as text for the terminal and as parameters for the next run.
 //!
-//! In: an [`Identified`] and the data. Out: tables of parameters, correlations and columns; what the data do not determine, by name.
+//! In: an [`Identified`] and the data. Out: tables of parameters, correlations and columns; what the data do not
+//! determine, by name.
 
 use bg_model::description::OutputInfo;
 

@@ -1,11 +1,12 @@
 //! A page that runs its model again: what it asks for, and what it is answered.
 //!
 //! In: an [`Order`] as JSON. Out: JSON again: what the page shows of the run, or why there is none. The report that
-//! `report --live` writes has the program inside, compiled for WebAssembly; there [`Program::main`] registers what answers. The
-//! same function answers natively, so that a test can hold one against the other, byte for byte.
+//! `report --live` writes has the program inside, compiled for WebAssembly; there [`Program::main`] registers what
+//! answers. The same function answers natively, so that a test can hold one against the other, byte for byte.
 //!
-//! Compiled for WebAssembly a program has the modules below and no others: no command line, no files, no figures. Of the
-//! mechanism's scenes it has the one whose number the variable `BG_LIVE_MODEL` says at its build, as [`Scenes::only`] counts them.
+//! Compiled for WebAssembly a program has the modules below and no others: no command line, no files, no figures. Of
+//! the mechanism's scenes it has the one whose number the variable `BG_LIVE_MODEL` says at its build, as
+//! [`Scenes::only`] counts them.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod module;

@@ -1,7 +1,7 @@
 //! The charts of the page: which outputs stand in one, and the energy balance.
 //!
-//! In: a model's outputs and a run. Out: charts of its columns. The components of a vector or a matrix are a chart, as they are
-//! a figure of the run; scalars of one unit stand together where one scale shows them all.
+//! In: a model's outputs and a run. Out: charts of its columns. The components of a vector or a matrix are a chart, as
+//! they are a figure of the run; scalars of one unit stand together where one scale shows them all.
 
 use bg_model::description::{Description, OutputInfo};
 use bg_model::simulation::Recording;
@@ -80,8 +80,8 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// The balance of a run, where it has outputs in J that are called `stored..`, `supplied..` and perhaps `dissipated..` or
-    /// `lost..`.
+    /// The balance of a run, where it has outputs in J that are called `stored..`, `supplied..` and perhaps
+    /// `dissipated..` or `lost..`.
     pub fn of(description: &Description, run: &Recording) -> Option<Self> {
         let called = |names: &[&str]| {
             let is_it = |output: &&OutputInfo| {

@@ -1,8 +1,8 @@
 //! The data of the page, as its script reads them.
 //!
-//! In: a run, and what is known of it. Out: JSON that can stand in a `<script>`. A number of a sample that is a row of the CSV
-//! file is the CSV's number with all its digits; others have six digits, as have poses and forces. A quantity that never
-//! changes is a single number.
+//! In: a run, and what is known of it. Out: JSON that can stand in a `<script>`. A number of a sample that is a row of
+//! the CSV file is the CSV's number with all its digits; others have six digits, as have poses and forces. A quantity
+//! that never changes is a single number.
 
 use bg_model::description::{BondInfo, Description};
 use bg_model::simulation::Recording;

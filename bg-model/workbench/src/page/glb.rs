@@ -1,9 +1,9 @@
 //! The machine in motion as binary glTF 2.0, for other programs.
 //!
-//! In: an animation. Out: the bytes of a `.glb` file: a node for each body, moved by one animation, with meshes of its solids,
-//! and one that turns them so that they fall along -y.
-//! Source: the glTF 2.0 specification of the Khronos Group (ISO/IEC 12113:2022), sections 3 and 4.4. Lengths in m, y up, as glTF
-//! has it; times in s from the first sample.
+//! In: an animation. Out: the bytes of a `.glb` file: a node for each body, moved by one animation, with meshes of its
+//! solids, and one that turns them so that they fall along -y.
+//! Source: the glTF 2.0 specification of the Khronos Group (ISO/IEC 12113:2022), sections 3 and 4.4. Lengths in m, y
+//! up, as glTF has it; times in s from the first sample.
 
 use serde_json::{Value, json};
 

@@ -1,9 +1,10 @@
 //! The report: one HTML file of a run that needs nothing else to be opened.
 //!
-//! In: a run, what is known of its model, and where they are there what the machine looks like, the picture of its graph and its
-//! modes. Out: HTML with style, script and data in it; the same as binary glTF. The script moves the machine, draws the charts
-//! and links both by one time. It is bundled from `page/` of this package (`npm ci && npm run build`), with three.js and uPlot
-//! inside; their licence stands at the foot of the page. Script and drawings are packed, the data are plain JSON.
+//! In: a run, what is known of its model, and where they are there what the machine looks like, the picture of its
+//! graph and its modes. Out: HTML with style, script and data in it; the same as binary glTF. The script moves the
+//! machine, draws the charts and links both by one time. It is bundled from `page/` of this package (`npm ci && npm run
+//! build`), with three.js and uPlot inside; their licence stands at the foot of the page. Script and drawings are
+//! packed, the data are plain JSON.
 
 pub mod animation;
 mod charts;

@@ -1,7 +1,7 @@
 //! The modes of the linearised machine, as the page shows them.
 //!
-//! In: modes and the poses of the bodies where it was linearised. Out: how each body swings. A body's coordinates are known by
-//! their names, `BODY.position_x` and `BODY.rotation_x`; a rotation is one about an inertial axis.
+//! In: modes and the poses of the bodies where it was linearised. Out: how each body swings. A body's coordinates are
+//! known by their names, `BODY.position_x` and `BODY.rotation_x`; a rotation is one about an inertial axis.
 
 use serde::Serialize;
 

@@ -3,7 +3,8 @@
 /// A picture of a model's graph with the series of its bonds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
-    /// An SVG text with a `<g class="bond" data-bond="INDEX">` for each bond of the description; it goes into the page as it is.
+    /// An SVG text with a `<g class="bond" data-bond="INDEX">` for each bond of the description; it goes into the page
+    /// as it is.
     pub svg: String,
     /// The samples of the series, s, ascending; empty without series.
     pub times: Vec<f64>,

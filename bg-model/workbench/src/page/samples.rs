@@ -20,9 +20,9 @@ pub struct Instant {
     pub is_row: bool,
 }
 
-/// The samples of a page with `curves` curves that move and may have `numbers` numbers together: the rows, every n-th of them
-/// where they are too many, and between them other samples of the run as far as there is room. Both lists ascend; rows are
-/// instants of the run.
+/// The samples of a page with `curves` curves that move and may have `numbers` numbers together: the rows, every n-th
+/// of them where they are too many, and between them other samples of the run as far as there is room. Both lists
+/// ascend; rows are instants of the run.
 pub fn instants(times: &[f64], rows: &[f64], curves: usize, numbers: usize) -> Vec<Instant> {
     let most = (numbers / curves.max(1)).clamp(FEWEST, MOST);
     let mut wanted = rows.iter().peekable();
@@ -84,8 +84,8 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
     by_arithmetic(value, digits).unwrap_or_else(by_text) + 0.0
 }
 
-/// The same some thirty times faster, where all powers of ten in it are exact: a whole number over or times such a power is the
-/// number nearest to its decimals.
+/// The same some thirty times faster, where all powers of ten in it are exact: a whole number over or times such a
+/// power is the number nearest to its decimals.
 fn by_arithmetic(value: f64, digits: usize) -> Option<f64> {
     if value == 0.0 {
         return Some(value);

@@ -28,8 +28,8 @@ struct Tunable<'a> {
     includes: [bool; 2],
 }
 
-/// JSON in which nothing ends the `<script>` that it stands in: the order, and those of the report's parameters that its scene
-/// leaves tunable.
+/// JSON in which nothing ends the `<script>` that it stands in: the order, and those of the report's parameters that
+/// its scene leaves tunable.
 pub fn json(order: &Order, report: &Report<'_>) -> String {
     let is_tunable = |name: &str| report.description.parameters.iter().any(|info| info.name == name);
     let tunable = report.parameters.iter().filter(|parameter| is_tunable(parameter.info.name));

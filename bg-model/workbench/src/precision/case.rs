@@ -40,7 +40,8 @@ pub enum CaseSolution {
 }
 
 impl CaseSolution {
-    /// It is computed in double-double arithmetic at a hundred instants, for which each model of `Me` is compiled once more.
+    /// It is computed in double-double arithmetic at a hundred instants, for which each model of `Me` is compiled once
+    /// more.
     #[must_use]
     pub fn computed<Me: Scenes>() -> Self {
         Self::Computed(|case, scenes| {

@@ -1,8 +1,8 @@
 //! How far a trajectory is from a reference, by kind of quantity.
 //!
 //! In: a trajectory and a reference with units. Out: the largest and the root mean square error of poses, momenta and
-//! forces, over the reference's instants and the columns that both have. An orientation, nine columns, counts as one: the
-//! angle of the rotation between the two.
+//! forces, over the reference's instants and the columns that both have. An orientation, nine columns, counts as one:
+//! the angle of the rotation between the two.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -61,8 +61,8 @@ fn kind(unit: &str) -> Option<Kind> {
 }
 
 impl Errors {
-    /// The errors of `run` at all instants of `reference`, whose columns have units, in what both have; `outputs` says which of them
-    /// are components of one.
+    /// The errors of `run` at all instants of `reference`, whose columns have units, in what both have; `outputs` says
+    /// which of them are components of one.
     ///
     /// # Errors
     /// [`Incomparable::MissingInstant`].

@@ -1,7 +1,7 @@
 //! One point of a work-precision diagram: a case run by an integrator at a tolerance, again and again.
 //!
-//! In: case, integrator, tolerance or step. Out: its true errors against the reference and what it cost. Times are of the
-//! run with the outputs at the reference's instants, without the building of the model.
+//! In: case, integrator, tolerance or step. Out: its true errors against the reference and what it cost. Times are of
+//! the run with the outputs at the reference's instants, without the building of the model.
 
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::Scenes;

@@ -1,7 +1,7 @@
 //! Reference solutions: a model integrated in double-double arithmetic.
 //!
-//! In: a model. Out: its outputs at the instants, rounded to `f64` once, at the end. The initial value problem is that of a
-//! run: the model in [`DoubleDouble`], from the start state that it has in `f64`. Method: [`bg_model::extended`].
+//! In: a model. Out: its outputs at the instants, rounded to `f64` once, at the end. The initial value problem is that
+//! of a run: the model in [`DoubleDouble`], from the start state that it has in `f64`. Method: [`bg_model::extended`].
 
 use bg_model::assembly::AssemblyError;
 use bg_model::extended::{Accuracy, Fault, integrate};
@@ -50,7 +50,8 @@ pub enum ReferenceError {
     Run(#[from] Fault),
 }
 
-/// The outputs of `model` whose names `is_wanted` accepts at `instants` (s, ascending, from 0 on), integrated with `accuracy`.
+/// The outputs of `model` whose names `is_wanted` accepts at `instants` (s, ascending, from 0 on), integrated with
+/// `accuracy`.
 ///
 /// # Errors
 /// Instants that cannot be, and a run that fails.

@@ -1,7 +1,7 @@
 //! The measurements as a table, as JSON and as diagrams.
 //!
-//! In: entries. Out: text, files. A diagram for each case: error over wall time, and error over evaluations of the rate,
-//! which do not depend on the machine.
+//! In: entries. Out: text, files. A diagram for each case: error over wall time, and error over evaluations of the
+//! rate, which do not depend on the machine.
 
 use super::measure::{Counts, Entry};
 use crate::figures::{Curve, FigureError, work_precision};

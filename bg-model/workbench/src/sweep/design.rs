@@ -1,10 +1,11 @@
 //! Which values the swept parameters have in each run.
 //!
-//! In: ranges and lists of values by name, a table, or how many samples. Out: the runs, counted from 0, each with a value for each
-//! swept parameter. In a grid the last parameter changes from run to run. A Latin hypercube (McKay, Beckman, Conover,
-//! Technometrics 21, 1979) has one run in each of its `count` intervals of every parameter, at a random place in it. A Sobol
-//! sequence is that of Burley (Journal of Computer Graphics Techniques 9, 2020): scrambled as Owen does, single precision.
-//! Random numbers are those of PCG (O'Neill 2014), so a seed gives the same runs on every machine.
+//! In: ranges and lists of values by name, a table, or how many samples. Out: the runs, counted from 0, each with a
+//! value for each swept parameter. In a grid the last parameter changes from run to run. A Latin hypercube (McKay,
+//! Beckman, Conover, Technometrics 21, 1979) has one run in each of its `count` intervals of every parameter, at a
+//! random place in it. A Sobol sequence is that of Burley (Journal of Computer Graphics Techniques 9, 2020): scrambled
+//! as Owen does, single precision. Random numbers are those of PCG (O'Neill 2014), so a seed gives the same runs on
+//! every machine.
 
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};

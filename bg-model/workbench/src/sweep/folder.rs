@@ -1,8 +1,9 @@
 //! The folder of a sweep: its recipe, its shards.
 //!
-//! In: a folder, a recipe. Out: the folder with `sweep.toml`, and in it `runs-000000.parquet` and so on; with trajectories
-//! `trajectories-000000.parquet` as well, which is there before. Each file is written aside and renamed, so a file of such a
-//! name is whole. Several processes may work in one folder, even on the same shard: they write the same bytes.
+//! In: a folder, a recipe. Out: the folder with `sweep.toml`, and in it `runs-000000.parquet` and so on; with
+//! trajectories `trajectories-000000.parquet` as well, which is there before. Each file is written aside and renamed,
+//! so a file of such a name is whole. Several processes may work in one folder, even on the same shard: they write the
+//! same bytes.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -181,7 +182,8 @@ impl Folder {
         }
     }
 
-    /// Removes what earlier processes left on their way to the recipe and to the files of these shards, which are there now.
+    /// Removes what earlier processes left on their way to the recipe and to the files of these shards, which are there
+    /// now.
     pub fn clear(&self, shards: &[usize]) {
         let of_shard = |shard: usize| [Kind::Runs, Kind::Trajectories].map(|kind| kind.file(shard));
         let files = shards.iter().flat_map(|&shard| of_shard(shard)).chain([RECIPE.to_owned()]);

@@ -1,8 +1,8 @@
 //! Runs of a model for many values of its parameters, into files that grow shard by shard.
 //!
-//! In: a [`Plan`], a folder. Out: for each shard of some hundred runs a Parquet file with a row for each run, and if wanted one
-//! with all trajectories. A shard's bytes depend on the plan alone: not on the number of threads, on who else works on the
-//! sweep or on how often it was stopped. A shard that is there is not made again.
+//! In: a [`Plan`], a folder. Out: for each shard of some hundred runs a Parquet file with a row for each run, and if
+//! wanted one with all trajectories. A shard's bytes depend on the plan alone: not on the number of threads, on who
+//! else works on the sweep or on how often it was stopped. A shard that is there is not made again.
 //!
 //! | module | question |
 //! |---|---|
@@ -119,7 +119,8 @@ pub struct Outcome {
 /// Is told how many runs of how many are done, and says whether to go on.
 pub type Told<'a> = &'a (dyn Fn(usize, usize) -> bool + Sync);
 
-/// Makes the runs of `plan` that are of `share` and not in `folder` yet, on so many threads; 0 are as many as there are cores.
+/// Makes the runs of `plan` that are of `share` and not in `folder` yet, on so many threads; 0 are as many as there are
+/// cores.
 ///
 /// # Errors
 /// [`SweepError`]. What was written until then stays, and is not made again.

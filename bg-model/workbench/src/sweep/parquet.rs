@@ -1,9 +1,9 @@
 //! Tables as Parquet files: one row group, a page for each column, no value missing.
 //!
-//! In: columns of numbers and texts, texts about them. Out: the file's bytes, and from these the same again. Numbers are exact.
-//! Metadata are those of `polars-parquet-format`; pages are written here, for they are short: the values one after the other
-//! (of real numbers first all first bytes, then all second ones, ..: `BYTE_STREAM_SPLIT`), compressed by Snappy. Source:
-//! Apache Parquet, "File Format" and "Encodings", parquet.apache.org/docs/file-format.
+//! In: columns of numbers and texts, texts about them. Out: the file's bytes, and from these the same again. Numbers
+//! are exact. Metadata are those of `polars-parquet-format`; pages are written here, for they are short: the values one
+//! after the other (of real numbers first all first bytes, then all second ones, ..: `BYTE_STREAM_SPLIT`), compressed
+//! by Snappy. Source: Apache Parquet, "File Format" and "Encodings", parquet.apache.org/docs/file-format.
 
 use polars_parquet_format::thrift::protocol::{TCompactInputProtocol, TCompactOutputProtocol};
 use polars_parquet_format::{

@@ -1,7 +1,7 @@
 //! The plan of a sweep: which model is run, with which values, and what is kept.
 //!
-//! In: a TOML file. Out: a [`Plan`] in which everything has been checked that can be before a run, or one line that says
-//! what to change. Parameters, inputs and tolerances are read and checked as those of the command `run`.
+//! In: a TOML file. Out: a [`Plan`] in which everything has been checked that can be before a run, or one line that
+//! says what to change. Parameters, inputs and tolerances are read and checked as those of the command `run`.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,8 +1,8 @@
 //! Whether two sweeps are the same: all that the bytes of a shard depend on, as a small TOML file.
 //!
-//! In: a program, a plan. Out: the text of `sweep.toml`, which every shard has in its metadata as well, and where it differs from
-//! another one. The model is known by the CRC-32 of its equations, the values of the parameters by that of all their bytes:
-//! they guard against mistakes, not against forgery.
+//! In: a program, a plan. Out: the text of `sweep.toml`, which every shard has in its metadata as well, and where it
+//! differs from another one. The model is known by the CRC-32 of its equations, the values of the parameters by that of
+//! all their bytes: they guard against mistakes, not against forgery.
 
 use std::path::Path;
 
@@ -16,7 +16,8 @@ use crate::files::crc32;
 use crate::inputs::{Setting, Source};
 use crate::running::Begin;
 
-/// The entries that may differ, since they are for people: the plan as it was written, and the files that inputs are from.
+/// The entries that may differ, since they are for people: the plan as it was written, and the files that inputs are
+/// from.
 const FOR_PEOPLE: [&str; 2] = [PLAN, INPUT_FILES];
 const PLAN: &str = "plan";
 /// The entry with the inputs: values, or of tables how many rows they have and the CRC-32 of the numbers in them.
@@ -88,7 +89,8 @@ fn input(setting: &Setting) -> Value {
     }
 }
 
-/// The name of the file that a table is from, and its CRC-32. Without the folder, which may have another place on each machine.
+/// The name of the file that a table is from, and its CRC-32. Without the folder, which may have another place on each
+/// machine.
 fn file(setting: &Setting) -> Option<String> {
     let Setting::Table { source: Some(Source { file, column, crc32 }), .. } = setting else { return None };
     let name = Path::new(file).file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
@@ -96,7 +98,8 @@ fn file(setting: &Setting) -> Option<String> {
     Some(format!("{name}{column}, CRC-32 {crc32}"))
 }
 
-/// The first entry in which a recipe differs from the one that is there, with both values; none if the bytes would be the same.
+/// The first entry in which a recipe differs from the one that is there, with both values; none if the bytes would be
+/// the same.
 #[must_use]
 pub fn difference(there: &Table, here: &Table) -> Option<String> {
     let names = there.keys().chain(here.keys().filter(|name| !there.contains_key(*name)));

@@ -1,6 +1,7 @@
 //! The runs of a sweep: each with its own parameters, its numbers as a row.
 //!
-//! In: a plan, the number of a run. Out: its row, be it one of a run that failed, and its trajectory if wanted; rows as tables.
+//! In: a plan, the number of a run. Out: its row, be it one of a run that failed, and its trajectory if wanted; rows as
+//! tables.
 
 use std::ops::Range;
 

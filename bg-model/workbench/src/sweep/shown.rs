@@ -55,7 +55,8 @@ pub fn lines(folder: &Folder) -> Result<String, FolderError> {
     Ok(said + &inputs(&recipe) + &samples(&recipe))
 }
 
-/// Writes the rows of all shards that are there as CSV; every number in the shortest form that reads back to the same bits.
+/// Writes the rows of all shards that are there as CSV; every number in the shortest form that reads back to the same
+/// bits.
 ///
 /// # Errors
 /// A file cannot be read, or `writer` fails.

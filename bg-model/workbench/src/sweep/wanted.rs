@@ -1,8 +1,8 @@
 //! What is kept of each run: numbers made of its outputs, times of its events, whole trajectories.
 //!
-//! In: a run's samples. Out: a number for each column. Means and integrals are those of straight lines between the samples
-//! (trapezoidal rule); largest and least are those of the samples. Where that is not exact enough, the model can observe an
-//! `integral(..)`, or samples can be finer.
+//! In: a run's samples. Out: a number for each column. Means and integrals are those of straight lines between the
+//! samples (trapezoidal rule); largest and least are those of the samples. Where that is not exact enough, the model
+//! can observe an `integral(..)`, or samples can be finer.
 
 use bg_model::description::Description;
 use bg_model::simulation::Recording;

@@ -1,5 +1,5 @@
-//! The double pendulum of the gallery as a page shows it: bodies, joints and poses from the run's outputs, a picture of its graph
-//! without a layout.
+//! The double pendulum of the gallery as a page shows it: bodies, joints and poses from the run's outputs, a picture of
+//! its graph without a layout.
 
 use bg_model::mechanism::Mechanism;
 use bg_model::run::{Simulation, Trajectory};
@@ -111,8 +111,8 @@ pub fn modes() -> Vec<bg_workbench::linear::Mode> {
     bg_workbench::linear::linearise(&model, 0.0, &rest.x).unwrap().modes
 }
 
-/// A picture in which every bond is a line, with efforts and flows that are known: bond `index` has the effort `index + t`, the
-/// flow 2, in each component.
+/// A picture in which every bond is a line, with efforts and flows that are known: bond `index` has the effort `index +
+/// t`, the flow 2, in each component.
 pub fn picture(times: &[f64]) -> Picture {
     let bonds = DoublePendulum::describe().bonds;
     let line = |index: usize| {

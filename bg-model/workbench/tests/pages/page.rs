@@ -1,4 +1,5 @@
-//! The report page: its numbers are the CSV's, nothing in a text breaks it, and a browser shows it, plays it and scrubs it.
+//! The report page: its numbers are the CSV's, nothing in a text breaks it, and a browser shows it, plays it and scrubs
+//! it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

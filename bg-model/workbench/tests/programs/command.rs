@@ -1,4 +1,5 @@
-//! What a user of any mechanism's program sees: files, lines, faults, exit codes. The program is the example `pendulum`.
+//! What a user of any mechanism's program sees: files, lines, faults, exit codes. The program is the example
+//! `pendulum`.
 
 use std::fs;
 use std::path::Path;

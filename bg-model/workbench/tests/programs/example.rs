@@ -1,4 +1,5 @@
-//! The programs of the examples, which cargo builds with the tests of the package. A suite that is built alone takes those built before.
+//! The programs of the examples, which cargo builds with the tests of the package. A suite that is built alone takes
+//! those built before.
 
 use std::path::Path;
 use std::process::Command;

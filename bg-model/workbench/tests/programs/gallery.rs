@@ -1,4 +1,5 @@
-//! The gallery: every example runs, does what its head comment tells the reader to try, and stands in the README's table.
+//! The gallery: every example runs, does what its head comment tells the reader to try, and stands in the README's
+//! table.
 
 use std::fs;
 use std::path::Path;

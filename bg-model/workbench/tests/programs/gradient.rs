@@ -1,5 +1,5 @@
-//! The command `gradient`: the same derivatives as `sensitivity`, integrals, squares of measured columns, refusals. The program is the
-//! example `mass_spring_damper`, which asks for the command; `pendulum` does not.
+//! The command `gradient`: the same derivatives as `sensitivity`, integrals, squares of measured columns, refusals. The
+//! program is the example `mass_spring_damper`, which asks for the command; `pendulum` does not.
 
 use std::fs;
 use std::path::Path;
@@ -21,7 +21,8 @@ fn refused(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("text")
 }
 
-/// Rows of a CSV file, each as a parameter with its derivative, whose columns have these numbers; the rows for which `which` holds.
+/// Rows of a CSV file, each as a parameter with its derivative, whose columns have these numbers; the rows for which
+/// `which` holds.
 fn slopes(csv: &str, [parameter, derivative]: [usize; 2], which: impl Fn(&[&str]) -> bool) -> Vec<(String, f64)> {
     let rows = csv.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>()).filter(|row| which(row));
     rows.map(|row| (row[parameter].to_owned(), row[derivative].parse().unwrap())).collect()

@@ -1,5 +1,5 @@
-//! The commands `sensitivity` and `identify`: derivatives against runs, parameters that come back from noisy columns, what cannot
-//! be identified, refusals. The program is the example `mass_spring_damper`.
+//! The commands `sensitivity` and `identify`: derivatives against runs, parameters that come back from noisy columns,
+//! what cannot be identified, refusals. The program is the example `mass_spring_damper`.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,5 +1,5 @@
-//! Sweeps as a user meets them: plans, shards, a sweep that is killed and goes on, runs that fail. The program is the example
-//! `pendulum`.
+//! Sweeps as a user meets them: plans, shards, a sweep that is killed and goes on, runs that fail. The program is the
+//! example `pendulum`.
 
 use std::collections::BTreeMap;
 use std::fs;

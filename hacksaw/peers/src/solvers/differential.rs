@@ -1,9 +1,9 @@
 //! The crate differential-equations: Dormand and Prince's methods, and Verner's explicit pairs with their interpolants.
 //!
-//! Its own event location returns points that are no zeros of the guard (97 events instead of 60 at loose tolerances, errors
-//! of 1e-5 at rtol 1e-10), so its output hook does it here: it finds the zero of the slip velocity on the crate's
-//! interpolant, changes the branch and hands the state there back, from which the crate goes on. Tolerances are given per
-//! state: scalar ones are ignored.
+//! Its own event location returns points that are no zeros of the guard (97 events instead of 60 at loose tolerances,
+//! errors of 1e-5 at rtol 1e-10), so its output hook does it here: it finds the zero of the slip velocity on the
+//! crate's interpolant, changes the branch and hands the state there back, from which the crate goes on. Tolerances are
+//! given per state: scalar ones are ignored.
 
 use std::ops::RangeInclusive;
 use std::time::Instant;
@@ -58,8 +58,8 @@ struct Hook<'a> {
 }
 
 impl Hook<'_> {
-    /// The zero of the guard in a step at whose end it has another sign than at its beginning, s; by the Illinois variant of
-    /// the false position.
+    /// The zero of the guard in a step at whose end it has another sign than at its beginning, s; by the Illinois
+    /// variant of the false position.
     fn locate<I>(&self, t_prev: f64, t_curr: f64, guards: (f64, f64), interpolant: &mut I) -> (f64, State)
     where
         I: Interpolation<f64, State> + ?Sized,

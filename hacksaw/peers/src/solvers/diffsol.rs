@@ -1,9 +1,9 @@
-//! The crate diffsol: Tsitouras' explicit method of order 5(4), variable-order BDF, and the diagonally implicit TR-BDF2 and
-//! ESDIRK34, with dense matrices.
+//! The crate diffsol: Tsitouras' explicit method of order 5(4), variable-order BDF, and the diagonally implicit TR-BDF2
+//! and ESDIRK34, with dense matrices.
 //!
-//! The slip velocity is its root function: it stops at each root, the branch changes, it goes on from there. Products with
-//! the Jacobian are central differences of the rate, two evaluations each. The limits of failures are raised: by default the
-//! implicit methods give up after 50 failures of the nonlinear solver in a run.
+//! The slip velocity is its root function: it stops at each root, the branch changes, it goes on from there. Products
+//! with the Jacobian are central differences of the rate, two evaluations each. The limits of failures are raised: by
+//! default the implicit methods give up after 50 failures of the nonlinear solver in a run.
 
 use std::rc::Rc;
 use std::time::Instant;

@@ -1,8 +1,8 @@
 //! The crate ode_solvers: Dormand and Prince's methods of order 5(4) and 8(5,3) after Hairer's programs.
 //!
-//! It locates no events: the right-hand side chooses its branch by the sign of the slip. Its dense output is wrong at the
-//! end point, so it integrates a little beyond. Its test for stiffness stops at the stability limit, where explicit methods
-//! run on this problem: it is set to a step number that is not reached, as is the limit of steps.
+//! It locates no events: the right-hand side chooses its branch by the sign of the slip. Its dense output is wrong at
+//! the end point, so it integrates a little beyond. Its test for stiffness stops at the stability limit, where explicit
+//! methods run on this problem: it is set to a step number that is not reached, as is the limit of steps.
 
 use std::time::Instant;
 

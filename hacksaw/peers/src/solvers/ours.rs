@@ -1,4 +1,5 @@
-//! Our own methods: on the generated scenes `Paper` and `Motion`, and on the hand-written right-hand sides. Switches are located.
+//! Our own methods: on the generated scenes `Paper` and `Motion`, and on the hand-written right-hand sides. Switches
+//! are located.
 //!
 //! [`all`] lists them, one line each.
 

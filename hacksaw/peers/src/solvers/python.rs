@@ -1,7 +1,8 @@
 //! Solvers that come with Python packages: a process of `python/peers.py`, which does one run for each line it gets.
 //!
-//! In: the problem and a Python with the packages of `python/requirements.txt`, or a folder to make a virtual environment
-//! in. Out: the solvers, the versions, and what could not be had. The process rests while other solvers run.
+//! In: the problem and a Python with the packages of `python/requirements.txt`, or a folder to make a virtual
+//! environment in. Out: the solvers, the versions, and what could not be had. The process rests while other solvers
+//! run.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -1,6 +1,7 @@
 //! What the model knows of itself beyond its rates: the capabilities, and the functions that hand them over.
 //!
-//! In: the programs that there are. Out: `SecondOrder` and `Series` for the model, beside those of the other files here.
+//! In: the programs that there are. Out: `SecondOrder` and `Series` for the model, beside those of the other files
+//! here.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};

@@ -1,7 +1,7 @@
 //! Algebraic loops that are solved at run time.
 //!
-//! In: iterations with the program of their equations. Out: functions of the model that find their unknowns. Nothing for models
-//! without.
+//! In: iterations with the program of their equations. Out: functions of the model that find their unknowns. Nothing
+//! for models without.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

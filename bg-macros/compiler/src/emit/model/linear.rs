@@ -87,7 +87,8 @@ impl Emission<'_> {
         let (count, slots) = (self.model.jacobian.entries.len(), plan.slots);
         let (factorisation, substitution) =
             (elimination::factorisation(plan), elimination::substitution(plan, self.model.equations.states.len()));
-        // Unrolled, it is compiled for each of the vectors that a step may take; a table of steps gains nothing by that.
+        // Unrolled, it is compiled for each of the vectors that a step may take; a table of steps gains nothing by
+        // that.
         let inline = if elimination::is_unrolled(plan) {
             quote!(#[cfg_attr(not(debug_assertions), inline(always))])
         } else {

@@ -64,8 +64,8 @@ impl Emission<'_> {
         quote! { #found #inputs #states }
     }
 
-    /// What the routine reads beside states and constants, each as it is declared as an argument and as it is handed over: time, switches,
-    /// reactions, what iterations find, rates, weights.
+    /// What the routine reads beside states and constants, each as it is declared as an argument and as it is handed
+    /// over: time, switches, reactions, what iterations find, rates, weights.
     pub(super) fn arguments(&self, routine: &Routine) -> BTreeMap<&'static str, [TokenStream; 2]> {
         let g = &self.shape.g;
         let of_symbols = symbols(&[routine]).into_iter().filter_map(|symbol| {
@@ -108,7 +108,8 @@ impl Emission<'_> {
         })
     }
 
-    /// States of the array `x` that the routine uses, in one pattern: rustc checks it faster than a place of `x` for each.
+    /// States of the array `x` that the routine uses, in one pattern: rustc checks it faster than a place of `x` for
+    /// each.
     pub(super) fn state_bindings(&self, routine: &Routine) -> Option<TokenStream> {
         let state = |symbol| if let Symbol::State(index) = symbol { Some(index) } else { None };
         let used: BTreeSet<u32> = symbols(&[routine]).into_iter().filter_map(state).collect();
@@ -173,7 +174,8 @@ fn entry(array: &str, index: u32) -> String {
 
 /// The states' names as identifiers: readable, different from each other and from the functions' own names.
 pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
-    // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can hide.
+    // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can
+    // hide.
     const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner at first_product next_product reactions kept sides found weights by_state by_constants \
         DESCRIPTION Some None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();

@@ -1,7 +1,8 @@
 //! Long routines in parts: their blocks, each a function of its own.
 //!
-//! In: the routines of the running model that are long. Out: the functions of their blocks and loops, and the calls that stand in the
-//! routine's place. rustc checks a function of fifty thousand assignments five times as long as fifty of a thousand.
+//! In: the routines of the running model that are long. Out: the functions of their blocks and loops, and the calls
+//! that stand in the routine's place. rustc checks a function of fifty thousand assignments five times as long as fifty
+//! of a thousand.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};

@@ -58,7 +58,8 @@ impl Emission<'_> {
         Literal::usize_unsuffixed(self.model.programs.running.constants.results.len())
     }
 
-    /// The function of a sweep with so many weights: it replaces the derivatives by states and adds to those by constants.
+    /// The function of a sweep with so many weights: it replaces the derivatives by states and adds to those by
+    /// constants.
     fn sweep(&self, sweep: &Reverse, weights: usize) -> TokenStream {
         let (Shape { n, g, .. }, constants) = (&self.shape, self.constants());
         let name = format_ident!("{}", sweep.routine.name.replace("reverse", "sweep"));

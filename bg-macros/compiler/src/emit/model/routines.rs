@@ -17,7 +17,8 @@ impl Emission<'_> {
         self.with_names(|names| statements(routine, names))
     }
 
-    /// `let c`: the constants of a program that is evaluated by itself, from `parameters`; before it the parameters it reads.
+    /// `let c`: the constants of a program that is evaluated by itself, from `parameters`; before it the parameters it
+    /// reads.
     pub(super) fn own_constants(&self, program: &Program<1>) -> TokenStream {
         let [routine] = &program.routines;
         let parameters = self.parameter_bindings(&[&program.constants, routine]);
@@ -34,8 +35,8 @@ impl Emission<'_> {
         self.running(routine, &format_ident!("constants"))
     }
 
-    /// The statements of a routine that reads states and this table of constants, and its results; of a long one the calls of its
-    /// [parts](Self::parts).
+    /// The statements of a routine that reads states and this table of constants, and its results; of a long one the
+    /// calls of its [parts](Self::parts).
     pub(super) fn running(&self, routine: &Routine, constants: &Ident) -> (TokenStream, Vec<TokenStream>) {
         let (statements, results) = if routine.is_long() {
             self.in_parts(routine)

@@ -1,7 +1,8 @@
-//! Loops: which rows of the joints that close them are kept, on which side they are closed, and reactions of least norm.
+//! Loops: which rows of the joints that close them are kept, on which side they are closed, and reactions of least
+//! norm.
 //!
-//! In: held motions with numbers of their own, sides of roots. Out: the fields `kept` and `sides` with their values, what functions of
-//! constants take for them, and the reactions that outputs read. Nothing for other models.
+//! In: held motions with numbers of their own, sides of roots. Out: the fields `kept` and `sides` with their values,
+//! what functions of constants take for them, and the reactions that outputs read. Nothing for other models.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -10,7 +11,8 @@ use super::start::lifted;
 use super::{Emission, Shape};
 use crate::system::equations::Slip;
 
-/// What the start pose decides for a run, each an array of numbers of this many places: which rows are kept, on which sides roots are.
+/// What the start pose decides for a run, each an array of numbers of this many places: which rows are kept, on which
+/// sides roots are.
 pub(super) struct Decided {
     arrays: Vec<(Ident, usize)>,
 }

@@ -1,7 +1,7 @@
 //! The start of a model: the pose that closes its joints, the velocities that fit them, what they hold.
 //!
-//! In: gaps, unknowns, held motions. Out: the functions that make the start, `start` and `impulse_energy` of the model, and
-//! `Joints` for the model.
+//! In: gaps, unknowns, held motions. Out: the functions that make the start, `start` and `impulse_energy` of the model,
+//! and `Joints` for the model.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -123,7 +123,8 @@ impl Emission<'_> {
         quote!(&[#(#indices),*])
     }
 
-    /// Whether sources give flows: whether something moves, or is to move, where the momenta that joints change are zero.
+    /// Whether sources give flows: whether something moves, or is to move, where the momenta that joints change are
+    /// zero.
     fn is_driven(&self) -> bool {
         let equations = &self.model.equations;
         let is_of_pose = |kind| matches!(kind, Kind::Position | Kind::Orientation | Kind::Angle);

@@ -170,7 +170,8 @@ impl Emission<'_> {
         })
     }
 
-    /// Whether several runs side by side are those that each is by itself, and gain by it; nothing where they always are.
+    /// Whether several runs side by side are those that each is by itself, and gain by it; nothing where they always
+    /// are.
     fn runs_in_lanes(&self) -> Option<TokenStream> {
         let inputs = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect::<Vec<_>>();
         let answer = if self.model.equations.found() > 0 || self.inline().is_none() {

@@ -20,8 +20,8 @@ struct Table<'a> {
     paired: Option<&'a Paired>,
 }
 
-/// What a model has of its tables: fields of its type, their values, the functions that calculate them and the `let`s that call
-/// these.
+/// What a model has of its tables: fields of its type, their values, the functions that calculate them and the `let`s
+/// that call these.
 #[derive(Default)]
 pub(super) struct Tables {
     pub(super) fields: TokenStream,

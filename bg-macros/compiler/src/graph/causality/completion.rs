@@ -1,12 +1,12 @@
 //! Whether strokes can be completed to a valid assignment, and to which.
 //!
 //! In: strokes of some bonds, propagated. Out: strokes of all bonds, or what is lacking, each fault once.
-//! Method: every junction needs exactly one strong bond. A chain of bonds without strokes from junction to junction, by way of
-//! two-ports, has two states, and either both ends are strong in the same one or each end in its own. So junctions
-//! without a strong bond are the vertices of a graph, chains of the first kind its edges; in the middle of one of the
-//! second kind a vertex of its own has a partner at exactly one side. A chain that ends at an element which takes either
-//! causality is a spare of its junction. Valid assignments are the matchings in which no vertex goes without; `matching`
-//! finds one in polynomial time, where trying out strokes would take an exponential one.
+//! Method: every junction needs exactly one strong bond. A chain of bonds without strokes from junction to junction, by
+//! way of two-ports, has two states, and either both ends are strong in the same one or each end in its own. So
+//! junctions without a strong bond are the vertices of a graph, chains of the first kind its edges; in the middle of
+//! one of the second kind a vertex of its own has a partner at exactly one side. A chain that ends at an element which
+//! takes either causality is a spare of its junction. Valid assignments are the matchings in which no vertex goes
+//! without; `matching` finds one in polynomial time, where trying out strokes would take an exponential one.
 
 use super::matching::{Matching, Mate};
 use super::{End, across, is_junction, strong_end};
@@ -114,7 +114,8 @@ impl<'a> Puzzle<'a> {
         self.matching.vertex()
     }
 
-    /// The vertex of a junction that has a bond without a stroke: it has no strong bond, or propagation would have set all.
+    /// The vertex of a junction that has a bond without a stroke: it has no strong bond, or propagation would have set
+    /// all.
     fn vertex_of(&mut self, node: NodeId) -> usize {
         let known = self.vertices[node.0];
         known.unwrap_or_else(|| {

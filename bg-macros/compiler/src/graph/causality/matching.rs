@@ -1,9 +1,9 @@
 //! Maximum matching in a graph some of whose vertices need no partner.
 //!
-//! In: vertices, edges, spares. Out: for every vertex its partner or its spare; those that can have neither, on request.
-//! Method: the shrinking of odd cycles (blossoms) of Edmonds, Paths, trees, and flowers (Canadian J. Math. 17, 1965). A
-//! search grows a tree of alternating paths from a vertex without a partner; it ends at another such vertex, or at one that
-//! can change over between a partner and its spare.
+//! In: vertices, edges, spares. Out: for every vertex its partner or its spare; those that can have neither, on
+//! request. Method: the shrinking of odd cycles (blossoms) of Edmonds, Paths, trees, and flowers (Canadian J. Math. 17,
+//! 1965). A search grows a tree of alternating paths from a vertex without a partner; it ends at another such vertex,
+//! or at one that can change over between a partner and its spare.
 
 use std::collections::VecDeque;
 

@@ -3,9 +3,9 @@
 //! In: [`BondGraph`]. Out: [`CausalGraph`]. No longer occurs: a bond without a stroke.
 //! Method: the sequential causality assignment procedure (SCAP) of Karnopp and Rosenberg: sources first, then laws that
 //! work one way only, then storages in integral causality in the order of declaration, then whatever is left; each
-//! assignment is propagated as far as it implies others (`procedure`). What is left is a choice; it is the first one, in
-//! the order of the bonds, that leaves a valid assignment of the rest (`completion`). A storage that cannot have integral
-//! causality has derivative causality: others determine its state.
+//! assignment is propagated as far as it implies others (`procedure`). What is left is a choice; it is the first one,
+//! in the order of the bonds, that leaves a valid assignment of the rest (`completion`). A storage that cannot have
+//! integral causality has derivative causality: others determine its state.
 
 mod completion;
 mod fault;
@@ -65,8 +65,8 @@ impl CausalGraph {
 /// Assigns every stroke.
 ///
 /// # Errors
-/// Causal conflicts, laws that would have to work the wrong way, storages in derivative causality where the graph expects
-/// none: each that is left when those before it have given way.
+/// Causal conflicts, laws that would have to work the wrong way, storages in derivative causality where the graph
+/// expects none: each that is left when those before it have given way.
 pub fn assign(graph: BondGraph) -> Staged<CausalGraph> {
     let (strokes, strong) = procedure::run(&graph)?;
     let nodes = (0..graph.nodes.len()).map(NodeId);

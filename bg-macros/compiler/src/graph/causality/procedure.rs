@@ -1,9 +1,9 @@
 //! The sequential procedure: requests in their order, each propagated as far as it implies other strokes.
 //!
 //! In: [`BondGraph`]. Out: a stroke for every bond, or the faults. A request that cannot be met is a fault and is taken
-//! back, so that what comes after it is judged as if it had not been made. First all storages ask for integral causality.
-//! Where that leaves no valid assignment, and the graph does not insist on it, a second run gives each in turn integral
-//! causality where the rest can still be completed, and derivative causality elsewhere.
+//! back, so that what comes after it is judged as if it had not been made. First all storages ask for integral
+//! causality. Where that leaves no valid assignment, and the graph does not insist on it, a second run gives each in
+//! turn integral causality where the rest can still be completed, and derivative causality elsewhere.
 
 use std::collections::VecDeque;
 
@@ -94,8 +94,8 @@ impl<'a> Procedure<'a> {
         self.demand(&self.nodes(|procedure, node| procedure.storage(node).is_some()));
     }
 
-    /// A displacement that the poses give stays one. Of the others come first those whose state is hard to replace: laws
-    /// that need not have an inverse, then those with a start of their own; then the order of declaration decides.
+    /// A displacement that the poses give stays one. Of the others come first those whose state is hard to replace:
+    /// laws that need not have an inverse, then those with a start of their own; then the order of declaration decides.
     fn prefer_integral(&mut self) {
         let posed = |procedure: &Self, node| {
             procedure.storage(node).is_some() && procedure.graph.element(node).is_some_and(|e| e.displacement.is_some())
@@ -114,7 +114,8 @@ impl<'a> Procedure<'a> {
         }
     }
 
-    /// Integral causality where it has a place and, if `completes`, the rest can then be completed; else the other stroke.
+    /// Integral causality where it has a place and, if `completes`, the rest can then be completed; else the other
+    /// stroke.
     fn prefer(&mut self, node: NodeId, completes: bool) {
         let before = self.trail.len();
         if self.ask(node).is_ok() && (!completes || self.can_be_completed()) {

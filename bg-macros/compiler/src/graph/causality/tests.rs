@@ -79,7 +79,8 @@ fn two_causes_that_no_choice_avoids_are_named() {
 
 #[test]
 fn each_fault_comes_once_and_none_hides_another() {
-    // Two storages too many on one junction, a source against a source, a law against a source, a junction without a cause.
+    // Two storages too many on one junction, a source against a source, a law against a source, a junction without a
+    // cause.
     let text = "1 a: translation; I i = 1; I k = 2; I l = 3; a -> i; a -> k; a -> l;
         0 b: translation; Se s = 1; Se u = 2; s -> b; u -> b;
         1 c: translation; Sf f = 1; R r(effort e) = e / 2; f -> c -> r;

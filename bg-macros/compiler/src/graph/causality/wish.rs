@@ -1,7 +1,7 @@
 //! What an element wants of its bond.
 //!
-//! In: [`BondGraph`]. Out: for a node the stroke of its first bond. Sources and laws of a variable insist on it, storages have
-//! integral causality with it.
+//! In: [`BondGraph`]. Out: for a node the stroke of its first bond. Sources and laws of a variable insist on it,
+//! storages have integral causality with it.
 
 use super::{End, end_at};
 use crate::graph::{BondGraph, BondId, ElementKind, Law, NodeId, Role};

@@ -123,8 +123,8 @@ impl Resolver {
         self.depends(term).into_iter().find(|reference| !is_constant(*reference))
     }
 
-    /// What a term depends on; of the clauses of mechanism words that may depend on little, which are looked at themselves, only
-    /// the names.
+    /// What a term depends on; of the clauses of mechanism words that may depend on little, which are looked at
+    /// themselves, only the names.
     fn depends(&self, term: &Term) -> Vec<Reference> {
         let is_open = |clause: &Clause| matches!(clause.given, Given::State | Given::Free);
         self.deep_references(term, &|definition| definition.clause.as_ref().is_none_or(is_open))

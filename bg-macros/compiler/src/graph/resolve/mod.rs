@@ -581,7 +581,8 @@ fn is_of_flow(element: &ast::Element) -> bool {
     matches!(element.kind, ElementKind::R | ElementKind::Mr) && element.variable.as_ref().is_some_and(is_flow)
 }
 
-/// Whether an element can be a stop: a residual sink of no joint that keeps its flow at zero and knows its displacement.
+/// Whether an element can be a stop: a residual sink of no joint that keeps its flow at zero and knows its
+/// displacement.
 fn is_one_sided(element: &ast::Element) -> bool {
     let ast::Element { kind, law, displacement, held, .. } = element;
     *kind == ElementKind::RSe && law.number() == Some(0.0) && displacement.is_some() && held.is_none()

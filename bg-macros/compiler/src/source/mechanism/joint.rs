@@ -3,8 +3,9 @@
 //! In: `ast::Joint`. Out: bond-graph words. Flows and displacements are those of the second end relative to the first;
 //! `NAME.force` and `NAME.moment` act on the second body. Directions are those of the first end's axes, which are its
 //! body's where its point is not turned; a pin whose stiffness is one number has the same in all of them and is kept in
-//! inertial axes. With `frame inertial` the held rotations are about inertial axes and their displacements integrate the
-//! relative angular velocity; without it they are direction cosines of the two ends' axes, which the poses determine.
+//! inertial axes. With `frame inertial` the held rotations are about inertial axes and their displacements integrate
+//! the relative angular velocity; without it they are direction cosines of the two ends' axes, which the poses
+//! determine.
 
 use super::attachment::stiff;
 use super::{End, Expansion, MechanismFault, is_vector};
@@ -324,8 +325,8 @@ fn of_axis(value: Option<&Expression>, name: &str, axis: Axis) -> String {
     if value.is_some_and(is_vector) { format!("{name}.{}", axis.letter()) } else { name.to_owned() }
 }
 
-/// Whether the stiffness of one axis is the number 0: no gap along it or about it is there to close. A parameter that happens
-/// to be 0 closes as any other value of it does, so that the start pose does not depend on it.
+/// Whether the stiffness of one axis is the number 0: no gap along it or about it is there to close. A parameter that
+/// happens to be 0 closes as any other value of it does, so that the start pose does not depend on it.
 fn is_absent(value: Option<&Expression>, axis: Axis) -> bool {
     let of_axis = value.map(|value| match &value.kind {
         ExpressionKind::Vector(parts) => parts.get(axis as usize).unwrap_or(value),

@@ -1,8 +1,9 @@
 //! Mechanism words to bond-graph words.
 //!
-//! In: one `ast::Graph`. Out: one `ast::Graph` in which bodies, joints, springs, drives, contacts, frictions, stops, ground
-//! and gravity no longer occur. Every word stands for a fragment of the language itself, written below as its template; the user's
-//! expressions enter it as named `let`s, so that a fault in one of them is reported where the user wrote it.
+//! In: one `ast::Graph`. Out: one `ast::Graph` in which bodies, joints, springs, drives, contacts, frictions, stops,
+//! ground and gravity no longer occur. Every word stands for a fragment of the language itself, written below as its
+//! template; the user's expressions enter it as named `let`s, so that a fault in one of them is reported where the user
+//! wrote it.
 
 mod attachment;
 mod axis;
@@ -193,7 +194,8 @@ impl<'a> Expansion<'a> {
         self.items.extend(fragment(span, template));
     }
 
-    /// `let NAME: UNIT = VALUE;` with the user's expression as the value, and what it must be; an empty unit is left out.
+    /// `let NAME: UNIT = VALUE;` with the user's expression as the value, and what it must be; an empty unit is left
+    /// out.
     fn bind(&mut self, name: &str, unit: &str, value: &Expression, clause: Clause) {
         let colon = if unit.is_empty() { "" } else { ": " };
         for item in fragment(value.span, &format!("let {name}{colon}{unit} = 0;")) {
@@ -225,7 +227,8 @@ impl<'a> Expansion<'a> {
         Some((from, to))
     }
 
-    /// The body and the point that a name stands for. A body in a part has a path; points have none, but those of the ground.
+    /// The body and the point that a name stands for. A body in a part has a path; points have none, but those of the
+    /// ground.
     fn on_body<'n>(&self, name: &'n str) -> (&'n str, Option<&'n str>) {
         let is_ground = name.split('.').next() == Some(GROUND);
         let split = if is_ground { name.split_once('.') } else { name.rsplit_once('.') };

@@ -1,7 +1,7 @@
 //! Orifices as a mechanism word.
 //!
-//! In: `ast::Orifice`. Out: an R at its junction, q = c a sqrt(2 / rho) root(p, l), the law of a sharp edge, linear where the flow is
-//! laminar. Source: Modelica Standard Library, `Modelica.Fluid.Utilities.regRoot`.
+//! In: `ast::Orifice`. Out: an R at its junction, q = c a sqrt(2 / rho) root(p, l), the law of a sharp edge, linear
+//! where the flow is laminar. Source: Modelica Standard Library, `Modelica.Fluid.Utilities.regRoot`.
 
 use super::{Expansion, MechanismFault};
 use crate::source::ast::{Expression, Orifice};

@@ -1,9 +1,9 @@
 //! Stops as a mechanism word.
 //!
 //! In: `ast::Stop`. Out: at the junction of the axis that it acts on a C, slack between the ends, and an R that damps
-//! beyond them as long as the two together do not pull; with a restitution a residual sink for each end, which acts one way
-//! only. The displacement of a sliding axis is the joint's travel; another one is a state, the integral of the flow, from the
-//! joint's angle at the start on.
+//! beyond them as long as the two together do not pull; with a restitution a residual sink for each end, which acts one
+//! way only. The displacement of a sliding axis is the joint's travel; another one is a state, the integral of the
+//! flow, from the joint's angle at the start on.
 
 use super::axis::FreeAxis;
 use super::{Expansion, MechanismFault};

@@ -30,8 +30,8 @@ fn last(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-/// A fault for each parameter and input of a level that nothing in it uses: a value given to it would change nothing. `of` is what the level
-/// is of, such as "part `Leg`".
+/// A fault for each parameter and input of a level that nothing in it uses: a value given to it would change nothing.
+/// `of` is what the level is of, such as "part `Leg`".
 pub(super) fn open(level: &Level, of: &str) -> Faults {
     let unused = level.open.iter().filter(|(_, name)| !level.names.uses(&name.text));
     let fault = |(word, name): &(&'static str, Name)| {

@@ -1,7 +1,7 @@
 //! Whole numbers in brackets: `link[i - 1].bar`.
 //!
-//! In: a name as text, the numbers of the indices around it. Out: the same with digits in its brackets, or the word that is no
-//! number. An index is a sum of products of digits and indices, which the parser has brought into one form.
+//! In: a name as text, the numbers of the indices around it. Out: the same with digits in its brackets, or the word
+//! that is no number. An index is a sum of products of digits and indices, which the parser has brought into one form.
 
 /// The indices around a statement with their numbers, the innermost last.
 pub(super) type Indices = [(String, i64)];
@@ -48,8 +48,8 @@ fn factor(word: &str, indices: &Indices) -> Result<i64, String> {
     named.map(|(_, number)| *number).or_else(digits).ok_or_else(|| word.to_owned())
 }
 
-/// The arrays that a name goes through, each with its number: `a[1].b[2].c` gives (`a`, 1) and (`a[1].b`, 2). What is no number
-/// is left out.
+/// The arrays that a name goes through, each with its number: `a[1].b[2].c` gives (`a`, 1) and (`a[1].b`, 2). What is
+/// no number is left out.
 pub(super) fn elements(name: &str) -> impl Iterator<Item = (&str, i64)> {
     name.match_indices('[').filter_map(|(at, _)| {
         let inside = name[at + 1..].split(']').next()?;

@@ -1,7 +1,7 @@
 //! One level of the description: a graph, or a part in its own names.
 //!
-//! In: its statements without repetitions, the parts inside under the names that they have here. Out: a [`Flat`]. What parts say
-//! of the ground comes into the one ground.
+//! In: its statements without repetitions, the parts inside under the names that they have here. Out: a [`Flat`]. What
+//! parts say of the ground comes into the one ground.
 
 use std::collections::BTreeSet;
 

@@ -1,8 +1,9 @@
 //! Parts: what is described once and used often, written out where it is used.
 //!
-//! In: [`Source`]. Out: its graphs without parts and repetitions; what is inside of `part front: Leg` has a path, `front.spring`.
-//! Every part is written out once, in its own names; a use is a copy of it under another name. So each fault inside of a part is
-//! found once. No longer occurs: `Item::Use`, `Item::Port`, `Item::Start`, `Item::For`, `Watch::All`.
+//! In: [`Source`]. Out: its graphs without parts and repetitions; what is inside of `part front: Leg` has a path,
+//! `front.spring`. Every part is written out once, in its own names; a use is a copy of it under another name. So each
+//! fault inside of a part is found once. No longer occurs: `Item::Use`, `Item::Port`, `Item::Start`, `Item::For`,
+//! `Watch::All`.
 
 mod check;
 mod fault;
@@ -34,7 +35,8 @@ pub struct Flattened {
     pub source: Source,
     /// Each part that no graph of the call uses, as a graph of its own with something at each of its ports.
     pub unused: Vec<Graph>,
-    /// Parameters and inputs of graphs that nothing uses. A wrong name may be meant for one, so this is a fault only where nothing else is wrong.
+    /// Parameters and inputs of graphs that nothing uses. A wrong name may be meant for one, so this is a fault only
+    /// where nothing else is wrong.
     pub unused_parameters: Faults,
     uses: Vec<Placed>,
 }
@@ -50,7 +52,8 @@ impl Flattened {
 /// The graphs without parts and repetitions.
 ///
 /// # Errors
-/// Unknown parts and parameters, parts that contain themselves, ports without bonds, elements that an array does not have.
+/// Unknown parts and parameters, parts that contain themselves, ports without bonds, elements that an array does not
+/// have.
 pub fn flatten(source: &Source) -> Staged<Flattened> {
     let (flattened, faults) = flatten_leniently(source);
     if faults.is_empty() { Ok(flattened) } else { Err(flattened.told(faults)) }

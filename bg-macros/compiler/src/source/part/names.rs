@@ -1,7 +1,7 @@
 //! What names mean on one level of the description.
 //!
-//! In: its statements, written out, and the parts that it uses. Out: paths of things inside in place of the ports' names, what
-//! a part observes in place of the output's name, and faults where an array has no such element.
+//! In: its statements, written out, and the parts that it uses. Out: paths of things inside in place of the ports'
+//! names, what a part observes in place of the output's name, and faults where an array has no such element.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,7 @@
 //! A part in its place: what its parameters are, where its bodies start.
 //!
-//! In: a part under the name of its use, the use's clauses with names that mean what they mean here. Out: a `let` for each
-//! parameter that is given, with what its range asks of the value, and bodies with other starts.
+//! In: a part under the name of its use, the use's clauses with names that mean what they mean here. Out: a `let` for
+//! each parameter that is given, with what its range asks of the value, and bodies with other starts.
 
 use std::collections::BTreeSet;
 

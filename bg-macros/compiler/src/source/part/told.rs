@@ -1,7 +1,8 @@
 //! Faults of parts: each told once, with the use that it is in.
 //!
-//! In: the faults of all stages, the uses of all parts. Out: the same without those that another use has, too; a fault inside of
-//! a part says in which use. Method: places in the source; of several uses, the one whose path the message names.
+//! In: the faults of all stages, the uses of all parts. Out: the same without those that another use has, too; a fault
+//! inside of a part says in which use. Method: places in the source; of several uses, the one whose path the message
+//! names.
 
 use proc_macro2::{LineColumn, Span};
 

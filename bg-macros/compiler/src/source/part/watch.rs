@@ -1,7 +1,7 @@
 //! What a part or a graph observes.
 //!
-//! In: the entries of `observe`, all statements of the level. Out: named expressions; `all of NAME` is what there is to see of
-//! it: of a part its outputs, of a body its pose and momenta, of a joint its force and motion.
+//! In: the entries of `observe`, all statements of the level. Out: named expressions; `all of NAME` is what there is to
+//! see of it: of a part its outputs, of a body its pose and momenta, of a joint its force and motion.
 
 use proc_macro2::Span;
 

@@ -73,7 +73,8 @@ impl Cursor<'_> {
         Ok(())
     }
 
-    /// `start at E;`, `start POINT at E;`, `start turned E;`, `start velocity E;`, `start spin E;`, of the last two `guess;`
+    /// `start at E;`, `start POINT at E;`, `start turned E;`, `start velocity E;`, `start spin E;`, of the last two
+    /// `guess;`
     fn start(&mut self, body: &mut Body) -> Parsed<()> {
         let span = self.advance();
         if self.word().is_some() && self.word() != Some("at") && self.word_ahead(1) == Some("at") {

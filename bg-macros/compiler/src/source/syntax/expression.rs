@@ -1,8 +1,9 @@
 //! Expressions, by precedence climbing.
 //!
 //! In: the tokens of a value. Out: an [`Expression`] no higher than [`DEEPEST`], so that later stages may recurse on
-//! it; a sum or product of any length is one level. It ends in front of the first token that continues no expression, such as `;`, `,` or a clause's word.
-//! Method: operator precedence parsing (Pratt, Top down operator precedence, POPL 1973).
+//! it; a sum or product of any length is one level. It ends in front of the first token that continues no expression,
+//! such as `;`, `,` or a clause's word. Method: operator precedence parsing (Pratt, Top down operator precedence, POPL
+//! 1973).
 
 use proc_macro2::{Delimiter, Span};
 

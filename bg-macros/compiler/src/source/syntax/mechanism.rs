@@ -1,4 +1,5 @@
-//! The mechanism words: ground, gravity, body, joint, spring, drive, contact. Those of one junction are read in `friction`.
+//! The mechanism words: ground, gravity, body, joint, spring, drive, contact. Those of one junction are read in
+//! `friction`.
 //!
 //! In: statements of a graph. Out: their [`Item`]s, which `mechanism::expand` turns into bond-graph words.
 

@@ -1,12 +1,13 @@
 //! Storages in derivative causality: others determine their states.
 //!
 //! In: strokes, laws. Out: their states as expressions of other states, and what they give on their bonds.
-//! Method: an I receives its flow, so its momentum is that of this flow, p(f), and it gives the effort dp/dt; a C receives its
-//! effort and gives the flow dq/dt. The derivative is that along the rates of the states that are integrated, which depend on what
-//! is given: a linear system, in which the storage adds to those that determine it (Karnopp, Margolis and Rosenberg, System
-//! Dynamics (2012), section 5.6). Where a law has no inverse in symbols the state stays, and what is given keeps it in step, as the
-//! residual sink of a rigid joint does. Where what is received depends on what is given without any derivative, the state stays as
-//! well: it is independent, and the two follow from each other at once.
+//! Method: an I receives its flow, so its momentum is that of this flow, p(f), and it gives the effort dp/dt; a C
+//! receives its effort and gives the flow dq/dt. The derivative is that along the rates of the states that are
+//! integrated, which depend on what is given: a linear system, in which the storage adds to those that determine it
+//! (Karnopp, Margolis and Rosenberg, System Dynamics (2012), section 5.6). Where a law has no inverse in symbols the
+//! state stays, and what is given keeps it in step, as the residual sink of a rigid joint does. Where what is received
+//! depends on what is given without any derivative, the state stays as well: it is independent, and the two follow from
+//! each other at once.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -115,8 +116,9 @@ impl Signals<'_> {
         }
     }
 
-    /// A storage whose state must stay after all: what it receives depends on what it or others like it give. Of several the first
-    /// is taken, as it may determine the others: a law without an inverse before others, then one with a start.
+    /// A storage whose state must stay after all: what it receives depends on what it or others like it give. Of
+    /// several the first is taken, as it may determine the others: a law without an inverse before others, then one
+    /// with a start.
     pub(super) fn independent_after_all(&mut self) -> Option<NodeId> {
         let graph = self.graph;
         let mut found = Vec::new();
@@ -154,7 +156,8 @@ impl Signals<'_> {
         self.pool.symbols(&value.0).into_iter().filter(move |symbol| given.contains(symbol))
     }
 
-    /// Calculates what storages give whose states are replaced: the derivatives of these states, and puts it in its place.
+    /// Calculates what storages give whose states are replaced: the derivatives of these states, and puts it in its
+    /// place.
     pub(super) fn solve_dependents(&mut self) {
         let graph = self.graph;
         let mut residuals = BTreeMap::new();

@@ -1,9 +1,9 @@
 //! Where numbers that are not finite come from.
 //!
-//! In: laws. Out: what those elements give whose law can make a number that is not finite of finite ones, in the order of
-//! evaluation: the first of these values that is not finite is where it began.
-//! Method: a law can do so if it divides by, or takes a root, logarithm, exponential, non-integer power or the like of something
-//! that changes in a run. What depends on parameters only is the same in all of it.
+//! In: laws. Out: what those elements give whose law can make a number that is not finite of finite ones, in the order
+//! of evaluation: the first of these values that is not finite is where it began.
+//! Method: a law can do so if it divides by, or takes a root, logarithm, exponential, non-integer power or the like of
+//! something that changes in a run. What depends on parameters only is the same in all of it.
 
 use super::signals::Signals;
 use crate::expr::Id;

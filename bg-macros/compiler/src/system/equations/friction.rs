@@ -1,10 +1,11 @@
 //! Dry friction: an R that slides forwards, slides backwards or sticks.
 //!
-//! In: the R with the clause `holds`. Out: its effort, a multiplier until the reactions are solved for, with the two switches
-//! that say how it moves.
-//! Method: stuck, the effort is the one that keeps the flow at zero, as that of a residual sink; sliding, it is the law's, against
-//! the flow. One switch is negative while it slides forwards, the other while it slides backwards. Their guards depend on
-//! their own branches: while it slides, the flow, which has to come to zero; while it sticks, what the effort leaves of the limit.
+//! In: the R with the clause `holds`. Out: its effort, a multiplier until the reactions are solved for, with the two
+//! switches that say how it moves.
+//! Method: stuck, the effort is the one that keeps the flow at zero, as that of a residual sink; sliding, it is the
+//! law's, against the flow. One switch is negative while it slides forwards, the other while it slides backwards. Their
+//! guards depend on their own branches: while it slides, the flow, which has to come to zero; while it sticks, what the
+//! effort leaves of the limit.
 
 use super::signals::Signals;
 use super::{EquationFault, Reaction, Slip, Switch, Switched};
@@ -13,7 +14,8 @@ use crate::fault::Fault;
 use crate::graph::{Element, ElementKind, NodeId};
 use crate::system::Value;
 
-/// Time, s, in which the frictions brake a flow that counts as rest: what rounding leaves of it where others hold it as well.
+/// Time, s, in which the frictions brake a flow that counts as rest: what rounding leaves of it where others hold it as
+/// well.
 const REST: f64 = 1e-13;
 
 /// A dry friction: what its switches and its effort are made of.
@@ -52,7 +54,8 @@ impl Signals<'_> {
         Sticking { node, flow, limit, multiplier: Symbol::Multiplier(self.reactions[&node]) }
     }
 
-    /// The effort up to which it sticks: not less than the law's at zero, where neither sliding nor sticking would be right.
+    /// The effort up to which it sticks: not less than the law's at zero, where neither sliding nor sticking would be
+    /// right.
     fn limit(&mut self, element: &Element) -> Id {
         let held = element.sticking.as_ref().map(|limit| self.evaluate(limit, None));
         let held = held.map_or(self.pool.zero(), |held| held.0[0]);
@@ -129,8 +132,8 @@ impl Signals<'_> {
         u32::try_from(self.switches.len() - 1).expect("fewer than 2^32 switches")
     }
 
-    /// Writes the guards of both switches: below zero it slides that way. Both are negative only where the search for the
-    /// branches at the start begins; the sign of the flow decides there.
+    /// Writes the guards of both switches: below zero it slides that way. Both are negative only where the search for
+    /// the branches at the start begins; the sign of the flow decides there.
     fn guard(&mut self, friction: &Sticking, rest: Id, ways: [u32; 2]) {
         let (flow, limit) = (friction.flow.0[0], friction.limit);
         let effort = self.pool.symbol(friction.multiplier);

@@ -27,8 +27,9 @@ pub struct Slip {
     pub kept: Option<u32>,
     /// Its integral as the poses have it, where they do.
     pub gap: Option<Id>,
-    /// How much one unit of its reaction changes the rate of its flow while no other joint holds anything, where the matrix does
-    /// not say so because rows of other joints are solved. Beside it a pivot tells how near the pose is to a singular one.
+    /// How much one unit of its reaction changes the rate of its flow while no other joint holds anything, where the
+    /// matrix does not say so because rows of other joints are solved. Beside it a pivot tells how near the pose is to
+    /// a singular one.
     pub mobility: Option<Id>,
 }
 
@@ -63,8 +64,8 @@ pub struct Holding {
 }
 
 impl Holding {
-    /// Every expression: the rigid flows, the compliant ones, the rigid gaps, the mobilities, the matrix, then for each reaction
-    /// what it moves.
+    /// Every expression: the rigid flows, the compliant ones, the rigid gaps, the mobilities, the matrix, then for each
+    /// reaction what it moves.
     #[must_use]
     pub fn entries(&self, pool: &Pool) -> Vec<Id> {
         let flows = self.rigid.iter().chain(&self.compliant).map(|slip| slip.flow);
@@ -117,8 +118,8 @@ impl Holding {
         self.rigid.is_empty() && self.compliant.is_empty()
     }
 
-    /// For each rigid motion whether it is known: where a reaction acts on something that stays, all that it is solved from
-    /// stays as well.
+    /// For each rigid motion whether it is known: where a reaction acts on something that stays, all that it is solved
+    /// from stays as well.
     #[must_use]
     pub fn known(&self, pool: &Pool, known: &Known) -> Vec<bool> {
         let stays = |id: Id| known.has(pool, id);

@@ -1,10 +1,10 @@
 //! Impacts: from what the run time calculates how momenta jump where something hits a stop.
 //!
-//! In: the reactions of rigid joints and of stops, with the rates. Out: [`Impacts`]. What impulses L change obeys the equations
-//! of the reactions: flows by A L, momenta by what the reactions move. The integrals of outputs go along: during an impact the
-//! flows change in proportion to the impulse, so an integral of what is linear in an effort changes by the impulse times the
-//! mean of its coefficient before and after; that of a power gives the work (W. Thomson, P. G. Tait, Treatise on Natural
-//! Philosophy (1879), article 309).
+//! In: the reactions of rigid joints and of stops, with the rates. Out: [`Impacts`]. What impulses L change obeys the
+//! equations of the reactions: flows by A L, momenta by what the reactions move. The integrals of outputs go along:
+//! during an impact the flows change in proportion to the impulse, so an integral of what is linear in an effort
+//! changes by the impulse times the mean of its coefficient before and after; that of a power gives the work (W.
+//! Thomson, P. G. Tait, Treatise on Natural Philosophy (1879), article 309).
 
 use super::holding::{Slip, mobilities};
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
@@ -72,8 +72,9 @@ impl Impacts {
         self.stops.is_empty()
     }
 
-    /// Every expression: the flows of all rows, of each stop the restitution, the speed of rest (-1 where none is given) and the
-    /// rate of its flow, the mobilities of the rigid motions, the matrix, then for each reaction what it moves.
+    /// Every expression: the flows of all rows, of each stop the restitution, the speed of rest (-1 where none is
+    /// given) and the rate of its flow, the mobilities of the rigid motions, the matrix, then for each reaction what it
+    /// moves.
     #[must_use]
     pub fn entries(&self, pool: &mut Pool) -> Vec<Id> {
         let none = pool.number(-1.0);

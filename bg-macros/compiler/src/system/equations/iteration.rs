@@ -1,10 +1,11 @@
 //! Algebraic loops that are not linear: Newton's iteration at run time, its last step in the equations.
 //!
-//! In: groups of unknowns with the expressions g(u) that are zero where the unknowns have their values. Out: an [`Iteration`] for
-//! each group, and in the place of each unknown one step of it, u - G(u)^-1 g(u) with G = dg/du, at the u that it has found.
-//! Method: at a solution the derivatives of that step by everything but u are those of the implicit function, -G^-1 dg, as g is
-//! zero there (Krantz and Parks 2013, The Implicit Function Theorem, ch. 1). So Jacobians, second derivatives, dual numbers and
-//! series need nothing of their own, and numbers with more digits than the iteration's gain as many again.
+//! In: groups of unknowns with the expressions g(u) that are zero where the unknowns have their values. Out: an
+//! [`Iteration`] for each group, and in the place of each unknown one step of it, u - G(u)^-1 g(u) with G = dg/du, at
+//! the u that it has found. Method: at a solution the derivatives of that step by everything but u are those of the
+//! implicit function, -G^-1 dg, as g is zero there (Krantz and Parks 2013, The Implicit Function Theorem, ch. 1). So
+//! Jacobians, second derivatives, dual numbers and series need nothing of their own, and numbers with more digits than
+//! the iteration's gain as many again.
 
 use std::collections::BTreeMap;
 

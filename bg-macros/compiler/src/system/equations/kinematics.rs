@@ -1,7 +1,7 @@
 //! The proof that a displacement given by the poses is the integral of its bond's flow.
 //!
-//! In: C elements with `at E`. Out: nothing, or a fault. Method: the flows of the tracked junctions become symbols; then
-//! dE/dt by the chain rule and the bond's flow are polynomials in them and in the poses, compared term by term.
+//! In: C elements with `at E`. Out: nothing, or a fault. Method: the flows of the tracked junctions become symbols;
+//! then dE/dt by the chain rule and the bond's flow are polynomials in them and in the poses, compared term by term.
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Groups of things that need each other.
 //!
-//! In: for each thing the others that it needs. Out: the groups in which all need each other, those that are needed first.
-//! Method: strongly connected components (Tarjan 1972, Depth-first search and linear graph algorithms).
+//! In: for each thing the others that it needs. Out: the groups in which all need each other, those that are needed
+//! first. Method: strongly connected components (Tarjan 1972, Depth-first search and linear graph algorithms).
 
 /// What a depth-first search knows of one thing.
 #[derive(Clone, Copy, Debug, Default)]

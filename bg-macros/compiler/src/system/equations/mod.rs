@@ -1,10 +1,10 @@
 //! State equations: what every bond carries, as scalar expressions of states, parameters, inputs and time.
 //!
 //! In: [`CausalGraph`]. Out: [`StateEquations`]. No longer occurs: bonds, ports and junctions; scalars only from here.
-//! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one expression;
-//! storages in integral causality turn theirs into rates, those in derivative causality differentiate theirs. What
-//! depends on itself is an unknown with an equation, which is solved in symbols where it is linear, by an iteration at run
-//! time where it is not.
+//! Method: the causal strokes say which end gives effort and which gives flow, so every bond variable is one
+//! expression; storages in integral causality turn theirs into rates, those in derivative causality differentiate
+//! theirs. What depends on itself is an unknown with an equation, which is solved in symbols where it is linear, by an
+//! iteration at run time where it is not.
 
 pub mod definite;
 mod dependent;
@@ -172,8 +172,8 @@ pub struct Switch {
     pub condition: String,
     /// The guard: below zero the first branch holds.
     pub guard: Id,
-    /// Whether the guard depends on the switch's own branch, so that the past decides: sliding ends where the flow is zero,
-    /// sticking where the effort is at its limit.
+    /// Whether the guard depends on the switch's own branch, so that the past decides: sliding ends where the flow is
+    /// zero, sticking where the effort is at its limit.
     pub remembers: bool,
 }
 

@@ -1,7 +1,7 @@
 //! Reactions of rigid joints: efforts that are not given but keep a flow at zero.
 //!
-//! In: residual sinks, storages whose states are kept in step. Out: [`Reaction`]s over multipliers, to be solved for where the rates are known.
-//! Source: the residual sink of Borutzky, Bond Graph Methodology (2010), section 4.
+//! In: residual sinks, storages whose states are kept in step. Out: [`Reaction`]s over multipliers, to be solved for
+//! where the rates are known. Source: the residual sink of Borutzky, Bond Graph Methodology (2010), section 4.
 
 use super::signals::Signals;
 use super::{Reaction, Slip};

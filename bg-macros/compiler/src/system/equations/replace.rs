@@ -32,8 +32,8 @@ impl StateEquations {
 
     /// Puts the values of the reactions in the places of their symbols, everywhere.
     ///
-    /// Where joints close loops, outputs and what is shown keep the symbols: there a model shares reactions that are not
-    /// unique before it evaluates these.
+    /// Where joints close loops, outputs and what is shown keep the symbols: there a model shares reactions that are
+    /// not unique before it evaluates these.
     pub fn close(&mut self) {
         let solution = std::mem::take(&mut self.solution);
         if solution.values.is_empty() {

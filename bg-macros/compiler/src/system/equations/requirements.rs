@@ -16,7 +16,8 @@ use crate::system::requirements::{Requirements, Subject};
 type Asked<'g> = (Subject, &'g Term);
 
 impl Signals<'_> {
-    /// What is asked of the values that parameters and numbers give. The model's own expressions and switches stay as they are.
+    /// What is asked of the values that parameters and numbers give. The model's own expressions and switches stay as
+    /// they are.
     pub(super) fn requirements(&mut self) -> Requirements {
         let graph = self.graph;
         let (pool, switches) = (self.pool.clone(), self.switches.len());

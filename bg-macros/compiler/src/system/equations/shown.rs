@@ -1,7 +1,7 @@
 //! What pictures show of a model beside its outputs: the look of its mechanism, effort and flow of every bond.
 //!
-//! In: the graph's drawing, bond variables. Out: [`Shown`], which the reductions carry along and that keeps nothing alive: a
-//! quantity that needs a state which a scene leaves out is not known there.
+//! In: the graph's drawing, bond variables. Out: [`Shown`], which the reductions carry along and that keeps nothing
+//! alive: a quantity that needs a state which a scene leaves out is not known there.
 
 use super::signals::Signals;
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
@@ -52,8 +52,8 @@ impl Shown {
 }
 
 impl Signals<'_> {
-    /// What pictures show, where bonds carry `bonds`. Comes last, so that it has no influence on the other expressions; what
-    /// would need a switch of its own is not known.
+    /// What pictures show, where bonds carry `bonds`. Comes last, so that it has no influence on the other expressions;
+    /// what would need a switch of its own is not known.
     pub(super) fn shown(&mut self, bonds: Vec<[Quantity; 2]>) -> Shown {
         let (graph, switches, fallible) = (self.graph, self.switches.len(), self.fallible.len());
         let drawing = graph.drawing.map(&mut |term| {

@@ -89,7 +89,8 @@ impl<'a> Signals<'a> {
         signals
     }
 
-    /// Effort and flow of every bond, the states' rates. A storage in derivative causality whose state must stay after all.
+    /// Effort and flow of every bond, the states' rates. A storage in derivative causality whose state must stay after
+    /// all.
     pub(super) fn solve_bonds(&mut self) -> Option<NodeId> {
         self.prove_displacements();
         self.fallible.clear();
@@ -480,7 +481,8 @@ mod tests {
         std::array::from_fn(|i| std::array::from_fn(|j| values[3 * i + j]))
     }
 
-    /// A rotation far from the identity, so that what is done on the left of a matrix and on its right are different things.
+    /// A rotation far from the identity, so that what is done on the left of a matrix and on its right are different
+    /// things.
     fn rotation() -> Matrix {
         let ((s, c), (t, d)) = (0.9_f64.sin_cos(), 0.6_f64.sin_cos());
         product(&[[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], &[[1.0, 0.0, 0.0], [0.0, d, -t], [0.0, t, d]])

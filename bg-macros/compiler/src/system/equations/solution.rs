@@ -1,7 +1,7 @@
 //! The reactions of rigid joints after they are solved for: symbols in the equations, each with its value.
 //!
-//! In: [`Solution`] from `reduce::reaction`. Out: values in the symbols' places, and how the reactions change with what they
-//! depend on, from the factors that solve for them: (A l + b)' = 0 gives l' = -A^-1 (A' l + b').
+//! In: [`Solution`] from `reduce::reaction`. Out: values in the symbols' places, and how the reactions change with what
+//! they depend on, from the factors that solve for them: (A l + b)' = 0 gives l' = -A^-1 (A' l + b').
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,8 @@ pub struct Solution {
     pub multipliers: Vec<Symbol>,
     /// A l + b, with the reactions as symbols.
     pub residuals: Vec<Id>,
-    /// What each reaction applies: itself; of dry friction the effort of its law where it slides, of a stop 0 where nothing rests on it.
+    /// What each reaction applies: itself; of dry friction the effort of its law where it slides, of a stop 0 where
+    /// nothing rests on it.
     pub efforts: Vec<Id>,
     /// The factors of A.
     pub factors: Factors,
@@ -30,7 +31,8 @@ impl Solution {
         self.multipliers.iter().position(|&multiplier| multiplier == symbol)
     }
 
-    /// The reactions whose equations have a regular derivative by them: all, or none where there is dry friction or a stop.
+    /// The reactions whose equations have a regular derivative by them: all, or none where there is dry friction or a
+    /// stop.
     #[must_use]
     pub fn smooth(&self, pool: &Pool) -> &[Symbol] {
         let is_itself = |(&effort, &symbol): (&Id, &Symbol)| *pool.node(effort) == Node::Symbol(symbol);

@@ -1,10 +1,11 @@
 //! The values of unknowns: algebraic loops, and what storages in derivative causality are and give.
 //!
-//! In: expressions that are to be zero. Out: the value of each unknown as an expression of states, parameters, inputs and time,
-//! put in its place everywhere; or faults.
-//! Method: unknowns that need each other are a group; a group is linear where its partial derivatives contain none of its own
-//! unknowns, and is then solved by elimination in symbols (`expr::gauss`); an algebraic loop that is not linear is left to an
-//! iteration at run time (`iteration`). Switches stay as they are: a solution holds for the branches that its coefficients have.
+//! In: expressions that are to be zero. Out: the value of each unknown as an expression of states, parameters, inputs
+//! and time, put in its place everywhere; or faults.
+//! Method: unknowns that need each other are a group; a group is linear where its partial derivatives contain none of
+//! its own unknowns, and is then solved by elimination in symbols (`expr::gauss`); an algebraic loop that is not linear
+//! is left to an iteration at run time (`iteration`). Switches stay as they are: a solution holds for the branches that
+//! its coefficients have.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -83,7 +84,8 @@ impl Signals<'_> {
         known
     }
 
-    /// Whether an iteration can find the unknowns: bond variables that no reaction depends on, which is solved for after them.
+    /// Whether an iteration can find the unknowns: bond variables that no reaction depends on, which is solved for
+    /// after them.
     fn is_iterated(&self, group: &[u32], equations: &[Id]) -> bool {
         let is_variable = |&number: &u32| matches!(self.unknowns.all[number as usize], Unknown::Variable(..));
         let symbols = self.pool.symbols(equations);

@@ -1,12 +1,13 @@
 //! Stops with a restitution: residual sinks that act one way only.
 //!
-//! In: residual sinks with the clause `restitution`. Out: their efforts, multipliers until the reactions are solved for, each
-//! with the switch that says whether something is clear of the stop or rests on it, and what an impact is calculated from.
-//! Method: at rest the effort is the one that keeps the flow at zero, as that of a residual sink; clear of the stop it is 0. The
-//! switch is negative while it is clear. Its guard depends on its own branch: clear of the stop, how far its end is passed; at
-//! rest, the effort, which presses as long as it is not negative. What happens where the end is reached is not in the
-//! equations: momenta jump there, as the run time calculates from [`super::impact::Impacts`].
-//! Source: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapters 5 and 8.
+//! In: residual sinks with the clause `restitution`. Out: their efforts, multipliers until the reactions are solved
+//! for, each with the switch that says whether something is clear of the stop or rests on it, and what an impact is
+//! calculated from. Method: at rest the effort is the one that keeps the flow at zero, as that of a residual sink;
+//! clear of the stop it is 0. The switch is negative while it is clear. Its guard depends on its own branch: clear of
+//! the stop, how far its end is passed; at rest, the effort, which presses as long as it is not negative. What happens
+//! where the end is reached is not in the equations: momenta jump there, as the run time calculates from
+//! [`super::impact::Impacts`]. Source: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (1996),
+//! chapters 5 and 8.
 
 use super::signals::Signals;
 use super::{CLEAR, EquationFault, Reaction, Rebound, Slip, Switch, Switched};

@@ -172,8 +172,8 @@ impl Signals<'_> {
         let switches = self.switches.len();
         let (own, variable) = self.own_symbols(state.0.len());
         let law = self.storage_law(node, element, &variable);
-        // Switches over the storage's own symbols are of this calculation only; a law with any has no integral here. The antiderivative would
-        // not see that a value depends on the variable by way of a guard alone.
+        // Switches over the storage's own symbols are of this calculation only; a law with any has no integral here.
+        // The antiderivative would not see that a value depends on the variable by way of a guard alone.
         let is_own =
             |id: &Id| matches!(self.pool.node(*id), Node::Select { switch, .. } if *switch as usize >= switches);
         let is_free = law.0.len() == 1 && !self.pool.reachable(&law.0).iter().any(is_own);

@@ -57,7 +57,8 @@ fn a_storage_takes_up_power_whichever_way_its_half_arrow_points() {
         let roots = [flow[0], of.states[0].rate, of.supplied];
         let states = [6.0];
         let found = evaluate(&of.pool, &roots, &Environment { states: &states, ..Environment::default() });
-        // The momentum is that of the half arrow's effort; against the arrow the flow is negative and so is the source's power.
+        // The momentum is that of the half arrow's effort; against the arrow the flow is negative and so is the
+        // source's power.
         assert_eq!(found, [3.0 * sign, 5.0 * sign, 15.0 * sign], "{arrow}");
     }
 }

@@ -1,9 +1,9 @@
 //! What has no value yet while the bonds are evaluated, with the equations that give it one.
 //!
-//! In: bond variables that need themselves, storages in derivative causality. Out: symbols in their places, and for each an
-//! expression that is zero where the symbol has its value.
-//! Method: tearing (Elmqvist and Otter 1994, Methods for tearing systems of equations in object-oriented modeling): the variable
-//! at which a circle closes is the unknown, everything else in the circle an expression of it.
+//! In: bond variables that need themselves, storages in derivative causality. Out: symbols in their places, and for
+//! each an expression that is zero where the symbol has its value.
+//! Method: tearing (Elmqvist and Otter 1994, Methods for tearing systems of equations in object-oriented modeling): the
+//! variable at which a circle closes is the unknown, everything else in the circle an expression of it.
 
 use std::collections::BTreeMap;
 

@@ -1,11 +1,11 @@
 //! Angles that count turns, and displacements of junctions.
 //!
 //! In: what laws and outputs read of them. Out: a state each, its start, its rate, its projection.
-//! Method: an angle that its sine and cosine give is known but for whole turns. The state of such an angle is the integral of its speed,
-//! from the angle in one turn at the start on, and tells which turn it is: the angle is the state and the small angle from there
-//! to where sine and cosine point, `atan2(s cos q - c sin q, c cos q + s sin q)`. So it has the accuracy of the pose, jumps nowhere, and
-//! the speed may be rough. After a step the state becomes the angle. Where the state is proved to be the angle, [`Symbol::Turned`] of it
-//! becomes 0 (`reduce/turned.rs`).
+//! Method: an angle that its sine and cosine give is known but for whole turns. The state of such an angle is the
+//! integral of its speed, from the angle in one turn at the start on, and tells which turn it is: the angle is the
+//! state and the small angle from there to where sine and cosine point, `atan2(s cos q - c sin q, c cos q + s sin q)`.
+//! So it has the accuracy of the pose, jumps nowhere, and the speed may be rough. After a step the state becomes the
+//! angle. Where the state is proved to be the angle, [`Symbol::Turned`] of it becomes 0 (`reduce/turned.rs`).
 
 use super::signals::Signals;
 use super::{EquationFault, Origin, State};

@@ -1,7 +1,7 @@
 //! Orientations that turn about one axis, as angles.
 //!
-//! In: equations in which an orientation has two components left. Out: the same with one angle in their place, where the
-//! components are proved to be its cosine and sine: they start as such, and their rates are those of a rotation,
+//! In: equations in which an orientation has two components left. Out: the same with one angle in their place, where
+//! the components are proved to be its cosine and sine: they start as such, and their rates are those of a rotation,
 //! c' = -k s and s' = k c with one k, so the angle's rate is k. Costs a sine and a cosine in the rate for a state less.
 
 use std::collections::BTreeMap;

@@ -1,10 +1,10 @@
 //! Which rigid joints close loops.
 //!
-//! In: the reactions with the momenta that they move. Out: the same, those of joints that close a loop after all others,
-//! each of them with a number.
+//! In: the reactions with the momenta that they move. Out: the same, those of joints that close a loop after all
+//! others, each of them with a number.
 //! Method: the joints are gone through in their order; one that moves a momentum which none before it has moved hangs
-//! something new on the tree of joints, and holds nothing that others hold. The others may: two hinges of a door do. Their
-//! rows come last, so that they are the ones that follow from the others where something follows.
+//! something new on the tree of joints, and holds nothing that others hold. The others may: two hinges of a door do.
+//! Their rows come last, so that they are the ones that follow from the others where something follows.
 
 use std::collections::BTreeSet;
 
@@ -13,8 +13,8 @@ use crate::expr::{Id, Pool, partial};
 use crate::system::equations::impact::Moves;
 use crate::system::equations::{Kind, Origin, Reaction, State, StateEquations};
 
-/// The reactions, those of loops after those of the tree, with what they move; stops and dry friction, which come last, are none that
-/// hold a joint, and what it moves is not asked for.
+/// The reactions, those of loops after those of the tree, with what they move; stops and dry friction, which come last,
+/// are none that hold a joint, and what it moves is not asked for.
 pub(super) fn arrange(equations: &mut StateEquations, mut reactions: Vec<Reaction>) -> (Vec<Reaction>, Moves) {
     let frictions = reactions.split_off(friction::rigid(&reactions));
     let moves = moves(&mut equations.pool, &equations.states, &reactions, &is_moved);
@@ -36,8 +36,8 @@ pub(super) fn is_any(equations: &mut StateEquations) -> bool {
     !split(equations, &equations.reactions[..rigid], &moves).1.is_empty()
 }
 
-/// The rows of joints that hang something new on the tree, and those of the others: of rows that are left when others are solved
-/// their own momenta do not tell it, but these have mobilities.
+/// The rows of joints that hang something new on the tree, and those of the others: of rows that are left when others
+/// are solved their own momenta do not tell it, but these have mobilities.
 fn split(equations: &StateEquations, reactions: &[Reaction], moves: &Moves) -> (Vec<usize>, Vec<usize>) {
     let pool = &equations.pool;
     let node = |state: usize| match equations.states[state].origin {

@@ -1,16 +1,18 @@
 //! Loops closed in closed form.
 //!
-//! In: the rows of a joint that closes a loop, the states that stay. Out: the momentum of a link of the loop over those of the others,
-//! and its orientation over theirs; of two links where a pin closes the loop.
-//! Method: the gap of a row is affine in the cosine c and the sine s of a link that turns in the plane, a c + b s + e. Its slope by the
-//! link's angle is the pivot with which the row's flow gives the link's momentum, w = b c - a s, and it is a root: w^2 = a^2 + b^2 - e^2.
-//! From w and e follow c and s. On which side of zero w is the start pose says: that changes nowhere but at zero.
-//! A pin has two rows, A u + B v + e with the cosine and the sine of one link in u, of another in v. The length of B v does not change, so
+//! In: the rows of a joint that closes a loop, the states that stay. Out: the momentum of a link of the loop over those
+//! of the others, and its orientation over theirs; of two links where a pin closes the loop.
+//! Method: the gap of a row is affine in the cosine c and the sine s of a link that turns in the plane, a c + b s + e.
+//! Its slope by the link's angle is the pivot with which the row's flow gives the link's momentum, w = b c - a s, and
+//! it is a root: w^2 = a^2 + b^2 - e^2. From w and e follow c and s. On which side of zero w is the start pose says:
+//! that changes nowhere but at zero. A pin has two rows, A u + B v + e with the cosine and the sine of one link in u,
+//! of another in v. The length of B v does not change, so
 //! |A u + e|^2 - |B|^2 is a gap as above, and v follows from u. Along B v the rows give the momentum of the first link, along A u that of the
 //! other one, both with the pivot (A u) x (B v).
-//! Until all equations are made, c and s stay for what they are: sums with them become short. What they are is put in last.
-//! A pivot that may vanish is none: links go where bounds prove that it does not, or where the scene says that they go.
-//! Source: closed forms of dyads, J. J. Uicker, G. R. Pennock, J. E. Shigley, Theory of Machines and Mechanisms (2011), chapter 2.
+//! Until all equations are made, c and s stay for what they are: sums with them become short. What they are is put in
+//! last. A pivot that may vanish is none: links go where bounds prove that it does not, or where the scene says that
+//! they go. Source: closed forms of dyads, J. J. Uicker, G. R. Pennock, J. E. Shigley, Theory of Machines and
+//! Mechanisms (2011), chapter 2.
 
 use std::collections::BTreeMap;
 
@@ -210,8 +212,8 @@ impl Choice {
         true
     }
 
-    /// Notes a root, which is `slope`, by the gap's parts and the length that these have; gives what stands for it. The link's orientation
-    /// follows.
+    /// Notes a root, which is `slope`, by the gap's parts and the length that these have; gives what stands for it. The
+    /// link's orientation follows.
     fn root(
         &mut self,
         equations: &mut StateEquations,
@@ -311,7 +313,8 @@ impl Link {
         pool.sub(first, second)
     }
 
-    /// The gap of a row, where it is affine in the link's cosine and sine, and the flow is its rate by the link's speed.
+    /// The gap of a row, where it is affine in the link's cosine and sine, and the flow is its rate by the link's
+    /// speed.
     fn affine(&self, pool: &mut Pool, row: &Row) -> Option<Affine> {
         let slope = *row.slopes.get(&self.momentum)?;
         let symbols = self.places.map(Symbol::state);
@@ -368,26 +371,28 @@ fn without(pool: &mut Pool, of: Id, gone: &[usize]) -> Id {
     substitute(pool, &[of], &|symbol| symbol.as_state().filter(|state| gone.contains(state)).map(|_| zero))[0]
 }
 
-/// Whether this part of a link's length keeps away from 1 and -1, and the length, squared, from 0, in all poses, for all values that
-/// parameters may have.
+/// Whether this part of a link's length keeps away from 1 and -1, and the length, squared, from 0, in all poses, for
+/// all values that parameters may have.
 fn is_apart(equations: &mut StateEquations, part: Id, square: Id) -> bool {
     let Bounds { least, most } = bounds_of(equations, part);
     least.abs().max(most.abs()) < FAR && bounds_of(equations, square).least > 0.0
 }
 
-/// Whether two links keep away from being stretched and folded in all poses: the distance of their outer ends between the difference
-/// and the sum of their lengths. All squared.
+/// Whether two links keep away from being stretched and folded in all poses: the distance of their outer ends between
+/// the difference and the sum of their lengths. All squared.
 fn is_between(equations: &mut StateEquations, distance: Id, lengths: [Id; 2]) -> bool {
     let [own, other, distance] = [lengths[0], lengths[1], distance]
         .map(|id| bounds_of(equations, id))
         .map(|Bounds { least, most }| [least, most]);
     let is_known = [own, other, distance].iter().all(|[least, most]| *least > 0.0 && most.is_finite());
-    // The cosine of the angle at the first link has its extremes at the ends of the ranges: between them at most a least value, above 0.
+    // The cosine of the angle at the first link has its extremes at the ends of the ranges: between them at most a
+    // least value, above 0.
     let mut ends = own.into_iter().flat_map(|a| other.into_iter().flat_map(move |b| distance.map(|d| (a, b, d))));
     is_known && ends.all(|(a, b, d)| ((a + d - b) / (2.0 * (a * d).sqrt())).abs() < FAR)
 }
 
-/// The bounds of an expression in all poses. What it has of the cosine and the sine of one link is a cosine of its angle, too.
+/// The bounds of an expression in all poses. What it has of the cosine and the sine of one link is a cosine of its
+/// angle, too.
 fn bounds_of(equations: &mut StateEquations, id: Id) -> Bounds {
     let turns = angle::turns(equations);
     let StateEquations { pool, parameters, states, .. } = equations;
@@ -472,7 +477,8 @@ mod tests {
         // Squares from 1 to 2 beside 1 and 1: stretched at 4, folded at 0. Without an end nothing is known.
         let one = of.pool.number(1.0);
         assert!(super::is_between(&mut of, a, [one, one]) && !super::is_between(&mut of, b, [one, one]));
-        // A link of 1 to sqrt(2) and one of 1 are stretched at a distance of 2 if the first is the shortest that it may be.
+        // A link of 1 to sqrt(2) and one of 1 are stretched at a distance of 2 if the first is the shortest that it may
+        // be.
         let four = of.pool.number(4.0);
         assert!(!super::is_between(&mut of, four, [a, one]));
     }

@@ -3,8 +3,8 @@
 //! In: equations. Out: the same with one state for each class of equal ones.
 //! Method: partition refinement. Candidates are states with the same start value up to sign; assume each class equal,
 //! derive, split the classes whose rates (or projections) differ, repeat until none splits. What remains is proved by
-//! induction in time: equal start, equal rate wherever the equalities hold. States that start at zero show no sign; they
-//! get it from their rates.
+//! induction in time: equal start, equal rate wherever the equalities hold. States that start at zero show no sign;
+//! they get it from their rates.
 
 use std::collections::BTreeMap;
 
@@ -302,7 +302,8 @@ mod tests {
         faster.agrees();
     }
 
-    /// Equal starts and equal rates: (R_11, R_21) turns as (x, y) does. Only `project` makes R an orientation and leaves x as it is.
+    /// Equal starts and equal rates: (R_11, R_21) turns as (x, y) does. Only `project` makes R an orientation and
+    /// leaves x as it is.
     #[test]
     fn a_projection_tells_states_apart() {
         let graph = "param s: 1 = 1.1; 1 j[3]: rotation; Sf spin = [0, 0, 2]; spin -> j;

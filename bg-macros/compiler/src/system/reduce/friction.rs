@@ -1,22 +1,24 @@
-//! Dry friction and stops among the reactions: what sticks or rests is a constraint, what slides is a known effort, what is clear
-//! of a stop is not there.
+//! Dry friction and stops among the reactions: what sticks or rests is a constraint, what slides is a known effort,
+//! what is clear of a stop is not there.
 //!
-//! In: reactions with dry friction and stops, the equations A l + b = 0 of all of them. Out: equations that hold in every branch.
-//! Method: the row and the column of what slides are multiplied by 0 but for the diagonal, so that it takes no part; what it
-//! gives is in b. Its own l is not used then.
+//! In: reactions with dry friction and stops, the equations A l + b = 0 of all of them. Out: equations that hold in
+//! every branch. Method: the row and the column of what slides are multiplied by 0 but for the diagonal, so that it
+//! takes no part; what it gives is in b. Its own l is not used then.
 
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::system::equations::Reaction;
 
-/// Rate at which a flow that truncation leaves decays while it sticks, 1/s: slow, so that no explicit step is the shorter for it.
+/// Rate at which a flow that truncation leaves decays while it sticks, 1/s: slow, so that no explicit step is the
+/// shorter for it.
 pub(super) const DECAY: f64 = 1.0;
-/// The rate with which truncation of what rests decays, 1/s: as slow, and critically damped, since a stop knows its place.
+/// The rate with which truncation of what rests decays, 1/s: as slow, and critically damped, since a stop knows its
+/// place.
 pub(super) const PLACE: f64 = 1.0;
 /// The part of its diagonal entry below which a pivot of dry friction counts as zero: others hold that motion already.
 const PART: f64 = 1e-10;
 
-/// The left sides of the equations: of a residual sink with every effort as it is applied, of dry friction with its own as if
-/// it stuck.
+/// The left sides of the equations: of a residual sink with every effort as it is applied, of dry friction with its own
+/// as if it stuck.
 pub(super) fn residuals(pool: &mut Pool, multipliers: &[Symbol], efforts: &[Id], expressions: &[Id]) -> Vec<Id> {
     let place = |symbol: Symbol| multipliers.iter().position(|&multiplier| multiplier == symbol);
     let residual = |(row, &expression): (usize, &Id)| {

@@ -2,8 +2,8 @@
 //!
 //! In: equations. Out: the same without the states that keep their start value.
 //! Method: assume every state constant at its start value, derive, drop the assumptions whose rate (or projection) does
-//! not come out so, repeat until none is dropped. What remains is the greatest set of states whose rates vanish wherever
-//! all of them have their start values; by induction in time they keep them.
+//! not come out so, repeat until none is dropped. What remains is the greatest set of states whose rates vanish
+//! wherever all of them have their start values; by induction in time they keep them.
 
 use std::collections::BTreeSet;
 

@@ -1,10 +1,10 @@
 //! Which rows of rigid joints are solved for which momenta.
 //!
-//! In: reactions, rates, energies. Out: [`Choice`]: the solved rows, an expression of the states that stay for each that goes.
-//! Method: the rows are gone through in their order.
-//! A translation is solved for the momentum of a body in its direction where the coefficient of this body's velocity is a number;
-//! the gap gives the body's position then. A rotation of two bodies is solved where their angular velocities are equal by it and
-//! their orientations start alike: these stay equal, and the gap is zero identically.
+//! In: reactions, rates, energies. Out: [`Choice`]: the solved rows, an expression of the states that stay for each
+//! that goes. Method: the rows are gone through in their order.
+//! A translation is solved for the momentum of a body in its direction where the coefficient of this body's velocity is
+//! a number; the gap gives the body's position then. A rotation of two bodies is solved where their angular velocities
+//! are equal by it and their orientations start alike: these stay equal, and the gap is zero identically.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -46,8 +46,8 @@ pub(super) struct Choice {
 pub(super) type Images = BTreeMap<usize, Id>;
 
 impl Choice {
-    /// What can be solved; none where nothing can. With `links` loops are closed in closed form, for the links of these orientations without
-    /// a proof that it holds in all poses.
+    /// What can be solved; none where nothing can. With `links` loops are closed in closed form, for the links of these
+    /// orientations without a proof that it holds in all poses.
     pub fn of(equations: &mut StateEquations, links: Option<&[String]>) -> Option<Self> {
         let rigid = friction::rigid(&equations.reactions);
         let momenta: Vec<usize> = of_kind(equations, Kind::Momentum).collect();
@@ -134,7 +134,8 @@ impl Choice {
         self.images.extend(images);
     }
 
-    /// The flow and the gap of a row, with the coefficient of every momentum; none where the flow is not linear in these alone.
+    /// The flow and the gap of a row, with the coefficient of every momentum; none where the flow is not linear in
+    /// these alone.
     pub(super) fn row(&self, equations: &mut StateEquations, row: usize) -> Option<Row> {
         self.loads[row].as_ref()?;
         let slip = &equations.reactions[row].slip;
@@ -157,7 +158,8 @@ impl Choice {
         (is_linear && same_polynomial(pool, at_rest, zero)).then_some(Row { flow, gap, slopes })
     }
 
-    /// Whether the gap of a row is zero at the start, or is closed by guesses. An open one is for the run time to refuse.
+    /// Whether the gap of a row is zero at the start, or is closed by guesses. An open one is for the run time to
+    /// refuse.
     pub(super) fn is_closed(equations: &mut StateEquations, row: usize) -> bool {
         let StateEquations { pool, states, reactions, .. } = equations;
         let gap = reactions[row].slip.gap.unwrap_or(pool.zero());
@@ -233,7 +235,8 @@ impl Choice {
         }
     }
 
-    /// The images with the states of one track as those of another, where they start as these and have their rates then.
+    /// The images with the states of one track as those of another, where they start as these and have their rates
+    /// then.
     fn alike(&self, equations: &mut StateEquations, images: &Images, own: &[usize], other: &[usize]) -> Option<Images> {
         let StateEquations { pool, states, .. } = equations;
         let place = |state: usize| match states[state].origin {
@@ -324,7 +327,8 @@ fn velocities(equations: &mut StateEquations, momenta: &[usize]) -> Option<BTree
     Some(velocities)
 }
 
-/// How the reaction of a row changes the momenta; none where it acts on other states or other reactions, or not linearly.
+/// How the reaction of a row changes the momenta; none where it acts on other states or other reactions, or not
+/// linearly.
 fn loads(equations: &mut StateEquations, row: usize, momenta: &[usize]) -> Option<BTreeMap<usize, Id>> {
     let multiplier = equations.reactions[row].multiplier;
     let is_other = |kind: Kind| !matches!(kind, Kind::Momentum | Kind::Integral);

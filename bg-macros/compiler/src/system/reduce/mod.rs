@@ -1,8 +1,8 @@
 //! Reductions: only what a scene needs, with a proof for everything left out.
 //!
-//! In: [`StateEquations`] of the literal graph. Out: [`StateEquations`] without the states and parameters that the scene
-//! does not need, and a [`Report`] that says why. Every reduction holds for all values of the tunable parameters; it is
-//! proved on the equations by induction from the start values, never read off numbers.
+//! In: [`StateEquations`] of the literal graph. Out: [`StateEquations`] without the states and parameters that the
+//! scene does not need, and a [`Report`] that says why. Every reduction holds for all values of the tunable parameters;
+//! it is proved on the equations by induction from the start values, never read off numbers.
 
 mod affine;
 mod angle;
@@ -107,7 +107,8 @@ fn always(_: &StateEquations, _: &Wanted) -> bool {
     true
 }
 
-/// Reduces the equations to what a scene needs. `operations` says what the rate function of equations costs, for the report.
+/// Reduces the equations to what a scene needs. `operations` says what the rate function of equations costs, for the
+/// report.
 #[must_use]
 pub fn for_scene(
     mut equations: StateEquations,

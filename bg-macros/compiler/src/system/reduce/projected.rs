@@ -1,11 +1,11 @@
 //! The equations of the momenta that stay.
 //!
-//! In: solved rows, images p = E q of all momenta over those that stay, q. Out: the rates of q, and the values of the reactions of
-//! the solved rows.
-//! Method: the velocities that these rows allow are T q, T = M^-1 E, so that T^T B = 0 for what their reactions B l add to
-//! p' = f + B l. Hence S q' = T^T (f - E' q) with S = T^T E, symmetric and positive definite (Kane and Levinson, Dynamics: Theory and
-//! Applications (1985), section 6.1, with momenta for speeds). S is factored in symbols. The reactions follow from the rates of the
-//! momenta that go.
+//! In: solved rows, images p = E q of all momenta over those that stay, q. Out: the rates of q, and the values of the
+//! reactions of the solved rows.
+//! Method: the velocities that these rows allow are T q, T = M^-1 E, so that T^T B = 0 for what their reactions B l add
+//! to p' = f + B l. Hence S q' = T^T (f - E' q) with S = T^T E, symmetric and positive definite (Kane and Levinson,
+//! Dynamics: Theory and Applications (1985), section 6.1, with momenta for speeds). S is factored in symbols. The
+//! reactions follow from the rates of the momenta that go.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,8 +16,8 @@ use super::speeds::of_kind;
 use crate::expr::{Id, Linear, Pool, Symbol, derivative, partial, solve_linear, substitute};
 use crate::system::equations::{Kind, StateEquations};
 
-/// Gives the momenta that stay their rates, and returns the values of the solved rows' reactions; none where these act on a momentum
-/// that nothing else depends on.
+/// Gives the momenta that stay their rates, and returns the values of the solved rows' reactions; none where these act
+/// on a momentum that nothing else depends on.
 pub(super) fn equations(equations: &mut StateEquations, choice: &Choice) -> Option<BTreeMap<Symbol, Id>> {
     let momenta: Vec<usize> = of_kind(equations, Kind::Momentum).collect();
     let solved: BTreeSet<Symbol> = choice.rows.iter().map(|&(row, _)| equations.reactions[row].multiplier).collect();
@@ -62,8 +62,8 @@ fn dot(pool: &mut Pool, a: &[Id], b: &[Id]) -> Id {
     pool.sum(&parts)
 }
 
-/// The solution for `right`, as that without the reactions that are left, and a multiple of each of these: so their values, which
-/// are not known yet, are put in once.
+/// The solution for `right`, as that without the reactions that are left, and a multiple of each of these: so their
+/// values, which are not known yet, are put in once.
 fn superposed(pool: &mut Pool, inverse: &Inverse, right: &[Id]) -> Vec<Id> {
     let left: Vec<Symbol> =
         pool.symbols(right).into_iter().filter(|symbol| matches!(symbol, Symbol::Multiplier(_))).collect();
@@ -158,8 +158,8 @@ fn reactions(
     Some(multipliers.into_iter().zip(values).collect())
 }
 
-/// The pins that close loops: the places of their two rows among the solved ones, and the vector along which and across which their
-/// reactions give one momentum each.
+/// The pins that close loops: the places of their two rows among the solved ones, and the vector along which and across
+/// which their reactions give one momentum each.
 fn turned(pool: &mut Pool, choice: &Choice) -> Vec<([usize; 2], [Id; 2])> {
     let place = |row: usize| choice.rows.iter().position(|&(solved, _)| solved == row);
     let pins = choice.turned.iter().filter_map(|Turned { rows: [one, other], by }| {
@@ -169,7 +169,8 @@ fn turned(pool: &mut Pool, choice: &Choice) -> Vec<([usize; 2], [Id; 2])> {
     pins.collect()
 }
 
-/// The parts of two columns along a vector and across it in their places; with the sense -1 what these are along the axes.
+/// The parts of two columns along a vector and across it in their places; with the sense -1 what these are along the
+/// axes.
 fn turn(pool: &mut Pool, row: &mut BTreeMap<usize, Id>, [one, other]: [usize; 2], [x, y]: [Id; 2], sense: f64) {
     let part = |row: &BTreeMap<usize, Id>, place: usize, pool: &Pool| row.get(&place).copied().unwrap_or(pool.zero());
     let (a, b) = (part(row, one, pool), part(row, other, pool));

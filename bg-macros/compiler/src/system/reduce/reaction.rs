@@ -105,8 +105,8 @@ fn flow_rates(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<Id>
     derivative(pool, &flows, &seeds)
 }
 
-/// dv/dt of every flow v, with Baumgarte's terms 2 a v + a^2 q where they are asked for; zero where the reactions are right.
-/// Dry friction keeps no place; what rests on a stop returns to it slowly.
+/// dv/dt of every flow v, with Baumgarte's terms 2 a v + a^2 q where they are asked for; zero where the reactions are
+/// right. Dry friction keeps no place; what rests on a stop returns to it slowly.
 fn accelerations(equations: &mut StateEquations, reactions: &[Reaction], rates: &[Id]) -> Vec<Id> {
     let pool = &mut equations.pool;
     let (zero, rate_of_decay) = (pool.zero(), equations.baumgarte.unwrap_or(0.0));
@@ -211,7 +211,8 @@ mod tests {
         assert!((gaps[1][0] - 0.02 * 3.5 * (-2.5_f64).exp()).abs() < 1e-6, "{}", gaps[1][0]);
     }
 
-    /// q'' + 2 q' + q = 0 where a ball rests on a floor, whose place truncation has left: the pull of the floor is 1/s, critically damped.
+    /// q'' + 2 q' + q = 0 where a ball rests on a floor, whose place truncation has left: the pull of the floor is 1/s,
+    /// critically damped.
     #[test]
     fn what_rests_on_a_stop_returns_to_its_place() {
         let graph = "1 fall: translation; I ball = 2; Se weight = -20; weight -> fall -> ball;
@@ -239,8 +240,8 @@ mod tests {
         assert_eq!(faults[0].code, "BG0323");
     }
 
-    /// A flow that is a function of time is kept exactly, with the effort that its change needs, whichever way the half arrow
-    /// points.
+    /// A flow that is a function of time is kept exactly, with the effort that its change needs, whichever way the half
+    /// arrow points.
     #[test]
     fn a_kept_flow_follows_a_function_of_time() {
         for arrow in ["k -> hold", "hold -> k"] {

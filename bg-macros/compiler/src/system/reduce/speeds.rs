@@ -1,13 +1,13 @@
 //! Momenta that rigid joints determine.
 //!
-//! In: equations with the reactions of rigid joints. Out: the same in fewer unknowns: the momenta and positions that joints determine
-//! are expressions of the others, and the reactions of these joints occur in no rate.
+//! In: equations with the reactions of rigid joints. Out: the same in fewer unknowns: the momenta and positions that
+//! joints determine are expressions of the others, and the reactions of these joints occur in no rate.
 //! Method: a row that a joint holds, J v = 0, is solved for a momentum with a pivot that is constant along every motion
-//! (`joined`). What is left of the momenta obeys the equations projected on the motions that these rows allow (`projected`). Rows
-//! without such a pivot, as those that close a loop, keep their reactions.
-//! The step is taken back as a whole where something does not fit it: velocities at the start that the rows do not allow for all
-//! parameters, as many rows left as momenta; or where rates would take more operations, as those of a long chain do, whose matrix is
-//! full where that of the reactions is a band.
+//! (`joined`). What is left of the momenta obeys the equations projected on the motions that these rows allow
+//! (`projected`). Rows without such a pivot, as those that close a loop, keep their reactions.
+//! The step is taken back as a whole where something does not fit it: velocities at the start that the rows do not
+//! allow for all parameters, as many rows left as momenta; or where rates would take more operations, as those of a
+//! long chain do, whose matrix is full where that of the reactions is a band.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,8 @@ use crate::system::equations::{Kind, Origin, StateEquations};
 /// The rates of a step, those of DOP853.
 const RATES: usize = 12;
 
-/// Takes momenta out of the equations that rigid joints determine, where rates take fewer operations then; else says why not.
+/// Takes momenta out of the equations that rigid joints determine, where rates take fewer operations then; else says
+/// why not.
 pub(super) fn choose(
     equations: &mut StateEquations,
     wanted: &Wanted,
@@ -98,8 +99,9 @@ fn put(equations: &mut StateEquations, choice: &Choice) -> Result<(), Kept> {
     Ok(())
 }
 
-/// Gives the rows that are left their mobilities, by all momenta: the pivot of a row that is alone is its own entry of the matrix, and
-/// tells nothing of how near to a singular pose the mechanism is. False where a row of a joint acts on something else.
+/// Gives the rows that are left their mobilities, by all momenta: the pivot of a row that is alone is its own entry of
+/// the matrix, and tells nothing of how near to a singular pose the mechanism is. False where a row of a joint acts on
+/// something else.
 fn keep_mobilities(equations: &mut StateEquations, choice: &Choice) -> bool {
     let StateEquations { pool, states, reactions, .. } = equations;
     for (row, reaction) in reactions.iter_mut().enumerate().filter(|(row, _)| !choice.is_solved(*row)) {
@@ -124,8 +126,8 @@ fn keep_mobilities(equations: &mut StateEquations, choice: &Choice) -> bool {
     true
 }
 
-/// How many operations a rate of these states takes when the reactions are solved for, with its part of the projection after a step: what
-/// joints hold takes about as many for the pose and again for the momenta.
+/// How many operations a rate of these states takes when the reactions are solved for, with its part of the projection
+/// after a step: what joints hold takes about as many for the pose and again for the momenta.
 fn cost(equations: &StateEquations, kept: &[bool], operations: &mut Operations<'_>) -> usize {
     let mut solved = equations.clone();
     super::live::keep_states(&mut solved, &mut Report::new(equations), kept);
@@ -138,11 +140,13 @@ fn cost(equations: &StateEquations, kept: &[bool], operations: &mut Operations<'
 fn check(equations: &mut StateEquations, choice: &Choice) -> Result<(), Kept> {
     let left: Vec<usize> = (0..choice.rigid).filter(|&row| !choice.is_solved(row)).collect();
     let moved: BTreeSet<usize> = choice.survivors(equations).collect();
-    // As many rows as momenta: they may follow from each other, and reactions of least norm be asked for, or nothing may move.
+    // As many rows as momenta: they may follow from each other, and reactions of least norm be asked for, or nothing
+    // may move.
     if !left.is_empty() && left.len() >= moved.len() {
         return Err(Kept::Immobile);
     }
-    // Where several rows close loops, some of them may follow from others; what is shared then is shared among all joints.
+    // Where several rows close loops, some of them may follow from others; what is shared then is shared among all
+    // joints.
     if left.len() > 1 && is_watched(equations, choice) {
         return Err(Kept::Shared);
     }

@@ -70,7 +70,8 @@ impl Scene {
     }
 
     /// Integrates both models with values of the tuned parameters drawn from `draw`; gives the largest difference of an
-    /// output, relative to the largest magnitude that the output has had (1e-3 if less), and the largest such magnitude.
+    /// output, relative to the largest magnitude that the output has had (1e-3 if less), and the largest such
+    /// magnitude.
     ///
     /// Classical Runge-Kutta steps over the interpreter, 400 of 5 ms; switches have their branch for a whole step.
     pub fn difference(&self, draw: &mut Draw) -> (f64, f64) {

@@ -1,8 +1,9 @@
 //! Angles that are integrals of their speed.
 //!
-//! In: equations in which an angle is the state that counts its turns and a small angle from there. Out: the same without the small
-//! angle, where it is proved to be zero: where the angle turns with the state's rate w, which is so if for its sine s and cosine c the
-//! polynomials c s' - s c' and w (c^2 + s^2) are one. Both start at one angle, so they stay together.
+//! In: equations in which an angle is the state that counts its turns and a small angle from there. Out: the same
+//! without the small angle, where it is proved to be zero: where the angle turns with the state's rate w, which is so
+//! if for its sine s and cosine c the polynomials c s' - s c' and w (c^2 + s^2) are one. Both start at one angle, so
+//! they stay together.
 
 use std::collections::BTreeMap;
 

@@ -1,10 +1,10 @@
 //! What is allowed for a value, as scalars that must be above 0 or at least 0.
 //!
-//! In: a value of 1, 3 or 9 components. Out: [`Condition`]s. Method: a symmetric matrix is positive definite where the pivots of
-//! its L D L^T are above 0, in proportion to its diagonal; where it need not be definite, it is shifted by [`SHIFT`] of its size
-//! first. A body's principal moments satisfy the triangle inequality where tr(J) / 2 - J is not negative (Wensing, Kim,
-//! Slotine 2018, Linear Matrix Inequalities for Physically-Consistent Inertial Parameter Identification, IEEE Robotics and
-//! Automation Letters 3).
+//! In: a value of 1, 3 or 9 components. Out: [`Condition`]s. Method: a symmetric matrix is positive definite where the
+//! pivots of its L D L^T are above 0, in proportion to its diagonal; where it need not be definite, it is shifted by
+//! [`SHIFT`] of its size first. A body's principal moments satisfy the triangle inequality where tr(J) / 2 - J is not
+//! negative (Wensing, Kim, Slotine 2018, Linear Matrix Inequalities for Physically-Consistent Inertial Parameter
+//! Identification, IEEE Robotics and Automation Letters 3).
 
 use super::fault::Kind;
 use crate::expr::{Function, Id, Node, Pool};
@@ -20,7 +20,8 @@ const PIVOT: f64 = 1e-14;
 /// By how much of its size a matrix that may be singular is shifted.
 const SHIFT: f64 = 1e-12;
 
-/// How much larger than half the trace a principal moment may be, as a part of the trace: moments of three digits come out so.
+/// How much larger than half the trace a principal moment may be, as a part of the trace: moments of three digits come
+/// out so.
 const MOMENT: f64 = 0.005;
 
 /// How much R^T R may differ from the unit matrix: entries of six digits come out so.

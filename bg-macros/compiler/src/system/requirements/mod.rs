@@ -1,9 +1,9 @@
-//! What physics asks of the values that parameters and numbers give: a mass above 0, an inertia that a body can have, an
-//! orientation that is a rotation.
+//! What physics asks of the values that parameters and numbers give: a mass above 0, an inertia that a body can have,
+//! an orientation that is a rotation.
 //!
 //! In: values over parameters and unknowns with what is allowed ([`Allowed`]). Out: [`Requirements`], a table of scalar
-//! expressions that must be above 0, or at least 0. What is made of numbers is decided here, what the ranges of the parameters
-//! prove goes; the rest is for the model's `new`, or for its `start` where unknowns of the assembly decide.
+//! expressions that must be above 0, or at least 0. What is made of numbers is decided here, what the ranges of the
+//! parameters prove goes; the rest is for the model's `new`, or for its `start` where unknowns of the assembly decide.
 
 mod conditions;
 mod fault;
@@ -68,7 +68,8 @@ impl Requirements {
         Self { pool, list: Vec::new() }
     }
 
-    /// Asks of a value what is allowed for it. What depends on more than parameters and unknowns, or on comparisons, is not asked.
+    /// Asks of a value what is allowed for it. What depends on more than parameters and unknowns, or on comparisons, is
+    /// not asked.
     pub fn ask(&mut self, subject: &Subject, value: &Value) {
         let is_given = |symbol: Symbol| matches!(symbol, Symbol::Parameter(_) | Symbol::Unknown(_));
         if !self.pool.symbols(&value.0).into_iter().all(is_given) || self.pool.has_select(&value.0) {
@@ -158,7 +159,8 @@ impl Requirements {
 }
 
 impl Requirement {
-    /// Whether a value of the scalar is allowed; what is no number is not, nor is one so near 0 that it has no reciprocal.
+    /// Whether a value of the scalar is allowed; what is no number is not, nor is one so near 0 that it has no
+    /// reciprocal.
     fn holds(&self, value: f64) -> bool {
         if self.is_strict && self.unit.is_some() {
             value >= f64::MIN_POSITIVE

@@ -1,8 +1,9 @@
 //! A better choice of pairs, by trial and error.
 //!
-//! In: a choice. Out: one with which less is to be done: fewer operations, values gathered, values taken out of pairs and
-//! results written. Method: simulated annealing (Kirkpatrick, Gelatt, Vecchi, Science 220, 1983) from a low temperature, with a
-//! fixed sequence of random numbers; a change costs or saves only where its operations and their users are.
+//! In: a choice. Out: one with which less is to be done: fewer operations, values gathered, values taken out of pairs
+//! and results written. Method: simulated annealing (Kirkpatrick, Gelatt, Vecchi, Science 220, 1983) from a low
+//! temperature, with a fixed sequence of random numbers; a change costs or saves only where its operations and their
+//! users are.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -83,7 +84,8 @@ struct State<'n> {
     gathered: FxHashMap<[usize; 2], u32>,
     /// By operation: how often it is taken out of a pair whose second half it is.
     taken: Vec<u32>,
-    /// Where the change under way costs or saves: operations by themselves or the pairs whose first halves they are, then results.
+    /// Where the change under way costs or saves: operations by themselves or the pairs whose first halves they are,
+    /// then results.
     sites: Vec<usize>,
     /// By site: the last change that it was named in.
     named: Vec<u32>,
@@ -178,8 +180,8 @@ impl<'n> State<'n> {
         is_fit.then(|| Change::Join(if random.below(2) == 0 { [node, other] } else { [other, node] }))
     }
 
-    /// An operation beside this one: it uses what is paired with an operand, or is used by what is paired with a user, or is
-    /// the next result.
+    /// An operation beside this one: it uses what is paired with an operand, or is used by what is paired with a user,
+    /// or is the next result.
     fn neighbour(&self, node: usize, random: &mut Random) -> Option<usize> {
         let Values { states, operands, users } = &self.values;
         let pick = |from: &[usize], random: &mut Random| {

@@ -1,8 +1,8 @@
 //! Which operations go together.
 //!
-//! In: the operations. Out: pairs of them, of the same kind and independent of each other, so that few operations remain.
-//! Method: pairs grow from neighbours among the states and the results along uses and operands, the one that saves most at
-//! the time first.
+//! In: the operations. Out: pairs of them, of the same kind and independent of each other, so that few operations
+//! remain. Method: pairs grow from neighbours among the states and the results along uses and operands, the one that
+//! saves most at the time first.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};

@@ -1,10 +1,11 @@
 //! Pairs of operations: straight-line code for vectors of two numbers.
 //!
-//! In: a [`Routine`]. Out: a [`Paired`] with the same results, each rounded as before; only the sign of a zero may differ.
-//! Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind whose operands belong together
-//! become one operation on pairs, which costs what one on numbers does. `nodes` frees the routine from signs, `choose`
-//! says which operations go together, `anneal` improves on it, `signs` with which sign each value is held, `lower` writes the steps. Method: superword
-//! level parallelism (S. Larsen, S. Amarasinghe, PLDI 2000), grown from neighbours among the states and the results.
+//! In: a [`Routine`]. Out: a [`Paired`] with the same results, each rounded as before; only the sign of a zero may
+//! differ. Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind whose operands belong
+//! together become one operation on pairs, which costs what one on numbers does. `nodes` frees the routine from signs,
+//! `choose` says which operations go together, `anneal` improves on it, `signs` with which sign each value is held,
+//! `lower` writes the steps. Method: superword level parallelism (S. Larsen, S. Amarasinghe, PLDI 2000), grown from
+//! neighbours among the states and the results.
 
 mod anneal;
 mod choose;

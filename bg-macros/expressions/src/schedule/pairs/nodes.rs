@@ -1,6 +1,7 @@
 //! The operations of a routine, freed from signs.
 //!
-//! In: a routine. Out: sums, products and quotients of signed operands; a difference is a sum, a negation is no operation.
+//! In: a routine. Out: sums, products and quotients of signed operands; a difference is a sum, a negation is no
+//! operation.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
 //! With which sign each value is held.
 //!
 //! In: the operations and the choice of pairs. Out: for each operation whether its negative is held.
-//! Method: that both halves of a pair add or subtract alike, that a product has the sign of its factors, that a result is held
-//! as it is: each is a linear equation over two elements. A negation remains where they contradict each other.
+//! Method: that both halves of a pair add or subtract alike, that a product has the sign of its factors, that a result
+//! is held as it is: each is a linear equation over two elements. A negation remains where they contradict each other.
 
 use super::choose::Choice;
 use super::nodes::{Kind, Nodes, Signed};

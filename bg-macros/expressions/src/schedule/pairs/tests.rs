@@ -62,7 +62,8 @@ fn program(pool: &mut Pool, roots: &[Id]) -> Program<1> {
     schedule(pool, [Request { name: "rate", roots }])
 }
 
-/// Every value that is read has been written, and the bits of the results are the routine's, but for the sign of a zero.
+/// Every value that is read has been written, and the bits of the results are the routine's, but for the sign of a
+/// zero.
 fn agrees(pool: &mut Pool, roots: &[Id], environment: &Environment) -> Paired {
     let program = program(pool, roots);
     let constants = run(&program.constants, &[], environment);

@@ -11,7 +11,8 @@ use crate::schedule::{Operand, Request, Reverse, reverse};
 const STATES: usize = 6;
 const PARAMETERS: usize = 4;
 
-/// The derivatives of the weighted results by states, then by parameters: through the sweeps of the routine and of its constants.
+/// The derivatives of the weighted results by states, then by parameters: through the sweeps of the routine and of its
+/// constants.
 fn swept(sweeps: [&Reverse; 2], constants: &Routine, weights: &[f64], environment: &Environment) -> Vec<f64> {
     let [of_routine, of_constants] = sweeps;
     let table = run(constants, &[], environment);

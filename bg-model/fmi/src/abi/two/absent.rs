@@ -1,5 +1,5 @@
-//! What these units do not have: variables of other types than Real, steps that go on after they return, derivatives of inputs and
-//! outputs with respect to time. The functions are there, since a library without one of them is none.
+//! What these units do not have: variables of other types than Real, steps that go on after they return, derivatives of
+//! inputs and outputs with respect to time. The functions are there, since a library without one of them is none.
 
 use std::ffi::{c_char, c_int, c_void};
 

@@ -1,7 +1,7 @@
 //! The functions of FMI 2.0. Most are those of FMI 3.0 under another name; truth values are whole numbers there.
 //!
-//! Source of names and types: Functional Mock-up Interface for Model Exchange and Co-Simulation 2.0.4, sections 2.1 (common), 3
-//! (Model Exchange), 4 (Co-Simulation) and its headers.
+//! Source of names and types: Functional Mock-up Interface for Model Exchange and Co-Simulation 2.0.4, sections 2.1
+//! (common), 3 (Model Exchange), 4 (Co-Simulation) and its headers.
 
 mod absent;
 mod common;
@@ -17,7 +17,8 @@ use crate::instance::Interface;
 /// `fmi2Boolean`.
 type Boolean = c_int;
 
-/// `fmi2CallbackLogger`: the host's environment, the instance's name, a status, a category, a format and what it asks for.
+/// `fmi2CallbackLogger`: the host's environment, the instance's name, a status, a category, a format and what it asks
+/// for.
 pub type LogMessage =
     Option<unsafe extern "C" fn(*mut c_void, *const c_char, super::Status, *const c_char, *const c_char, ...)>;
 

@@ -1,7 +1,8 @@
-//! Elementary functions of double-double numbers: series on a reduced argument, or a Newton step from the value of `libm`.
+//! Elementary functions of double-double numbers: series on a reduced argument, or a Newton step from the value of
+//! `libm`.
 //!
-//! After Hida, Li, Bailey: Library for double-double and quad-double arithmetic (QD), 2007, with relative accuracy also near
-//! the zeros of the functions. Right rather than fast. Relative errors: below 1e-30, of `exp` and `powf` times the
+//! After Hida, Li, Bailey: Library for double-double and quad-double arithmetic (QD), 2007, with relative accuracy also
+//! near the zeros of the functions. Right rather than fast. Relative errors: below 1e-30, of `exp` and `powf` times the
 //! magnitude of the exponent where that is above 10.
 
 use super::{DoubleDouble, two_product};

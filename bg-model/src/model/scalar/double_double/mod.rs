@@ -1,7 +1,7 @@
 //! Double-double numbers: the unevaluated sum of two `f64`, about 31 decimal digits.
 //!
-//! In: `f64`. Out: a [`Scalar`]. Arithmetic without fused multiply-add and in a fixed order, so that every build gives the
-//! same bytes. With u = 2^-53 the relative errors are below
+//! In: `f64`. Out: a [`Scalar`]. Arithmetic without fused multiply-add and in a fixed order, so that every build gives
+//! the same bytes. With u = 2^-53 the relative errors are below
 //!
 //! | operation | bound | source |
 //! |---|---|---|
@@ -10,10 +10,10 @@
 //! | `/` | 15 u^2 + 56 u^3 | `DWDivDW2` in [1] |
 //! | `sqrt` | 25/8 u^2 | `SQRTDWtoDW` in [2] |
 //!
-//! [1] Joldes, Muller, Popescu: Tight and rigorous error bounds for basic building blocks of double-word arithmetic. ACM
-//! Transactions on Mathematical Software 44(2), 2017. [2] Lefevre, Louvet, Muller, Picot, Rideau: Accurate calculation of
-//! Euclidean norms using double-word arithmetic. ACM Transactions on Mathematical Software 49(1), 2023. Exact sums: Knuth,
-//! The Art of Computer Programming 2; exact products: Dekker, Numerische Mathematik 18, 1971.
+//! [1] Joldes, Muller, Popescu: Tight and rigorous error bounds for basic building blocks of double-word arithmetic.
+//! ACM Transactions on Mathematical Software 44(2), 2017. [2] Lefevre, Louvet, Muller, Picot, Rideau: Accurate
+//! calculation of Euclidean norms using double-word arithmetic. ACM Transactions on Mathematical Software 49(1), 2023.
+//! Exact sums: Knuth, The Art of Computer Programming 2; exact products: Dekker, Numerische Mathematik 18, 1971.
 
 mod elementary;
 
@@ -213,7 +213,8 @@ mod tests {
     /// Arguments and values with 40 digits and more: mpmath 1.3 with 120 digits, values as sums of three `f64`.
     const VALUES: &str = include_str!("values.csv");
 
-    /// The largest relative errors allowed: the proven bounds of the arithmetic; elsewhere about twice what was measured.
+    /// The largest relative errors allowed: the proven bounds of the arithmetic; elsewhere about twice what was
+    /// measured.
     const ALLOWED: [(&str, f64); 14] = [
         ("add", 3.0 * U2),
         ("mul", 7.0 * U2),

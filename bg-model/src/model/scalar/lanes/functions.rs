@@ -1,8 +1,9 @@
 //! Logarithms and exponentials of numbers side by side.
 //!
-//! In: numbers. Out: what `libm` gives for each, to the bit: the same operations in the same order, for numbers of an ordinary size without
-//! branches, so that a compiler makes them in vectors. Where one of the numbers is another, `libm` is called for each. Source: `e_log.c` and
-//! `e_exp.c` of FreeBSD's msun, after which those of the crate `libm` 0.2 are made.
+//! In: numbers. Out: what `libm` gives for each, to the bit: the same operations in the same order, for numbers of an
+//! ordinary size without branches, so that a compiler makes them in vectors. Where one of the numbers is another,
+//! `libm` is called for each. Source: `e_log.c` and `e_exp.c` of FreeBSD's msun, after which those of the crate `libm`
+//! 0.2 are made.
 
 use std::f64::consts::LOG2_E;
 

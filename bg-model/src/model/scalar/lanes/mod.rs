@@ -1,7 +1,8 @@
 //! Numbers of several runs side by side, in the vectors of a machine.
 //!
-//! In: nothing. Out: the operations of generated code on four numbers in AVX2 and on eight in AVX-512. Each operation is rounded
-//! alone and functions are those of `f64`, one number after the other: so in each place there are the bits of `f64`.
+//! In: nothing. Out: the operations of generated code on four numbers in AVX2 and on eight in AVX-512. Each operation
+//! is rounded alone and functions are those of `f64`, one number after the other: so in each place there are the bits
+//! of `f64`.
 
 mod functions;
 

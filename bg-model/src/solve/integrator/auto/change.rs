@@ -20,7 +20,8 @@ pub enum Reason {
     First,
     /// It took turns with the method before, and came further with the same number of rates, by this factor.
     Further(f64),
-    /// A step of it met the tolerances that was so many times as long as the one in sight, and ended where the method before came to.
+    /// A step of it met the tolerances that was so many times as long as the one in sight, and ended where the method
+    /// before came to.
     Longer(f64),
     /// Its steps cost less than those of the method before and meet the tolerances too.
     Cheaper,

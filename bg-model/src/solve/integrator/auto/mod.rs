@@ -1,11 +1,11 @@
 //! Choice between explicit, partly implicit and implicit steps while a run is under way.
 //!
-//! In: a method of each kind. Out: their steps. Now and then, more seldom the longer the answer stays the same, another method is
-//! tried from the same start. A more implicit one takes over where one step meets the tolerances that is so much longer that it is worth
-//! its cost, where the steps of the present one then arrive at the same state, and where it is not rounding that keeps those short; or
-//! where it goes on and the present one does not. A less implicit one takes over where several of its steps in succession meet the
-//! tolerances. Stiffness is thus measured by what it does to the steps, not guessed from eigenvalues, and oscillations that have to be
-//! followed anyway do not count as such.
+//! In: a method of each kind. Out: their steps. Now and then, more seldom the longer the answer stays the same, another
+//! method is tried from the same start. A more implicit one takes over where one step meets the tolerances that is so
+//! much longer that it is worth its cost, where the steps of the present one then arrive at the same state, and where
+//! it is not rounding that keeps those short; or where it goes on and the present one does not. A less implicit one
+//! takes over where several of its steps in succession meet the tolerances. Stiffness is thus measured by what it does
+//! to the steps, not guessed from eigenvalues, and oscillations that have to be followed anyway do not count as such.
 
 mod change;
 mod price;
@@ -24,36 +24,38 @@ const WAIT: [u32; 2] = [16, 4096];
 const FALL: f64 = 0.1;
 /// The accepted steps by which the present one is judged: events, samples and rejections shorten single ones.
 const RECENT: usize = 16;
-/// A step below this part of their median is no measure: it only looks for a guard's sign, or an event or the end of the run has cut
-/// it.
+/// A step below this part of their median is no measure: it only looks for a guard's sign, or an event or the end of
+/// the run has cut it.
 const CUT: f64 = 0.5;
-/// The largest difference between the long step and the short ones, in parts of the tolerances. On stiff joints it is 0.1 to 0.5,
-/// where a ring is passed over 2 to 70.
+/// The largest difference between the long step and the short ones, in parts of the tolerances. On stiff joints it is
+/// 0.1 to 0.5, where a ring is passed over 2 to 70.
 const AGREEMENT: f64 = 1.0;
-/// What rounding may make of an explicit step's error, in parts of the tolerances. Stiff joints cause 3e-3 at most at 1e-11; steps that
-/// rounding keeps short have 0.04 and more.
+/// What rounding may make of an explicit step's error, in parts of the tolerances. Stiff joints cause 3e-3 at most at
+/// 1e-11; steps that rounding keeps short have 0.04 and more.
 const NOISE: f64 = 1e-2;
-/// The claims in succession that events cut off before the explicit steps come to their ends; the next one is believed. Explicit steps at
-/// the limit of their stability let a guard change its sign in every step.
+/// The claims in succession that events cut off before the explicit steps come to their ends; the next one is believed.
+/// Explicit steps at the limit of their stability let a guard change its sign in every step.
 const CUT_OFF: u32 = 4;
-/// An explicit step that fails though it is below this part of the longest one tried has an implicit one tried in its place.
+/// An explicit step that fails though it is below this part of the longest one tried has an implicit one tried in its
+/// place.
 const LAST: f64 = 1e-9;
-/// The explicit steps in succession that are tried: as long together as the implicit step in sight. A single one may meet the
-/// tolerances by luck.
+/// The explicit steps in succession that are tried: as long together as the implicit step in sight. A single one may
+/// meet the tolerances by luck.
 const SUCCESSION: u32 = 8;
-/// So few accepted steps between two events are a hurry, and so many of those in succession show that a switch follows errors far below
-/// the tolerances: of what is damped stiffly only an implicit method keeps these small.
+/// So few accepted steps between two events are a hurry, and so many of those in succession show that a switch follows
+/// errors far below the tolerances: of what is damped stiffly only an implicit method keeps these small.
 const HURRY: u32 = 2;
 const HURRIED: u32 = 4;
 /// Where the errors of all trials were so many times what is allowed, the next one is later than else.
 const HOPELESS: f64 = 1e3;
 /// How often a step is doubled at most to find the longest one.
 const DOUBLINGS: usize = 16;
-/// A method that hands back within so many steps took over by mistake: the next trial waits four times as long as before.
+/// A method that hands back within so many steps took over by mistake: the next trial waits four times as long as
+/// before.
 const STINT: u32 = 256;
 
-/// The smallest relative tolerance at which steps are worth their cost that are implicit in some states only: below it order 9 takes
-/// far longer ones.
+/// The smallest relative tolerance at which steps are worth their cost that are implicit in some states only: below it
+/// order 9 takes far longer ones.
 const LOOSE: f64 = 1e-10;
 
 /// The least number of states, for the same reason: of few states a factorisation costs little beside the rates.
@@ -104,9 +106,9 @@ impl Kind {
         Self::ALL.into_iter().filter(is_worth)
     }
 
-    /// How many steps of a less implicit kind cost as much as one of this kind, of `n` states: as measured on the hacksaw, where a step of
-    /// Radau IIA 9 takes as long as 11 of DOP853 in the plane, 23 in three dimensions, and half a step of `ARK5(4)8L[2]SAb` as long as one
-    /// of DOP853.
+    /// How many steps of a less implicit kind cost as much as one of this kind, of `n` states: as measured on the
+    /// hacksaw, where a step of Radau IIA 9 takes as long as 11 of DOP853 in the plane, 23 in three dimensions, and
+    /// half a step of `ARK5(4)8L[2]SAb` as long as one of DOP853.
     fn worth(self, less: Self, n: usize) -> f64 {
         match (less, self) {
             (Self::Explicit, Self::Partitioned) => 2.0,
@@ -123,8 +125,8 @@ pub struct Auto {
     partitioned: Ark5,
     implicit: Radau9,
     kind: Kind,
-    /// Whether the next attempt is the first from the end of an accepted step: after a restart, short steps are tried that
-    /// only look for a guard's sign.
+    /// Whether the next attempt is the first from the end of an accepted step: after a restart, short steps are tried
+    /// that only look for a guard's sign.
     is_fresh: bool,
     /// Accepted steps since the last trial, and those after which the next one is due.
     since: u32,
@@ -161,7 +163,8 @@ pub struct Auto {
     told: &'static str,
 }
 
-/// A step of a more implicit method that satisfies the tolerances, with the steps of the present one under way to its end.
+/// A step of a more implicit method that satisfies the tolerances, with the steps of the present one under way to its
+/// end.
 #[derive(Clone, Debug)]
 struct Claim {
     kind: Kind,
@@ -278,7 +281,8 @@ impl Auto {
         self.stay();
     }
 
-    /// Whether a step of a more implicit method meets the tolerances that is worth its cost. It takes over, or has to be confirmed.
+    /// Whether a step of a more implicit method meets the tolerances that is worth its cost. It takes over, or has to
+    /// be confirmed.
     fn reaches(&mut self, kind: Kind, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         // Twice as long as it has to be where what it costs varies as much as what the present one does.
         let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
@@ -302,8 +306,8 @@ impl Auto {
         is_met
     }
 
-    /// Whether steps of a less implicit method meet the tolerances from `start` over the step `h` (s) of the present one. Each of them is
-    /// twice as long as it has to be to be worth a change, so that the choice does not swing.
+    /// Whether steps of a less implicit method meet the tolerances from `start` over the step `h` (s) of the present
+    /// one. Each of them is twice as long as it has to be to be worth a change, so that the choice does not swing.
     fn succeeds(&mut self, kind: Kind, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let h = 2.0 * h * self.dearness(kind) / self.kind.worth(kind, flow.states());
         let (mut from, mut end) = (core::mem::take(&mut self.trial), core::mem::take(&mut self.end));
@@ -357,8 +361,8 @@ impl Auto {
         scale.norm_of(start.x, |i| end[i] * typical)
     }
 
-    /// Whether from `start` a step meets the tolerances that is implicit in all states and worth more than the longest one that is
-    /// implicit in some, from `h` (s) on.
+    /// Whether from `start` a step meets the tolerances that is implicit in all states and worth more than the longest
+    /// one that is implicit in some, from `h` (s) on.
     fn is_stiff_throughout(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let Self { partitioned, implicit, end, .. } = self;
         partitioned.restart();

@@ -1,7 +1,9 @@
-//! What a step of the Taylor series and a rate with second derivatives cost, in rates of explicit methods, without a clock.
+//! What a step of the Taylor series and a rate with second derivatives cost, in rates of explicit methods, without a
+//! clock.
 //!
-//! In: the operations of a rate, of one with second derivatives and of a series, which the compiler counts, and a relative tolerance. Out:
-//! the price. What an operation takes beside others depends on the machine; the weights are what fits several models on machines with AVX2.
+//! In: the operations of a rate, of one with second derivatives and of a series, which the compiler counts, and a
+//! relative tolerance. Out: the price. What an operation takes beside others depends on the machine; the weights are
+//! what fits several models on machines with AVX2.
 
 use super::super::taylor::order_for;
 use super::race::STEP;
@@ -11,15 +13,16 @@ use crate::solve::integrator::Flow;
 /// The loosest relative tolerance at which the series is worth a trial: its lowest orders are dear for what they reach.
 const LOOSEST: f64 = 1e-4;
 
-/// The price of an accepted step beside its attempts, where joints hold motions: its end is projected, and what they hold is looked at.
+/// The price of an accepted step beside its attempts, where joints hold motions: its end is projected, and what they
+/// hold is looked at.
 pub(super) const HELD: f64 = 5.0;
 
 /// Operations of a rate of a Runge-Kutta step for each state: its sums, and its part of the error estimate.
 const STATE: f64 = 10.0;
 /// The same of an order, and of a step.
 const STATE_OF_ORDER: f64 = 3.0;
-/// What an operation of an order, the next of the products that it sums up, and the next of those one after the other take,
-/// in operations of a rate.
+/// What an operation of an order, the next of the products that it sums up, and the next of those one after the other
+/// take, in operations of a rate.
 const ORDER: f64 = 1.9;
 const PRODUCT: f64 = 0.05;
 const SUM: f64 = 1.0;
@@ -27,13 +30,13 @@ const SUM: f64 = 1.0;
 const STATE_OF_FORCES: f64 = 12.0;
 /// The price of a rate with second derivatives where nobody has counted.
 const OF_FORCES: f64 = 1.2;
-/// The operations of an order whose code a processor keeps at hand; of more, each takes so many times as long: 1.35 on an AMD EPYC
-/// of 2024, 1.75 on an Intel Xeon of 2023.
+/// The operations of an order whose code a processor keeps at hand; of more, each takes so many times as long: 1.35 on
+/// an AMD EPYC of 2024, 1.75 on an Intel Xeon of 2023.
 const AT_HAND: f64 = 1000.0;
 const BEYOND: f64 = 1.53;
 
-/// The price of a step at the relative tolerance `relative`, in rates; none without a series, where its operations are not known, and
-/// where the tolerance is loose.
+/// The price of a step at the relative tolerance `relative`, in rates; none without a series, where its operations are
+/// not known, and where the tolerance is loose.
 pub(super) fn of_step(flow: &dyn Flow, relative: f64) -> Option<f64> {
     let operations = flow.series().filter(|_| relative <= LOOSEST)?.operations?;
     Some(price(&operations, flow.states(), order_for(relative)))
@@ -45,7 +48,8 @@ pub(super) fn of_forces(flow: &dyn Flow) -> Option<f64> {
     (!flow.second().is_empty()).then(price)
 }
 
-/// The price of a rate with second derivatives of a system with so many states, from the operations of a rate and of such a one.
+/// The price of a rate with second derivatives of a system with so many states, from the operations of a rate and of
+/// such a one.
 fn forces([rate, forces]: [u32; 2], states: usize) -> f64 {
     let states = states as f64;
     (f64::from(forces) + STATE_OF_FORCES * states) / (f64::from(rate) + STATE * states)
@@ -68,8 +72,8 @@ fn price(operations: &Operations, states: usize, order: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Models with states, with the time of a step over that of a rate in a step of DOP853, both with AVX2, as measured, and with how much
-    /// the price may be off; of `full` on two machines.
+    /// Models with states, with the time of a step over that of a rate in a step of DOP853, both with AVX2, as
+    /// measured, and with how much the price may be off; of `full` on two machines.
     #[test]
     fn prices_are_those_that_were_measured() {
         let of = |rate, order, products, sums| Operations { rate, order, products, sums };

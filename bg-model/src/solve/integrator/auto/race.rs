@@ -1,10 +1,11 @@
 //! A race of explicit methods: which of them gets furthest with its rates.
 //!
-//! In: the steps of a run. Out: the steps of the method that was ahead in the last race. In a race the methods take turns at making steps of
-//! the run; none of these is lost. Races come more seldom the longer the run is. What limits a step, stability or accuracy, does not
-//! matter, and nothing is estimated: how far a method gets with its rates is what counts. Steps may become longer or shorter while others
-//! run, so there are several rounds, and who takes over has to be ahead in each: who is behind once is out. Only who has promised to be
-//! ahead where a step of it was tried since the last race takes part, so many rests end without a race.
+//! In: the steps of a run. Out: the steps of the method that was ahead in the last race. In a race the methods take
+//! turns at making steps of the run; none of these is lost. Races come more seldom the longer the run is. What limits a
+//! step, stability or accuracy, does not matter, and nothing is estimated: how far a method gets with its rates is what
+//! counts. Steps may become longer or shorter while others run, so there are several rounds, and who takes over has to
+//! be ahead in each: who is behind once is out. Only who has promised to be ahead where a step of it was tried since
+//! the last race takes part, so many rests end without a race.
 
 use alloc::vec::Vec;
 
@@ -31,15 +32,17 @@ const FADING: f64 = 0.75;
 const RESTARTS: u32 = 32;
 /// Another method has to be ahead by this factor, so that the choice does not swing.
 const AHEAD: f64 = 1.05;
-/// How often in a rest one looks at the other methods, and by which factor one has to promise to be ahead: a step at the limit
-/// of the tolerances is a quarter longer than those that a run makes. The series, whose price is estimated, has to promise more.
+/// How often in a rest one looks at the other methods, and by which factor one has to promise to be ahead: a step at
+/// the limit of the tolerances is a quarter longer than those that a run makes. The series, whose price is estimated,
+/// has to promise more.
 const LOOKS: u32 = 2;
 const PROMISE: f64 = 1.1;
 const PROMISE_OF_SERIES: f64 = 1.3;
 /// A method whose step errs by so many times what is allowed is not looked at again in this rest.
 const FAR_OFF: f64 = 100.0;
-/// The smallest relative tolerance at which CFMR7osc begins where there are few states: its steps are the cheapest, and runs may be over
-/// before the first race. Of many states an implicit method may take over, which DOP853 confirms sooner.
+/// The smallest relative tolerance at which CFMR7osc begins where there are few states: its steps are the cheapest, and
+/// runs may be over before the first race. Of many states an implicit method may take over, which DOP853 confirms
+/// sooner.
 const LOOSE: f64 = 5e-6;
 
 /// The methods.
@@ -143,7 +146,8 @@ pub(super) struct Race {
     taylor: Taylor,
     /// Where a step leads that is tried only.
     end: Vec<f64>,
-    /// What a rate with second derivatives costs and a step of the Taylor series, in rates; none where they take no part.
+    /// What a rate with second derivatives costs and a step of the Taylor series, in rates; none where they take no
+    /// part.
     forces: Option<f64>,
     series: Option<f64>,
     /// What an accepted step costs beside.
@@ -158,7 +162,8 @@ pub(super) struct Race {
     ahead: Runner,
     /// By which factor it came further than the one before it.
     lead: f64,
-    /// The round of a race, if one is on, how far each method came in each, s a rate, who is still in it, and the restarts during it.
+    /// The round of a race, if one is on, how far each method came in each, s a rate, who is still in it, and the
+    /// restarts during it.
     round: Option<usize>,
     speeds: [[f64; ROUNDS]; RUNNERS],
     is_in: [bool; RUNNERS],
@@ -167,8 +172,8 @@ pub(super) struct Race {
     is_fresh: bool,
     /// Accepted steps of this lap or rest.
     steps: u32,
-    /// Those of them that count, how far they came, s, and their rates; the same of the last step, and the steps to come that do not
-    /// count.
+    /// Those of them that count, how far they came, s, and their rates; the same of the last step, and the steps to
+    /// come that do not count.
     counted: Stretch,
     last: Stretch,
     /// The last of them, with weights that fade.
@@ -245,7 +250,8 @@ impl Race {
         self.of_attempt(runner).or_else(of_series).map(|price| price + self.held)
     }
 
-    /// The rates of an attempt; none where it cannot take part, and of the series, of which one serves all attempts at a step.
+    /// The rates of an attempt; none where it cannot take part, and of the series, of which one serves all attempts at
+    /// a step.
     fn of_attempt(&self, runner: Runner) -> Option<f64> {
         match runner {
             Runner::Dop853 => Some(STEP),
@@ -263,12 +269,14 @@ impl Race {
         }
     }
 
-    /// How far the present method comes with each rate, s, by these steps, the share of events in the whole run included.
+    /// How far the present method comes with each rate, s, by these steps, the share of events in the whole run
+    /// included.
     fn speed(&self, Stretch { way, rates, .. }: Stretch) -> f64 {
         way / (rates + way * self.of_events(self.runner))
     }
 
-    /// The rates that this method needs to locate the events of a second, of which there were as many in the run so far.
+    /// The rates that this method needs to locate the events of a second, of which there were as many in the run so
+    /// far.
     fn of_events(&self, runner: Runner) -> f64 {
         if self.events == 0 {
             0.0
@@ -312,8 +320,8 @@ impl Race {
         }
     }
 
-    /// Looks several times in a rest whether a step of another method from `start` would get further with its price than the last steps
-    /// did with their rates. Who does so once takes part in the race.
+    /// Looks several times in a rest whether a step of another method from `start` would get further with its price
+    /// than the last steps did with their rates. Who does so once takes part in the race.
     fn look(&mut self, flow: &dyn Flow, start: PointRef<'_>, scale: &Scale) {
         let next = BEGINNING + (self.looks + 1) * (self.rest - BEGINNING) / LOOKS;
         if self.looks == LOOKS || self.steps < next || self.counted.steps == 0 {
@@ -324,7 +332,8 @@ impl Race {
             if runner == self.ahead || self.promises[runner as usize] != Promise::None {
                 continue;
             }
-            // What the present method needs for a second, less the share of events: none is left for the steps of one that they cost more.
+            // What the present method needs for a second, less the share of events: none is left for the steps of one
+            // that they cost more.
             let rates = 1.0 / self.speed(self.recent) - self.of_events(runner);
             if rates > 0.0
                 && let Some(price) = self.price(runner, flow, scale)
@@ -335,8 +344,8 @@ impl Race {
         }
     }
 
-    /// The error of a step of this method, in parts of the tolerances, that is longer than `h` (s) by what it has to promise; infinite where
-    /// its end is not finite.
+    /// The error of a step of this method, in parts of the tolerances, that is longer than `h` (s) by what it has to
+    /// promise; infinite where its end is not finite.
     fn error(&mut self, runner: Runner, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         if runner == Runner::Taylor {
             self.series = self.price(runner, flow, scale);
@@ -435,8 +444,8 @@ impl Method for Race {
         present!((&mut) self, method => method.advance());
     }
 
-    /// The steps around an event do not count: it has cut the last one, and been located by attempts at it; these count by what is usual.
-    /// Where that happens too often for a race, there is none.
+    /// The steps around an event do not count: it has cut the last one, and been located by attempts at it; these count
+    /// by what is usual. Where that happens too often for a race, there is none.
     fn restart(&mut self) {
         present!((&mut) self, method => method.restart());
         self.events += u32::from(core::mem::take(&mut self.is_under_way));

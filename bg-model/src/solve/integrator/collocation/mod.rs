@@ -2,10 +2,10 @@
 //!
 //! In: a tableau and a step. Out: the increments of the stages, the error estimate, the collocation polynomial. The
 //! polynomial u of degree s has u(t0) = x0 and u' = f(t, u) at the s nodes; its increments Z = u - x0 there solve
-//! Z = h A f(x0 + Z). Source: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.8, and
-//! their program `radau5.f`. Other than there, the residual is formed with A itself and only the correction goes through
-//! the transformation, so that the solution is as exact as A; norms are maxima, as in `tolerances`; and a step that
-//! does not converge with an old Jacobian is tried again with the one at its start before it is given up.
+//! Z = h A f(x0 + Z). Source: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.8,
+//! and their program `radau5.f`. Other than there, the residual is formed with A itself and only the correction goes
+//! through the transformation, so that the solution is as exact as A; norms are maxima, as in `tolerances`; and a step
+//! that does not converge with an old Jacobian is tried again with the one at its start before it is given up.
 
 mod newton;
 #[cfg(test)]
@@ -68,8 +68,9 @@ pub(super) struct Collocation<const S: usize, const P: usize> {
     factored: f64,
     real: Factors<f64>,
     complex: [Factors<Complex<f64>>; P],
-    /// The part by which the last corrections shrank, and that of the last one which the error left by it is. Other than
-    /// in `radau5.f` the second holds for these factors only: one from a tiny step would end the next iteration at once.
+    /// The part by which the last corrections shrank, and that of the last one which the error left by it is. Other
+    /// than in `radau5.f` the second holds for these factors only: one from a tiny step would end the next iteration at
+    /// once.
     contraction: f64,
     remainder: f64,
     /// The machine's vectors.
@@ -131,9 +132,9 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
 
     /// Solves for the increments of a step of size `h` (s). Fails with the error norm that stands for the cause.
     ///
-    /// A step that satisfied the tolerances and is tried again with another size is part of a search for an event: it is
-    /// solved to rounding, and like all attempts begins at the extrapolation of the step before, so its outcome depends
-    /// on its size only.
+    /// A step that satisfied the tolerances and is tried again with another size is part of a search for an event: it
+    /// is solved to rounding, and like all attempts begins at the extrapolation of the step before, so its outcome
+    /// depends on its size only.
     pub fn solve(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> Result<(), f64> {
         self.h = h;
         let goal = if self.is_exact || self.attempts == Attempts::Satisfied { Goal::Rounding } else { Goal::Tolerance };

@@ -1,7 +1,7 @@
 //! Checks of the tableaus against the conditions that define the methods.
 //!
-//! Source: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.5, after Butcher 1964: B(p)
-//! and C(q) and D(r) with p up to q + r + 1 and 2 q + 2 give order p (theorem 5.1).
+//! Source: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.5, after Butcher 1964:
+//! B(p) and C(q) and D(r) with p up to q + r + 1 and 2 q + 2 give order p (theorem 5.1).
 
 use super::tableau::Tableau;
 use super::{GAUSS6, RADAU5, RADAU9};

@@ -1,7 +1,7 @@
 //! The collocation polynomial: states inside the step, and starting values for the next one.
 //!
-//! In: the increments at the nodes. Out: values of the polynomial of degree s through zero and them; its error falls with
-//! the power s + 1 of the step. Source: Hairer, Wanner II, section IV.8, equations (8.14) and (8.17).
+//! In: the increments at the nodes. Out: values of the polynomial of degree s through zero and them; its error falls
+//! with the power s + 1 of the step. Source: Hairer, Wanner II, section IV.8, equations (8.14) and (8.17).
 
 use alloc::vec::Vec;
 
@@ -32,8 +32,8 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
         }
     }
 
-    /// Starts the increments of a step of size `h` (s) on the polynomial of the step before, at zero where there is none or it
-    /// was so short that nothing of it holds so far ahead.
+    /// Starts the increments of a step of size `h` (s) on the polynomial of the step before, at zero where there is
+    /// none or it was so short that nothing of it holds so far ahead.
     pub(super) fn extrapolate(&mut self, h: f64) {
         if self.step_before == 0.0 || h > FARTHEST * self.step_before {
             self.z.iter_mut().for_each(|z| z.fill(0.0));

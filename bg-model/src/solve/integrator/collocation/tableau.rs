@@ -1,8 +1,9 @@
 //! The coefficients of the three-stage methods of Radau (order 5) and Gauss (order 6).
 //!
 //! The nodes are the zeros of d^(s-1)/dt^(s-1) (t^(s-1) (t - 1)^s) for Radau IIA and of d^s/dt^s (t^s (t - 1)^s) for
-//! Gauss: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.5, theorems 5.2 and 5.3 and
-//! tables 5.2 and 5.6. All else follows from them and was calculated with 60 digits; `order` checks it by its definition.
+//! Gauss: Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.5, theorems 5.2 and 5.3
+//! and tables 5.2 and 5.6. All else follows from them and was calculated with 60 digits; `order` checks it by its
+//! definition.
 
 /// A collocation method of `S` stages; A has one real and `P` pairs of complex eigenvalues, S = 1 + 2 P.
 #[derive(Debug)]

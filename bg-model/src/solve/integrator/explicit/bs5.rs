@@ -1,11 +1,11 @@
-//! The coefficients of the explicit Runge-Kutta method of order 5 of Bogacki and Shampine, with an error estimate of order 4
-//! and a dense output of order 5.
+//! The coefficients of the explicit Runge-Kutta method of order 5 of Bogacki and Shampine, with an error estimate of
+//! order 4 and a dense output of order 5.
 //!
-//! Of the two estimates the first does without the rate at the end of the step; the second has it and sees what changes in
-//! the last quarter of the step, which the first does not. Source: P. Bogacki, L. F.
-//! Shampine, An efficient Runge-Kutta (4,5) pair, Computers and Mathematics with Applications 32 (1996), 15-28; fractions
-//! taken from extensisq 0.6.0, `bogacki.py`, with its dense output of one further stage, which is put into the form of
-//! `dense` in exact arithmetic; all rounded to the nearest `f64`.
+//! Of the two estimates the first does without the rate at the end of the step; the second has it and sees what changes
+//! in the last quarter of the step, which the first does not. Source: P. Bogacki, L. F.
+//! Shampine, An efficient Runge-Kutta (4,5) pair, Computers and Mathematics with Applications 32 (1996), 15-28;
+//! fractions taken from extensisq 0.6.0, `bogacki.py`, with its dense output of one further stage, which is put into
+//! the form of `dense` in exact arithmetic; all rounded to the nearest `f64`.
 
 use super::{Row, Tableau};
 

@@ -1,11 +1,11 @@
-//! The coefficients of the explicit Runge-Kutta method of order 7 of Calvo, Franco, Montijano and Randez for oscillating
-//! solutions, with an error estimate of order 5 and a dense output of order 5.
+//! The coefficients of the explicit Runge-Kutta method of order 7 of Calvo, Franco, Montijano and Randez for
+//! oscillating solutions, with an error estimate of order 5 and a dense output of order 5.
 //!
 //! For linear oscillations its amplitude has order 9 and its phase order 10; up to 4.5 on the imaginary axis a step
-//! amplifies by less than a thousandth. Source: M. Calvo, J. M. Franco, J. I. Montijano, L. Randez, Explicit Runge-Kutta
-//! methods for initial value problems with oscillating solutions, Journal of Computational and Applied
-//! Mathematics 76 (1996), 195-212; fractions and dense output taken from extensisq 0.6.0, `calvo.py`, the dense output put
-//! into the form of `dense` in exact arithmetic, all rounded to the nearest `f64`.
+//! amplifies by less than a thousandth. Source: M. Calvo, J. M. Franco, J. I. Montijano, L. Randez, Explicit
+//! Runge-Kutta methods for initial value problems with oscillating solutions, Journal of Computational and Applied
+//! Mathematics 76 (1996), 195-212; fractions and dense output taken from extensisq 0.6.0, `calvo.py`, the dense output
+//! put into the form of `dense` in exact arithmetic, all rounded to the nearest `f64`.
 
 use super::{Row, Tableau};
 

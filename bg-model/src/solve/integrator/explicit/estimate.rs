@@ -47,8 +47,8 @@ fn the_third_order_estimate_of_dop853_has_the_weight_of_a_hundredth() {
     }
 }
 
-/// A rate that sets in after the last stage but the two at the end of the step is seen by the second estimate of BS5 only, and
-/// in full.
+/// A rate that sets in after the last stage but the two at the end of the step is seen by the second estimate of BS5
+/// only, and in full.
 #[test]
 fn the_late_estimate_of_bs5_counts_in_full() {
     let (h, from) = (0.5, 0.45);

@@ -35,12 +35,12 @@ use crate::model::scalar::Scalar;
 pub(super) use lanes::ExplicitInLanes;
 pub(super) use stages::{Complete, Stages};
 
-/// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is asked
-/// for.
+/// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is
+/// asked for.
 pub type Bs5 = Explicit<BogackiShampine>;
 
-/// The method of order 7(5) for oscillating solutions of Calvo, Franco, Montijano and Randez: nine rates a step, none more
-/// for its dense output of order 5.
+/// The method of order 7(5) for oscillating solutions of Calvo, Franco, Montijano and Randez: nine rates a step, none
+/// more for its dense output of order 5.
 pub type Cfmr7 = Explicit<CalvoFrancoMontijanoRandez>;
 
 /// The method of order 8(5,3) of Dormand and Prince: twelve rates a step, three more if its dense output of order 7 is
@@ -52,8 +52,8 @@ pub type Row = &'static [(usize, f64)];
 
 /// The coefficients of a method.
 ///
-/// Stages are counted from 0, the rate at the start of the step. Stage [`Tableau::END`] is the rate at its end; what comes
-/// after serves the dense output only.
+/// Stages are counted from 0, the rate at the start of the step. Stage [`Tableau::END`] is the rate at its end; what
+/// comes after serves the dense output only.
 pub trait Tableau {
     /// The method's name.
     const NAME: &'static str;
@@ -71,15 +71,15 @@ pub trait Tableau {
     const ERROR: Row;
     /// A second embedded method of lower order; empty if there is none.
     const SECOND: Row = &[];
-    /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one is
-    /// small; empty if there is none.
+    /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one
+    /// is small; empty if there is none.
     const LATE: Row = &[];
     /// Whether the states are summed up with what rounding has kept from them, which pays at small tolerances.
     const IS_COMPENSATED: bool = false;
     /// The coefficients of the dense output from the fourth on: see `super::dense`.
     const DENSE: &'static [Row];
-    /// What the coefficients of a diagonally implicit companion have more than [`Tableau::A`] below the diagonal, without those of
-    /// the first stage; empty if there is none. It has the same state at the end of the step.
+    /// What the coefficients of a diagonally implicit companion have more than [`Tableau::A`] below the diagonal,
+    /// without those of the first stage; empty if there is none. It has the same state at the end of the step.
     const MORE: &'static [Row] = &[];
     /// The diagonal coefficient of the companion, from the second stage on.
     const GAMMA: f64 = 0.0;
@@ -146,15 +146,16 @@ impl<T: Tableau> Explicit<T> {
     }
 }
 
-/// The norm of a step's error, of size `h` (s): h e1, with the largest e1 of the scaled differences to the embedded method. With a second one,
-/// whose largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer, Norsett, Wanner, section II.10).
+/// The norm of a step's error, of size `h` (s): h e1, with the largest e1 of the scaled differences to the embedded
+/// method. With a second one, whose largest difference is e2, it is h e1 e1 / sqrt(e1 e1 + e2 e2 / 100) (Hairer,
+/// Norsett, Wanner, section II.10).
 #[inline(always)]
 fn norm<T: Tableau, S: Scalar>(h: S, [first, second]: [S; 2]) -> S {
     if T::SECOND.is_empty() { h.abs() * first } else { both(h.abs(), first, second) }
 }
 
-/// The error of a method with two estimates, that of the higher order first, `scale` times theirs: the first one, the smaller the larger the second is
-/// beside it (`dop853.f`). Both vanish exactly at a state of rest.
+/// The error of a method with two estimates, that of the higher order first, `scale` times theirs: the first one, the
+/// smaller the larger the second is beside it (`dop853.f`). Both vanish exactly at a state of rest.
 #[inline(always)]
 pub(crate) fn both<S: Scalar>(scale: S, first: S, second: S) -> S {
     // Of numbers so large that their squares are finite: a step with a larger error is as wrong.

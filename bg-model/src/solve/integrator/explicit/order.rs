@@ -1,8 +1,8 @@
 //! Checks of the tableaus against the order conditions of Runge-Kutta methods.
 //!
 //! Source: Hairer, Norsett, Wanner, section II.2: a method has order p if for every rooted tree t of up to p nodes the
-//! elementary weight is 1 / density(t). With an implicit companion each branch takes the coefficients of one of the two methods,
-//! in all ways (C. A. Kennedy, M. H. Carpenter, Applied Numerical Mathematics 44 (2003), 139-181, section 2).
+//! elementary weight is 1 / density(t). With an implicit companion each branch takes the coefficients of one of the two
+//! methods, in all ways (C. A. Kennedy, M. H. Carpenter, Applied Numerical Mathematics 44 (2003), 139-181, section 2).
 
 use super::stages::STAGES;
 use super::{BogackiShampine, CalvoFrancoMontijanoRandez, DormandPrince, FROM_ENDS, Row, Tableau};
@@ -10,7 +10,8 @@ use crate::solve::integrator::partitioned::KennedyCarpenter;
 
 type Stages = [f64; STAGES];
 
-/// A rooted tree: the trees that hang at its root, each by its index in the list of all trees and the method that it hangs by.
+/// A rooted tree: the trees that hang at its root, each by its index in the list of all trees and the method that it
+/// hangs by.
 struct Tree {
     branches: Vec<(usize, usize)>,
     nodes: usize,
@@ -62,7 +63,8 @@ fn trees<T: Tableau>(largest: usize) -> Vec<Tree> {
     trees
 }
 
-/// All ascending lists of trees with `nodes` nodes altogether, each hanging by one of `methods`, from the branch `from` on.
+/// All ascending lists of trees with `nodes` nodes altogether, each hanging by one of `methods`, from the branch `from`
+/// on.
 fn collect(
     trees: &[Tree],
     methods: usize,

@@ -1,7 +1,8 @@
 //! The stages of a step by an explicit tableau, of one run or of several side by side.
 //!
-//! In: the start of a step, what gives rates. Out: the state at its end and what it errs by. The numbers of runs side by side are those of
-//! each by itself, to the bit: operations stand in loops, since closures around vectors of a machine are calls.
+//! In: the start of a step, what gives rates. Out: the state at its end and what it errs by. The numbers of runs side
+//! by side are those of each by itself, to the bit: operations stand in loops, since closures around vectors of a
+//! machine are calls.
 
 use core::marker::PhantomData;
 use core::ops::Range;
@@ -90,8 +91,9 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
         }
     }
 
-    /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its weights
-    /// as constants; the rate stands there once, which is less to compile and takes no longer. It is called where not `IS_INLINED`.
+    /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its
+    /// weights as constants; the rate stands there once, which is less to compile and takes no longer. It is called
+    /// where not `IS_INLINED`.
     #[inline(always)]
     pub fn evaluate<const IS_INLINED: bool>(
         &mut self,
@@ -138,8 +140,8 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
         self.k.set_row(0, &self.rate);
     }
 
-    /// Writes the state at the end of a step; gives the largest of the differences to each of the embedded methods, in parts of what is
-    /// allowed and per s: without a second one, zero.
+    /// Writes the state at the end of a step; gives the largest of the differences to each of the embedded methods, in
+    /// parts of what is allowed and per s: without a second one, zero.
     #[inline(always)]
     pub fn step(
         &mut self,

@@ -1,7 +1,7 @@
 //! The factors of I - c J.
 //!
-//! In: a flow and its Jacobian. Out: factors made by the flow's own elimination where it has one and no pivot is too small,
-//! else by the dense one.
+//! In: a flow and its Jacobian. Out: factors made by the flow's own elimination where it has one and no pivot is too
+//! small, else by the dense one.
 
 use alloc::vec::Vec;
 

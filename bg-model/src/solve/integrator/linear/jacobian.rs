@@ -1,9 +1,9 @@
 //! The Jacobian for a step, also where a law has an infinite derivative.
 //!
-//! In: a flow and a step from a point. Out: its derivatives there, in the order of its sparsity. Where one of them is no
-//! number, as that of a square root at zero, a difference over the step stands in for it; where there are unknowns beside the
-//! states, differences for all. An implicit method only needs a Jacobian that makes its iteration converge; of a Rosenbrock
-//! method the error estimate shows what is amiss.
+//! In: a flow and a step from a point. Out: its derivatives there, in the order of its sparsity. Where one of them is
+//! no number, as that of a square root at zero, a difference over the step stands in for it; where there are unknowns
+//! beside the states, differences for all. An implicit method only needs a Jacobian that makes its iteration converge;
+//! of a Rosenbrock method the error estimate shows what is amiss.
 
 use alloc::vec::Vec;
 
@@ -29,7 +29,8 @@ impl Jacobian {
         Self { entries: Vec::new(), is_replaced: false, slope: Vec::new(), room: [const { Vec::new() }; 2] }
     }
 
-    /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known. Gives whether all of them are finite.
+    /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known. Gives whether all of
+    /// them are finite.
     pub fn evaluate(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let n = flow.states();
         self.is_replaced = false;
@@ -61,8 +62,8 @@ impl Jacobian {
         is_finite(&self.entries) && is_finite(&self.slope)
     }
 
-    /// Replaces each derivative that is not finite by a difference: of a state over as much as it changes in the step, and at
-    /// least what its tolerance allows, of the time over the step.
+    /// Replaces each derivative that is not finite by a difference: of a state over as much as it changes in the step,
+    /// and at least what its tolerance allows, of the time over the step.
     fn replace_faulty(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) {
         let (sparsity, n) = (flow.sparsity(), flow.states());
         let Self { entries, slope, room: [ahead, rate], .. } = self;

@@ -1,10 +1,11 @@
 //! An explicit Runge-Kutta-Nystrom method for mechanisms with stiff, lightly damped joints.
 //!
-//! In: a flow that gives second derivatives. Out: steps with an error estimate, and the states in between. Positions and
-//! orientations, q, follow from the momenta, p: q' = G(q, p), p' = F(q, p). A Runge-Kutta method lets each stage's q follow from
-//! the stages' q'. Here it follows from their q'', so that a force reaches the q of the next stage at once: with as many rates a
-//! step may be almost twice as long before a stiff joint makes it unstable. Without states of second order it is a
-//! Runge-Kutta method. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, section II.14.
+//! In: a flow that gives second derivatives. Out: steps with an error estimate, and the states in between. Positions
+//! and orientations, q, follow from the momenta, p: q' = G(q, p), p' = F(q, p). A Runge-Kutta method lets each stage's
+//! q follow from the stages' q'. Here it follows from their q'', so that a force reaches the q of the next stage at
+//! once: with as many rates a step may be almost twice as long before a stiff joint makes it unstable. Without states
+//! of second order it is a Runge-Kutta method. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations
+//! I, 2nd edition, section II.14.
 
 #[cfg(feature = "std")]
 mod lanes;
@@ -35,11 +36,12 @@ use tableau::{DENSE, STAGES};
 /// The coefficients of the dense output: it has degree 5 in the part of the step.
 const COEFFICIENTS: usize = FROM_ENDS + DENSE.len();
 
-/// The Runge-Kutta-Nystrom method for stiff, lightly damped joints, of order 5, and 6 where no force depends on momenta.
+/// The Runge-Kutta-Nystrom method for stiff, lightly damped joints, of order 5, and 6 where no force depends on
+/// momenta.
 ///
-/// Nine rates a step, none more for its dense output, and one in four steps for the stiffest joint's frequency. Steps are held
-/// to where that joint is stable, whatever the tolerance: a loose one has no effect there. Where no joint is stiff, and without states
-/// of second order, the tolerance alone decides.
+/// Nine rates a step, none more for its dense output, and one in four steps for the stiffest joint's frequency. Steps
+/// are held to where that joint is stable, whatever the tolerance: a loose one has no effect there. Where no joint is
+/// stiff, and without states of second order, the tolerance alone decides.
 #[derive(Clone, Debug)]
 pub struct Nystrom {
     stages: Stages<f64, SIDE_BY_SIDE>,

@@ -1,10 +1,10 @@
 //! The fastest oscillation of a flow, by which stability limits the step.
 //!
-//! In: a point of the trajectory. Out: the frequency of the stiffest joint there. Method: one step of a power iteration with
-//! q'' = a(q) now and then, from the direction that the last one led to; as for the spectral radius in RKC (B. P. Sommeijer, L. F.
-//! Shampine, J. G. Verwer, Journal of Computational and Applied Mathematics 88 (1998), 315-326). Stiff joints turn with the links, so
-//! one rate in so many steps keeps up with them. Lengths of directions are in parts of the sizes at which states
-//! count beside each other, so that metres and radians compare in any units.
+//! In: a point of the trajectory. Out: the frequency of the stiffest joint there. Method: one step of a power iteration
+//! with q'' = a(q) now and then, from the direction that the last one led to; as for the spectral radius in RKC (B. P.
+//! Sommeijer, L. F. Shampine, J. G. Verwer, Journal of Computational and Applied Mathematics 88 (1998), 315-326). Stiff
+//! joints turn with the links, so one rate in so many steps keeps up with them. Lengths of directions are in parts of
+//! the sizes at which states count beside each other, so that metres and radians compare in any units.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -22,7 +22,8 @@ const FIRST_STEPS: u32 = 8;
 const PAUSE: u32 = 4;
 /// The size of the trial displacement, in parts of the largest state of second order.
 const DISPLACEMENT: f64 = 1e-7;
-/// The fractional part of the golden ratio: its multiples lie evenly, so that no oscillation of equal parts has no share in them.
+/// The fractional part of the golden ratio: its multiples lie evenly, so that no oscillation of equal parts has no
+/// share in them.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The fastest oscillation as far as it is known.

@@ -1,7 +1,7 @@
 //! The stages of a Runge-Kutta-Nystrom step, of one run or of several side by side.
 //!
-//! In: the start of a step, what gives forces. Out: the state at its end and what it errs by. The numbers of runs side by side
-//! are those of each by itself, to the bit.
+//! In: the start of a step, what gives forces. Out: the state at its end and what it errs by. The numbers of runs side
+//! by side are those of each by itself, to the bit.
 
 use core::ops::Range;
 
@@ -16,8 +16,8 @@ use crate::solve::integrator::tolerances::largest;
 pub(super) const END: usize = STAGES;
 pub(super) const ERROR: usize = STAGES + 1;
 
-/// The second derivatives of the states of second order and the rates of the others, at the stages and at the end, with room for what steps
-/// need beside them: in groups of `W` states of one order.
+/// The second derivatives of the states of second order and the rates of the others, at the stages and at the end, with
+/// room for what steps need beside them: in groups of `W` states of one order.
 #[derive(Clone, Debug)]
 pub(crate) struct Stages<S, const W: usize> {
     k: Stack<S, W, { STAGES + 1 }>,
@@ -110,7 +110,8 @@ impl<S: Scalar, const W: usize> Stages<S, W> {
         }
     }
 
-    /// Writes the state at the end of a step; gives the largest difference to the embedded method in parts of what is allowed.
+    /// Writes the state at the end of a step; gives the largest difference to the embedded method in parts of what is
+    /// allowed.
     #[inline(always)]
     pub fn step(&mut self, forces: &impl Forces<S>, from: &Begin<'_, S>, scale: &Scale<S>, end: &mut [S]) -> S {
         let second = forces.second();
@@ -139,7 +140,8 @@ impl<S: Scalar, const W: usize> Stages<S, W> {
     }
 }
 
-/// Writes the state of a row at the instant `c` of the step. A group may end in states of the next order, which come after it.
+/// Writes the state of a row at the instant `c` of the step. A group may end in states of the next order, which come
+/// after it.
 #[inline(always)]
 fn reach<S: Scalar, const W: usize, const ROW: usize>(
     k: &Stack<S, W, { STAGES + 1 }>,

@@ -1,25 +1,25 @@
 //! The coefficients of the Runge-Kutta-Nystrom method for stiff, lightly damped joints.
 //!
-//! They are this project's own. `examples/nystrom_coefficients` finds them and compares them with this file. It starts from
-//! four digits of each coefficient, which are literals there: an earlier search left them, by least squares over the errors
-//! of one step on linear oscillators of up to 7.6 in frequency times step, forced, damped, coupled with what relaxes, with a
-//! stiffness or a damping that changes. Its program is lost. The present one stays near this start, meets the order
-//! conditions, and reduces the errors of one step on such oscillators that follow the cube of time.
+//! They are this project's own. `examples/nystrom_coefficients` finds them and compares them with this file. It starts
+//! from four digits of each coefficient, which are literals there: an earlier search left them, by least squares over
+//! the errors of one step on linear oscillators of up to 7.6 in frequency times step, forced, damped, coupled with what
+//! relaxes, with a stiffness or a damping that changes. Its program is lost. The present one stays near this start,
+//! meets the order conditions, and reduces the errors of one step on such oscillators that follow the cube of time.
 //!
 //! Quadrature is exact to order 6. The conditions of the trees up to order 5 hold to 7e-7 of their values, and those of
 //! order 6 in which no force acts by the momenta to 1e-7: the second stage stands close to the first, and would have to
 //! coincide with it for the rest. All stages after the second are good to order 2 in the momenta and to order 3 in the
 //! positions, nearly.
 //!
-//! An undamped oscillation shrinks in a step of up to 8.2, but for two narrow bands: where a step is half a turn it may grow
-//! by 0.3 %, where it is one, from 6.21 to 6.33, by 5 %; a damping ratio of 0.008 is enough against that.
+//! An undamped oscillation shrinks in a step of up to 8.2, but for two narrow bands: where a step is half a turn it may
+//! grow by 0.3 %, where it is one, from 6.21 to 6.33, by 5 %; a damping ratio of 0.008 is enough against that.
 //!
-//! The error estimate is the difference to a method of order 4. The conditions up to order 4 leave two directions for its
-//! weights in the momenta. In the one that is taken the estimate of an oscillation is 13 times its error or more, whatever
-//! the step, damped or not, and sees every tree of order 5: forces that change with time, and those that act by the momenta,
-//! of which the method's own errors of order 6 consist. Its size is that with which the error of a run is of the order of the
-//! tolerance on mechanisms with rigid joints, and a tenth to a thousandth of it on compliant ones. Four digits of these
-//! weights are literals of the program; their conditions give the others.
+//! The error estimate is the difference to a method of order 4. The conditions up to order 4 leave two directions for
+//! its weights in the momenta. In the one that is taken the estimate of an oscillation is 13 times its error or more,
+//! whatever the step, damped or not, and sees every tree of order 5: forces that change with time, and those that act
+//! by the momenta, of which the method's own errors of order 6 consist. Its size is that with which the error of a run
+//! is of the order of the tolerance on mechanisms with rigid joints, and a tenth to a thousandth of it on compliant
+//! ones. Four digits of these weights are literals of the program; their conditions give the others.
 //!
 //! The dense output follows from its conditions: those up to order 4 hold, those of order 5 in the least squares.
 //! The conditions: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, section II.14.
@@ -171,7 +171,8 @@ pub(super) const FIRST: Weights = [
     ],
 ];
 
-/// The last two coefficients of the dense output of the others, which has order 4; the last weight is that of the rate at the end.
+/// The last two coefficients of the dense output of the others, which has order 4; the last weight is that of the rate
+/// at the end.
 pub(super) const DENSE: [[f64; STAGES + 1]; 2] = [
     [
         -2.35912329073408,

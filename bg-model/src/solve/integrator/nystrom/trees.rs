@@ -1,9 +1,9 @@
 //! The trees of the order conditions of Runge-Kutta-Nystrom methods for q'' = f(q, q').
 //!
 //! In: an order; the coefficients of a method. Out: all trees up to the order; their elementary weights at the stages.
-//! A tree is a force f with branches: rates q' at the start, forces that act by the positions they lead to, two orders on, and
-//! forces that act by the momenta, one order on. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
-//! 2nd edition, section II.14. The program `examples/nystrom_coefficients` reads this file too.
+//! A tree is a force f with branches: rates q' at the start, forces that act by the positions they lead to, two orders
+//! on, and forces that act by the momenta, one order on. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential
+//! Equations I, 2nd edition, section II.14. The program `examples/nystrom_coefficients` reads this file too.
 
 use super::Scalar;
 
@@ -44,7 +44,8 @@ pub(super) fn trees(largest: usize) -> Vec<Tree> {
     trees
 }
 
-/// All trees whose branches, from this one on and beside the chosen ones, have `left` orders; what the branches leave are rates.
+/// All trees whose branches, from this one on and beside the chosen ones, have `left` orders; what the branches leave
+/// are rates.
 fn collect(trees: &[Tree], left: usize, from: (usize, By), chosen: &mut Vec<(usize, By)>, found: &mut Vec<Tree>) {
     found.push(tree(trees, left, chosen));
     for index in from.0..trees.len() {
@@ -75,7 +76,8 @@ fn tree(trees: &[Tree], rates: usize, branches: &[(usize, By)]) -> Tree {
     made
 }
 
-/// The elementary weights of the trees at the stages with these instants, from the weights of their rates and second derivatives.
+/// The elementary weights of the trees at the stages with these instants, from the weights of their rates and second
+/// derivatives.
 pub(super) fn weights<S: Scalar>(
     trees: &[Tree],
     instants: &[S],

@@ -17,7 +17,8 @@ use crate::solve::integrator::explicit::{Complete, Tableau};
 use crate::solve::integrator::linear::Jacobian;
 use crate::solve::integrator::{Arch, Flow, PointRef, Scale};
 
-/// The accepted steps after which the Jacobian is renewed, and the Jacobians after which the damped states are chosen anew.
+/// The accepted steps after which the Jacobian is renewed, and the Jacobians after which the damped states are chosen
+/// anew.
 const RENEWAL: u32 = 8;
 const CHOICE: u32 = 4;
 /// A step longer than this many times the one that the damped states were chosen for chooses them anew.
@@ -184,8 +185,8 @@ impl Block {
         }
     }
 
-    /// What a step of size `h` (s) makes of the rounding of the damped states, in parts of them: its rates are not those of the implicit
-    /// part alone, so nothing damps this, and the error estimate does not know it.
+    /// What a step of size `h` (s) makes of the rounding of the damped states, in parts of them: its rates are not
+    /// those of the implicit part alone, so nothing damps this, and the error estimate does not know it.
     pub fn noise(&self, h: f64) -> f64 {
         f64::EPSILON * h.abs() * self.largest
     }
@@ -209,7 +210,8 @@ impl Complete<f64> for Block {
 }
 
 impl Block {
-    /// Replaces the differences of two methods by what the implicit part, which takes away most of it, leaves in the damped states.
+    /// Replaces the differences of two methods by what the implicit part, which takes away most of it, leaves in the
+    /// damped states.
     #[inline(always)]
     pub fn reduce(&mut self, differences: [&mut [f64]; 2]) {
         let Self { stages, inverse, .. } = self;

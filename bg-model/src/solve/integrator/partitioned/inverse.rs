@@ -1,7 +1,7 @@
 //! The inverse of a small matrix, in groups of numbers side by side.
 //!
-//! In: a matrix B and a number. Out: the inverse of I - number B, and products with it. Nothing here depends on a system, so it is
-//! compiled once, for the vectors of every machine and for those of this one.
+//! In: a matrix B and a number. Out: the inverse of I - number B, and products with it. Nothing here depends on a
+//! system, so it is compiled once, for the vectors of every machine and for those of this one.
 
 use alloc::vec::Vec;
 
@@ -13,8 +13,8 @@ use crate::solve::integrator::Arch;
 /// The part of the largest entry of its column from which on an entry on the diagonal serves as pivot.
 const PIVOT: f64 = 0.1;
 
-/// Takes the groups of a block and the blocks of a column as constants where a column has one block, so that loops over them are
-/// written out.
+/// Takes the groups of a block and the blocks of a column as constants where a column has one block, so that loops over
+/// them are written out.
 macro_rules! in_blocks {
     ($groups:expr, $block:ident, $blocks:ident => $then:expr) => {
         match $groups {
@@ -79,7 +79,8 @@ impl Inverse {
         self.pivot.resize(places.groups.len(), Lanes::default());
     }
 
-    /// Inverts I - `factor` B, with `matrix` + `ahead` `slope` for B, which are stored as this one is. Gives whether it is regular.
+    /// Inverts I - `factor` B, with `matrix` + `ahead` `slope` for B, which are stored as this one is. Gives whether it
+    /// is regular.
     pub fn invert(&mut self, matrix: &[Lanes], slope: &[Lanes], ahead: f64, factor: f64) -> bool {
         let Self { arch, columns, one, exchanges, pivot } = self;
         arch.dispatch(Invert { matrix, slope, ahead, factor, columns, one, exchanges, pivot })
@@ -113,8 +114,8 @@ impl NullaryFnOnce for Invert<'_> {
     }
 }
 
-/// Inverts in place, by elimination with exchanges where an entry on the diagonal is small; `pivot` is work space for a column. Gives
-/// whether the matrix is regular.
+/// Inverts in place, by elimination with exchanges where an entry on the diagonal is small; `pivot` is work space for a
+/// column. Gives whether the matrix is regular.
 ///
 /// Columns take the part of rows: the inverse of the transpose is the transpose of the inverse.
 #[inline(always)]
@@ -159,8 +160,8 @@ fn invert<const G: usize>(
     true
 }
 
-/// Exchanges the first of these columns, where its entry in row `k`, the number of the first one, is small, for the one with the largest entry there;
-/// gives that one's number.
+/// Exchanges the first of these columns, where its entry in row `k`, the number of the first one, is small, for the one
+/// with the largest entry there; gives that one's number.
 #[inline(always)]
 fn exchange<const G: usize>(blocks: usize, columns: &mut [[Lanes; G]], k: usize) -> usize {
     let own = entry(&mut columns[..blocks], k).abs();

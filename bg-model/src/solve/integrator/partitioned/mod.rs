@@ -1,11 +1,11 @@
 //! A method that is implicit in the states alone whose own damping is stiff, and explicit in all others.
 //!
-//! In: a step. Out: the state after it with an error estimate, and on request the states in between. The rate f is split into
-//! B (x - r) of the damped states, with a matrix B and a straight line r(t), and the rest; the implicit method of the pair in
-//! `tableau` takes the former, the explicit one the latter. B is the block of the Jacobian, renewed now and then: any other one
-//! keeps the order. So one rate a stage and a product with a small matrix make a step, where an implicit method solves
-//! systems of all states. The line leads through the ends of the last two steps: with the last end alone the order falls to 2, as
-//! what damping has brought to equilibrium drifts.
+//! In: a step. Out: the state after it with an error estimate, and on request the states in between. The rate f is
+//! split into B (x - r) of the damped states, with a matrix B and a straight line r(t), and the rest; the implicit
+//! method of the pair in `tableau` takes the former, the explicit one the latter. B is the block of the Jacobian,
+//! renewed now and then: any other one keeps the order. So one rate a stage and a product with a small matrix make a
+//! step, where an implicit method solves systems of all states. The line leads through the ends of the last two steps:
+//! with the last end alone the order falls to 2, as what damping has brought to equilibrium drifts.
 
 mod block;
 mod inverse;
@@ -28,9 +28,11 @@ use super::tolerances::largest;
 use super::vectors::{Vectorised, attempt_in};
 use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
 
-/// The pair `ARK5(4)8L[2]SAb` of Kennedy and Carpenter, implicit in the states alone whose own damping is stiff: eight rates a step.
+/// The pair `ARK5(4)8L[2]SAb` of Kennedy and Carpenter, implicit in the states alone whose own damping is stiff: eight
+/// rates a step.
 ///
-/// For mechanisms with strong dampers between few of many states, and tolerances from 1e-3 to 1e-8: looser ones count as 1e-3.
+/// For mechanisms with strong dampers between few of many states, and tolerances from 1e-3 to 1e-8: looser ones count
+/// as 1e-3.
 #[derive(Clone, Debug)]
 pub struct Ark5 {
     explicit: Explicit<KennedyCarpenter>,
@@ -73,7 +75,8 @@ impl Vectorised for Ark5 {
 const NOTHING: Scale =
     Scale { relative: Ark5::LOOSEST, absolute: Vec::new(), coarsest: 0.0, growth: 0.0, weights: Vec::new() };
 
-/// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below the other one.
+/// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below
+/// the other one.
 const AT_START: f64 = 0.02;
 
 /// Writes the state at the end of a step of size `h` (s) whose stages `block` completes; gives its error norm.

@@ -11,8 +11,8 @@ use crate::model::scalar::double::power;
 use crate::solve::integrator::Flow;
 use crate::solve::integrator::linear::Jacobian;
 
-/// States are damped stiffly where dampers would take away this part of them in a step. Explicit steps bear about ten times as
-/// much.
+/// States are damped stiffly where dampers would take away this part of them in a step. Explicit steps bear about ten
+/// times as much.
 const STIFF: f64 = 0.25;
 
 /// This part of the square of it keeps states that are chosen already, so that the choice does not swing.
@@ -28,8 +28,8 @@ type Place = (usize, usize);
 pub(super) struct Pattern {
     /// Row and column of each entry.
     places: Vec<Place>,
-    /// The entries in places that mirror each other, with the place of the first one, those of displacements and orientations left out;
-    /// one on the diagonal mirrors itself.
+    /// The entries in places that mirror each other, with the place of the first one, those of displacements and
+    /// orientations left out; one on the diagonal mirrors itself.
     mirrored: Vec<(usize, usize, Place)>,
     /// The dampers that count in a step, as squares of 1/s.
     dampers: Vec<(Place, f64)>,
@@ -38,7 +38,8 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    /// Writes the entries of a Jacobian whose places are known from here on; with unknowns beside the states those of the states alone.
+    /// Writes the entries of a Jacobian whose places are known from here on; with unknowns beside the states those of
+    /// the states alone.
     pub fn entries(&mut self, flow: &dyn Flow, jacobian: &Jacobian, entries: &mut Vec<f64>) {
         let n = flow.states();
         let mut sparsity = jacobian.sparsity(flow);
@@ -62,10 +63,12 @@ impl Pattern {
         }
     }
 
-    /// Chooses among `n` states those that are damped stiffly in a step of size `h` (s). Gives whether they are others than before.
+    /// Chooses among `n` states those that are damped stiffly in a step of size `h` (s). Gives whether they are others
+    /// than before.
     ///
-    /// A damper between two states changes the rate of each with the other in the same sense; a spring, a mass and what turns do
-    /// so in opposite senses. The root of the product of both changes, 1/s, does not depend on the units of the states.
+    /// A damper between two states changes the rate of each with the other in the same sense; a spring, a mass and what
+    /// turns do so in opposite senses. The root of the product of both changes, 1/s, does not depend on the units of
+    /// the states.
     pub fn choose(&mut self, entries: &[f64], h: f64, n: usize, states: &mut Vec<usize>) -> bool {
         let Self { mirrored, dampers, damped, .. } = self;
         damped.clear();

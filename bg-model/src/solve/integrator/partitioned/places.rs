@@ -1,6 +1,7 @@
 //! Where the damped states are among all.
 //!
-//! In: the states. Out: groups of them as they stand side by side in their block, and what is read and written of a state by groups.
+//! In: the states. Out: groups of them as they stand side by side in their block, and what is read and written of a
+//! state by groups.
 
 use alloc::vec::Vec;
 

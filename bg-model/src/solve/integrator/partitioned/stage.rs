@@ -1,7 +1,8 @@
 //! The implicit part of a stage.
 //!
-//! In: the damped states as an explicit stage leaves them, the inverse for the step. Out: these states with their implicit part.
-//! Nothing here depends on a system, so it is compiled once, for the vectors of every machine and for those of this one.
+//! In: the damped states as an explicit stage leaves them, the inverse for the step. Out: these states with their
+//! implicit part. Nothing here depends on a system, so it is compiled once, for the vectors of every machine and for
+//! those of this one.
 
 use alloc::vec::Vec;
 
@@ -45,7 +46,8 @@ impl Stages {
         self.off.resize(groups.len(), nothing);
     }
 
-    /// A step of size `h` (s) begins at `x`. `before`: its size in parts of the step before, with the start of that one.
+    /// A step of size `h` (s) begins at `x`. `before`: its size in parts of the step before, with the start of that
+    /// one.
     pub fn begin(&mut self, h: f64, x: &[f64], before: Option<(f64, &[f64])>) {
         (self.h, self.reciprocal) = (h, 1.0 / (h * KennedyCarpenter::GAMMA));
         for Damped { states, from, change, .. } in &mut self.groups {

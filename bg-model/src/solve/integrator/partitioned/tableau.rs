@@ -1,11 +1,12 @@
-//! The coefficients of `ARK5(4)8L[2]SAb`, a pair of Runge-Kutta methods of order 5 with an error estimate of order 4: an explicit
-//! one, and a diagonally implicit, L-stable one with the same weights at the end of the step.
+//! The coefficients of `ARK5(4)8L[2]SAb`, a pair of Runge-Kutta methods of order 5 with an error estimate of order 4:
+//! an explicit one, and a diagonally implicit, L-stable one with the same weights at the end of the step.
 //!
-//! Source: C. A. Kennedy, M. H. Carpenter, Higher-order additive Runge-Kutta schemes for ordinary differential equations, Applied
-//! Numerical Mathematics 136 (2019), 183-205; fractions as in SUNDIALS 7, `ARKODE_ARK548L2SAb_ERK_8_4_5` and
-//! `ARKODE_ARK548L2SAb_DIRK_8_4_5`, rounded to the nearest `f64`. The dense output of order 4 is our own: the combination of the
-//! stages and the rate at the end with the least squares of weights that satisfies the conditions of both methods. So is the estimate
-//! of order 3 with the rate at the start, which has no weight in the others: a jump in the first ninth of a step shows nowhere else.
+//! Source: C. A. Kennedy, M. H. Carpenter, Higher-order additive Runge-Kutta schemes for ordinary differential
+//! equations, Applied Numerical Mathematics 136 (2019), 183-205; fractions as in SUNDIALS 7,
+//! `ARKODE_ARK548L2SAb_ERK_8_4_5` and `ARKODE_ARK548L2SAb_DIRK_8_4_5`, rounded to the nearest `f64`. The dense output
+//! of order 4 is our own: the combination of the stages and the rate at the end with the least squares of weights that
+//! satisfies the conditions of both methods. So is the estimate of order 3 with the rate at the start, which has no
+//! weight in the others: a jump in the first ninth of a step shows nowhere else.
 
 use crate::solve::integrator::explicit::{Row, Tableau};
 

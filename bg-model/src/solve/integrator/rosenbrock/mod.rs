@@ -1,7 +1,7 @@
 //! Rosenbrock methods: linearly implicit, with the exact Jacobian and df/dt, without an iteration.
 //!
-//! In: a step. Out: the state after it; of [`Rodas5p`] with an error estimate and a dense output of order 4. Sources: see
-//! `tableau`.
+//! In: a step. Out: the state after it; of [`Rodas5p`] with an error estimate and a dense output of order 4. Sources:
+//! see `tableau`.
 
 mod step;
 mod tableau;
@@ -13,8 +13,8 @@ use super::{Flow, Method, PointRef, Scale, StepControl, hermite};
 use step::{Stages, add};
 use tableau::{RODAS5P, RODAS5P_DENSE, ROS2};
 
-/// Steinebach's RODAS5P of order 5(4), stiffly accurate and L-stable: for stiff systems at tolerances from 1e-3 to 1e-8.
-/// A step takes one Jacobian, one factorisation, eight solves and seven rates beside that at its start.
+/// Steinebach's RODAS5P of order 5(4), stiffly accurate and L-stable: for stiff systems at tolerances from 1e-3 to
+/// 1e-8. A step takes one Jacobian, one factorisation, eight solves and seven rates beside that at its start.
 #[derive(Clone, Debug)]
 pub struct Rodas5p {
     stages: Stages<8>,
@@ -94,9 +94,9 @@ impl Method for Rodas5p {
     }
 }
 
-/// ROS2 of order 2 with a fixed step, L-stable: the semi-implicit method for real-time use. Every step takes the same work,
-/// one Jacobian, one factorisation, two solves and one rate beside that at its start, and stays stable however stiff the
-/// system is. The dense output is the cubic through both ends.
+/// ROS2 of order 2 with a fixed step, L-stable: the semi-implicit method for real-time use. Every step takes the same
+/// work, one Jacobian, one factorisation, two solves and one rate beside that at its start, and stays stable however
+/// stiff the system is. The dense output is the cubic through both ends.
 #[derive(Clone, Debug)]
 pub struct Ros2 {
     step: f64,

@@ -41,8 +41,8 @@ impl<const S: usize> Stages<S> {
         self.is_current = false;
     }
 
-    /// Evaluates all stages; gives whether they are numbers, or nothing where the matrix is singular or a derivative is no
-    /// number.
+    /// Evaluates all stages; gives whether they are numbers, or nothing where the matrix is singular or a derivative is
+    /// no number.
     pub fn evaluate(
         &mut self,
         tableau: &Tableau<S>,

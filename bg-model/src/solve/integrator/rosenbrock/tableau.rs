@@ -1,8 +1,9 @@
 //! Coefficients of Rosenbrock methods.
 //!
-//! In the form of Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.7, equations (7.23)
-//! and (7.25): with the increments u_j of the stages before,
-//! (I / (h gamma) - J) u_i = f(t + c_i h, x + sum a_ij u_j) + sum C_ij / h u_j + d_i h df/dt, and x + sum b_i u_i at the end.
+//! In the form of Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd edition, section IV.7, equations
+//! (7.23) and (7.25): with the increments u_j of the stages before,
+//! (I / (h gamma) - J) u_i = f(t + c_i h, x + sum a_ij u_j) + sum C_ij / h u_j + d_i h df/dt, and x + sum b_i u_i at
+//! the end.
 
 /// A method of `S` stages.
 pub(super) struct Tableau<const S: usize> {
@@ -22,8 +23,8 @@ pub(super) struct Tableau<const S: usize> {
     pub e: [f64; S],
 }
 
-/// RODAS5P of order 5(4): G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks within
-/// the Julia Differential Equations package, BIT Numerical Mathematics 63 (2023) 27. Digits as in the package
+/// RODAS5P of order 5(4): G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks
+/// within the Julia Differential Equations package, BIT Numerical Mathematics 63 (2023) 27. Digits as in the package
 /// OrdinaryDiffEq.jl (`Rodas5PTableau`). Stiffly accurate; the error estimate is the last increment.
 pub(super) const RODAS5P: Tableau<8> = Tableau {
     gamma: 0.21193756319429014,

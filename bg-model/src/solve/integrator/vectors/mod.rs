@@ -1,7 +1,7 @@
 //! Steps in the vectors of the machine at hand.
 //!
-//! In: a step to be tried. Out: what it gives, compiled twice: for the vectors of every machine of its kind, and for AVX2. The results are
-//! the same to the bit, as nothing is fused.
+//! In: a step to be tried. Out: what it gives, compiled twice: for the vectors of every machine of its kind, and for
+//! AVX2. The results are the same to the bit, as nothing is fused.
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,5 @@
-//! The vectors of the machine at hand give the bytes that those of every machine give. (Explicit methods: `explicit::vectors`.)
+//! The vectors of the machine at hand give the bytes that those of every machine give. (Explicit methods:
+//! `explicit::vectors`.)
 
 use crate::solve::integrator::Arch;
 use nalgebra::SVector;

@@ -1,11 +1,12 @@
 //! One step of a run made again and followed backwards.
 //!
-//! In: the start of a step that a run has made, how the objective depends on the state at its end. Out: how it depends on the state at its
-//! start, and on the model's constants. Method: the step made again by DOP853, and its stages in reverse with the transposed
-//! tableau: with x_i = x + h sum a_ij k_j, k_i = f(x_i), y = x + h sum b_i k_i and a weight l of y, that of k_i is
-//! h (b_i l + sum a_ji m_j), where m_j is the sweep of the rate at x_j with the weight of k_j; x gets l + sum m_j. That is
-//! the exact derivative of what the step calculates, by as many sweeps as there are stages (E. Hairer, C. Lubich, G. Wanner, Geometric
-//! Numerical Integration (2006), section VI.4; W. W. Hager, Numer. Math. 87 (2000)). An integral over the run is the step's quadrature h sum b_i g(x_i).
+//! In: the start of a step that a run has made, how the objective depends on the state at its end. Out: how it depends
+//! on the state at its start, and on the model's constants. Method: the step made again by DOP853, and its stages in
+//! reverse with the transposed tableau: with x_i = x + h sum a_ij k_j, k_i = f(x_i), y = x + h sum b_i k_i and a weight
+//! l of y, that of k_i is h (b_i l + sum a_ji m_j), where m_j is the sweep of the rate at x_j with the weight of k_j; x
+//! gets l + sum m_j. That is the exact derivative of what the step calculates, by as many sweeps as there are stages
+//! (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section VI.4; W. W. Hager, Numer. Math. 87
+//! (2000)). An integral over the run is the step's quadrature h sum b_i g(x_i).
 //!
 //! As forward slopes do, it divides a step into equal parts where DOP853 is far too inexact: of a run by DOP853 never.
 
@@ -23,8 +24,8 @@ use crate::solve::integrator::{Arch, DormandPrince, Row, Scale, Tableau, both};
 const STAGES: usize = DormandPrince::END;
 /// Parts of a step at most.
 const MOST_PARTS: u32 = 1 << 16;
-/// The estimated error of a part, in parts of what is allowed, from which on it is divided. A run by DOP853 has none above 1, or hardly
-/// more where a projection takes the error away.
+/// The estimated error of a part, in parts of what is allowed, from which on it is divided. A run by DOP853 has none
+/// above 1, or hardly more where a projection takes the error away.
 const FAR: f64 = 100.0;
 
 /// The state at the end of a step, before and after its projection.
@@ -125,8 +126,8 @@ impl<'a, Mo, Re, Li, const N: usize, const M: usize> Back<'a, Mo, Re, Li, N, M> 
         None
     }
 
-    /// Follows a step backwards: replaces the `weights` of the state at its end by those of the state at its start. Gives whether it did.
-    /// Only a whole step adds to the integral.
+    /// Follows a step backwards: replaces the `weights` of the state at its end by those of the state at its start.
+    /// Gives whether it did. Only a whole step adds to the integral.
     pub fn follow<const G: usize>(
         &mut self,
         step: Crossing<N, G>,
@@ -211,7 +212,8 @@ impl<'a, Mo, Re, Li, const N: usize, const M: usize> Back<'a, Mo, Re, Li, N, M> 
         if x.iter().all(|x| x.is_finite()) { both(h.abs(), first, second) } else { f64::NAN }
     }
 
-    /// Replaces the weights of the state at the end of one part, whose stages are known, by those of the state at its start.
+    /// Replaces the weights of the state at the end of one part, whose stages are known, by those of the state at its
+    /// start.
     #[inline(always)]
     fn backwards<const G: usize>(
         &mut self,

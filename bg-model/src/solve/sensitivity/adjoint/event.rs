@@ -1,10 +1,11 @@
 //! An event followed backwards.
 //!
-//! In: what has happened, how the objective depends on the state after it. Out: how it depends on the state before it, and on parameters.
-//! Method: what `jump` does, transposed. With a guard g that passes through zero at the speed v, the impact C(x, t, p) and
-//! weights l of the state after it, the instant has the weight w = l C_x f + l C_t - l f+, and what the integral over the run
-//! gains by a later instant; the state before gets l C_x - (w / v) g_x, the parameters l C_p - (w / v) g_p. Derivatives of guards and impacts
-//! are numbers with slopes along each state and each parameter: events are few.
+//! In: what has happened, how the objective depends on the state after it. Out: how it depends on the state before it,
+//! and on parameters. Method: what `jump` does, transposed. With a guard g that passes through zero at the speed v, the
+//! impact C(x, t, p) and weights l of the state after it, the instant has the weight w = l C_x f + l C_t - l f+, and
+//! what the integral over the run gains by a later instant; the state before gets l C_x - (w / v) g_x, the parameters l
+//! C_p - (w / v) g_p. Derivatives of guards and impacts are numbers with slopes along each state and each parameter:
+//! events are few.
 
 use nalgebra::SVector;
 
@@ -16,9 +17,9 @@ use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;
 use crate::solve::simulation::Switching;
 
-/// Replaces the `weights` of the state after an event by those of the state before it, and adds to the derivatives by parameters.
-/// `gained` is what the integral over the run gains for each s by which the event is later. None where no guard passes through zero
-/// with a speed.
+/// Replaces the `weights` of the state after an event by those of the state before it, and adds to the derivatives by
+/// parameters. `gained` is what the integral over the run gains for each s by which the event is later. None where no
+/// guard passes through zero with a speed.
 pub(super) fn back_over<Li, const N: usize, const G: usize, const M: usize>(
     lifted: &mut Lifted<Li>,
     event: &Switching<N, G>,

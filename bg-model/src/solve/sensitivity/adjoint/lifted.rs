@@ -1,6 +1,7 @@
 //! The model in numbers with slopes: along the parameters that are asked for, and along the states.
 //!
-//! In: what makes a model of parameters with slopes. Out: derivatives of what is asked of it, a few directions at a time.
+//! In: what makes a model of parameters with slopes. Out: derivatives of what is asked of it, a few directions at a
+//! time.
 
 use core::convert::Infallible;
 

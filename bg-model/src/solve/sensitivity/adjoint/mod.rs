@@ -1,10 +1,11 @@
 //! The gradient of one number that a run gives by many parameters at once.
 //!
-//! In: a [`Mechanism`], what is asked of a run, an [`Objective`], directions. Out: the run, the number and its derivative along each
-//! direction. Method: the run is made as without derivatives, and recorded; then it is followed backwards, step by step, event by
-//! event, with how the objective depends on the state there. Each piece is the transposed one of what slopes do that follow a run
-//! ([`sensitivities`](super::sensitivities)), so that both agree to rounding. The cost hardly depends on the number of directions: one run, and
-//! per step its stages once again and a reverse sweep for each. Source: D. Cao, S. Li, L. Petzold, R. Serban, SIAM J. Sci. Comput. 24 (2003).
+//! In: a [`Mechanism`], what is asked of a run, an [`Objective`], directions. Out: the run, the number and its
+//! derivative along each direction. Method: the run is made as without derivatives, and recorded; then it is followed
+//! backwards, step by step, event by event, with how the objective depends on the state there. Each piece is the
+//! transposed one of what slopes do that follow a run ([`sensitivities`](super::sensitivities)), so that both agree to
+//! rounding. The cost hardly depends on the number of directions: one run, and per step its stages once again and a
+//! reverse sweep for each. Source: D. Cao, S. Li, L. Petzold, R. Serban, SIAM J. Sci. Comput. 24 (2003).
 
 mod back;
 mod event;
@@ -46,9 +47,10 @@ pub struct Gradients {
     pub by: Vec<f64>,
 }
 
-/// Makes a run of `model` from its own start, as it is asked for but with samples where `objective` needs them, and gives the objective with
-/// its derivatives along `directions`. Of a run by DOP853 these are the derivatives of what the run calculates, an integral over it that
-/// of its steps' quadrature. Keeps 65536 states of the run at most; of a longer run it makes steps once more.
+/// Makes a run of `model` from its own start, as it is asked for but with samples where `objective` needs them, and
+/// gives the objective with its derivatives along `directions`. Of a run by DOP853 these are the derivatives of what
+/// the run calculates, an integral over it that of its steps' quadrature. Keeps 65536 states of the run at most; of a
+/// longer run it makes steps once more.
 ///
 /// ```
 /// use bg_model::bond_graph;
@@ -273,8 +275,8 @@ where
         followed.then_some(()).ok_or(SensitivityError::Inexact { t: from })
     }
 
-    /// Adds what the objective takes of a sample in or at the end of a step from `x`: to `inside`, how it depends on that state, or to the
-    /// weights at the end.
+    /// Adds what the objective takes of a sample in or at the end of a step from `x`: to `inside`, how it depends on
+    /// that state, or to the weights at the end.
     fn sampled(
         &mut self,
         sample: &Sample<N>,

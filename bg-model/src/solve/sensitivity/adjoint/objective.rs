@@ -2,7 +2,8 @@
 //!
 //! In: functions of the outputs at instants, integrals over the run. Out: an [`Objective`], their sum.
 
-/// A number that the outputs of a run give: a sum of functions of the outputs at some instants and of integrals over the run.
+/// A number that the outputs of a run give: a sum of functions of the outputs at some instants and of integrals over
+/// the run.
 ///
 /// ```
 /// use bg_model::sensitivity::Objective;
@@ -34,7 +35,8 @@ pub(super) enum Instants {
     At(Vec<f64>),
 }
 
-/// Is handed the number of the instant and the outputs there; adds its derivatives by these to the last argument, and gives the value.
+/// Is handed the number of the instant and the outputs there; adds its derivatives by these to the last argument, and
+/// gives the value.
 type Value<'a> = Box<dyn Fn(usize, &[f64], &mut [f64]) -> f64 + 'a>;
 
 /// Values of an output that were measured.
@@ -70,7 +72,8 @@ impl<'a> Objective<'a> {
         Self { terms: Vec::new(), integrals: vec![(output, 1.0)] }
     }
 
-    /// The sum of the squares of what columns leave, each in parts of its noise: ((value - measured) / noise)^2. Without unit.
+    /// The sum of the squares of what columns leave, each in parts of its noise: ((value - measured) / noise)^2.
+    /// Without unit.
     pub fn squares(columns: &'a [Measured]) -> Self {
         let of = |column: &'a Measured| {
             let instants = column.values.iter().map(|&(t, _)| t).collect();
@@ -83,8 +86,8 @@ impl<'a> Objective<'a> {
         columns.iter().map(of).fold(Self::default(), Self::plus)
     }
 
-    /// The sum over `instants` (s) of a function: `value` is handed the number of the instant and the outputs there, adds its derivatives
-    /// by these to the last argument, and gives its value.
+    /// The sum over `instants` (s) of a function: `value` is handed the number of the instant and the outputs there,
+    /// adds its derivatives by these to the last argument, and gives its value.
     pub fn samples(instants: &[f64], value: impl Fn(usize, &[f64], &mut [f64]) -> f64 + 'a) -> Self {
         Self::of(Instants::At(instants.to_vec()), value)
     }

@@ -1,9 +1,9 @@
 //! What a run leaves to be followed backwards: its steps, events and samples, in the order of time.
 //!
-//! In: what an observer of the run is told, the most states that are kept. Out: a [`Record`]. Of each step its instants stay and the
-//! number of its branches, 24 bytes, and its start state; where there are more of these than are kept, every second one is forgotten,
-//! again and again, and the states between two that are left are made again. So a run of n steps takes 24 n bytes and a fixed number of
-//! states, beside its events and the samples that count.
+//! In: what an observer of the run is told, the most states that are kept. Out: a [`Record`]. Of each step its instants
+//! stay and the number of its branches, 24 bytes, and its start state; where there are more of these than are kept,
+//! every second one is forgotten, again and again, and the states between two that are left are made again. So a run of
+//! n steps takes 24 n bytes and a fixed number of states, beside its events and the samples that count.
 
 use nalgebra::SVector;
 
@@ -11,8 +11,8 @@ use super::super::SensitivityError;
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
-/// Is handed a sample: its time, s, its state and branches. Gives what counts of it: the derivatives of the objective by the outputs there.
-/// None where nothing counts.
+/// Is handed a sample: its time, s, its state and branches. Gives what counts of it: the derivatives of the objective
+/// by the outputs there. None where nothing counts.
 type Samples<'a, const N: usize, const G: usize> =
     Box<dyn FnMut(f64, &SVector<f64, N>, &[bool; G]) -> Option<Vec<f64>> + 'a>;
 

@@ -1,7 +1,8 @@
 //! The step-size controllers of runs side by side: which steps they try, as far as that is the same operations for all.
 //!
-//! In: the controller of each run, the error norms of the steps tried. Out: the next steps, which each run's own [`StepSizeController`] would
-//! choose to the bit, and the counts of steps since the controllers were taken over. For a stabilised control on a system without breaks.
+//! In: the controller of each run, the error norms of the steps tried. Out: the next steps, which each run's own
+//! [`StepSizeController`] would choose to the bit, and the counts of steps since the controllers were taken over. For a
+//! stabilised control on a system without breaks.
 //!
 //! [`StepSizeController`]: crate::solve::simulation::step_size::StepSizeController
 
@@ -139,8 +140,8 @@ impl<V: Vector> Controllers<V> {
         Judged { logarithm, factor: (-combined / error.alike(self.control.order)).exp() }
     }
 
-    /// Goes on after the steps of size `h` (s) to `t_end` (s), of which those at the places of `accepted` were accepted and those at the
-    /// places of `refused` rejected.
+    /// Goes on after the steps of size `h` (s) to `t_end` (s), of which those at the places of `accepted` were accepted
+    /// and those at the places of `refused` rejected.
     #[inline(always)]
     pub fn go_on(
         &mut self,

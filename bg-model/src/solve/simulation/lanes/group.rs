@@ -1,7 +1,7 @@
 //! The steps of runs side by side, as far as they are the same operations for all.
 //!
-//! In: where each run stands, the step that it is to try. Out: where that leads, its error, whether it can be taken over without
-//! a closer look. Nothing of one place enters another.
+//! In: where each run stands, the step that it is to try. Out: where that leads, its error, whether it can be taken
+//! over without a closer look. Nothing of one place enters another.
 
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
@@ -39,7 +39,8 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     controllers: Controllers<V>,
     /// A bit for each run whose controller is among them.
     led: u8,
-    /// A bit for each run whose plain steps are judged here: of its guards nothing is known but what they are at the start.
+    /// A bit for each run whose plain steps are judged here: of its guards nothing is known but what they are at the
+    /// start.
     plain: u8,
     /// What errors are allowed, and the magnitudes and the step (s) from which on runs have outgrown their sizes.
     scale: Scale<Lanes<V>>,
@@ -47,7 +48,8 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     longest: Lanes<V>,
     /// Joints that close loops, if they are looked at here.
     loops: Option<LoopsInLanes<V>>,
-    /// A bit for each run that is known not to start in the neighbourhood of a singular pose, and for the ends of the last attempts.
+    /// A bit for each run that is known not to start in the neighbourhood of a singular pose, and for the ends of the
+    /// last attempts.
     whole: [u8; 2],
     /// The error norms by which the steps are stable, and those of the last attempts, with what follows from them.
     reach: Lanes<V>,
@@ -113,8 +115,8 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         self.loops.as_ref()
     }
 
-    /// Takes over the controller of a run, which is `plain` where nothing is known of its guards but what they are at the start, with the frequency
-    /// (rad/s) that holds its steps.
+    /// Takes over the controller of a run, which is `plain` where nothing is known of its guards but what they are at
+    /// the start, with the frequency (rad/s) that holds its steps.
     pub fn lead(&mut self, place: usize, lead: Lead, is_plain: bool, frequency: f64) {
         self.controllers.take(place, lead);
         self.method.hold_to(place, frequency);
@@ -122,8 +124,8 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         self.plain = self.plain & !(1 << place) | u8::from(is_plain) << place;
     }
 
-    /// Gives back the controller of a run, with its steps and rejected attempts since, and the time that it has come to, s; none where it
-    /// is not here.
+    /// Gives back the controller of a run, with its steps and rejected attempts since, and the time that it has come
+    /// to, s; none where it is not here.
     pub fn leave(&mut self, place: usize) -> Option<(Kept, Statistics, f64)> {
         let is_led = self.led & 1 << place != 0;
         self.led &= !(1 << place);
@@ -163,7 +165,8 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         (step, at(&self.errors), Judgement { logarithm: at(logarithm), factor: at(factor) })
     }
 
-    /// Takes over a run at a place: where it stands, its branches, the readings of its guards, what its method carries over.
+    /// Takes over a run at a place: where it stands, its branches, the readings of its guards, what its method carries
+    /// over.
     pub fn load(
         &mut self,
         lane: usize,
@@ -253,8 +256,8 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         V::vectorized(Following { group: self, system, due })
     }
 
-    /// Tries the steps. Those of plain runs are judged: accepted where nothing happens in them, rejected where they err too much, both far from
-    /// singular poses.
+    /// Tries the steps. Those of plain runs are judged: accepted where nothing happens in them, rejected where they err
+    /// too much, both far from singular poses.
     pub fn attempt<Sys>(&mut self, system: &Sys, moved: f64) -> Tried
     where
         Sys: System<Lanes<V>, N, G>,

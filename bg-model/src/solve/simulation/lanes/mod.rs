@@ -1,9 +1,9 @@
 //! Runs side by side, in the vectors of the machine: each with its own model, time, steps, branches and events.
 //!
-//! In: runs, one model for as many of them as there are places. Out: what each gives by itself, to the bit. A place whose run is
-//! done takes the next one. What is not the same operations for all (a step with an event, with a sample inside, with a number
-//! that is not finite) its run makes by itself and then comes back. A run that fails is given back to be made by itself from its
-//! start.
+//! In: runs, one model for as many of them as there are places. Out: what each gives by itself, to the bit. A place
+//! whose run is done takes the next one. What is not the same operations for all (a step with an event, with a sample
+//! inside, with a number that is not finite) its run makes by itself and then comes back. A run that fails is given
+//! back to be made by itself from its start.
 
 mod controllers;
 mod group;
@@ -198,8 +198,8 @@ where
         }
     }
 
-    /// What an attempt leads to that the group has made; `is_fine` says whether it leads to finite numbers, `is_clear` whether the guards keep to
-    /// their sides.
+    /// What an attempt leads to that the group has made; `is_fine` says whether it leads to finite numbers, `is_clear`
+    /// whether the guards keep to their sides.
     fn attempted<V: Vector>(
         &mut self,
         group: &mut Group<V, N, G>,
@@ -334,8 +334,9 @@ where
     }
 }
 
-/// Makes the `jobs`, whose methods are those of `method`; `lifted` makes a model of parameters side by side. `done` is told the number of
-/// each run with its observer, and where it has come to: nothing of one that is to be made by itself.
+/// Makes the `jobs`, whose methods are those of `method`; `lifted` makes a model of parameters side by side. `done` is
+/// told the number of each run with its observer, and where it has come to: nothing of one that is to be made by
+/// itself.
 pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
     mut jobs: impl Iterator<Item = Job<'a, Mo, O, N>>,
     method: AnyInLanes<V>,

@@ -1,10 +1,11 @@
 //! Whether the energy that a user gives is that of the law.
 //!
-//! In: law and energy of a C or I over symbols in the place of its state. Out: a fault, or none. The derivative of the energy must be the
-//! law in every branch, and the energy must not jump where a branch ends. Method: both are proved as polynomial identities,
-//! the second at the zero of a guard that is linear in the state. Where that shows nothing, because the functions are others
-//! or the branches exclude each other, values are compared: the derivative at [`POINTS`] points and between all switches found
-//! along [`LINES`] lines, the energy on both sides of each. Parameters take their defaults and values near these.
+//! In: law and energy of a C or I over symbols in the place of its state. Out: a fault, or none. The derivative of the
+//! energy must be the law in every branch, and the energy must not jump where a branch ends. Method: both are proved as
+//! polynomial identities, the second at the zero of a guard that is linear in the state. Where that shows nothing,
+//! because the functions are others or the branches exclude each other, values are compared: the derivative at
+//! [`POINTS`] points and between all switches found along [`LINES`] lines, the energy on both sides of each. Parameters
+//! take their defaults and values near these.
 
 use super::EquationFault;
 use super::signals::Signals;
@@ -196,8 +197,8 @@ impl Check<'_> {
         values.iter().all(|value| value.is_finite()).then(|| values.chunks_exact(2).all(near))
     }
 
-    /// Looks for all switches along a line through the zero of the states: at each the energy may not jump, between them the
-    /// derivative must be the law.
+    /// Looks for all switches along a line through the zero of the states: at each the energy may not jump, between
+    /// them the derivative must be the law.
     fn along(&self, sample: &Sample, direction: &[f64], own: &[usize]) -> Option<Wrong> {
         let at = |place: f64| -> Vec<f64> { direction.iter().map(|part| place * part).collect() };
         let mut places = Vec::new();

@@ -20,10 +20,11 @@ fn slider_crank(is_in_front: bool) -> String {
     SLIDER_CRANK.replace("TURN", if is_in_front { "asin(0.1 / rod)" } else { "3.141592653589793 - asin(0.1 / rod)" })
 }
 
-/// A crank and a rocker, whose coupler may be above the line of their pins or below it; its pins are off the links' axes, and the
-/// ground's are `tilt` off the x axis. `GUESS` stands before what may be guessed.
+/// A crank and a rocker, whose coupler may be above the line of their pins or below it; its pins are off the links'
+/// axes, and the ground's are `tilt` off the x axis. `GUESS` stands before what may be guessed.
 fn four_bar(crank: f64, is_above: bool, tilt: f64) -> String {
-    // The distance of the coupler's pins is 1, the rocker's are 0.8 apart, the ground's 1; the crank starts along these.
+    // The distance of the coupler's pins is 1, the rocker's are 0.8 apart, the ground's 1; the crank starts along
+    // these.
     let distance = 1.0 - crank;
     let cosine = 0.5 * (distance + 0.36 / distance);
     let sine = if is_above { 1.0 } else { -1.0 } * f64::sqrt(1.0 - cosine * cosine);
@@ -130,7 +131,8 @@ fn ranges_of_lengths_prove_that_a_loop_may_be_closed() {
     }
 }
 
-/// The rod ends 5 mm above its slide, and nothing is guessed: the start is for the run time to refuse, which sees what has a reaction.
+/// The rod ends 5 mm above its slide, and nothing is guessed: the start is for the run time to refuse, which sees what
+/// has a reaction.
 #[test]
 fn a_loop_that_is_open_at_the_start_keeps_its_reactions() {
     let open = |by: f64| {

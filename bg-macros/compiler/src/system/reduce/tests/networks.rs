@@ -1,4 +1,5 @@
-//! Networks drawn at random, mechanical and electrical, with symmetries: a scene's outputs are those of the literal model.
+//! Networks drawn at random, mechanical and electrical, with symmetries: a scene's outputs are those of the literal
+//! model.
 //!
 //! Method: oscillators with parameters from a small set, so that many are alike, and start values from a small set, so
 //! that many are zero or opposite; some come with a twin of either sign that is coupled likewise.

@@ -100,7 +100,8 @@ fn a_slide_between_moving_bodies_leaves_one_reaction() {
     assert_eq!(scene.left().len(), 7, "{}", scene.report);
     assert_eq!(scene.words(&["block.orientation_11", "block.angular.p_z"]), ["joined slot", "joined slot"]);
     assert_eq!(scene.reduced.holding.rigid.len(), 1, "{}", scene.report);
-    // The literal graph holds the plane three times over, so it has no reactions here; energy and the slot say whether all is right.
+    // The literal graph holds the plane three times over, so it has no reactions here; energy and the slot say whether
+    // all is right.
     let (_, rows) = scene.columns();
     let moved = rows.iter().fold(0.0_f64, |most, row| most.max(row[0]));
     let lost = rows.iter().fold(0.0_f64, |most, row| most.max((row[0] - row[1]).abs()));
@@ -108,8 +109,8 @@ fn a_slide_between_moving_bodies_leaves_one_reaction() {
     assert!(moved > 1.0 && lost < 1e-4 * moved && open < 1e-4, "{moved} {lost:e} {open:e}");
 }
 
-/// Two guesses of one angle need not be equal: the block's orientation stays, and the rows that hold it. Where these may follow from
-/// each other and a reaction is watched, all rows stay.
+/// Two guesses of one angle need not be equal: the block's orientation stays, and the rows that hold it. Where these
+/// may follow from each other and a reaction is watched, all rows stay.
 #[test]
 fn orientations_that_start_apart_stay() {
     for (force, rows) in [("", 2), ("f: N = o.force;", 8)] {
@@ -173,7 +174,8 @@ fn a_pin_that_is_open_at_the_start_keeps_its_reactions() {
     assert_eq!((scene.left().len(), scene.reduced.holding.rigid.len()), (5, 1), "{}", scene.report);
 }
 
-/// At the angle a from below and the speed w, about the pin: J w' = 3 - m g l sin(a), and the pin carries the rod round.
+/// At the angle a from below and the speed w, about the pin: J w' = 3 - m g l sin(a), and the pin carries the rod
+/// round.
 #[test]
 fn the_reactions_of_solved_rows_are_those_of_the_motion() {
     let scene = scene(&chain(1, ""), "tune {}");
