@@ -10,6 +10,7 @@ mod implicit;
 mod nystrom;
 #[path = "../problems/mod.rs"]
 mod problems;
+mod reuse;
 mod rosenbrock;
 mod stiff;
 mod taylor;

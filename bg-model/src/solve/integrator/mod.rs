@@ -265,7 +265,7 @@ pub trait Method {
     }
 
     /// Makes room for so many states. To be called before the first attempt; changes nothing where there is room
-    /// already.
+    /// already. Of another number of states nothing is known any more.
     fn fit(&mut self, states: usize);
 
     /// Tries a step of size `h` (s) from `start`, whose rate is known, and writes the state reached into `end`.

@@ -426,6 +426,10 @@ impl Method for Auto {
     hand_on!(present);
 
     fn fit(&mut self, states: usize) {
+        if self.end.len() == states {
+            return;
+        }
+        *self = Self::new();
         self.explicit.fit(states);
         self.partitioned.fit(states);
         self.implicit.fit(states);

@@ -104,8 +104,12 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
         }
     }
 
-    /// Makes room for so many states.
+    /// Makes room for so many states. Nothing is left of what was known of another number of them.
     pub fn fit(&mut self, states: usize) {
+        if self.error.len() == states {
+            return;
+        }
+        *self = Self { arch: self.arch, ..Self::new(self.tableau, self.is_exact) };
         let Self { z, f, error, room, real_side, complex_sides, before, .. } = self;
         let real = z.iter_mut().chain(f).chain(before).chain(room).chain([error, real_side]);
         real.for_each(|room| room.resize(states, 0.0));

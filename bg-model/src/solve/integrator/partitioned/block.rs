@@ -113,8 +113,12 @@ impl Block {
         }
     }
 
-    /// Makes room for so many states.
+    /// Makes room for so many states. Nothing is left of what was known of another number of them.
     pub fn fit(&mut self, states: usize) {
+        if self.starts[0].1.len() == states {
+            return;
+        }
+        *self = Self::new(self.inverse.arch);
         self.starts.iter_mut().for_each(|(_, start)| start.resize(states, 0.0));
     }
 

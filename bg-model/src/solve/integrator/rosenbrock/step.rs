@@ -31,8 +31,12 @@ impl<const S: usize> Stages<S> {
         Self { u, room, jacobian: Jacobian::new(), is_current: false, factors: Factors::new(), fault: None }
     }
 
-    /// Makes room for so many states.
+    /// Makes room for so many states. Nothing is left of what was known of another number of them.
     pub fn fit(&mut self, states: usize) {
+        if self.u[0].len() == states {
+            return;
+        }
+        *self = Self::new();
         self.u.iter_mut().chain(&mut self.room).for_each(|room| room.resize(states, 0.0));
     }
 
