@@ -57,8 +57,8 @@ impl<'a, Sys, const N: usize, const G: usize> Frozen<'a, Sys, N, G>
 where
     Sys: System<f64, N, G>,
 {
-    pub fn new(system: &'a Sys, negative: &'a [bool; G], statistics: &'a mut Statistics) -> Self {
-        Self { system, negative, counters: Counters::from(statistics), arch: Arch::new() }
+    pub fn new(system: &'a Sys, negative: &'a [bool; G], statistics: &'a mut Statistics, arch: Arch) -> Self {
+        Self { system, negative, counters: Counters::from(statistics), arch }
     }
 
     /// The elimination made for the system's sparsity.

@@ -8,9 +8,9 @@ use nalgebra::SVector;
 
 use crate::model::origin::Origin;
 use crate::model::system::System;
-use crate::solve::integrator::{Flow, Method, Point, Scale, first_not_finite, is_finite};
+use crate::solve::integrator::{Arch, Flow, Method, Point, Scale, first_not_finite, is_finite};
 use crate::solve::statistics::Statistics;
-use frozen::Frozen;
+pub(crate) use frozen::Frozen;
 
 /// How far a projection may move a state, in its unit or in parts of it, for the next one, whose change is the square,
 /// to be lost in rounding.
@@ -34,6 +34,8 @@ pub(crate) struct Stepper<'a, Sys, M, const N: usize, const G: usize> {
     /// The size of the last attempt, s. More precise than the difference of the two times.
     pub h: f64,
     dense_is_ready: bool,
+    /// The machine's vectors.
+    arch: Arch,
 }
 
 impl<'a, Sys, M, const N: usize, const G: usize> Stepper<'a, Sys, M, N, G>
@@ -44,13 +46,14 @@ where
     pub fn new(system: &'a Sys, method: &'a mut M, scale: Scale, start: Point<N>) -> Self {
         let statistics = Statistics::default();
         let negative = [false; G];
+        let arch = Arch::new();
         method.fit(N);
-        Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false }
+        Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false, arch }
     }
 
     /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
     pub fn split(&mut self) -> (&mut M, Frozen<'_, Sys, N, G>, &Point<N>, &mut Point<N>, &Scale) {
-        let flow = Frozen::new(self.system, &self.negative, &mut self.statistics);
+        let flow = Frozen::new(self.system, &self.negative, &mut self.statistics, self.arch);
         (self.method, flow, &self.start, &mut self.end, &self.scale)
     }
 
@@ -168,7 +171,7 @@ where
         if statistics.jacobian_evaluations == 0 {
             return None;
         }
-        let flow = Frozen::new(self.system, &self.negative, &mut statistics);
+        let flow = Frozen::new(self.system, &self.negative, &mut statistics, self.arch);
         let sparsity = flow.sparsity();
         let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], [0.0; N]);
         flow.jacobian(self.start.t, self.start.x.as_slice(), &mut entries, &mut slope);

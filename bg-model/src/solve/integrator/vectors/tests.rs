@@ -8,8 +8,10 @@ use crate::model::capability::{Elimination, Linearised, Series};
 use crate::model::linear::{Field, Pivot};
 use crate::model::series::{InnerProducts, quotient, store};
 use crate::model::system::System;
-use crate::solve::integrator::{Gauss6, Method, Radau5, Radau9, Rodas5p, Ros2, Taylor, Tolerances};
+use crate::solve::integrator::{Flow, Gauss6, Method, Radau5, Radau9, Rodas5p, Ros2, Taylor, Tolerances};
 use crate::solve::simulation::{Settings, Span, integrate};
+use crate::solve::statistics::Statistics;
+use crate::solve::stepper::Frozen;
 
 /// Masses, and the states: momenta, then displacements.
 const M: usize = 6;
@@ -188,4 +190,25 @@ fn every_machine_gives_the_same_bytes() {
         let off = (at(run) - reference).amax();
         assert!(off <= error && run.1 > 20, "{off:e} {run:?}");
     }
+}
+
+#[test]
+fn a_flow_has_the_same_bytes_in_all_vectors() {
+    const ORDER: usize = 6;
+    let of = |arch: Arch| {
+        let mut statistics = Statistics::default();
+        let flow = Frozen::<_, N, 0>::new(&Row, &[], &mut statistics, arch);
+        let x: [f64; N] = core::array::from_fn(|i| 0.3 - 0.07 * i as f64);
+        let (mut rate, mut slope, mut entries, mut factors) = ([0.0; N], [0.0; N], [0.0; N * N], [0.0; N * N]);
+        flow.rate(0.0, &x, &mut rate);
+        flow.jacobian(0.0, &x, &mut entries, &mut slope);
+        assert!(flow.eliminate(0.01, &entries, &mut factors));
+        let mut solution = rate;
+        flow.substitute(&factors, &mut solution);
+        let (mut rows, mut series) = ([0.0; ORDER * PLACES], [0.0; (ORDER + 1) * N]);
+        series[..N].copy_from_slice(&x);
+        flow.expand(0.0, 0.1, &mut rows, &mut series);
+        [&rate[..], &factors, &solution, &series].concat().iter().map(|number| number.to_bits()).collect::<Vec<_>>()
+    };
+    assert_eq!(of(Arch::Scalar), of(Arch::new()));
 }
