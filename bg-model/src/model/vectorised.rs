@@ -1,4 +1,4 @@
-//! A rate that is too long to be inlined into steps, in the vectors of the machine at hand.
+//! A rate that is too long to be inlined, in the vectors of the machine at hand.
 
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;

@@ -1,4 +1,4 @@
-//! The hacksaw as an engineer writes it by hand for the plane: body poses (x, y, angle of each link) and their
+//! The hacksaw's hand-written model for the plane: body poses (x, y, angle of each link) and their
 //! velocities, 24 states, the laws of the specification spelled out. What the generated scene is measured against.
 //!
 //! In: the parameters, a state, the stroke. Out: the state's rate, twice: [`Planar::rate`] plainly, point by point and

@@ -14,7 +14,7 @@ use crate::system::equations::Iteration;
 use crate::system::magnitude::magnitudes;
 use crate::system::{Jacobian, SecondOrder, Sizes, StateEquations};
 
-/// Longer rates are not inlined into an integrator's step: they would only fill the cache.
+/// Longer rates are not inlined where they are compiled for the machine's vectors: they would only fill the cache.
 const INLINED: usize = 400;
 
 /// The programs of all generated functions.
@@ -244,7 +244,7 @@ fn required(equations: &mut StateEquations, name: &str, is_of_start: bool) -> Op
 }
 
 impl Running {
-    /// Whether rates are inlined into an integrator's step, and so take the vectors that it takes.
+    /// Whether rates are inlined where they are compiled for the machine's vectors, and so take these.
     #[must_use]
     pub fn is_inlined(&self) -> bool {
         self.rate.counts.total() <= INLINED

@@ -59,8 +59,7 @@ impl<const C: usize> Polynomial<C> {
     /// `arch`.
     pub fn evaluate(&self, arch: Arch, count: usize, start: PointRef<'_>, theta: f64, x: &mut [f64]) {
         let coefficients = self.coefficients.each_ref().map(|coefficient| &coefficient[..]);
-        let states = x.len();
-        arch.dispatch(All(Polynomials { coefficients: &coefficients[..count], start: start.x, theta, x }, states));
+        arch.dispatch(Polynomials { coefficients: &coefficients[..count], start: start.x, theta, x });
     }
 }
 
@@ -75,25 +74,21 @@ fn follow_from_ends(h: f64, end: &[f64], chord: &mut [f64], at_start: &mut [f64]
     }
 }
 
-/// A calculation for all states.
-struct All<F>(F, usize);
-
-impl<F: OfEach> NullaryFnOnce for All<F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self(mut calculation, states) = self;
-        for_each(states, &mut calculation);
-    }
-}
-
 /// The polynomials of all states at the part `theta` of the step, to be written into `x`.
 struct Polynomials<'a> {
     coefficients: &'a [&'a [f64]],
     start: &'a [f64],
     theta: f64,
     x: &'a mut [f64],
+}
+
+impl NullaryFnOnce for Polynomials<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        for_each(self.x.len(), &mut self);
+    }
 }
 
 impl OfEach for Polynomials<'_> {

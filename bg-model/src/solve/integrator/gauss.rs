@@ -44,7 +44,12 @@ impl Gauss6 {
     }
 
     fn with(control: StepControl) -> Self {
-        Self { core: Collocation::new(&GAUSS6, true), control, own: NOTHING, by_polynomial: Vec::new() }
+        Self {
+            core: Collocation::new(&GAUSS6, true),
+            control,
+            own: Scale::of_nothing(OF_FIXED),
+            by_polynomial: Vec::new(),
+        }
     }
 
     /// Whether the quadrature disagrees with the polynomial, by a thousandth of the state and more than the tolerances:
@@ -95,7 +100,7 @@ impl Method for Gauss6 {
 
     fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let error = if let StepControl::Fixed { .. } = self.control {
-            let mut own = core::mem::replace(&mut self.own, NOTHING);
+            let mut own = core::mem::replace(&mut self.own, Scale::of_nothing(OF_FIXED));
             of_fixed(scale, &mut own);
             let error = self.step(flow, start, h, &own, end);
             self.own = own;
@@ -126,10 +131,6 @@ impl Method for Gauss6 {
         self.core.dense(start, theta, x);
     }
 }
-
-/// A scale of no states.
-const NOTHING: Scale =
-    Scale { relative: OF_FIXED, absolute: Vec::new(), coarsest: OF_FIXED, growth: f64::INFINITY, weights: Vec::new() };
 
 /// Makes `own` the scale of a fixed step, whatever the tolerances.
 fn of_fixed(scale: &Scale, own: &mut Scale) {

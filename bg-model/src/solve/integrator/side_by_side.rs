@@ -28,13 +28,13 @@ impl<S: Copy, const W: usize> Padded<S, W> {
     /// The group that begins at a state.
     #[inline(always)]
     pub fn group(&self, first: usize) -> [S; W] {
-        *self.numbers[first..].first_chunk().expect("there is room for a group")
+        some(&self.numbers, first)
     }
 
     /// Writes the group that begins at a state, and what lies behind the last state with it.
     #[inline(always)]
     pub fn set_group(&mut self, first: usize, group: [S; W]) {
-        *self.numbers[first..].first_chunk_mut().expect("there is room for a group") = group;
+        put(&mut self.numbers, first, group);
     }
 }
 

@@ -124,6 +124,11 @@ impl<S: Scalar> Scale<S> {
 }
 
 impl Scale {
+    /// That of no states, to be filled from another one.
+    pub(super) const fn of_nothing(relative: f64) -> Self {
+        Self { relative, absolute: Vec::new(), coarsest: relative, growth: f64::INFINITY, weights: Vec::new() }
+    }
+
     /// The state at `start` whose rate is the largest part of its allowed error.
     pub(crate) fn fastest(&self, start: PointRef<'_>) -> usize {
         index_of_largest(start.x.len(), |i| start.rate[i].abs() / self.allowed(i, start.x[i]))

@@ -93,7 +93,7 @@ impl Emission<'_> {
         quote!(#rate #inlined #always)
     }
 
-    /// The attribute of rates, and of forces, that are inlined into a step.
+    /// The attribute of rates, and of forces, that are inlined where they are compiled for the machine's vectors.
     pub(super) fn inline(&self) -> Option<Inlined> {
         self.model.programs.running.is_inlined().then_some(Inlined)
     }

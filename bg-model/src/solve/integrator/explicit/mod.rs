@@ -96,7 +96,8 @@ pub struct Explicit<T> {
     polynomial: Polynomial<COEFFICIENTS>,
     /// What rounding has kept from the states.
     sum: CompensatedSum<f64, SIDE_BY_SIDE>,
-    /// States at the end of a step, as they are and moved by a difference, after their projection.
+    /// States at the end of a step, as they are and moved by a difference, after their projection; the latter is also
+    /// room for a difference.
     projected: [Vec<f64>; 2],
     /// The machine's vectors.
     arch: Arch,
@@ -123,11 +124,6 @@ impl<T: Tableau> Default for Explicit<T> {
 }
 
 impl<T: Tableau> Explicit<T> {
-    /// The magnitude of the difference `row` to an embedded method in state `i`, in parts of what is allowed.
-    fn error(&self, row: Row, i: usize, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> f64 {
-        (self.stages.combine(row, i) / scale.allowed_between(i, start.x[i], end[i])).abs()
-    }
-
     /// What is left of the end of a step less h times a difference after the projection, in parts of what is allowed.
     fn left(
         &mut self,
@@ -196,7 +192,10 @@ impl<T: Tableau> Method for Explicit<T> {
             return norm;
         }
         self.stages.set_stage(T::END, |rate| flow.rate(start.t + h, end, rate));
-        let late = h.abs() * largest_of(end.len(), |i| self.error(T::LATE, i, start, scale, end));
+        let Self { stages, projected: [_, difference], .. } = self;
+        stages.write(T::LATE, 1.0, difference);
+        let error = |i: usize| (difference[i] / scale.allowed_between(i, start.x[i], end[i])).abs();
+        let late = h.abs() * largest_of(end.len(), error);
         if late > norm { late } else { norm }
     }
 
@@ -236,7 +235,8 @@ impl<T: Tableau> Method for Explicit<T> {
     }
 
     fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
-        index_of_largest(end.len(), |i| self.error(T::ERROR, i, start, scale, end))
+        let error = |i: usize| self.stages.combine(T::ERROR, i) / scale.allowed_between(i, start.x[i], end[i]);
+        index_of_largest(end.len(), |i| error(i).abs())
     }
 
     fn faulty_rate(&self) -> Option<(usize, f64)> {
@@ -245,7 +245,7 @@ impl<T: Tableau> Method for Explicit<T> {
 
     fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
         self.stages.set_stage(T::END, |rate| rate.copy_from_slice(end.rate));
-        self.stages.evaluate::<false>(&OfFlow(flow), &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
+        self.stages.evaluate(&OfFlow(flow), &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
         self.polynomial.set(start, h, end, |m, _, out| self.stages.write(row(m), h, out));
     }

@@ -92,10 +92,9 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
     }
 
     /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its
-    /// weights as constants; the rate stands there once, which is less to compile and takes no longer. It is called
-    /// where not `IS_INLINED`.
+    /// weights as constants; the rate stands there once, which is less to compile and takes no longer.
     #[inline(always)]
-    pub fn evaluate<const IS_INLINED: bool>(
+    pub fn evaluate(
         &mut self,
         rates: &impl Rates<S>,
         from: &Begin<'_, S>,
@@ -124,11 +123,7 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
             written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
             completed.complete(stage, x);
             let t = from.t + from.h.times(T::C[stage]);
-            if IS_INLINED {
-                rates.inlined_rate(t, x, rate);
-            } else {
-                rates.rate(t, x, rate);
-            }
+            rates.inlined_rate(t, x, rate);
             k.set_row(stage, rate);
         }
     }
@@ -152,7 +147,7 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
         end: &mut [S],
     ) -> [S; 2] {
         self.begin(from.rate);
-        self.evaluate::<true>(rates, from, 1..T::END, &mut ());
+        self.evaluate(rates, from, 1..T::END, &mut ());
         self.absolute.copy_from_slice(&scale.absolute);
         let Self { k, start, end: reached, absolute, differences: [of_first, of_second], .. } = self;
         for (first, k) in k.groups() {

@@ -97,6 +97,7 @@ impl<V: Vector> NystromInLanes<V> {
         scale: &Scale<Lanes<V>>,
         end: &mut [Lanes<V>],
     ) -> Lanes<V> {
+        self.stages.arrange(forces.second());
         self.stages.step(forces, begin, scale, end)
     }
 }
@@ -121,7 +122,7 @@ impl OfOne for Nystrom {
     }
 
     fn begins(&mut self, second: &Range<usize>, weights: &[f64]) -> bool {
-        self.second = second.clone();
+        self.stages.arrange(second.clone());
         let begins = self.ring.begins();
         if begins {
             self.ring.begin(second, weights);

@@ -17,8 +17,6 @@ mod tableau;
 #[cfg(test)]
 mod trees;
 
-use core::ops::Range;
-
 use super::dense::{FROM_ENDS, Polynomial};
 use super::side_by_side::SIDE_BY_SIDE;
 use super::steps::{Begin, OfFlow};
@@ -45,8 +43,6 @@ const COEFFICIENTS: usize = FROM_ENDS + DENSE.len();
 #[derive(Clone, Debug)]
 pub struct Nystrom {
     stages: Stages<f64, SIDE_BY_SIDE>,
-    /// The states of second order.
-    second: Range<usize>,
     /// The fastest oscillation.
     ring: Ring,
     polynomial: Polynomial<COEFFICIENTS>,
@@ -59,7 +55,7 @@ impl Nystrom {
     #[must_use]
     pub fn new() -> Self {
         let (stages, ring, polynomial) = (Stages::new(0), Ring::new(0), Polynomial::new());
-        Self { stages, second: 0..0, ring, polynomial, arch: Arch::new() }
+        Self { stages, ring, polynomial, arch: Arch::new() }
     }
 }
 
@@ -93,8 +89,8 @@ impl Method for Nystrom {
     }
 
     fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
-        self.second = flow.second();
-        self.ring.follow(&OfFlow(flow), start, &self.second, &scale.weights);
+        self.stages.arrange(flow.second());
+        self.ring.follow(&OfFlow(flow), start, &self.stages.second, &scale.weights);
         let reach = self.ring.reach(h);
         if reach > 1.0 {
             return reach;
@@ -119,7 +115,7 @@ impl Method for Nystrom {
         // A force that is no number makes the second derivatives none that follow from it.
         (0..STAGES).find_map(|stage| {
             let faulty = || self.stages.stage(stage).filter(|(_, rate)| !rate.is_finite());
-            faulty().find(|(state, _)| !self.second.contains(state)).or_else(|| faulty().next())
+            faulty().find(|(state, _)| !self.stages.second.contains(state)).or_else(|| faulty().next())
         })
     }
 
@@ -128,10 +124,10 @@ impl Method for Nystrom {
             rate.copy_from_slice(end.rate);
             flow.second_derivatives(end.x, rate);
         });
-        let Self { stages, second, polynomial, .. } = self;
+        let Self { stages, polynomial, .. } = self;
         polynomial.set(start, h, end, |m, ends, out| {
             stages.write(&DENSE[m], h, out);
-            for (i, [before, behind]) in stages.ends(second) {
+            for (i, [before, behind]) in stages.ends() {
                 let [first, third] = [1, 2].map(|m| ends[m][i]);
                 // The polynomial of degree 5 through the second derivatives at both ends, too.
                 let [before, behind] = [before, behind].map(|second| 0.5 * h * h * second);

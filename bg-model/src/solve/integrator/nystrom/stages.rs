@@ -21,8 +21,8 @@ pub(super) const ERROR: usize = STAGES + 1;
 #[derive(Clone, Debug)]
 pub(crate) struct Stages<S, const W: usize> {
     k: Stack<S, W, { STAGES + 1 }>,
-    /// The states of second order that the groups are made for.
-    second: Range<usize>,
+    /// The states of second order.
+    pub(super) second: Range<usize>,
     /// The state of a stage and its forces; the states at the start and at the end of the step, the rates at its start.
     x: Padded<S, W>,
     force: Padded<S, W>,
@@ -78,10 +78,19 @@ impl<S: Scalar, const W: usize> Stages<S, W> {
         out.iter_mut().for_each(|out| *out = *out * h);
     }
 
-    /// The second derivatives of these states at both ends of the step, each with its state.
-    pub fn ends(&self, second: &Range<usize>) -> impl Iterator<Item = (usize, [S; 2])> {
+    /// The second derivatives at both ends of the step, each with its state.
+    pub fn ends(&self) -> impl Iterator<Item = (usize, [S; 2])> {
         let both = self.stage(0).zip(self.stage(END)).map(|((state, before), (_, behind))| (state, [before, behind]));
-        both.filter(|(state, _)| second.contains(state))
+        both.filter(|(state, _)| self.second.contains(state))
+    }
+
+    /// Makes groups for these states of second order, where they are others than before.
+    pub fn arrange(&mut self, second: Range<usize>) {
+        if self.second != second {
+            let ranges = [0..second.start, second.clone(), second.end..self.states()];
+            self.k.arrange(ranges, S::from_f64(0.0));
+            self.second = second;
+        }
     }
 
     /// Evaluates the stages. Their sums are written out, so that each finds its weights as constants.
@@ -110,15 +119,10 @@ impl<S: Scalar, const W: usize> Stages<S, W> {
         }
     }
 
-    /// Writes the state at the end of a step; gives the largest difference to the embedded method in parts of what is
-    /// allowed.
+    /// Writes the state at the end of a step of states that are arranged; gives the largest difference to the embedded
+    /// method in parts of what is allowed.
     #[inline(always)]
     pub fn step(&mut self, forces: &impl Forces<S>, from: &Begin<'_, S>, scale: &Scale<S>, end: &mut [S]) -> S {
-        let second = forces.second();
-        if self.second != second {
-            self.k.arrange([0..second.start, second.clone(), second.end..self.states()], from.h.alike(0.0));
-            self.second = second;
-        }
         self.evaluate(forces, from);
         self.absolute.copy_from_slice(&scale.absolute);
         let Self { k, second, start, rate, end: reached, absolute, errors, .. } = self;

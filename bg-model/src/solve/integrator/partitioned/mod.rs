@@ -14,8 +14,6 @@ mod places;
 mod stage;
 mod tableau;
 
-use alloc::vec::Vec;
-
 use crate::model::scalar::Scalar;
 
 use self::block::Block;
@@ -53,7 +51,7 @@ impl Ark5 {
     }
 
     fn in_vectors(arch: Arch) -> Self {
-        Self { explicit: Explicit::new(), block: Block::new(arch), tight: NOTHING, arch }
+        Self { explicit: Explicit::new(), block: Block::new(arch), tight: Scale::of_nothing(Self::LOOSEST), arch }
     }
 }
 
@@ -71,10 +69,6 @@ impl Vectorised for Ark5 {
     }
 }
 
-/// The loosest tolerances, of no states.
-const NOTHING: Scale =
-    Scale { relative: Ark5::LOOSEST, absolute: Vec::new(), coarsest: 0.0, growth: 0.0, weights: Vec::new() };
-
 /// The part that counts of a difference with the rate at the start of the step: where a step is smooth it stays below
 /// the other one.
 const AT_START: f64 = 0.02;
@@ -91,7 +85,7 @@ fn step(
     end: &mut [f64],
 ) -> f64 {
     stages.begin(start.rate);
-    stages.evaluate::<true>(&OfFlow(flow), &Begin::of(start, h), 1..KennedyCarpenter::END, block);
+    stages.evaluate(&OfFlow(flow), &Begin::of(start, h), 1..KennedyCarpenter::END, block);
     stages.write_rows([KennedyCarpenter::B, KennedyCarpenter::ERROR, KennedyCarpenter::START]);
     let Stages { end: slopes, differences: [difference, at_start], .. } = stages;
     for ((end, from), slope) in end.iter_mut().zip(start.x).zip(&**slopes) {
@@ -133,7 +127,7 @@ impl Method for Ark5 {
         if scale.relative <= Self::LOOSEST {
             return attempt_in(self.arch, self, flow, start, h, scale, end);
         }
-        let mut tight = core::mem::replace(&mut self.tight, NOTHING);
+        let mut tight = core::mem::replace(&mut self.tight, Scale::of_nothing(Self::LOOSEST));
         tight.absolute.clone_from(&scale.absolute);
         tight.weights.clone_from(&scale.weights);
         (tight.coarsest, tight.growth) = (scale.coarsest, scale.growth);
