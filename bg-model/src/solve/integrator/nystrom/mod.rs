@@ -19,7 +19,7 @@ mod trees;
 
 use super::dense::{FROM_ENDS, Polynomial};
 use super::side_by_side::SIDE_BY_SIDE;
-use super::steps::{Begin, OfFlow};
+use super::steps::{Begin, Forces, OfFlow};
 use super::tolerances::index_of_largest;
 use super::vectors::{Vectorised, attempt_in};
 use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
@@ -89,8 +89,9 @@ impl Method for Nystrom {
     }
 
     fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
-        self.stages.arrange(flow.second());
-        self.ring.follow(&OfFlow(flow), start, &self.stages.second, &scale.weights);
+        let forces = OfFlow(flow);
+        self.stages.arrange(forces.second());
+        self.ring.follow(&forces, start, &self.stages.second, &scale.weights);
         let reach = self.ring.reach(h);
         if reach > 1.0 {
             return reach;
