@@ -18,6 +18,7 @@
 //! | end it from its observer | [`simulation::Observer::is_done`] |
 //! | know why it ended | [`simulation::Ended`] of [`simulation::Finish`] |
 //! | look at outputs, energies, powers | [`system::Model`] |
+//! | drive a system whose size is not known at compile time | [`dynamics::Dynamics`], [`simulation::drive`] |
 //! | look at the graph, strokes, states, equations | [`description::Description`] |
 //! | know why it failed | [`failure::Failure`], with the last good state |
 //! | know what it cost | [`statistics::Statistics`] |
@@ -36,7 +37,7 @@
 //! use bg_model::integrator::{Dop853, Tolerances};
 //! use bg_model::nalgebra::SVector;
 //! use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
-//! use bg_model::system::Model;
+//! use bg_model::system::{Model, switches, values};
 //!
 //! bond_graph! {
 //!     pub graph Oscillator {
@@ -57,7 +58,8 @@
 //! let start: SVector<f64, { Oscillator::STATES }> = model.start()?;
 //!
 //! let mut rows = Vec::new();
-//! let mut observer = EachSample(|t: f64, x: &SVector<f64, _>, negative: &[bool; Oscillator::SWITCHES]| {
+//! let mut observer = EachSample(|t: f64, x: &[f64], negative: &[bool]| {
+//!     let (x, negative) = (values(x), switches(negative));
 //!     let mut y = SVector::<f64, { Oscillator::OUTPUTS }>::zeros();
 //!     model.outputs(t, x, negative, &mut y);
 //!     rows.push((t, y, model.stored_energy(t, x, negative)));
@@ -88,7 +90,7 @@
 //! # Conventions
 //!
 //! SI units. Power is positive along the half arrow. A guard below zero calls for the first branch of its `if`;
-//! `negative[k]` says that switch `k` is in it. Nothing is allocated inside a step. Sums have a fixed order and
+//! `negative[k]` says that switch `k` is in it. Steps and samples allocate nothing. Sums have a fixed order and
 //! elementary functions come from `libm`, so debug and release builds give the same bytes.
 
 #![cfg_attr(not(feature = "std"), no_std)]
@@ -105,8 +107,8 @@ mod model;
 mod solve;
 
 pub use model::{
-    assembly, capability, description, drawing, holding, input, linear, mechanism, parameters, requirement, scalar,
-    series, standing, system,
+    assembly, capability, description, drawing, dynamics, holding, input, linear, mechanism, parameters, requirement,
+    scalar, series, standing, system,
 };
 #[cfg(feature = "std")]
 pub use solve::{extended, run, sensitivity};

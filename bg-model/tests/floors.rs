@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms from the ground up; those of one floor do not know each other.
-const FLOORS: [&[&str]; 16] = [
+const FLOORS: [&[&str]; 17] = [
     &["model::scalar", "model::requirement", "model::holding"],
     &["model::drawing", "model::nearest", "model::joined"],
     &["model::description"],
@@ -22,7 +22,8 @@ const FLOORS: [&[&str]; 16] = [
     ],
     &["model::capability"],
     &["model::system"],
-    &["model::reactions", "model::mechanism", "model::vectorised"],
+    &["model::dynamics", "model::vectorised"],
+    &["model::reactions", "model::mechanism"],
     &["model::standing"],
     &["solve::statistics"],
     &["solve::integrator", "solve::finish"],

@@ -12,7 +12,7 @@ use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor};
 use bg_model::nalgebra::SVector;
 use bg_model::run::{Request, Simulation, sample_times};
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
-use bg_model::system::Model;
+use bg_model::system::{Model, switches, values};
 use bg_workbench::tables::{rate_operations, table};
 use hacksaw::agreement::{Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
@@ -101,7 +101,7 @@ where
         ..Settings::default()
     };
     let start = model.start().expect("the paper's mechanism closes");
-    let mut observer = EachSample(|_, x: &SVector<f64, N>, negative: &[bool; G]| states.push((*x, *negative)));
+    let mut observer = EachSample(|_, x: &[f64], negative: &[bool]| states.push((*values(x), *switches(negative))));
     let span = Span { t0: 0.0, t_end: T_END };
     integrate(model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the paper's case runs");
     states

@@ -8,12 +8,13 @@
 use std::error::Error;
 
 use bg_model::assembly::AssemblyError;
-use bg_model::description::{Description, StateKind};
-use bg_model::integrator::{Absolute, AnyMethod, Dop853, Method, Tolerances};
-use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor};
+use bg_model::description::{Description, StateInfo, StateKind};
+use bg_model::dynamics::{Machine, shared};
+use bg_model::integrator::{Absolute, Dop853, Tolerances};
+use bg_model::mechanism::{Mechanism, MechanismVisitor};
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
-use bg_model::simulation::{Part, Recorder, Recording, Samples, Settings, Span, integrate};
+use bg_model::simulation::{Part, Recorder, Recording, Samples, Settings, Span, drive};
 use bg_model::statistics::Statistics;
 use bg_model::system::{Model, Powers, System};
 use bg_workbench::compare;
@@ -118,15 +119,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run<Mo, Me, const N: usize, const G: usize, const M: usize>(
-        &self,
-        model: &Mo,
-        method: &mut Me,
-    ) -> Result<Run, Box<dyn Error>>
-    where
-        Mo: Model<f64, N, G, M>,
-        Me: Method,
-    {
+    fn run(&self, model: &dyn Machine) -> Result<Run, Box<dyn Error>> {
         // Larger than any error: what has it does not shorten a step.
         const NEVER: f64 = 1e300;
         let (relative, absolute, step) = match self.steps {
@@ -134,8 +127,8 @@ impl Job<'_> {
             Steps::Equal(step) => (1.0, NEVER, step),
         };
         let states = model.description().states;
-        let absolute =
-            SVector::from_fn(|index, _| if states[index].kind == StateKind::Integral { NEVER } else { absolute });
+        let of_state = |state: &StateInfo| if state.kind == StateKind::Integral { NEVER } else { absolute };
+        let absolute = states.iter().map(of_state).collect();
         let settings = Settings {
             tolerances: Tolerances { relative, absolute: Absolute::PerState(absolute) },
             first_step: step.is_finite().then_some(step),
@@ -145,23 +138,8 @@ impl Job<'_> {
         };
         let mut recorder = Recorder::new(model, &[Part::Outputs]);
         let span = Span { t0: 0.0, t_end: self.t_end };
-        let finish = integrate(model, method, &model.start()?, span, &settings, &mut recorder);
-        // A failure has the numbers of its model's states in its type.
-        let finish = finish.map_err(|failure| failure.to_string())?;
-        Ok(Run { samples: recorder.recording, statistics: finish.statistics })
-    }
-}
-
-impl ModelVisitor<f64> for Job<'_> {
-    type Output = Result<Run, Box<dyn Error>>;
-
-    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        // As in any run, so that it is compiled already.
-        let mut method: AnyMethod = Dop853::new().into();
-        self.run(model, &mut method)
+        let finish = drive(model, &mut Dop853::new(), &model.start()?, span, &settings, None, &mut recorder);
+        Ok(Run { samples: recorder.recording, statistics: finish?.statistics })
     }
 }
 
@@ -175,7 +153,7 @@ impl MechanismVisitor for Reduced<'_> {
     type Output = Result<Run, Box<dyn Error>>;
 
     fn visit<Sc: Mechanism>(self) -> Self::Output {
-        Sc::make(self.scene.parameters(self.values)?, &[])?.visit(self.job)
+        self.job.run(&*Sc::make(self.scene.parameters(self.values)?, &[])?.machine())
     }
 }
 
@@ -184,12 +162,12 @@ impl MechanismVisitor for Reduced<'_> {
 fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Run, Box<dyn Error>> {
     let mut values = values.clone();
     if scene != Scene::FreeRun {
-        return Hacksaw::new(values)?.visit(job);
+        return job.run(&*Hacksaw::new(values)?.machine());
     }
     for name in ["r_cut", "r_return", "k_work", "r_work"] {
         values.set(name, 0.0)?;
     }
-    job.run(&Unswitched(Hacksaw::new(values)?), &mut Dop853::new())
+    job.run(&*shared(Unswitched(Hacksaw::new(values)?)))
 }
 
 /// A model with its one switch left in the branch of the positive guard: right where both branches are the same.

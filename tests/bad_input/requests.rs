@@ -1,7 +1,6 @@
 //! Requests that cannot be: starts, spans, tolerances, steps, samples, limits.
 
 use bg_model::integrator::{Absolute, Tolerances};
-use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
 
 use super::support::{Expected, Request, Trial, oscillator, smooth};
@@ -23,7 +22,7 @@ fn of_oscillator(name: String, expected: Expected, request: Request<2>) -> Trial
     Trial::new(name, expected, oscillator(), request)
 }
 
-fn with_settings(name: String, expected: Expected, change: impl FnOnce(&mut Settings<2>)) -> Trial {
+fn with_settings(name: String, expected: Expected, change: impl FnOnce(&mut Settings)) -> Trial {
     let mut request = Request::default();
     change(&mut request.settings);
     of_oscillator(name, expected, request)
@@ -82,7 +81,7 @@ fn tolerances() -> Vec<Trial> {
     };
     let of_one_state = |value: f64, expected: Expected| {
         with_settings(format!("absolute tolerance {value:?} of the second state"), expected, |settings| {
-            settings.tolerances.absolute = Absolute::PerState(SVector::from([1e-9, value]));
+            settings.tolerances.absolute = Absolute::PerState(vec![1e-9, value]);
         })
     };
     let bad = [f64::NAN, f64::INFINITY, 0.0, -1.0, 5e-324];

@@ -56,7 +56,7 @@ pub struct Trial {
 pub struct Request<const N: usize> {
     pub start: [f64; N],
     pub span: [f64; 2],
-    pub settings: Settings<N>,
+    pub settings: Settings,
     pub step: f64,
 }
 

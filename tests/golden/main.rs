@@ -9,12 +9,11 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use bg_model::integrator::{Dop853, Tolerances};
+use bg_model::mechanism::Mechanism;
 use bg_model::simulation::{Part, Recorder, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::Model;
 use hacksaw::mechanism::{Hacksaw, HacksawParameters};
-
-const N: usize = Hacksaw::STATES;
 
 fn file(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
@@ -119,12 +118,13 @@ struct Run {
 fn run(t_end: f64, relative: f64, absolute: f64, instants: &[f64]) -> Run {
     let model = Hacksaw::new(HacksawParameters::default()).expect("the defaults are in range");
     let start = model.start().expect("the paper's pose closes");
-    let settings = Settings::<N> {
+    let settings = Settings {
         tolerances: Tolerances::new(relative, absolute),
         samples: Samples::At(instants.to_vec()),
         ..Settings::default()
     };
-    let mut observer = Recorder::new(&model, &[Part::Outputs, Part::Energy]);
+    let machine = model.machine();
+    let mut observer = Recorder::new(&*machine, &[Part::Outputs, Part::Energy]);
     let span = Span { t0: 0.0, t_end };
     let finish = integrate(&model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the run ends");
     Run { samples: observer.recording, statistics: finish.statistics }

@@ -3,6 +3,7 @@
 //! In each flat pose two loops could go another way, the reactions of the joints grow without bound, and where a step
 //! ends beside it is a matter of tolerances. So one run says little: these are 96 of each form.
 
+use bg_model::dynamics::Typed;
 use bg_model::integrator::{Bs5, Cfmr7, Dop853, Method, Tolerances};
 use bg_model::simulation::{Part, Recorder, Samples, Settings, Span, integrate};
 use bg_model::system::Model;
@@ -18,7 +19,7 @@ const DEPARTURE: f64 = 0.1;
 fn departure<Mo, M, const N: usize, const G: usize, const P: usize>(
     model: &Mo,
     mut method: M,
-    tolerances: Tolerances<N>,
+    tolerances: Tolerances,
     largest_step: f64,
 ) -> Result<f64, String>
 where
@@ -26,7 +27,8 @@ where
     M: Method,
 {
     let start = model.start().expect("the mechanism closes");
-    let mut recorder = Recorder::new(model, &[Part::Outputs]);
+    let machine = Typed::model(model);
+    let mut recorder = Recorder::new(&machine, &[Part::Outputs]);
     let settings = Settings { tolerances, largest_step, samples: Samples::Every(0.05), ..Settings::default() };
     let span = Span { t0: 0.0, t_end: 10.0 };
     integrate(model, &mut method, &start, span, &settings, &mut recorder).map_err(|failure| failure.to_string())?;

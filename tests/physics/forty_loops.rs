@@ -155,7 +155,7 @@ fn forty_four_bars_in_a_row_pass_their_flat_poses() {
     let finish = integrate(&model, &mut Dop853::new(), &start, span, &settings, &mut ());
     let finish = finish.unwrap_or_else(|failure| panic!("{failure}"));
     println!("{}", finish.statistics);
-    let y = model.outputs(&finish.x);
+    let y = model.outputs(finish.state());
     let first = model.outputs(&start);
     within("x", (y[0] + 0.540_190_050_675_526_3).abs(), 1e-7);
     within("y", (y[1] + 0.841_543_052_464_443).abs(), 1e-7);

@@ -26,7 +26,7 @@ fn run(model: &Orifice, integrator: Integrator, t_end: f64) -> SVector<f64, M> {
     let span = Span { t0: 0.0, t_end };
     let finish = integrate(model, &mut integrator.method(0.0), &start, span, &settings, &mut ())
         .unwrap_or_else(|failure| panic!("{}: {failure}", integrator.name()));
-    outputs(model, t_end, &finish.x)
+    outputs(model, t_end, finish.state())
 }
 
 /// Under a pressure that rises evenly the tank comes to take in rise * capacity, at the drop p with p^4 = (p^2 + l^2)

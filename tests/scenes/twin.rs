@@ -4,7 +4,7 @@ use bg_model::integrator::{Dop853, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
-use bg_model::system::{Model, System};
+use bg_model::system::{Model, System, switches, values};
 
 /// The outputs of a run at its sample times, by name.
 pub struct Table {
@@ -44,7 +44,7 @@ where
 }
 
 /// Steps of `step`, shorter ones only before events; the error estimate has no say.
-fn settings<const N: usize>(step: f64, samples: &[f64]) -> Settings<N> {
+fn settings(step: f64, samples: &[f64]) -> Settings {
     Settings {
         tolerances: Tolerances::new(1e6, 1e6),
         first_step: Some(step),
@@ -87,9 +87,9 @@ where
     Mo: Model<f64, N, G, M>,
 {
     let mut rows = Vec::new();
-    let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &[bool; S]| {
+    let mut observer = EachSample(|t: f64, x: &[f64], negative: &[bool]| {
         let mut y = SVector::<f64, M>::zeros();
-        model.outputs(t, x, &branches(negative), &mut y);
+        model.outputs(t, values(x), &branches(switches(negative)), &mut y);
         rows.push(y.as_slice().to_vec());
     });
     let start = model.start().expect("the mechanism closes");

@@ -1,11 +1,12 @@
 //! A run of a model with its outputs by name.
 
+use bg_model::dynamics::Typed;
 use bg_model::failure::Failure;
 use bg_model::integrator::{Dop853, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{EachSample, Part, Recorder, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
-use bg_model::system::Model;
+use bg_model::system::{Model, switches, values};
 
 /// The outputs of a run at its sample times.
 #[derive(Clone, Debug)]
@@ -113,11 +114,12 @@ fn attempt<Mo, const N: usize, const G: usize, const M: usize>(
     start: &SVector<f64, N>,
     times: &[f64],
     tolerance: f64,
-) -> Result<Record, Failure<N, G>>
+) -> Result<Record, Failure>
 where
     Mo: Model<f64, N, G, M>,
 {
-    let mut recorder = Recorder::new(model, &[Part::Outputs]);
+    let machine = Typed::model(model);
+    let mut recorder = Recorder::new(&machine, &[Part::Outputs]);
     let span = Span { t0: 0.0, t_end: times.last().copied().unwrap_or(0.0) };
     let settings = Settings {
         // Stretches and momenta of stiff joints are small numbers: the absolute tolerance lies well below them.
@@ -148,7 +150,8 @@ where
 {
     let start = model.start().expect("the mechanism closes");
     let mut samples = Vec::new();
-    let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &[bool; G]| samples.push((t, *x, *negative)));
+    let mut observer =
+        EachSample(|t: f64, x: &[f64], negative: &[bool]| samples.push((t, *values(x), *switches(negative))));
     let times = (0..20).map(|k| end / 20.0 * f64::from(k)).collect();
     let settings = Settings { samples: Samples::At(times), ..Settings::default() };
     integrate(model, &mut Dop853::new(), &start, Span { t0: 0.0, t_end: end }, &settings, &mut observer)

@@ -33,10 +33,11 @@ fn a_motor_has_what_its_graph_promises() {
     let start = motor.start().expect("closed");
     let span = Span { t0: 0.0, t_end: 1e-3 };
     let finish = integrate(&motor, &mut Dop853::new(), &start, span, &Settings::default(), &mut ()).expect("runs");
-    let mut rate = finish.x;
-    motor.rate(finish.t, &finish.x, &finish.negative, &mut rate);
-    let power = motor.powers(finish.t, &finish.x, &finish.negative);
+    let (x, negative) = (finish.state(), finish.branches());
+    let mut rate = *x;
+    motor.rate(finish.t, x, negative, &mut rate);
+    let power = motor.powers(finish.t, x, negative);
     assert_eq!((motor.description().name, motor.parameters().winding), ("Motor", 2.0));
     assert!(Motor::STATES == rate.len() && Motor::OUTPUTS == motor.description().outputs.len());
-    assert!(motor.stored_energy(finish.t, &finish.x, &finish.negative) > 0.0 && power.supplied > power.dissipated);
+    assert!(motor.stored_energy(finish.t, x, negative) > 0.0 && power.supplied > power.dissipated);
 }

@@ -11,17 +11,17 @@ use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::system::Model;
 
-use crate::instance::{AtStart, Fault, InDuals, Machine, Nominals, Signals, Slopes};
+use crate::instance::{Fault, InDuals, Signals, Slopes, Stood, nominals_at_start};
 
 /// A model with what it knows of its derivatives.
 pub struct Made {
-    pub(crate) machine: Box<dyn Machine>,
+    pub(crate) machine: Stood,
     pub(crate) slopes: Box<dyn Slopes>,
 }
 
 impl Made {
     pub(crate) fn twin(&self) -> Self {
-        Self { machine: self.machine.twin(), slopes: self.slopes.twin() }
+        Self { machine: self.machine.clone(), slopes: self.slopes.twin() }
     }
 }
 
@@ -71,7 +71,7 @@ impl<Me: Mechanism + 'static> sealed::Make for Of<Me> {
         values.iter().enumerate().for_each(|(index, &value)| parameters.set_value(index, value));
         parameters.validate()?;
         let mechanism = Me::make(parameters, &signals.inputs())?;
-        Ok(Made { machine: mechanism.visit(AtStart { t })?, slopes: mechanism.visit(InDuals) })
+        Ok(Made { machine: Stood::at_start(mechanism.machine(), t)?, slopes: mechanism.visit(InDuals) })
     }
 
     fn check(&self, index: usize, value: f64) -> Result<(), ParameterError> {
@@ -95,7 +95,7 @@ impl<Me: Mechanism> Described for Of<Me> {
     }
 
     fn nominals(&self) -> Option<Vec<f64>> {
-        Me::make(Me::Parameters::default(), &[]).ok()?.visit(Nominals)
+        nominals_at_start(&*Me::make(Me::Parameters::default(), &[]).ok()?.machine())
     }
 }
 

@@ -112,6 +112,15 @@ pub struct Operations {
     pub sums: u32,
 }
 
+/// What a Taylor series takes.
+#[derive(Clone, Copy, Debug)]
+pub struct SeriesSize {
+    /// How many numbers each order takes as work space.
+    pub width: usize,
+    /// What a series costs beside a rate, where that has been counted.
+    pub operations: Option<Operations>,
+}
+
 /// A system whose joints hold motions.
 pub trait Joints<S: Scalar, const N: usize, const G: usize> {
     /// What they hold.

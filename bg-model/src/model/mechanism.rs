@@ -3,9 +3,11 @@
 //! In: parameters and inputs by name. Out: the model, handed with its numbers to a visitor. What is generic over a
 //! [`Mechanism`] needs no const generics, and only what a visitor calls is compiled.
 
+use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use crate::model::description::Description;
+use crate::model::dynamics::{Machine, shared};
 use crate::model::input::Input;
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::Scalar;
@@ -35,8 +37,27 @@ pub trait Mechanism: Clone {
     /// Hands the model, calculating in `S`, to `visitor`.
     fn visit<S: Scalar, V: ModelVisitor<S>>(&self, visitor: V) -> V::Output;
 
+    /// The model over slices, whatever the number of its states; a copy of it.
+    fn machine(&self) -> Rc<dyn Machine> {
+        self.visit(Shared)
+    }
+
     /// Hands the model to `visitor`, and with it what makes the same model of parameters in `S`, and that one in `T`.
     fn visit_lifted<S: Scalar, T: Scalar, V: LiftedVisitor<S, T>>(&self, visitor: V) -> V::Output;
+}
+
+/// Shares a copy of a model.
+struct Shared;
+
+impl ModelVisitor<f64> for Shared {
+    type Output = Rc<dyn Machine>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M> + Clone + 'static,
+    {
+        shared(model.clone())
+    }
 }
 
 /// A mechanism with the models of its graph: of the literal model with all scenes, of a scene with itself alone. In a

@@ -4,6 +4,7 @@ pub mod assembly;
 pub mod capability;
 pub mod description;
 pub mod drawing;
+pub mod dynamics;
 pub mod holding;
 pub mod input;
 pub(crate) mod iteration;

@@ -13,14 +13,13 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::SVector;
 use thiserror::Error;
 
-use crate::model::capability::{Impacts, Joints};
 use crate::model::description::{StateInfo, StateKind};
-use crate::model::holding::{Slip, Slipping};
-use crate::model::reactions::{Collision, Hold};
-use crate::model::system::{Model, branches, branches_by_sign};
+use crate::model::dynamics::{Machine, branches};
+use crate::model::holding::{Held, Slip, Slipping, Stops};
+use crate::model::reactions::{Collision, impacts_of};
+use crate::model::system::decide_by_sign;
 
 /// The part of the machine's size that rounding may leave of what should be zero, where a run starts.
 pub const CLOSE: f64 = 1e-9;
@@ -99,14 +98,14 @@ fn integrated(unit: &str) -> String {
 }
 
 /// A model at a place, with what its sizes are known from.
-pub struct Standing<'a, Mo, const N: usize> {
-    model: &'a Mo,
+pub struct Standing<'a> {
+    model: &'a dyn Machine,
     /// Time, s.
     t: f64,
     /// How large each state has been; an orientation's component counts as 1, an angle as 1 rad at least.
-    sizes: SVector<f64, N>,
+    sizes: Vec<f64>,
     /// The model's own start, where it has one.
-    start: Option<SVector<f64, N>>,
+    start: Option<Vec<f64>>,
     /// What may be left, as a part of a size.
     part: f64,
 }
@@ -117,36 +116,25 @@ struct Rows {
     sizes: Vec<f64>,
 }
 
-impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
+impl<'a> Standing<'a> {
     /// `model` at time `t` (s), the states of which have been as large as `largest`; of what should be zero `part` of
     /// its size may be left.
-    pub fn new<const G: usize, const M: usize>(model: &'a Mo, t: f64, largest: &SVector<f64, N>, part: f64) -> Self
-    where
-        Mo: Model<f64, N, G, M>,
-    {
+    pub fn new(model: &'a dyn Machine, t: f64, largest: &[f64], part: f64) -> Self {
         Self::with_start(model, t, model.start().ok(), largest, part)
     }
 
     /// The same where the model's own start is known, or that it has none.
-    pub fn with_start<const G: usize, const M: usize>(
-        model: &'a Mo,
-        t: f64,
-        start: Option<SVector<f64, N>>,
-        largest: &SVector<f64, N>,
-        part: f64,
-    ) -> Self
-    where
-        Mo: Model<f64, N, G, M>,
-    {
+    pub fn with_start(model: &'a dyn Machine, t: f64, start: Option<Vec<f64>>, largest: &[f64], part: f64) -> Self {
         let states = model.description().states;
-        let sizes = SVector::from_fn(|index, _| {
-            let known = start.map_or(0.0, |start| start[index].abs());
+        let size = |index: usize| {
+            let known = start.as_ref().map_or(0.0, |start| start[index].abs());
             let floor = match states[index].kind {
                 StateKind::Orientation(..) | StateKind::Angle => 1.0,
                 _ => 0.0,
             };
             known.max(largest[index].abs()).max(floor)
-        });
+        };
+        let sizes = (0..states.len()).map(size).collect();
         Self { model, t, sizes, start, part }
     }
 
@@ -155,33 +143,23 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
     ///
     /// # Errors
     /// [`Misplaced`].
-    pub fn closed<const G: usize, const M: usize>(
-        &self,
-        x: &SVector<f64, N>,
-        negative: Option<&[bool; G]>,
-    ) -> Result<SVector<f64, N>, Misplaced>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
+    pub fn closed(&self, x: &[f64], negative: Option<&[bool]>) -> Result<Vec<f64>, Misplaced> {
         let mut x = self.rotated(x)?;
-        let negative = negative.copied().unwrap_or_else(|| branches(self.model, self.t, &x));
-        if let Some(joints) = self.model.joints() {
-            x = self.fitted(joints, x, &negative)?;
+        let negative = negative.map_or_else(|| branches(self.model, self.t, &x), <[bool]>::to_vec);
+        if let Some(held) = self.model.held() {
+            x = self.fitted(held, x, &negative)?;
         }
-        if let Some(impacts) = self.model.impacts() {
-            x = self.cleared(impacts, x, &negative)?;
+        if let Some(stops) = self.model.stops() {
+            x = self.cleared(stops, x, &negative)?;
         }
         Ok(x)
     }
 
     /// The branches `negative` without those that cannot be here: something rests on a stop or sticks in dry friction
     /// only where it is and does not move. Where one cannot be the signs of the guards decide.
-    pub fn possible<const G: usize, const M: usize>(&self, x: &SVector<f64, N>, mut negative: [bool; G]) -> [bool; G]
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        let first = self.model.first_branches();
-        let held: Vec<usize> = (0..G).filter(|&k| first[k] && !negative[k]).collect();
+    pub fn possible(&self, x: &[f64], mut negative: Vec<bool>) -> Vec<bool> {
+        let first = self.first_branches();
+        let held: Vec<usize> = (0..first.len()).filter(|&k| first[k] && !negative[k]).collect();
         if held.is_empty() {
             return negative;
         }
@@ -194,24 +172,24 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         if !held.iter().any(|&k| negative[k]) {
             return negative;
         }
-        branches_by_sign(negative, |negative| self.guards_at(x, negative)).0
+        decide_by_sign(&mut negative, &mut vec![0.0; first.len()], |negative, guards| {
+            self.model.guards(self.t, x, negative, guards);
+        });
+        negative
     }
 
     /// The state `x` with what rounding has left of orientations closed.
     ///
     /// # Errors
     /// [`Misplaced::NoRotation`].
-    pub fn rotated<const G: usize, const M: usize>(&self, x: &SVector<f64, N>) -> Result<SVector<f64, N>, Misplaced>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
+    pub fn rotated(&self, x: &[f64]) -> Result<Vec<f64>, Misplaced> {
         let orientations = orientations(self.model.description().states);
         let kept: Vec<Vec<Vec<(usize, usize)>>> = orientations.iter().map(|entries| self.kept(entries)).collect();
-        let worst = |x: &SVector<f64, N>| {
+        let worst = |x: &[f64]| {
             let off = orientations.iter().zip(&kept).map(|(entries, kept)| (self.off(entries, kept, x), entries.name));
             off.max_by(|a, b| a.0.total_cmp(&b.0))
         };
-        let mut x = *x;
+        let mut x = x.to_vec();
         for _ in 0..ROUNDS {
             let Some((off, name)) = worst(&x) else { break };
             if off.is_nan() || off > self.part {
@@ -228,17 +206,14 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
 
     /// The products of an orientation's columns and rows that keep their values in any motion: their rates vanish at
     /// the start, whatever the momenta. Components that are no states are constants, or follow from others.
-    fn kept<const G: usize, const M: usize>(&self, entries: &Entries) -> Vec<Vec<(usize, usize)>>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        let Some(mut x) = self.start else { return Vec::new() };
+    fn kept(&self, entries: &Entries) -> Vec<Vec<(usize, usize)>> {
+        let Some(mut x) = self.start.clone() else { return Vec::new() };
         let states = self.model.description().states;
-        for index in (0..N).filter(|&index| matches!(states[index].kind, StateKind::Momentum(_))) {
+        for index in (0..x.len()).filter(|&index| matches!(states[index].kind, StateKind::Momentum(_))) {
             // Of irregular sizes, so that nothing cancels.
             x[index] += (1.0 + self.sizes[index]) * (0.5 + 0.37 * (index % 5) as f64);
         }
-        let mut rates = SVector::zeros();
+        let mut rates = vec![0.0; x.len()];
         self.model.rate(0.0, &x, &branches(self.model, 0.0, &x), &mut rates);
         let is_kept = |product: &Vec<(usize, usize)>| {
             let parts = product.iter().flat_map(|&(a, b)| [x[a] * rates[b], rates[a] * x[b]]);
@@ -249,9 +224,8 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
     }
 
     /// By how much an orientation is none: products that should be as at the start, or its determinant.
-    fn off(&self, entries: &Entries, kept: &[Vec<(usize, usize)>], x: &SVector<f64, N>) -> f64 {
-        let value =
-            |product: &[(usize, usize)], x: &SVector<f64, N>| product.iter().map(|&(a, b)| x[a] * x[b]).sum::<f64>();
+    fn off(&self, entries: &Entries, kept: &[Vec<(usize, usize)>], x: &[f64]) -> f64 {
+        let value = |product: &[(usize, usize)], x: &[f64]| product.iter().map(|&(a, b)| x[a] * x[b]).sum::<f64>();
         let products =
             self.start.iter().flat_map(|start| kept.iter().map(move |kept| value(kept, x) - value(kept, start)));
         let determinant = entries.determinant(x).map(|determinant| determinant - 1.0);
@@ -259,29 +233,21 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
     }
 
     /// Checks what rigid joints hold, and closes it.
-    fn fitted<J, const G: usize, const M: usize>(
-        &self,
-        joints: &J,
-        mut x: SVector<f64, N>,
-        negative: &[bool; G],
-    ) -> Result<SVector<f64, N>, Misplaced>
-    where
-        Mo: Model<f64, N, G, M>,
-        J: Joints<f64, N, G>,
-    {
-        let rigid = joints.held().rigid;
+    fn fitted(&self, held: Held, mut x: Vec<f64>, negative: &[bool]) -> Result<Vec<f64>, Misplaced> {
+        let rigid = held.rigid;
         if rigid.is_empty() {
             return Ok(x);
         }
-        let of = |x: &SVector<f64, N>| motions(joints, (self.t, x), negative);
+        let of = |x: &[f64]| self.motions(&held, (self.t, x), negative);
         let Rows { mut values, sizes } = self.rows(&x, of);
-        let at_start = self.start.map(|start| motions(joints, (0.0, &start), &branches(self.model, 0.0, &start)));
+        let start = self.start.as_deref();
+        let at_start = start.map(|x| self.motions(&held, (0.0, x), &branches(self.model, 0.0, x)));
         let limits = Limits::new(rigid, &sizes, at_start.as_deref(), self.part);
         for _ in 0..ROUNDS {
             if limits.excess(&values) <= 1.0 {
                 break;
             }
-            let mut closer = x;
+            let mut closer = x.clone();
             self.model.project(self.t, negative, &mut closer);
             let after = of(&closer);
             limits.check(&values, &after)?;
@@ -294,22 +260,13 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
     }
 
     /// Checks stops, and moves what is a little beyond one onto it.
-    fn cleared<I, const G: usize, const M: usize>(
-        &self,
-        impacts: &I,
-        mut x: SVector<f64, N>,
-        negative: &[bool; G],
-    ) -> Result<SVector<f64, N>, Misplaced>
-    where
-        Mo: Model<f64, N, G, M>,
-        I: Impacts<f64, N, G>,
-    {
-        let first = self.model.first_branches();
-        let mut collision = Collision::<f64>::new(impacts);
-        let stops = impacts.stops().stops;
+    fn cleared(&self, stops: Stops, mut x: Vec<f64>, negative: &[bool]) -> Result<Vec<f64>, Misplaced> {
+        let first = self.first_branches();
+        let mut collision = Collision::<f64>::new(stops, self.model.kept_of_stops());
+        let stops = stops.stops;
         for _ in 0..ROUNDS {
             let rows = self.guards(&x, &first);
-            let start = self.start.map(|start| self.guards(&start, &first).values);
+            let start = self.start.as_ref().map(|start| self.guards(start, &first).values);
             let passed = |switch: usize| rows.values[switch];
             for stop in stops {
                 let (by, size) = (passed(stop.switch), rows.sizes[stop.switch]);
@@ -326,12 +283,12 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
             // So that it touches the stop, and rounding does not lift it off.
             let touches = |switch: usize| TOUCHES * rows.sizes[switch];
             let by = |switch: usize| if is_beyond(switch) { passed(switch) - touches(switch) } else { 0.0 };
-            let struck = collision.displaced(impacts, (self.t, &x), negative, by);
-            let mut rates = [SVector::zeros(); 2];
+            let struck = collision.displaced(&impacts_of(self.model), (self.t, &x), negative, by);
+            let mut rates = [(); 2].map(|()| vec![0.0; x.len()]);
             self.model.rate(self.t, &x, negative, &mut rates[0]);
             self.model.rate(self.t, &struck, negative, &mut rates[1]);
             let states = self.model.description().states;
-            for index in (0..N).filter(|&index| is_of_pose(&states[index])) {
+            for index in (0..x.len()).filter(|&index| is_of_pose(&states[index])) {
                 x[index] += rates[1][index] - rates[0][index];
             }
             self.model.project(self.t, negative, &mut x);
@@ -341,12 +298,9 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
 
     /// The guards in some branches; to those of stops, which are places in their first branches, belongs the size of
     /// the machine.
-    fn guards<const G: usize, const M: usize>(&self, x: &SVector<f64, N>, negative: &[bool; G]) -> Rows
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        let mut rows = self.rows(x, |x| self.guards_at(x, negative).as_slice().to_vec());
-        let stops = self.model.impacts().map_or(&[][..], |impacts| impacts.stops().stops);
+    fn guards(&self, x: &[f64], negative: &[bool]) -> Rows {
+        let mut rows = self.rows(x, |x| self.guards_at(x, negative));
+        let stops = self.model.stops().map_or(&[][..], |stops| stops.stops);
         let own = rows.sizes.clone();
         for stop in stops {
             let alike = stops.iter().filter(|other| other.unit == stop.unit).map(|other| own[other.switch]);
@@ -356,32 +310,26 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
     }
 
     /// The largest of the states that say where something is in this unit; of angles 1 rad at least.
-    fn extent<const G: usize, const M: usize>(&self, unit: &str) -> f64
-    where
-        Mo: Model<f64, N, G, M>,
-    {
+    fn extent(&self, unit: &str) -> f64 {
         let states = self.model.description().states.iter().zip(&self.sizes);
         let alike = states.filter(|(state, _)| is_of_pose(state) && state.unit == unit).map(|(_, &size)| size);
         alike.fold(if unit == "rad" { 1.0 } else { 0.0 }, f64::max)
     }
 
-    fn guards_at<const G: usize, const M: usize>(&self, x: &SVector<f64, N>, negative: &[bool; G]) -> SVector<f64, G>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        let mut guards = SVector::zeros();
+    fn guards_at(&self, x: &[f64], negative: &[bool]) -> Vec<f64> {
+        let mut guards = vec![0.0; negative.len()];
         self.model.guards(self.t, x, negative, &mut guards);
         guards
     }
 
     /// Numbers at a state with their sizes: how much all states together, as large as they have been, add to each, and
     /// what is left of it without them.
-    fn rows(&self, x: &SVector<f64, N>, of: impl Fn(&SVector<f64, N>) -> Vec<f64>) -> Rows {
+    fn rows(&self, x: &[f64], of: impl Fn(&[f64]) -> Vec<f64>) -> Rows {
         let values = of(x);
         let mut sizes = vec![0.0; values.len()];
         let mut rest = values.clone();
-        for index in (0..N).filter(|&index| self.sizes[index] > 0.0) {
-            let mut aside = *x;
+        for index in (0..x.len()).filter(|&index| self.sizes[index] > 0.0) {
+            let mut aside = x.to_vec();
             aside[index] += ASIDE * self.sizes[index];
             let moved = aside[index] - x[index];
             for (row, value) in of(&aside).into_iter().enumerate() {
@@ -395,21 +343,21 @@ impl<'a, Mo, const N: usize> Standing<'a, Mo, N> {
         sizes.iter_mut().zip(&rest).filter(|(_, rest)| rest.is_finite()).for_each(|(size, rest)| *size += rest.abs());
         Rows { values, sizes }
     }
-}
 
-/// The flows of the rigid motions at a time (s) and state, then their gaps.
-fn motions<J, const N: usize, const G: usize>(
-    joints: &J,
-    (t, x): (f64, &SVector<f64, N>),
-    negative: &[bool; G],
-) -> Vec<f64>
-where
-    J: Joints<f64, N, G>,
-{
-    let mut hold = Hold::new(joints.held());
-    hold.read(joints, t, x, negative);
-    let now = hold.now();
-    now.flows[..now.gaps.len()].iter().chain(now.gaps).copied().collect()
+    /// The flows of the rigid motions at a time (s) and state, then their gaps.
+    fn motions(&self, held: &Held, (t, x): (f64, &[f64]), negative: &[bool]) -> Vec<f64> {
+        let mut entries = vec![0.0; held.entries()];
+        self.model.hold(t, x, negative, &mut entries);
+        let now = held.read(&entries);
+        now.flows[..now.gaps.len()].iter().chain(now.gaps).copied().collect()
+    }
+
+    /// The branches from which the search for those at a start begins.
+    fn first_branches(&self) -> Vec<bool> {
+        let mut first = vec![false; self.model.switches()];
+        self.model.first_branches(&mut first);
+        first
+    }
 }
 
 /// What may be left of flows and gaps of rigid motions.
@@ -506,7 +454,7 @@ impl Entries {
     }
 
     /// Its determinant, where all components are states.
-    fn determinant<const N: usize>(&self, x: &SVector<f64, N>) -> Option<f64> {
+    fn determinant(&self, x: &[f64]) -> Option<f64> {
         let mut at = [[0.0; 3]; 3];
         for (row, column) in (0..9).map(|place| (place / 3, place % 3)) {
             at[row][column] = x[self.of[row][column]?];

@@ -145,17 +145,73 @@ pub fn branches_by_sign<S: Scalar, const G: usize>(
     first: [bool; G],
     mut guards: impl FnMut(&[bool; G]) -> SVector<S, G>,
 ) -> ([bool; G], SVector<S, G>) {
-    let mut negative = first;
-    let mut value = SVector::repeat(S::from_f64(0.0));
-    for round in 0..=G {
-        value = guards(&negative);
-        let stays = |k: usize| round > 0 && negative[k] && value[k].to_f64() == 0.0;
-        let next = core::array::from_fn(|k| value[k].to_f64() < 0.0 || stays(k));
-        if core::mem::replace(&mut negative, next) == next {
+    let (mut negative, mut value) = (first, SVector::<S, G>::repeat(S::from_f64(0.0)));
+    decide_by_sign(&mut negative, value.as_mut_slice(), |negative, value| {
+        value.copy_from_slice(guards(switches(negative)).as_slice());
+    });
+    (negative, value)
+}
+
+/// The same of any number of switches: `negative` are the first branches, and become those that the signs call for;
+/// `guards` writes the values, which are left in `value`.
+pub(crate) fn decide_by_sign<S: Scalar>(
+    negative: &mut [bool],
+    value: &mut [S],
+    mut guards: impl FnMut(&[bool], &mut [S]),
+) {
+    for round in 0..=negative.len() {
+        guards(negative, value);
+        let mut agree = true;
+        for (negative, value) in negative.iter_mut().zip(&*value) {
+            let value = value.to_f64();
+            let stays = round > 0 && *negative && value == 0.0;
+            let next = value < 0.0 || stays;
+            agree &= core::mem::replace(negative, next) == next;
+        }
+        if agree {
             break;
         }
     }
-    (negative, value)
+}
+
+/// The numbers of all states, or outputs, as a system takes them.
+///
+/// # Panics
+/// They are not `N`.
+#[inline(always)]
+#[must_use]
+pub fn values<const N: usize>(of: &[f64]) -> &SVector<f64, N> {
+    bytemuck::from_bytes(bytemuck::cast_slice(of))
+}
+
+/// The same to be written.
+///
+/// # Panics
+/// They are not `N`.
+#[inline(always)]
+#[must_use]
+pub fn values_mut<const N: usize>(of: &mut [f64]) -> &mut SVector<f64, N> {
+    bytemuck::from_bytes_mut(bytemuck::cast_slice_mut(of))
+}
+
+/// The branches of all switches as a system takes them.
+///
+/// # Panics
+/// They are not `G`.
+#[inline(always)]
+#[must_use]
+pub fn switches<const G: usize>(negative: &[bool]) -> &[bool; G] {
+    negative.try_into().expect("there is a branch for each switch")
+}
+
+/// The same to be written.
+///
+/// # Panics
+/// They are not `G`.
+#[inline(always)]
+#[must_use]
+pub fn switches_mut<const G: usize>(negative: &mut [bool]) -> &mut [bool; G] {
+    negative.try_into().expect("there is a branch for each switch")
 }
 
 /// The branches of the switches at time `t` (s) and state `x`.

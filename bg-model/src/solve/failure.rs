@@ -16,14 +16,14 @@ use crate::solve::finish::Finish;
 /// A run that stopped before its end.
 #[derive(Clone, PartialEq, Error)]
 #[error("{cause}")]
-pub struct Failure<const N: usize, const G: usize> {
+pub struct Failure {
     /// Why.
     pub cause: Cause,
     /// The last good point, the branches there and the statistics up to it.
-    pub last: Box<Finish<N, G>>,
+    pub last: Box<Finish>,
 }
 
-debug_is_display!(Failure<const N: usize, const G: usize>);
+debug_is_display!(Failure);
 
 /// Why a run stopped.
 #[derive(Clone, PartialEq, Error)]
@@ -190,6 +190,22 @@ pub enum BadInput {
         state: &'static str,
         /// The refused tolerance.
         value: f64,
+    },
+    /// There is an absolute tolerance for each state, but of another number of states.
+    #[error("there are {given} absolute tolerances for {states} states; give one for each, or one for all")]
+    AbsoluteTolerances {
+        /// The absolute tolerances.
+        given: usize,
+        /// The states of the system.
+        states: usize,
+    },
+    /// The start is one of a system with another number of states.
+    #[error("the start has {given} states and the system {states}; start from a state of this system")]
+    States {
+        /// The states of the start.
+        given: usize,
+        /// Those of the system.
+        states: usize,
     },
     /// The integrator needs the Taylor series of the system.
     #[error(

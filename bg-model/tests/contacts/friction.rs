@@ -93,8 +93,8 @@ bond_graph! {
 #[derive(Default)]
 struct Events(Vec<(f64, usize, bool)>);
 
-impl<const N: usize, const G: usize> Observer<N, G> for Events {
-    fn event(&mut self, t: f64, _: &SVector<f64, N>, switch: usize, negative: &[bool; G]) {
+impl Observer for Events {
+    fn event(&mut self, t: f64, _: &[f64], switch: usize, negative: &[bool]) {
         self.0.push((t, switch, negative[switch]));
     }
 }
@@ -115,7 +115,7 @@ where
     let finish = integrate(model, &mut method, &start, span, &settings, &mut events);
     let finish = finish.unwrap_or_else(|failure| panic!("{}: {failure}", integrator.name()));
     let mut outputs = SVector::zeros();
-    model.outputs(finish.t, &finish.x, &finish.negative, &mut outputs);
+    model.outputs(finish.t, finish.state(), finish.branches(), &mut outputs);
     (outputs.as_slice().to_vec(), events.0)
 }
 

@@ -54,7 +54,7 @@ fn bricards_mechanism_keeps_its_energy_and_its_joints() {
     let settings = Settings { tolerances: Tolerances::new(1e-10, 1e-11), ..Settings::default() };
     let finish = integrate(&model, &mut Dop853::new(), &start, Span { t0: 0.0, t_end: 10.0 }, &settings, &mut ());
     let finish = finish.unwrap_or_else(|failure| panic!("{failure}"));
-    let (gained, y) = gained(&model, finish.t, &finish.x);
+    let (gained, y) = gained(&model, finish.t, finish.state());
     println!("{} steps, {gained:e} J, {y}", finish.statistics.steps);
     assert!(gained.abs() < 1e-7, "{gained:e}");
     // The gaps of the last joint, whose row about z takes no part.

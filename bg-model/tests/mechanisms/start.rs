@@ -191,7 +191,7 @@ fn an_impulse_leaves_what_angular_momentum_leaves_and_says_what_energy_went() {
     assert!((lost - 2.5 / 11.0).abs() < 1e-14 && (y[4] + lost - 2.5).abs() < 1e-14, "{y} {lost}");
     let span = Span { t0: 0.0, t_end: 1.0 };
     let finish = integrate(&model, &mut Dop853::new(), &start, span, &Settings::default(), &mut ()).unwrap();
-    let late = outputs!(StruckBar, model, finish.x);
+    let late = outputs!(StruckBar, model, *finish.state());
     assert!((late[0] - 100.0 / 11.0).abs() < 1e-6 && late.fixed_rows::<3>(1).amax() < 1e-6, "{late}");
     // A scene has the same, and so has a model in other numbers.
     let planar: PlanarBar = PlanarBar::new(PlanarBarParameters::default()).unwrap();

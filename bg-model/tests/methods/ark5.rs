@@ -20,7 +20,7 @@ const START: [f64; 4] = [0.5, 1.0, 0.2, -0.1];
 
 /// Where the two masses are at t = 2 s, to rounding.
 fn exact(r: f64) -> SVector<f64, 4> {
-    run(&smooth(damped(r)), Radau9::new(), START, 2.0, &settings(1e-13)).0.x
+    *run(&smooth(damped(r)), Radau9::new(), START, 2.0, &settings(1e-13)).0.state()
 }
 
 #[test]

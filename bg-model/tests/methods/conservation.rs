@@ -4,7 +4,7 @@ use crate::problems::*;
 use bg_model::integrator::{Gauss6, Method, Radau5, Rk4};
 use bg_model::nalgebra::{SVector, Vector3};
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
-use bg_model::system::System;
+use bg_model::system::{System, values};
 
 /// The largest relative changes of the `invariants` in the first and the second half of a run, against the start.
 fn changes<M: Method, const N: usize, const K: usize>(
@@ -17,9 +17,9 @@ fn changes<M: Method, const N: usize, const K: usize>(
     let start = SVector::from(start);
     let from = invariants(&start);
     let mut worst = [[0.0_f64; K]; 2];
-    let mut observer = EachSample(|t, x: &SVector<f64, N>, _: &[bool; 0]| {
+    let mut observer = EachSample(|t, x: &[f64], _: &[bool]| {
         let half = &mut worst[usize::from(t > 0.5 * t_end)];
-        for (worst, (now, from)) in half.iter_mut().zip(invariants(x).iter().zip(&from)) {
+        for (worst, (now, from)) in half.iter_mut().zip(invariants(values(x)).iter().zip(&from)) {
             *worst = worst.max((now / from - 1.0).abs());
         }
     });

@@ -144,7 +144,7 @@ fn branches_change_where_the_step_ends_in_which_guards_do() {
             block.outputs(run.time(), run.state(), run.negative(), &mut y);
             assert_eq!(*run.negative(), [y[0] < -0.5, y[0] > 0.5], "at {}", y[0]);
         }
-        (exact.x - run.state()).amax()
+        (&exact.x - run.state()).amax()
     };
     // Each of the branches' changes is late by up to a step, in which a damper takes up to 30 N.
     assert!(exact.statistics.events > 4);

@@ -10,17 +10,17 @@ const STEP: f64 = 1e-3;
 const SPAN: Span = Span { t0: 0.0, t_end: 1.0 };
 
 /// The bits of the two states at the end of a run.
-fn small(method: &mut AnyMethod) -> [u64; 2] {
+fn small(method: &mut AnyMethod) -> SVector<u64, 2> {
     let oscillator: Rate<2, 0> = |_, x, _| [x[1], -x[0] * x[0] * x[0]];
     let start = SVector::from([2.0, 0.0]);
     let finish = integrate(&smooth(oscillator), method, &start, SPAN, &settings(1e-7), &mut ());
-    finish.expect("a smooth system").x.data.0[0].map(f64::to_bits)
+    finish.expect("a smooth system").state::<2>().map(f64::to_bits)
 }
 
 /// The same of four states.
-fn large(method: &mut AnyMethod) -> [u64; 4] {
+fn large(method: &mut AnyMethod) -> SVector<u64, 4> {
     let finish = integrate(&kepler(), method, &kepler_start(), SPAN, &settings(1e-7), &mut ());
-    finish.expect("a smooth system").x.data.0[0].map(f64::to_bits)
+    finish.expect("a smooth system").state::<4>().map(f64::to_bits)
 }
 
 #[test]

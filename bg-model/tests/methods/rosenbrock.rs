@@ -29,9 +29,9 @@ fn both_have_their_order_on_a_nonlinear_system() {
     let start = SVector::from([1.0, 0.0, 0.0, 1.0]);
     let errors =
         |run: &dyn Fn(f64) -> SVector<f64, 4>| [64.0, 128.0, 256.0].map(|parts| (run(turn / parts) - start).norm());
-    let found = orders(&errors(&|step| run(&kepler(), Rodas5p::new(), start, turn, &fixed(step)).0.x));
+    let found = orders(&errors(&|step| *run(&kepler(), Rodas5p::new(), start, turn, &fixed(step)).0.state()));
     assert!(found.iter().all(|order| (4.7..5.6).contains(order)), "{found:?}");
-    let found = orders(&errors(&|step| run(&kepler(), Ros2::new(step), start, turn, &fixed(step)).0.x));
+    let found = orders(&errors(&|step| *run(&kepler(), Ros2::new(step), start, turn, &fixed(step)).0.state()));
     assert!(found.iter().all(|order| (2.0..2.3).contains(order)), "{found:?}");
 }
 

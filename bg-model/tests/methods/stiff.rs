@@ -5,7 +5,6 @@
 
 use crate::problems::*;
 use bg_model::integrator::{Absolute, Method, Radau5, Radau9, Tolerances};
-use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Samples, Settings};
 use bg_model::statistics::Statistics;
 
@@ -30,7 +29,7 @@ fn errors<M: Method, const N: usize>(
     method: M,
     start: [f64; N],
     reference: &[(f64, [f64; N])],
-    tolerances: Tolerances<N>,
+    tolerances: Tolerances,
 ) -> (f64, Statistics) {
     let samples = Samples::At(reference.iter().map(|(t, _)| *t).collect());
     let t_end = reference[reference.len() - 1].0;
@@ -50,7 +49,7 @@ fn robertson<M: Method>(method: M, tolerance: f64) -> (f64, Statistics) {
         let [first, second, third] = [0.04 * x[0], 1e4 * x[1] * x[2], 3e7 * x[1] * x[1]];
         [second - first, first - second - third, third]
     };
-    let absolute = Absolute::PerState(SVector::from([1e-10, 1e-16, 1e-8]) * tolerance.min(1e-3));
+    let absolute = Absolute::PerState([1e-10, 1e-16, 1e-8].map(|of| of * tolerance.min(1e-3)).to_vec());
     errors(&smooth(rate), method, [1.0, 0.0, 0.0], &ROBERTSON, Tolerances { relative: tolerance, absolute })
 }
 

@@ -5,7 +5,7 @@ use bg_model::integrator::{Absolute, Method, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Finish, Observer, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
-use bg_model::system::System;
+use bg_model::system::{System, switches, values};
 
 /// A rate that catches nothing.
 pub type Rate<const N: usize, const G: usize> = fn(f64, &SVector<f64, N>, &[bool; G]) -> [f64; N];
@@ -125,19 +125,19 @@ impl<const N: usize, const G: usize> Record<N, G> {
     }
 }
 
-impl<const N: usize, const G: usize> Observer<N, G> for Record<N, G> {
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
-        self.samples.push((t, *x, *negative));
+impl<const N: usize, const G: usize> Observer for Record<N, G> {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
+        self.samples.push((t, *values(x), *switches(negative)));
     }
-    fn event(&mut self, t: f64, x: &SVector<f64, N>, switch: usize, negative: &[bool; G]) {
-        self.events.push((t, *x, switch, *negative));
+    fn event(&mut self, t: f64, x: &[f64], switch: usize, negative: &[bool]) {
+        self.events.push((t, *values(x), switch, *switches(negative)));
     }
     fn step(&mut self, t: f64, _: f64, _: &Statistics) {
         self.steps.push(t);
     }
 }
 
-pub fn settings<const N: usize>(tolerance: f64) -> Settings<N> {
+pub fn settings(tolerance: f64) -> Settings {
     Settings {
         tolerances: Tolerances { relative: tolerance, absolute: Absolute::Scalar(tolerance) },
         ..Settings::default()
@@ -145,7 +145,7 @@ pub fn settings<const N: usize>(tolerance: f64) -> Settings<N> {
 }
 
 /// Steps of the same size whatever the error.
-pub fn fixed<const N: usize>(step: f64) -> Settings<N> {
+pub fn fixed(step: f64) -> Settings {
     Settings {
         tolerances: Tolerances::new(1.0, 1e10),
         first_step: Some(step),
@@ -161,8 +161,8 @@ pub fn run<Sys, M, const N: usize, const G: usize>(
     mut method: M,
     start: impl Into<SVector<f64, N>>,
     t_end: f64,
-    settings: &Settings<N>,
-) -> (Finish<N, G>, Record<N, G>)
+    settings: &Settings,
+) -> (Finish, Record<N, G>)
 where
     Sys: System<f64, N, G>,
     M: Method,

@@ -110,7 +110,7 @@ fn simultaneous_switches_change_together() {
     let times = record.event_times();
     assert!(times.len() == 2 && times[0] == times[1] && (times[0] - 0.5).abs() < ROUNDING, "{times:?}");
     assert_eq!(record.events[0].3, [false, true]);
-    assert_eq!((finish.negative, finish.statistics.events), ([false, true], 2));
+    assert_eq!((finish.negative, finish.statistics.events), (vec![false, true], 2));
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn a_guard_that_is_zero_at_the_start_is_decided_by_what_follows() {
         let system = switched([|_, x| x[0]], move |t: f64, _: &SVector<f64, 1>, _: &[bool; 1]| [slope + t * curvature]);
         let (finish, record) = run(&system, Dop853::new(), [0.0], 1.0, &settings(1e-8));
         assert_eq!(record.samples[0].2, [negative], "{slope} {curvature}");
-        assert_eq!((finish.negative, finish.statistics.events), ([negative], 0), "{slope} {curvature}");
+        assert_eq!((finish.negative, finish.statistics.events), (vec![negative], 0), "{slope} {curvature}");
     }
 }
 

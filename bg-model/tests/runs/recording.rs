@@ -2,6 +2,7 @@
 
 use bg_model::bond_graph;
 use bg_model::integrator::Dop853;
+use bg_model::mechanism::Mechanism;
 use bg_model::simulation::{EachStep, Part, Recorder, Samples, Settings, Span, integrate};
 use bg_model::system::Model;
 
@@ -20,7 +21,8 @@ fn columns_have_the_names_and_units_of_the_model_in_the_order_asked_for() {
     let start = model.start().expect("nothing has to close");
     let mut steps = 0;
     let parts = [Part::Energy, Part::Outputs, Part::States, Part::Powers];
-    let mut observer = (Recorder::new(&model, &parts), EachStep(|_| steps += 1));
+    let machine = model.machine();
+    let mut observer = (Recorder::new(&*machine, &parts), EachStep(|_| steps += 1));
     let settings = Settings { samples: Samples::Every(0.25), ..Settings::default() };
     let span = Span { t0: 0.0, t_end: 2.0 };
     let finish = integrate(&model, &mut Dop853::new(), &start, span, &settings, &mut observer).expect("the run ends");

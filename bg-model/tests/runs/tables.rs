@@ -61,8 +61,8 @@ fn run<Sys, const N: usize, const G: usize>(
     model: &Sys,
     mut method: AnyMethod,
     t_end: f64,
-    settings: &Settings<N>,
-) -> (Finish<N, G>, Record<N, G>)
+    settings: &Settings,
+) -> (Finish, Record<N, G>)
 where
     Sys: System<f64, N, G>,
 {
@@ -71,12 +71,12 @@ where
     (finish, record)
 }
 
-fn outputs<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, finish: &Finish<N, G>) -> [f64; M]
+fn outputs<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, finish: &Finish) -> [f64; M]
 where
     Mo: Model<f64, N, G, M>,
 {
     let mut y = SVector::<f64, M>::zeros();
-    model.outputs(finish.t, &finish.x, &finish.negative, &mut y);
+    model.outputs(finish.t, finish.state(), finish.branches(), &mut y);
     y.into()
 }
 
@@ -214,7 +214,7 @@ fn rows_beside_the_start_the_end_and_each_other_are_no_obstacle() {
     let times = [1.0, 1.0 + ulp, 1.5, 1.5 + 2.0 * ulp, 2.0 - ulp, 2.0];
     let model = mass(linear(&times, &[0.0, 1e-16, 1.0, 1.0, 2.0, 2.0]), Input::default());
     for t0 in [1.0 - 0.5 * ulp, 1.0, 1.0 + ulp] {
-        let (mut record, span) = (Record::default(), Span { t0, t_end: 2.0 });
+        let (mut record, span) = (Record::<2, 0>::default(), Span { t0, t_end: 2.0 });
         let finish = integrate(&model, &mut Dop853::new(), &SVector::zeros(), span, &settings(1e-6), &mut record);
         let finish = finish.expect("the run ends");
         assert!(finish.t == 2.0 && finish.statistics.rejected <= 1, "{}", finish.statistics);
@@ -249,7 +249,7 @@ fn a_condition_and_samples_see_a_table_as_it_is() {
     let push = linear(&TIMES, &FORCES);
     let condition = |t: f64, _: &SVector<f64, 2>, _: &[bool; 0]| push.value(t) - 4.0;
     let settings = Settings { samples: Samples::Every(0.1), ..settings(1e-6) };
-    let (mut record, span) = (Record::default(), Span { t0: 0.0, t_end: 4.0 });
+    let (mut record, span) = (Record::<2, 0>::default(), Span { t0: 0.0, t_end: 4.0 });
     let start = SVector::zeros();
     let finish = integrate_until(&model, &mut Dop853::new(), &start, span, &settings, condition, &mut record);
     let finish = finish.expect("the run ends");

@@ -105,7 +105,7 @@ impl Integration {
         }
         let step = above_zero("step", self.step)?;
         let rtol = above_zero("rtol", self.rtol)?;
-        let smallest = Tolerances::<0>::SMALLEST_RELATIVE;
+        let smallest = Tolerances::SMALLEST_RELATIVE;
         if !(smallest..1.0).contains(&rtol) {
             let fault = RequestFault::Range(format!("at least {smallest:.1e}, which rounding allows, and below 1"));
             return Err(RequestError { field: "rtol", value: rtol, fault });

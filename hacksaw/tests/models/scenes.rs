@@ -9,7 +9,7 @@ use bg_model::integrator::Integrator;
 use bg_model::mechanism::{Mechanism, MechanismVisitor};
 use bg_model::parameters::Parameters;
 use bg_model::run::{Simulation, sample_times};
-use bg_model::system::Model;
+use bg_model::system::{Model, switches};
 use hacksaw::agreement::{Agreement, Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
 use hacksaw::scenes::Scene;
@@ -172,10 +172,16 @@ fn a_planar_model_written_by_hand_has_the_same_accelerations() {
     };
     let span = bg_model::simulation::Span { t0: 0.0, t_end: 0.5 };
     let mut comparison = planar::Comparison::default();
-    let mut observer = bg_model::simulation::EachSample(|t: f64, x: &_, negative: &[bool; 1]| {
+    let mut observer = bg_model::simulation::EachSample(|t: f64, x: &[f64], negative: &[bool]| {
         // At the start only the weight and the torque act.
         if t > 0.0 {
-            planar::beside(&model, model.parameters(), *x, *negative, &mut comparison);
+            planar::beside(
+                &model,
+                model.parameters(),
+                *bg_model::system::values(x),
+                *switches(negative),
+                &mut comparison,
+            );
         }
     });
     bg_model::simulation::integrate(

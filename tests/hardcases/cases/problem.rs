@@ -7,7 +7,7 @@ use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Observer, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
-use bg_model::system::{Model, System};
+use bg_model::system::{Model, System, switches, values};
 
 /// What a run is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -176,16 +176,16 @@ struct Follower<'a, Sys, F, const N: usize, const G: usize> {
     events: Vec<f64>,
 }
 
-impl<Sys, F, const N: usize, const G: usize> Observer<N, G> for Follower<'_, Sys, F, N, G>
+impl<Sys, F, const N: usize, const G: usize> Observer for Follower<'_, Sys, F, N, G>
 where
     F: Fn(&Sys, f64, &SVector<f64, N>, &[bool; G]) -> Vec<f64>,
 {
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
         let Observed { system, observe, .. } = self.observed;
-        (self.each)(t, observe(system, t, x, negative));
+        (self.each)(t, observe(system, t, values(x), switches(negative)));
     }
 
-    fn event(&mut self, t: f64, _x: &SVector<f64, N>, _switch: usize, _negative: &[bool; G]) {
+    fn event(&mut self, t: f64, _x: &[f64], _switch: usize, _negative: &[bool]) {
         self.events.push(t);
     }
 }

@@ -108,12 +108,12 @@ struct Recorder {
     samples: Vec<(f64, Vec<bool>)>,
 }
 
-impl<const N: usize, const G: usize> Observer<N, G> for Recorder {
-    fn sample(&mut self, t: f64, _: &SVector<f64, N>, negative: &[bool; G]) {
+impl Observer for Recorder {
+    fn sample(&mut self, t: f64, _: &[f64], negative: &[bool]) {
         self.samples.push((t, negative.to_vec()));
     }
 
-    fn event(&mut self, t: f64, _: &SVector<f64, N>, switch: usize, negative: &[bool; G]) {
+    fn event(&mut self, t: f64, _: &[f64], switch: usize, negative: &[bool]) {
         self.events.push(Event { t, switch, negative: negative[switch] });
     }
 }
@@ -139,7 +139,7 @@ where
             Err(failure) => (*failure.last, Some(failure.cause)),
         };
         let Recorder { events, samples } = recorder;
-        let (x, negative) = (last.x.as_slice().to_vec(), last.negative.to_vec());
+        let (x, negative) = (last.x.as_slice().to_vec(), last.negative);
         Run { events, samples, t: last.t, x, negative, statistics: last.statistics, failure }
     }
 }

@@ -30,7 +30,7 @@ impl Instance {
         }
         let (counts, signals) = (self.counts, self.signals.clone());
         let made = self.made()?;
-        let along = made.slopes.along(&*made.machine, &signals, &states, &inputs);
+        let along = made.slopes.along(&made.machine, &signals, &states, &inputs);
         for (&unknown, sensitivity) in unknowns.iter().zip(sensitivity) {
             *sensitivity = match counts.kind(unknown).ok_or(Fault::Reference(unknown))? {
                 Kind::Derivative(index) => along.rates[index],

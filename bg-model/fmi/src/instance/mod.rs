@@ -19,7 +19,7 @@ use bg_model::statistics::Statistics;
 use crate::exported::{Exported, Made};
 use crate::variables::{Counts, Kind, names};
 pub use fault::Fault;
-pub(crate) use machine::{AtStart, Machine, Nominals};
+pub(crate) use machine::{Stood, nominals_at_start};
 pub use saved::Snapshot;
 pub(crate) use signals::Signals;
 pub(crate) use slopes::{InDuals, Slopes};
@@ -395,8 +395,8 @@ impl Instance {
     }
 
     /// The model; it is made where that has not been done with the present parameters.
-    fn machine(&mut self) -> Result<&mut dyn Machine, Fault> {
-        Ok(&mut *self.made()?.machine)
+    fn machine(&mut self) -> Result<&mut Stood, Fault> {
+        Ok(&mut self.made()?.machine)
     }
 
     fn made(&mut self) -> Result<&mut Made, Fault> {

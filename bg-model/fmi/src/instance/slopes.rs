@@ -9,7 +9,7 @@ use bg_model::nalgebra::SVector;
 use bg_model::scalar::Dual;
 use bg_model::system::Model;
 
-use super::machine::Machine;
+use super::machine::Stood;
 use super::signals::Signals;
 
 /// How fast rates, outputs and guards change along a direction.
@@ -23,7 +23,7 @@ pub(crate) struct Along {
 /// A model that knows its derivatives.
 pub(crate) trait Slopes {
     /// Along `states` and `inputs`, where `machine` stands, whose inputs are `signals`.
-    fn along(&self, machine: &dyn Machine, signals: &Signals, states: &[f64], inputs: &[f64]) -> Along;
+    fn along(&self, machine: &Stood, signals: &Signals, states: &[f64], inputs: &[f64]) -> Along;
     /// Another one.
     fn twin(&self) -> Box<dyn Slopes>;
 }
@@ -50,7 +50,7 @@ where
     Mo: Model<Dual, N, G, M>,
 {
     /// Along `states` and so much time.
-    fn changes(&self, machine: &dyn Machine, states: &[f64], time: f64) -> Along {
+    fn changes(&self, machine: &Stood, states: &[f64], time: f64) -> Along {
         let Self(model) = self;
         let (x, branches) = (machine.states(), machine.branches());
         let (t, x) = (Dual::new(machine.time(), time), SVector::from_fn(|row, _| Dual::new(x[row], states[row])));
@@ -74,7 +74,7 @@ impl<Mo, const N: usize, const G: usize, const M: usize> Slopes for OfModel<Mo, 
 where
     Mo: Model<Dual, N, G, M> + Clone + 'static,
 {
-    fn along(&self, machine: &dyn Machine, signals: &Signals, states: &[f64], inputs: &[f64]) -> Along {
+    fn along(&self, machine: &Stood, signals: &Signals, states: &[f64], inputs: &[f64]) -> Along {
         let is_driven = inputs.iter().any(|&slope| slope != 0.0);
         inputs.iter().enumerate().for_each(|(index, &slope)| signals.set_along(index, slope));
         let mut along = self.changes(machine, states, if is_driven { 1.0 } else { 0.0 });

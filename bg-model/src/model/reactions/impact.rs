@@ -1,6 +1,6 @@
 //! Impacts on stops: how the state jumps where something hits one.
 //!
-//! In: a system with stops ([`Impacts`]), the state before, the stops that are reached. Out: the state after, and how
+//! In: a system with stops ([`Impacts`](crate::model::capability::Impacts)), the state before, the stops that are reached. Out: the state after, and how
 //! each stop comes out of it.
 //!
 //! Newton's law: a flow v towards a stop becomes -e v, or leaves faster. Impulses L of the stops, which do not pull,
@@ -15,12 +15,17 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+#[cfg(feature = "std")]
 use nalgebra::SVector;
 
 use super::factors::{DISTINCT, Factors, Matrix};
+#[cfg(feature = "std")]
 use crate::model::capability::Impacts;
+use crate::model::dynamics::Dynamics;
 use crate::model::holding::{Stop, Stops};
 use crate::model::scalar::Scalar;
+#[cfg(feature = "std")]
+use crate::model::system::switches;
 
 /// Flows and impulses that are smaller beside the largest are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -38,6 +43,24 @@ pub(crate) enum After {
     Clear,
     /// What has hit it, or was there, does not move towards it or away.
     Rests,
+}
+
+/// What an impact is calculated from: [`Impacts::impact`], over slices.
+pub(crate) type Impact<'a, S> = dyn Fn(S, &[S], &[bool], &mut [S]) + 'a;
+
+/// That of a system over slices.
+pub(crate) fn impacts_of(system: &dyn Dynamics) -> impl Fn(f64, &[f64], &[bool], &mut [f64]) {
+    |t, x, negative, entries| system.impact(t, x, negative, entries)
+}
+
+/// That of a system whose numbers are in its type.
+#[cfg(feature = "std")]
+pub(crate) fn impacts_in<I, S, const N: usize, const G: usize>(impacts: &I) -> impl Fn(S, &[S], &[bool], &mut [S])
+where
+    I: Impacts<S, N, G>,
+    S: Scalar<Switch = bool>,
+{
+    |t, x, negative, entries| impacts.impact(t, &SVector::from_column_slice(x), switches(negative), entries)
 }
 
 /// An impact, with room for its numbers.
@@ -66,15 +89,11 @@ pub(crate) struct Collision<S> {
 
 impl<S: Scalar<Switch = bool>> Collision<S> {
     /// Room for the impacts of a system.
-    pub fn new<I, const N: usize, const G: usize>(impacts: &I) -> Self
-    where
-        I: Impacts<S, N, G>,
-    {
-        let table = impacts.stops();
+    pub fn new(table: Stops, kept_of_stops: &[f64]) -> Self {
         let (rows, stops, zero) = (table.rows(), table.stops.len(), S::from_f64(0.0));
         let mut dropped = vec![false; table.rigid];
         for &(row, number) in table.closing {
-            dropped[row] = impacts.kept()[number] == 0.0;
+            dropped[row] = kept_of_stops[number] == 0.0;
         }
         Self {
             table,
@@ -106,37 +125,33 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
     /// Lets the state `x` at time `t` (s) jump where the stops whose switches are `closed` are reached. `is_low` says
     /// of a switch whether a rebound is as good as none that rises so far from the stop, in the unit of its
     /// displacement, and whether the accuracy of the run decides that or only rounding. Gives whether it jumps.
-    /// Allocates nothing.
-    pub fn strike<I, const N: usize, const G: usize>(
+    pub fn strike(
         &mut self,
-        impacts: &I,
-        (t, x): (S, &mut SVector<S, N>),
-        negative: &[bool; G],
+        impact: &Impact<'_, S>,
+        (t, x): (S, &mut [S]),
+        negative: &[bool],
         closed: impl Fn(usize) -> bool,
         mut is_low: impl FnMut(usize, f64, bool) -> bool,
-    ) -> bool
-    where
-        I: Impacts<S, N, G>,
-    {
+    ) -> bool {
         let stops = self.table.stops.len();
-        impacts.impact(t, x, negative, &mut self.before);
+        impact(t, x, negative, &mut self.before);
         for k in 0..stops {
             self.closed[k] = closed(self.table.stops[k].switch);
             let (speed, back) = (self.speed(k), self.restitution(k) * self.speed(k));
             self.plastic[k] = speed <= 0.0 || back <= self.rest(k).max(0.0);
             self.kept[k] = false;
         }
-        let start = *x;
+        let start = x.to_vec();
         for _ in 0..=stops {
-            *x = start;
-            let mut clear = *negative;
-            self.solve(impacts, (t, x), negative);
+            x.copy_from_slice(&start);
+            let mut clear = negative.to_vec();
+            self.solve(impact, (t, x), negative);
             for k in 0..stops {
                 self.outcome[k] = self.comes_out(k);
                 clear[self.table.stops[k].switch] |= self.outcome[k] == After::Clear;
             }
             // The loads when it leaves, for how far it does.
-            impacts.impact(t, x, &clear, &mut self.after);
+            impact(t, x, &clear, &mut self.after);
             let mut is_settled = true;
             for k in (0..stops).filter(|&k| self.outcome[k] == After::Clear) {
                 if is_low(self.table.stops[k].switch, self.rise(k), self.rest(k) < 0.0) {
@@ -153,17 +168,14 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
 
     /// The state `x` at time `t` (s) with momenta by which in one unit of time everything moves back by as far as the
     /// stops are passed, `by` of their switches, while the rigid joints hold.
-    pub fn displaced<I, const N: usize, const G: usize>(
+    pub fn displaced(
         &mut self,
-        impacts: &I,
-        (t, x): (S, &SVector<S, N>),
-        negative: &[bool; G],
+        impact: &Impact<'_, S>,
+        (t, x): (S, &[S]),
+        negative: &[bool],
         by: impl Fn(usize) -> f64,
-    ) -> SVector<S, N>
-    where
-        I: Impacts<S, N, G>,
-    {
-        impacts.impact(t, x, negative, &mut self.after);
+    ) -> Vec<S> {
+        impact(t, x, negative, &mut self.after);
         self.target.copy_from_slice(&self.after[..self.table.rows()]);
         for (k, stop) in self.table.stops.iter().enumerate() {
             let passed = by(stop.switch);
@@ -172,7 +184,7 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
             self.target[row] = self.target[row] - S::from_f64(passed);
         }
         self.find();
-        let mut moved = *x;
+        let mut moved = x.to_vec();
         for (row, &part) in self.part.iter().enumerate() {
             for (&state, &by) in self.table.moved.iter().zip(self.moves(&self.after, row)) {
                 moved[state] = moved[state] - by * part;
@@ -192,16 +204,9 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
         self.of_stop(&self.after, 2, k)
     }
 
-    /// Finds the loads at this state and in these branches. Allocates nothing.
-    pub fn loads<I, const N: usize, const G: usize>(
-        &mut self,
-        impacts: &I,
-        (t, x): (S, &SVector<S, N>),
-        negative: &[bool; G],
-    ) where
-        I: Impacts<S, N, G>,
-    {
-        impacts.impact(t, x, negative, &mut self.after);
+    /// Finds the loads at this state and in these branches.
+    pub fn loads(&mut self, impact: &Impact<'_, S>, (t, x): (S, &[S]), negative: &[bool]) {
+        impact(t, x, negative, &mut self.after);
     }
 
     /// The flow of a row.
@@ -257,14 +262,7 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
     }
 
     /// Finds the impulses and changes the momenta by them.
-    fn solve<I, const N: usize, const G: usize>(
-        &mut self,
-        impacts: &I,
-        (t, x): (S, &mut SVector<S, N>),
-        negative: &[bool; G],
-    ) where
-        I: Impacts<S, N, G>,
-    {
+    fn solve(&mut self, impact: &Impact<'_, S>, (t, x): (S, &mut [S]), negative: &[bool]) {
         let (zero, rigid, scale) = (S::from_f64(0.0), self.table.rigid, self.scale());
         for k in 0..self.table.stops.len() {
             let flow = self.before[rigid + k];
@@ -281,17 +279,17 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
         }
         let mut error = f64::INFINITY;
         for _ in 0..ROUNDS {
-            let before = *x;
+            let before = x.to_vec();
             for (row, &part) in self.part.iter().enumerate() {
                 for (&state, &by) in self.table.moved.iter().zip(self.moves(&self.after, row)) {
                     x[state] = x[state] - by * part;
                 }
             }
-            impacts.impact(t, x, negative, &mut self.after);
+            impact(t, x, negative, &mut self.after);
             let left = self.left();
             if left >= 0.5 * error {
-                *x = before;
-                impacts.impact(t, x, negative, &mut self.after);
+                x.copy_from_slice(&before);
+                impact(t, x, negative, &mut self.after);
                 break;
             }
             self.total.iter_mut().zip(&self.part).for_each(|(total, &part)| *total = *total + part);
@@ -358,7 +356,7 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
     }
 
     /// Changes the integrals by the impulses times the means of what these move before and after.
-    fn integrate<const N: usize>(&self, x: &mut SVector<S, N>) {
+    fn integrate(&self, x: &mut [S]) {
         let (half, first) = (S::from_f64(0.5), self.table.moved.len());
         for (row, &total) in self.total.iter().enumerate() {
             let before = &self.moves(&self.before, row)[first..];

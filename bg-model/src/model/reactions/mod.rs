@@ -27,7 +27,9 @@ use crate::model::nearest::{lifted, nearest};
 use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign};
 use factors::{Factors, Matrix};
-pub(crate) use impact::{After, Collision};
+#[cfg(feature = "std")]
+pub(crate) use impact::impacts_in;
+pub(crate) use impact::{After, Collision, impacts_of};
 #[cfg(feature = "std")]
 pub(crate) use monitor::LoopsInLanes;
 pub(crate) use monitor::{Broken, LoopMonitor};
@@ -64,11 +66,6 @@ impl<S: Scalar> Hold<S> {
         J: Joints<S, N, G>,
     {
         joints.hold(t, x, negative, &mut self.entries);
-    }
-
-    /// The numbers by what they are.
-    pub fn now(&self) -> HeldNow<'_, S> {
-        self.held.read(&self.entries)
     }
 
     /// The flows of rigid motions, then of compliant ones.
@@ -215,7 +212,11 @@ where
     J: Joints<S, N, G>,
     S: Scalar,
 {
-    let (held, kept) = (joints.held(), joints.kept());
+    dropped_of(&joints.held(), joints.kept())
+}
+
+/// The same of what they hold and of what is kept.
+fn dropped_of(held: &Held, kept: &[f64]) -> Vec<bool> {
     let mut dropped = vec![false; held.rigid.len()];
     for &(row, number) in held.closing {
         dropped[row] = kept[number] == 0.0;

@@ -9,11 +9,16 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+#[cfg(feature = "std")]
 use nalgebra::SVector;
 
+#[cfg(feature = "std")]
+use super::dropped;
 use super::factors::Factors;
-use super::{Hold, dropped, slipping};
+use super::{Hold, dropped_of, slipping};
+#[cfg(feature = "std")]
 use crate::model::capability::Joints;
+use crate::model::dynamics::Dynamics;
 use crate::model::holding::{Redundancy, Slipping};
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
@@ -56,26 +61,16 @@ pub(crate) struct LoopMonitor {
 
 impl LoopMonitor {
     /// Room for what is held; none where no joint closes a loop.
-    pub fn new<J, const N: usize, const G: usize>(joints: &J) -> Option<Self>
-    where
-        J: Joints<f64, N, G>,
-    {
-        let (held, dropped) = (joints.held(), dropped(joints));
+    pub fn new(system: &dyn Dynamics) -> Option<Self> {
+        let held = system.held()?;
+        let dropped = dropped_of(&held, system.kept());
         let factors = Factors::new(dropped.len());
         (!held.closing.is_empty()).then(|| Self { hold: Hold::new(held), factors, dropped, was_near: false })
     }
 
     /// Looks at time `t` (s) and state `x`. Allocates only where something is wrong.
-    pub fn check<J, const N: usize, const G: usize>(
-        &mut self,
-        joints: &J,
-        (t, x): (f64, &SVector<f64, N>),
-        negative: &[bool; G],
-    ) -> Option<Broken>
-    where
-        J: Joints<f64, N, G>,
-    {
-        self.hold.read(joints, t, x, negative);
+    pub fn check(&mut self, system: &dyn Dynamics, (t, x): (f64, &[f64]), negative: &[bool]) -> Option<Broken> {
+        system.hold(t, x, negative, &mut self.hold.entries);
         self.torn().map(Broken::Torn).or_else(|| self.singular().map(Broken::Singular))
     }
 
@@ -86,17 +81,9 @@ impl LoopMonitor {
     }
 
     /// Whether the pose at time `t` (s) and state `x` is in the neighbourhood of a singular one.
-    pub fn is_around<J, const N: usize, const G: usize>(
-        &mut self,
-        joints: &J,
-        (t, x): (f64, &SVector<f64, N>),
-        negative: &[bool; G],
-    ) -> bool
-    where
-        J: Joints<f64, N, G>,
-    {
+    pub fn is_around(&mut self, system: &dyn Dynamics, (t, x): (f64, &[f64]), negative: &[bool]) -> bool {
         let Self { hold, factors, dropped, .. } = self;
-        hold.read(joints, t, x, negative);
+        system.hold(t, x, negative, &mut hold.entries);
         factors.factor_where(hold.matrix(), |row, pivot, mobility| dropped[row] || pivot <= AROUND * mobility);
         (0..dropped.len()).any(|row| factors.follows(row) && !dropped[row])
     }

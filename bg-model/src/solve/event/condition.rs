@@ -5,13 +5,10 @@
 //! of the run, or a little later where it is zero there by rounding; as long as it stays zero it has no side and ends
 //! nothing.
 
-use nalgebra::SVector;
-
-use super::guarded::Guarded;
+use super::guarded::{End, Guarded};
 use super::noise::larger;
-use super::{CERTAIN, EventMonitor, check_finite, clearance, read};
-use crate::model::system::System;
-use crate::solve::integrator::{Method, Point};
+use super::{CERTAIN, EventMonitor, check_finite, clearance};
+use crate::solve::integrator::Point;
 use crate::solve::stepper::Stepper;
 
 /// Where in a step a run ends.
@@ -23,115 +20,54 @@ pub(crate) enum Stop {
     AtEnd,
 }
 
-/// What may end a run. Each fails with the value of the condition where that is not finite.
-pub(crate) trait Condition<const N: usize, const G: usize> {
-    /// Finds the side at the start of the run, by steps that are small compared with `reach` (s).
-    fn begin<Sys, M>(&mut self, _stepper: &mut Stepper<'_, Sys, M, N, G>, _reach: f64) -> Result<(), f64>
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        Ok(())
-    }
+/// A function of time (s), state and branches.
+pub(crate) type Condition<'a> = dyn FnMut(f64, &[f64], &[bool]) -> f64 + 'a;
 
-    /// Looks for the end of the run in the step just made, whose end has been projected and whose rates are known at
-    /// both ends; `is_at_event` where it ends with an event.
-    fn inspect<Sys, M>(
-        &mut self,
-        _stepper: &mut Stepper<'_, Sys, M, N, G>,
-        _is_at_event: bool,
-    ) -> Result<Option<Stop>, f64>
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        Ok(None)
-    }
-
-    /// The end of the step becomes the start of the next one; the branches stay.
-    fn advance(&mut self) {}
-
-    /// The branches at the start of the next step are new: whether the condition has jumped to the other side.
-    fn jumps<Sys, M>(&mut self, _stepper: &mut Stepper<'_, Sys, M, N, G>, _reach: f64) -> Result<bool, f64>
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        Ok(false)
-    }
-}
-
-/// No condition: only the end of the span ends the run.
-#[derive(Debug)]
-pub(crate) struct Never;
-
-impl<const N: usize, const G: usize> Condition<N, G> for Never {}
-
-/// A condition and what is known of it.
-#[derive(Debug)]
-pub(crate) struct Located<C> {
-    condition: C,
-    monitor: EventMonitor<1>,
+/// A condition and what is known of it. What looks at it fails with its value where that is not finite.
+pub(crate) struct Located<'a> {
+    condition: &'a mut Condition<'a>,
+    monitor: EventMonitor,
     /// Whether it is on its negative side; nothing as long as it stays zero.
     side: Option<bool>,
 }
 
-impl<C> Located<C> {
-    pub fn new(condition: C) -> Self {
-        Self { condition, monitor: EventMonitor::new(), side: None }
+impl<'a> Located<'a> {
+    pub fn new(condition: &'a mut Condition<'a>) -> Self {
+        Self { condition, monitor: EventMonitor::new(1), side: None }
     }
 
     /// The step with the condition as its guard.
-    fn on<'s, 'a, Sys, M, const N: usize, const G: usize>(
-        &'s mut self,
-        stepper: &'s mut Stepper<'a, Sys, M, N, G>,
-    ) -> (&'s mut EventMonitor<1>, Conditional<'s, 'a, Sys, M, C, N, G>) {
+    fn on<'s>(&'s mut self, stepper: &'s mut Stepper<'a>) -> (&'s mut EventMonitor, Conditional<'s, 'a>) {
         let Self { condition, monitor, side } = self;
-        (monitor, Conditional { stepper, condition, is_negative: side.unwrap_or(false) })
+        (monitor, Conditional { stepper, condition: &mut **condition, is_negative: [side.unwrap_or(false)] })
     }
-}
 
-impl<C, const N: usize, const G: usize> Condition<N, G> for Located<C>
-where
-    C: FnMut(f64, &SVector<f64, N>, &[bool; G]) -> f64,
-{
-    fn begin<Sys, M>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, reach: f64) -> Result<(), f64>
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    /// Finds the side at the start of the run, by steps that are small compared with `reach` (s).
+    pub fn begin(&mut self, stepper: &mut Stepper<'a>, reach: f64) -> Result<(), f64> {
         let (monitor, mut step) = self.on(stepper);
-        monitor.read_start(&mut step, reach);
-        check_finite(&monitor.start.value).map_err(|(_, value)| value)?;
-        let (start, value) = (*step.start(), monitor.start.value);
-        self.side = if value[0].abs() > CERTAIN * rounding(monitor, &mut step, &start, value, monitor.start.slope[0]) {
-            Some(value[0] < 0.0)
+        let value = value_at_start(monitor, &mut step, reach)?;
+        let rounding = rounding(monitor, &mut step, End::Start, value, monitor.start.slope[0]);
+        self.side = if value.abs() > CERTAIN * rounding {
+            Some(value < 0.0)
         } else {
             // What a run that ended here before has left.
-            monitor.leave(0, value[0]);
+            monitor.leave(0, value);
             monitor.probe(&mut step, &[true], reach)[0]
         };
         Ok(())
     }
 
-    fn inspect<Sys, M>(
-        &mut self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        is_at_event: bool,
-    ) -> Result<Option<Stop>, f64>
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    /// Looks for the end of the run in the step just made, whose end has been projected and whose rates are known at
+    /// both ends; `is_at_event` where it ends with an event.
+    pub fn inspect(&mut self, stepper: &mut Stepper<'a>, is_at_event: bool) -> Result<Option<Stop>, f64> {
         let is_undecided = self.side.is_none();
         let (monitor, mut step) = self.on(stepper);
         if is_undecided {
-            let (end, h) = (*step.end(), step.size());
-            monitor.end = read(&mut step, end.t, &end.x, &end.rate, h);
+            monitor.read_end(&mut step);
             check_finite(&monitor.end.value).map_err(|(_, value)| value)?;
-            let value = monitor.end.value;
-            let is_certain = value[0].abs() > CERTAIN * monitor.noise(&mut step, end.t, &end.x, &value)[0];
-            self.side = is_certain.then_some(value[0] < 0.0);
+            let value = monitor.end.value[0];
+            let is_certain = value.abs() > CERTAIN * monitor.noise_of(&mut step, End::End, &[value])[0];
+            self.side = is_certain.then_some(value < 0.0);
             return Ok(None);
         }
         Ok(match monitor.inspect(&mut step).map_err(|(_, value)| value)? {
@@ -141,83 +77,78 @@ where
         })
     }
 
-    fn advance(&mut self) {
+    /// The end of the step becomes the start of the next one; the branches stay.
+    pub fn advance(&mut self) {
         self.monitor.advance();
     }
 
-    fn jumps<Sys, M>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, reach: f64) -> Result<bool, f64>
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    /// The branches at the start of the next step are new: whether the condition has jumped to the other side.
+    pub fn jumps(&mut self, stepper: &mut Stepper<'a>, reach: f64) -> Result<bool, f64> {
         let side = self.side;
         let (monitor, mut step) = self.on(stepper);
         monitor.forget();
-        monitor.read_start(&mut step, reach);
-        check_finite(&monitor.start.value).map_err(|(_, value)| value)?;
-        let (start, value) = (*step.start(), monitor.start.value);
-        let noise = monitor.noise(&mut step, start.t, &start.x, &value)[0];
-        Ok(side.is_some_and(|negative| clearance(value[0], negative) < -noise))
+        let value = value_at_start(monitor, &mut step, reach)?;
+        let noise = monitor.noise_of(&mut step, End::Start, &[value])[0];
+        Ok(side.is_some_and(|negative| clearance(value, negative) < -noise))
     }
+}
+
+/// Reads the condition at the start of the step.
+fn value_at_start(monitor: &mut EventMonitor, step: &mut dyn Guarded, reach: f64) -> Result<f64, f64> {
+    monitor.read_start(step, reach);
+    check_finite(&monitor.start.value).map_err(|(_, value)| value)?;
+    Ok(monitor.start.value[0])
 }
 
 /// Whether the condition has come from its side to zero, to rounding, at the end of a step: at an event it may stay
 /// there.
-fn arrives<const N: usize>(monitor: &EventMonitor<1>, step: &mut impl Guarded<N, 1>) -> bool {
-    let (end, negative) = (*step.end(), step.negative()[0]);
-    let (from, to) = (monitor.start.value[0], monitor.end.value);
-    let rounding = rounding(monitor, step, &end, to, monitor.end.slope[0]);
-    to[0].abs() <= rounding && clearance(from, negative) > CERTAIN * rounding
+fn arrives(monitor: &EventMonitor, step: &mut dyn Guarded) -> bool {
+    let (from, to, negative) = (monitor.start.value[0], monitor.end.value[0], step.negative()[0]);
+    let rounding = rounding(monitor, step, End::End, to, monitor.end.slope[0]);
+    to.abs() <= rounding && clearance(from, negative) > CERTAIN * rounding
 }
 
-/// How far from zero the condition may be by rounding at a point where it is at zero, of the states or of the time.
-fn rounding<const N: usize>(
-    monitor: &EventMonitor<1>,
-    step: &mut impl Guarded<N, 1>,
-    at: &Point<N>,
-    value: SVector<f64, 1>,
-    slope: f64,
-) -> f64 {
-    let noise = monitor.noise(step, at.t, &at.x, &value)[0];
-    larger(4.0 * f64::EPSILON * (at.t * slope).abs(), noise)
+/// How far from zero the condition may be by rounding at an end of the step where it is at zero, of the states or of
+/// the time.
+fn rounding(monitor: &EventMonitor, step: &mut dyn Guarded, end: End, value: f64, slope: f64) -> f64 {
+    let t = step.point(end).t;
+    let noise = monitor.noise_of(step, end, &[value])[0];
+    larger(4.0 * f64::EPSILON * (t * slope).abs(), noise)
 }
 
 /// A step with the condition as its only guard; the branches of the switches stay.
-struct Conditional<'s, 'a, Sys, M, C, const N: usize, const G: usize> {
-    stepper: &'s mut Stepper<'a, Sys, M, N, G>,
-    condition: &'s mut C,
-    is_negative: bool,
+struct Conditional<'s, 'a> {
+    stepper: &'s mut Stepper<'a>,
+    condition: &'s mut Condition<'a>,
+    is_negative: [bool; 1],
 }
 
-impl<Sys, M, C, const N: usize, const G: usize> Guarded<N, 1> for Conditional<'_, '_, Sys, M, C, N, G>
-where
-    Sys: System<f64, N, G>,
-    M: Method,
-    C: FnMut(f64, &SVector<f64, N>, &[bool; G]) -> f64,
-{
-    fn start(&self) -> &Point<N> {
-        self.stepper.start()
-    }
-
-    fn end(&self) -> &Point<N> {
-        self.stepper.end()
+impl Guarded for Conditional<'_, '_> {
+    fn point(&self, end: End) -> &Point {
+        self.stepper.point(end)
     }
 
     fn size(&self) -> f64 {
         self.stepper.size()
     }
 
-    fn negative(&self) -> [bool; 1] {
-        [self.is_negative]
+    fn negative(&self) -> &[bool] {
+        &self.is_negative
     }
 
-    fn guards(&mut self, t: f64, x: &SVector<f64, N>) -> SVector<f64, 1> {
+    fn read(&mut self, t: f64, x: &[f64], guards: &mut [f64]) {
         self.stepper.statistics.guard_evaluations += 1;
-        SVector::from([(self.condition)(t, x, &self.stepper.negative)])
+        guards[0] = (self.condition)(t, x, &self.stepper.negative);
     }
 
-    fn dense(&mut self, theta: f64) -> SVector<f64, N> {
-        self.stepper.dense(theta)
+    fn read_end(&mut self, end: End, guards: &mut [f64]) {
+        self.stepper.statistics.guard_evaluations += 1;
+        let Point { t, x, .. } = self.stepper.point(end);
+        guards[0] = (self.condition)(*t, x.as_slice(), &self.stepper.negative);
+    }
+
+    fn dense(&mut self, theta: f64, x: &mut [f64]) {
+        Guarded::dense(self.stepper, theta, x);
     }
 
     fn resize(&mut self, h: f64) {

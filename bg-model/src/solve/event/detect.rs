@@ -4,13 +4,14 @@
 //! the middle, are looked at in every step; the middle state is that of the cubic Hermite polynomial, so this costs
 //! three evaluations of the guards and none of the rate. Only where that raises a suspicion the dense output is asked.
 
-use nalgebra::SVector;
+use alloc::vec;
+use alloc::vec::Vec;
 
-use super::guarded::Guarded;
+use super::guarded::{End, Guarded};
 use super::locate::{Found, Shortening};
 use super::minimum::minimum;
 use super::noise::larger;
-use super::{Crossing, EventMonitor, Reading, check_finite, clearance, read};
+use super::{Crossing, EventMonitor, Reading, check_finite, clearance};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::hermite;
 
@@ -70,14 +71,11 @@ fn smaller(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
-impl<const G: usize> EventMonitor<G> {
+impl EventMonitor {
     /// Looks for events in the step just made, whose end has been projected and whose rates are known at both ends.
     ///
     /// Shortens the step to the first event. Fails with the first guard that is not finite.
-    pub fn inspect<const N: usize>(
-        &mut self,
-        step: &mut impl Guarded<N, G>,
-    ) -> Result<Option<Crossing<G>>, (usize, f64)> {
+    pub fn inspect(&mut self, step: &mut dyn Guarded) -> Result<Option<Crossing>, (usize, f64)> {
         Ok(self.look(step)?.map(|found| match found {
             Found::AtStart(crossing) => crossing,
             Found::Inside(shortening) => self.shorten(step, shortening),
@@ -85,11 +83,7 @@ impl<const G: usize> EventMonitor<G> {
     }
 
     /// Shortens the step to its first event.
-    pub fn shorten<const N: usize>(
-        &mut self,
-        step: &mut impl Guarded<N, G>,
-        mut shortening: Shortening<G>,
-    ) -> Crossing<G> {
+    pub fn shorten(&mut self, step: &mut dyn Guarded, mut shortening: Shortening) -> Crossing {
         loop {
             // The last attempt may be of this size.
             if step.size() != shortening.size() {
@@ -102,26 +96,26 @@ impl<const G: usize> EventMonitor<G> {
     }
 
     /// Looks for events in the step just made, as [`EventMonitor::inspect`] does, but leaves it as it is.
-    pub fn look<const N: usize>(&mut self, step: &mut impl Guarded<N, G>) -> Result<Option<Found<G>>, (usize, f64)> {
-        if G == 0 {
+    pub fn look(&mut self, step: &mut dyn Guarded) -> Result<Option<Found>, (usize, f64)> {
+        if self.guards() == 0 {
             return Ok(None);
         }
-        let (end, h) = (*step.end(), step.size());
-        self.end = read(step, end.t, &end.x, &end.rate, h);
+        let h = step.size();
+        self.read_end(step);
         check_finite(&self.end.value)?;
-        let mut x = SVector::<f64, N>::zeros();
-        hermite(step.start().borrowed(), h, end.borrowed(), 0.5, x.as_mut_slice());
-        let middle = step.start().t + 0.5 * h;
-        let middle = step.guards(middle, &x);
+        // In the middle.
+        let [start, end] = [End::Start, End::End].map(|end| step.point(end).borrowed());
+        hermite(start, h, end, 0.5, &mut self.state);
+        let middle = start.t + 0.5 * h;
+        step.read(middle, &self.state, &mut self.middle);
         // As long as the noise is not known it counts as none: there are only more suspects.
-        if !self.suspects(step.negative(), &middle, h).contains(&true) {
+        if !(0..self.guards()).any(|k| self.is_suspect(k, step.negative()[k], self.middle[k], h)) {
             return Ok(None);
         }
-        let (start, value) = (*step.start(), self.start.value);
-        self.start.noise = self.noise(step, start.t, &start.x, &value);
-        let value = self.end.value;
-        self.end.noise = self.noise(step, end.t, &end.x, &value);
-        let suspects = self.suspects(step.negative(), &middle, h);
+        self.start.noise = self.noise_of(step, End::Start, &self.start.value);
+        self.end.noise = self.noise_of(step, End::End, &self.end.value);
+        let is_suspect = |k: usize| self.is_suspect(k, step.negative()[k], self.middle[k], h);
+        let suspects: Vec<bool> = (0..self.guards()).map(is_suspect).collect();
         if !suspects.contains(&true) {
             return Ok(None);
         }
@@ -133,19 +127,15 @@ impl<const G: usize> EventMonitor<G> {
     /// whether they do, which counts three evaluations, as [`EventMonitor::inspect`] does. Nothing changes where they
     /// may not.
     #[cfg(feature = "std")]
-    pub fn pass(
-        &mut self,
-        negative: [bool; G],
-        end: [SVector<f64, G>; 2],
-        middle: &SVector<f64, G>,
-        h: f64,
-        is_clear: bool,
-    ) -> bool {
+    pub fn pass(&mut self, negative: &[bool], end: [&[f64]; 2], middle: &[f64], h: f64, is_clear: bool) -> bool {
         let [value, slope] = end;
-        self.end = Reading { value, slope, noise: [0.0; G] };
+        self.end.value.copy_from_slice(value);
+        self.end.slope.copy_from_slice(slope);
+        self.end.noise.fill(0.0);
         // What is known to be noisy at the start changes the question.
-        let is_clear = is_clear && self.start.noise == [0.0; G];
-        if !is_clear && (check_finite(&value).is_err() || self.suspects(negative, middle, h).contains(&true)) {
+        let is_clear = is_clear && self.start.noise.iter().all(|noise| *noise == 0.0);
+        let mut suspects = (0..self.guards()).map(|k| self.is_suspect(k, negative[k], middle[k], h));
+        if !is_clear && (check_finite(value).is_err() || suspects.any(|is_suspect| is_suspect)) {
             return false;
         }
         self.advance();
@@ -154,29 +144,28 @@ impl<const G: usize> EventMonitor<G> {
 
     /// The guards' values and slopes (per s) at the start of the step.
     #[cfg(feature = "std")]
-    pub fn at_start(&self) -> [SVector<f64, G>; 2] {
-        [self.start.value, self.start.slope]
+    pub fn at_start(&self) -> [&[f64]; 2] {
+        [&self.start.value, &self.start.slope]
     }
 
     /// Takes these over, of a start that steps have led to in which all guards kept to their sides.
     #[cfg(feature = "std")]
-    pub fn take_start(&mut self, [value, slope]: [SVector<f64, G>; 2]) {
-        (self.start.value, self.start.slope) = (value, slope);
+    pub fn take_start(&mut self, [value, slope]: [&[f64]; 2]) {
+        self.start.value.copy_from_slice(value);
+        self.start.slope.copy_from_slice(slope);
     }
 
     /// Whether nothing is known of the guards but what they are at the start of the step: no noise there, nothing that
     /// events have left.
     #[cfg(feature = "std")]
     pub fn is_plain(&self) -> bool {
-        self.start.noise == [0.0; G] && self.remainder == [0.0; G]
+        self.start.noise.iter().chain(&self.remainder).all(|left| *left == 0.0)
     }
 
-    /// The guards that are on the wrong side at the end of the step or may have been in it.
-    fn suspects(&self, negative: [bool; G], middle: &SVector<f64, G>, h: f64) -> [bool; G] {
-        core::array::from_fn(|k| {
-            let is_wrong = clearance(self.end.value[k], negative[k]) < -self.end.noise[k];
-            is_wrong || self.is_near(k, negative[k], middle[k], h)
-        })
+    /// Whether guard `k` is on the wrong side at the end of the step or may have been in it.
+    fn is_suspect(&self, k: usize, negative: bool, middle: f64, h: f64) -> bool {
+        let is_wrong = clearance(self.end.value[k], negative) < -self.end.noise[k];
+        is_wrong || self.is_near(k, negative, middle, h)
     }
 
     /// Whether guard `k` comes so near to zero in the step that it may dip to the wrong side and come back.
@@ -205,28 +194,22 @@ impl<const G: usize> EventMonitor<G> {
     }
 
     /// The course of the suspects by the dense output; the other guards are clear.
-    fn courses<const N: usize>(&self, step: &mut impl Guarded<N, G>, suspects: &[bool; G]) -> [Course; G] {
-        let mut values = [self.start.value; PARTS + 1];
-        for (part, value) in values.iter_mut().enumerate().take(PARTS).skip(1) {
-            *value = step.dense_guards(part as f64 / PARTS as f64);
-        }
-        values[PARTS] = self.end.value;
-        core::array::from_fn(|k| if suspects[k] { self.course(step, k, &values) } else { Course::Clear })
+    fn courses(&self, step: &mut dyn Guarded, suspects: &[bool]) -> Vec<Course> {
+        let mut values = vec![self.start.value.clone()];
+        values.extend((1..PARTS).map(|part| step.dense_guards(part as f64 / PARTS as f64)));
+        values.push(self.end.value.clone());
+        let of = |k: usize| if suspects[k] { self.course(step, k, &values) } else { Course::Clear };
+        (0..suspects.len()).map(of).collect()
     }
 
     /// The course of guard `k`, whose values at the parts of the step are known.
-    fn course<const N: usize>(
-        &self,
-        step: &mut impl Guarded<N, G>,
-        k: usize,
-        values: &[SVector<f64, G>; PARTS + 1],
-    ) -> Course {
-        let clearances = values.map(|value| clearance(value[k], step.negative()[k]));
+    fn course(&self, step: &mut dyn Guarded, k: usize, values: &[Vec<f64>]) -> Course {
+        let negative = step.negative()[k];
+        let clearances: Vec<f64> = values.iter().map(|value| clearance(value[k], negative)).collect();
         let at = |part: usize| (part as f64 / PARTS as f64, clearances[part]);
         let wrong = (1..=PARTS).map(at).find(|place| self.is_wrong(step, k, *place));
         // Every minimum in front of that may reach the wrong side between two parts.
-        let negative = step.negative()[k];
-        let falls = |reading: &Reading<G>| clearance(reading.slope[k], negative) < 0.0;
+        let falls = |reading: &Reading| clearance(reading.slope[k], negative) < 0.0;
         let is_minimum = |part: &usize| {
             let is_below = |other: usize| clearances[*part] <= clearances[other];
             match *part {
@@ -251,30 +234,30 @@ impl<const G: usize> EventMonitor<G> {
     }
 
     /// Whether the clearance of guard `k` at this part of the step is negative by more than rounding.
-    fn is_wrong<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, (part, clearance): (f64, f64)) -> bool {
+    fn is_wrong(&self, step: &mut dyn Guarded, k: usize, (part, clearance): (f64, f64)) -> bool {
         clearance < 0.0 && clearance < -self.noise_inside(step, k, part)
     }
 
     /// Whether it is positive by more than rounding.
-    fn is_right<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, (part, clearance): (f64, f64)) -> bool {
+    fn is_right(&self, step: &mut dyn Guarded, k: usize, (part, clearance): (f64, f64)) -> bool {
         clearance > 0.0 && clearance > self.noise_inside(step, k, part)
     }
 
     /// The rounding error of guard `k` at this part of the step, by the dense output.
-    pub(super) fn noise_inside<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, part: f64) -> f64 {
+    pub(super) fn noise_inside(&self, step: &mut dyn Guarded, k: usize, part: f64) -> f64 {
         if part == 0.0 {
             return self.start.noise[k];
         }
         if part == 1.0 {
             return self.end.noise[k];
         }
-        let (t, x) = (step.start().t + part * step.size(), step.dense(part));
+        let (t, x) = step.inside(part);
         let value = step.guards(t, &x);
         self.noise(step, t, &x, &value)[k]
     }
 
     /// The lowest clearance of guard `k` near the part `near` of the step; stops on the wrong side.
-    fn lowest<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, near: f64) -> (f64, f64) {
+    fn lowest(&self, step: &mut dyn Guarded, k: usize, near: f64) -> (f64, f64) {
         let width = 1.0 / PARTS as f64;
         let (low, high) = ((near - width).max(0.0), (near + width).min(1.0));
         let enough = -self.noise_inside(step, k, near);
@@ -282,12 +265,7 @@ impl<const G: usize> EventMonitor<G> {
     }
 
     /// The course of guard `k` that starts at zero and is on the wrong side at `wrong`.
-    fn bracket_near_start<const N: usize>(
-        &self,
-        step: &mut impl Guarded<N, G>,
-        k: usize,
-        mut wrong: (f64, f64),
-    ) -> Course {
+    fn bracket_near_start(&self, step: &mut dyn Guarded, k: usize, mut wrong: (f64, f64)) -> Course {
         for _ in 0..HALVINGS {
             let part = 0.5 * wrong.0;
             let near = clearance(step.dense_guards(part)[k], step.negative()[k]);

@@ -8,13 +8,12 @@
 //! A rebound is none where it rises less than [`LOW`] of what the tolerances allow for its place, unless the stop says
 //! below which speed it is none, or where rounding does not let its end be found.
 
-use nalgebra::SVector;
+use alloc::vec;
+use alloc::vec::Vec;
 
-use super::guarded::Guarded;
+use super::guarded::{End, Guarded};
 use super::{CERTAIN, EventMonitor};
-use crate::model::reactions::{After, Collision};
-use crate::model::system::System;
-use crate::solve::integrator::Method;
+use crate::model::reactions::{After, Collision, impacts_of};
 use crate::solve::stepper::Stepper;
 
 /// How often the choice of the stops that bear a load is changed.
@@ -24,37 +23,32 @@ const LOW: f64 = 0.01;
 
 /// What an impact leaves to be decided.
 #[derive(Debug)]
-pub(crate) struct Struck<const G: usize> {
+pub(crate) struct Struck {
     /// The switches whose branches the guards decide.
-    pub switches: [bool; G],
+    pub switches: Vec<bool>,
     /// Those of stops that were hit and are left again.
-    pub rebounds: [bool; G],
+    pub rebounds: Vec<bool>,
     /// Whether the state has jumped.
     pub jumps: bool,
 }
 
-impl<const G: usize> EventMonitor<G> {
+impl EventMonitor {
     /// Lets the state at the start of the next step jump if a stop is reached there: `switches` are those whose guards
     /// have come to zero.
-    pub fn strike<Sys, M, const N: usize>(
+    pub fn strike(
         &mut self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        mut switches: [bool; G],
+        stepper: &mut Stepper<'_>,
+        mut switches: Vec<bool>,
         collision: Option<&mut Collision<f64>>,
-    ) -> Struck<G>
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        let negative = stepper.negative;
-        let none = Struck { switches, rebounds: [false; G], jumps: false };
+    ) -> Struck {
+        let negative = stepper.negative.clone();
+        let mut rebounds = vec![false; switches.len()];
         let Some(collision) = collision.filter(|all| all.switches().any(|k| switches[k] && negative[k])) else {
-            return none;
+            return Struck { switches, rebounds, jumps: false };
         };
-        let reached = switches;
+        let reached = switches.clone();
         let closed = |k: usize| reached[k] || !negative[k];
         let jumps = self.collide(stepper, collision, closed, &mut switches);
-        let mut rebounds = [false; G];
         for (k, after) in collision.outcomes() {
             rebounds[k] = after == After::Clear && negative[k] && jumps;
             switches[k] &= after == After::Untouched;
@@ -65,41 +59,30 @@ impl<const G: usize> EventMonitor<G> {
 
     /// Lets the state at the start of the run jump where stops are reached, or where something rests on those that are
     /// `held`. Gives the switches of those that are left again.
-    pub(super) fn strike_at_begin<Sys, M, const N: usize>(
+    pub(super) fn strike_at_begin(
         &mut self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        stepper: &mut Stepper<'_>,
         collision: Option<&mut Collision<f64>>,
-        held: [bool; G],
-    ) -> [bool; G]
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        let mut clear = [false; G];
+        held: &[bool],
+    ) -> Vec<bool> {
+        let mut clear = vec![false; held.len()];
         let Some(collision) = collision else { return clear };
         collision.switches().for_each(|k| self.is_stop[k] = true);
-        stepper.negative = stepper.system.first_branches();
-        let start = stepper.start;
-        let beyond = stepper.guards(start.t, &start.x);
-        self.collide(stepper, collision, |k| beyond[k] >= 0.0 || held[k], &mut [false; G]);
+        stepper.system.first_branches(&mut stepper.negative);
+        let beyond = stepper.guards_of(End::Start);
+        self.collide(stepper, collision, |k| beyond[k] >= 0.0 || held[k], &mut vec![false; held.len()]);
         collision.outcomes().for_each(|(k, after)| clear[k] = after == After::Clear);
         clear
     }
 
     /// Finds the stops that bear the load among those on which something may rest.
-    fn rest<Sys, M, const N: usize>(&self, stepper: &mut Stepper<'_, Sys, M, N, G>, collision: &mut Collision<f64>)
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        let system = stepper.system;
-        let Some(impacts) = system.impacts() else { return };
+    fn rest(&self, stepper: &mut Stepper<'_>, collision: &mut Collision<f64>) {
+        let impacts = impacts_of(stepper.system);
         collision.resting().for_each(|(_, switch)| stepper.negative[switch] = false);
-        let start = stepper.start;
         for _ in 0..CHANGES {
-            let effort = stepper.guards(start.t, &start.x);
-            let noise = self.noise(stepper, start.t, &start.x, &effort);
-            collision.loads(impacts, (start.t, &start.x), &stepper.negative);
+            let effort = stepper.guards_of(End::Start);
+            let noise = self.noise_of(stepper, End::Start, &effort);
+            collision.loads(&impacts, (stepper.start.t, stepper.start.x.as_slice()), &stepper.negative);
             let is_wrong = |&(k, switch): &(usize, usize)| {
                 if stepper.negative[switch] { collision.load(k) > 0.0 } else { effort[switch] < -noise[switch] }
             };
@@ -110,45 +93,38 @@ impl<const G: usize> EventMonitor<G> {
 
     /// Lets the state jump where the stops of these switches are reached, and dry friction slide that an impact moves;
     /// what it brings to rest is added to `switches`. Gives whether the state jumps.
-    fn collide<Sys, M, const N: usize>(
+    fn collide(
         &mut self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
+        stepper: &mut Stepper<'_>,
         collision: &mut Collision<f64>,
         closed: impl Fn(usize) -> bool,
-        switches: &mut [bool; G],
-    ) -> bool
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        let system = stepper.system;
-        let Some(impacts) = system.impacts() else { return false };
-        let (start, negative) = (stepper.start, stepper.negative);
+        switches: &mut [bool],
+    ) -> bool {
+        let impacts = impacts_of(stepper.system);
+        let (t, negative) = (stepper.start.t, stepper.negative.clone());
         // Where all that remembers is in its first branch guards are places of stops and flows of frictions.
-        let first = system.first_branches();
-        stepper.negative = core::array::from_fn(|k| negative[k] || first[k]);
-        let place = stepper.guards(start.t, &start.x);
-        let noise = self.noise(stepper, start.t, &start.x, &place);
+        let first = first_branches(stepper);
+        stepper.negative.iter_mut().zip(&first).for_each(|(negative, first)| *negative |= first);
+        let place = stepper.guards_of(End::Start);
+        let noise = self.noise_of(stepper, End::Start, &place);
         let allowed = allowed(stepper, &place);
-        let mut x = start.x;
+        let mut x = stepper.start.x.clone();
         let is_low = |k: usize, rise: f64, by_accuracy: bool| {
             rise <= CERTAIN * noise[k] || by_accuracy && rise <= LOW * allowed[k]
         };
-        let jumps = collision.strike(impacts, (start.t, &mut x), &negative, closed, is_low);
+        let jumps = collision.strike(&impacts, (t, x.as_mut_slice()), &negative, closed, is_low);
         if jumps {
             stepper.start.x = x;
-        } else {
-            x = start.x;
         }
-        let after = stepper.guards(start.t, &x);
-        stepper.negative = negative;
+        let after = stepper.guards_of(End::Start);
+        stepper.negative.copy_from_slice(&negative);
         for (k, outcome) in collision.outcomes() {
             stepper.negative[k] |= outcome == After::Clear;
             if outcome != After::Untouched {
                 self.leave(k, place[k]);
             }
         }
-        for k in (0..G).filter(|&k| jumps && first[k] && !self.is_stop[k]) {
+        for k in (0..negative.len()).filter(|&k| jumps && first[k] && !self.is_stop[k]) {
             if (after[k] - place[k]).abs() > CERTAIN * noise[k] {
                 switches[k] |= after[k].abs() <= CERTAIN * noise[k] && negative[k];
                 stepper.negative[k] = if switches[k] { negative[k] } else { after[k] < 0.0 };
@@ -160,16 +136,16 @@ impl<const G: usize> EventMonitor<G> {
 
 /// How much each guard, which has this value at the start of the step, changes where the states are off by what the
 /// tolerances allow.
-fn allowed<Sys, M, const N: usize, const G: usize>(
-    stepper: &mut Stepper<'_, Sys, M, N, G>,
-    value: &SVector<f64, G>,
-) -> [f64; G]
-where
-    Sys: System<f64, N, G>,
-    M: Method,
-{
-    let start = stepper.start;
-    let off = SVector::from_fn(|i, _| start.x[i] + stepper.scale.allowed(i, start.x[i]));
-    let displaced = stepper.guards(start.t, &off);
-    core::array::from_fn(|k| (displaced[k] - value[k]).abs())
+fn allowed(stepper: &mut Stepper<'_>, value: &[f64]) -> Vec<f64> {
+    let (t, x) = (stepper.start.t, &stepper.start.x);
+    let off: Vec<f64> = x.iter().enumerate().map(|(i, x)| x + stepper.scale.allowed(i, *x)).collect();
+    let displaced = stepper.guards(t, &off);
+    value.iter().zip(displaced).map(|(value, displaced)| (displaced - value).abs()).collect()
+}
+
+/// The branches from which the search for those at a start begins.
+pub(super) fn first_branches(stepper: &Stepper<'_>) -> Vec<bool> {
+    let mut first = vec![false; stepper.negative.len()];
+    stepper.system.first_branches(&mut first);
+    first
 }

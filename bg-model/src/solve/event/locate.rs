@@ -3,10 +3,11 @@
 //! The dense output tells which guard is the first and gives a guess; then real steps of the method are tried until the
 //! guard vanishes to rounding, so that the event has the accuracy of the integration and not of the interpolation.
 
-use nalgebra::SVector;
+use alloc::vec;
+use alloc::vec::Vec;
 
 use super::detect::{Bracket, Course};
-use super::guarded::Guarded;
+use super::guarded::{End, Guarded};
 use super::noise::larger;
 use super::zero::{Precision, Search, zero};
 use super::{Crossing, EventMonitor, clearance};
@@ -26,8 +27,8 @@ struct Foreseen {
 /// A step that is being shortened to its first event: it says which size it is to be tried with, and looks at what that
 /// gives.
 #[derive(Clone, Debug)]
-pub(crate) struct Shortening<const G: usize> {
-    courses: [Course; G],
+pub(crate) struct Shortening {
+    courses: Vec<Course>,
     /// The end of the whole step, s.
     latest: f64,
     /// The switch whose guard is to vanish.
@@ -39,10 +40,10 @@ pub(crate) struct Shortening<const G: usize> {
     /// The searches made.
     rounds: usize,
     /// The guards at the end.
-    value: SVector<f64, G>,
+    value: Vec<f64>,
 }
 
-impl<const G: usize> Shortening<G> {
+impl Shortening {
     /// The size that the step is to be tried with, s.
     pub fn size(&self) -> f64 {
         self.size
@@ -51,13 +52,12 @@ impl<const G: usize> Shortening<G> {
     /// Looks at the step, which has this size; gives whether it ends at the first event: where the guard that was
     /// foreseen vanishes, or one that turns out to cross before it. Else it is to be tried again, with another size
     /// unless that is the same.
-    pub fn take<const N: usize>(&mut self, monitor: &EventMonitor<G>, step: &mut impl Guarded<N, G>) -> bool {
-        let end = *step.end();
-        self.value = step.guards(end.t, &end.x);
-        let (value, negative) = (self.value, step.negative());
-        let side = |k: usize| clearance(value[k], negative[k]);
+    pub fn take(&mut self, monitor: &EventMonitor, step: &mut dyn Guarded) -> bool {
+        step.read_end(End::End, &mut self.value);
+        let (guards, t_end) = (self.value.len(), step.point(End::End).t);
+        let side = |value: &[f64], step: &dyn Guarded, k: usize| clearance(value[k], step.negative()[k]);
         if let Some(search) = &mut self.search {
-            self.size = match search.take(side(self.switch)) {
+            self.size = match search.take(side(&self.value, step, self.switch)) {
                 Some((size, _)) => {
                     self.search = None;
                     self.rounds += 1;
@@ -67,20 +67,21 @@ impl<const G: usize> Shortening<G> {
             };
             return false;
         }
-        if self.rounds > G {
+        if self.rounds > guards {
             return true;
         }
-        let noise = monitor.noise_after(step, &value);
-        let Some(earlier) = (0..G).find(|&k| k != self.switch && side(k) < -noise[k]) else { return true };
+        let noise = monitor.noise_of(step, End::End, &self.value);
+        let is_earlier = |&k: &usize| k != self.switch && side(&self.value, step, k) < -noise[k];
+        let Some(earlier) = (0..guards).find(is_earlier) else { return true };
         self.switch = earlier;
-        if self.rounds == G {
+        if self.rounds == guards {
             self.rounds += 1;
             return false;
         }
-        let (h, behind) = (step.size(), side(earlier));
+        let (h, behind) = (step.size(), side(&self.value, step, earlier));
         let slope = -(monitor.start.slope[earlier].abs().max(f64::MIN_POSITIVE));
         let size = larger(monitor.start.value[earlier].abs(), behind.abs());
-        let precision = precise_to(size, noise[earlier], end.t * slope);
+        let precision = precise_to(size, noise[earlier], t_end * slope);
         let search = Search::new(0.0, h, h - behind / slope, slope, precision);
         (self.size, self.search) = (search.at(), Some(search));
         false
@@ -89,21 +90,17 @@ impl<const G: usize> Shortening<G> {
 
 /// What is to be done about a step in which guards cross.
 #[derive(Debug)]
-pub(crate) enum Found<const G: usize> {
+pub(crate) enum Found {
     /// The event is at its start.
-    AtStart(Crossing<G>),
+    AtStart(Crossing),
     /// It is to be shortened to the first event.
-    Inside(Shortening<G>),
+    Inside(Shortening),
 }
 
-impl<const G: usize> EventMonitor<G> {
+impl EventMonitor {
     /// The first of the crossings in `courses`, if there is one.
-    pub(super) fn first_crossing<const N: usize>(
-        &self,
-        step: &mut impl Guarded<N, G>,
-        courses: [Course; G],
-    ) -> Option<Found<G>> {
-        let switches = courses.map(|course| matches!(course, Course::WrongFromStart));
+    pub(super) fn first_crossing(&self, step: &mut dyn Guarded, courses: Vec<Course>) -> Option<Found> {
+        let switches: Vec<bool> = courses.iter().map(|course| matches!(course, Course::WrongFromStart)).collect();
         if switches.contains(&true) {
             return Some(Found::AtStart(Crossing { switches, is_at_start: true }));
         }
@@ -113,26 +110,26 @@ impl<const G: usize> EventMonitor<G> {
         };
         let crossings = courses.iter().enumerate().filter_map(crossing);
         let Foreseen { switch, search, .. } = crossings.min_by(|a, b| a.guess.total_cmp(&b.guess))?;
-        let (latest, size) = (step.end().t, search.at());
-        let (search, value) = (Some(search), self.end.value);
+        let (latest, size) = (step.point(End::End).t, search.at());
+        let (search, value) = (Some(search), vec![0.0; courses.len()]);
         Some(Found::Inside(Shortening { courses, latest, switch, search, size, rounds: 0, value }))
     }
 
     /// The event at the end of the step that was shortened to it; the rate there is known then.
-    pub fn crossing<const N: usize>(
+    pub fn crossing(
         &mut self,
-        step: &mut impl Guarded<N, G>,
-        Shortening { courses, latest, switch, value, .. }: Shortening<G>,
-    ) -> Crossing<G> {
+        step: &mut dyn Guarded,
+        Shortening { courses, latest, switch, value, .. }: Shortening,
+    ) -> Crossing {
         step.close(latest);
         Crossing { switches: self.concerned(step, &courses, switch, &value), is_at_start: false }
     }
 
     /// Where guard `k` crosses in its bracket by the dense output.
-    fn foresee<const N: usize>(&self, step: &mut impl Guarded<N, G>, k: usize, bracket: Bracket) -> Foreseen {
+    fn foresee(&self, step: &mut dyn Guarded, k: usize, bracket: Bracket) -> Foreseen {
         // Of the step: enough for the slope, which only speeds up what follows.
         const ASIDE: f64 = 1e-4;
-        let (t, h) = (step.end().t, step.size());
+        let (t, h) = (step.point(End::End).t, step.size());
         let Bracket { right, wrong } = bracket;
         let chord = (wrong.1 - right.1) / (wrong.0 - right.0);
         let guess = right.0 - right.1 / chord;
@@ -146,22 +143,10 @@ impl<const G: usize> EventMonitor<G> {
         Foreseen { switch: k, guess: part * h, search }
     }
 
-    /// The rounding errors of the guards at the end of the step just tried, where they have this `value`.
-    fn noise_after<const N: usize>(&self, step: &mut impl Guarded<N, G>, value: &SVector<f64, G>) -> [f64; G] {
-        let end = *step.end();
-        self.noise(step, end.t, &end.x, value)
-    }
-
     /// All switches whose guards are at zero where the step ends now; takes note of the remainders.
-    fn concerned<const N: usize>(
-        &mut self,
-        step: &mut impl Guarded<N, G>,
-        courses: &[Course; G],
-        first: usize,
-        value: &SVector<f64, G>,
-    ) -> [bool; G] {
-        let noise = self.noise_after(step, value);
-        core::array::from_fn(|k| {
+    fn concerned(&mut self, step: &mut dyn Guarded, courses: &[Course], first: usize, value: &[f64]) -> Vec<bool> {
+        let noise = self.noise_of(step, End::End, value);
+        let is_concerned = |k: usize| {
             let is_on_course = matches!(courses[k], Course::Crosses(_));
             let is_wrong = clearance(value[k], step.negative()[k]) < -noise[k];
             let is_concerned = k == first || is_wrong || (is_on_course && value[k].abs() <= noise[k]);
@@ -170,7 +155,8 @@ impl<const G: usize> EventMonitor<G> {
                 self.leave(k, value[k]);
             }
             is_concerned
-        })
+        };
+        (0..value.len()).map(is_concerned).collect()
     }
 }
 

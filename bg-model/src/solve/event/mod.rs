@@ -19,15 +19,18 @@ mod minimum;
 mod noise;
 mod zero;
 
-use nalgebra::SVector;
+use alloc::vec;
+use alloc::vec::Vec;
 
-pub(crate) use condition::{Condition, Located, Never, Stop};
-use guarded::Guarded;
+pub(crate) use condition::{Condition, Located, Stop};
+use guarded::{End, Guarded};
 pub(crate) use impact::Struck;
 #[cfg(feature = "std")]
 pub(crate) use lanes::{Readings, Steps};
 #[cfg(feature = "std")]
 pub(crate) use locate::{Found, Shortening};
+
+use crate::solve::integrator::{Point, first_not_finite};
 
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;
@@ -39,47 +42,91 @@ const AHEAD: f64 = 1e-6;
 const CERTAIN: f64 = 16.0;
 
 /// Guards and their derivatives along the flow (per s) at one point.
-#[derive(Clone, Copy, Debug)]
-struct Reading<const G: usize> {
-    value: SVector<f64, G>,
-    slope: SVector<f64, G>,
+#[derive(Clone, Debug)]
+struct Reading {
+    value: Vec<f64>,
+    slope: Vec<f64>,
     /// Their rounding errors; known where a step is looked at closely.
-    noise: [f64; G],
+    noise: Vec<f64>,
+}
+
+impl Reading {
+    fn new(guards: usize) -> Self {
+        Self { value: vec![0.0; guards], slope: vec![0.0; guards], noise: vec![0.0; guards] }
+    }
+
+    /// Becomes another one of as many guards.
+    fn become_that(&mut self, other: &Self) {
+        self.value.copy_from_slice(&other.value);
+        self.slope.copy_from_slice(&other.slope);
+        self.noise.copy_from_slice(&other.noise);
+    }
+
+    /// Reads the guards at an end of the step, where the rate is known, and their derivatives along the flow by a
+    /// forward difference of a part of `h` (s); `ahead` is room for a state.
+    fn take(&mut self, step: &mut dyn Guarded, end: End, h: f64, ahead: &mut Vec<f64>) {
+        let by = AHEAD * h;
+        step.read_end(end, &mut self.value);
+        let Point { t, x, rate } = step.point(end);
+        let t = *t;
+        ahead.clear();
+        ahead.extend(x.iter().zip(rate).map(|(x, rate)| x + rate * by));
+        step.read(t + by, ahead, &mut self.slope);
+        self.slope.iter_mut().zip(&self.value).for_each(|(slope, value)| *slope = (*slope - value) / by);
+        self.noise.fill(0.0);
+    }
 }
 
 /// What is known of the guards.
 #[derive(Clone, Debug)]
-pub(crate) struct EventMonitor<const G: usize> {
-    start: Reading<G>,
-    end: Reading<G>,
+pub(crate) struct EventMonitor {
+    start: Reading,
+    end: Reading,
     /// What its last event has left of each guard that has stayed near zero since.
-    remainder: [f64; G],
+    remainder: Vec<f64>,
     /// The switches of stops, whose guards are places: what passes its end further than before has come to it again.
-    is_stop: [bool; G],
+    is_stop: Vec<bool>,
     /// Events since `crowd_start` (s).
     crowd: u32,
     crowd_start: f64,
+    /// Room for a state and for the guards in the middle of a step.
+    state: Vec<f64>,
+    middle: Vec<f64>,
 }
 
 /// A step that ends at an event.
 #[derive(Debug)]
-pub(crate) struct Crossing<const G: usize> {
+pub(crate) struct Crossing {
     /// The switches whose guards are at zero.
-    pub switches: [bool; G],
+    pub switches: Vec<bool>,
     /// Whether the event is at the start of the step, which then is no step.
     pub is_at_start: bool,
 }
 
-impl<const G: usize> EventMonitor<G> {
-    pub fn new() -> Self {
-        let reading = Reading { value: SVector::zeros(), slope: SVector::zeros(), noise: [0.0; G] };
-        Self { start: reading, end: reading, remainder: [0.0; G], is_stop: [false; G], crowd: 0, crowd_start: f64::NAN }
+impl EventMonitor {
+    /// Of so many guards.
+    pub fn new(guards: usize) -> Self {
+        Self {
+            start: Reading::new(guards),
+            end: Reading::new(guards),
+            remainder: vec![0.0; guards],
+            is_stop: vec![false; guards],
+            crowd: 0,
+            crowd_start: f64::NAN,
+            state: Vec::new(),
+            middle: vec![0.0; guards],
+        }
+    }
+
+    /// The number of guards.
+    fn guards(&self) -> usize {
+        self.remainder.len()
     }
 
     /// The end of the step becomes the start of the next one; the branches stay.
     pub fn advance(&mut self) {
         self.forget();
-        self.start = self.end;
+        self.start.become_that(&self.end);
     }
 
     /// The first guard at the start that is not finite.
@@ -98,17 +145,21 @@ impl<const G: usize> EventMonitor<G> {
     }
 
     /// Those of `switches` whose guards are at zero, to rounding, at the end of a step that was shortened further.
-    pub fn still_at_zero<const N: usize>(&self, step: &mut impl Guarded<N, G>, switches: [bool; G]) -> [bool; G] {
-        let end = *step.end();
-        let value = step.guards(end.t, &end.x);
-        let noise = self.noise(step, end.t, &end.x, &value);
-        core::array::from_fn(|k| switches[k] && value[k].abs() <= noise[k])
+    pub fn still_at_zero(&self, step: &mut dyn Guarded, switches: &[bool]) -> Vec<bool> {
+        let value = step.guards_of(End::End);
+        let noise = self.noise_of(step, End::End, &value);
+        (0..switches.len()).map(|k| switches[k] && value[k].abs() <= noise[k]).collect()
     }
 
     /// Reads the guards at the start of the step, where the rate is known.
-    fn read_start<const N: usize>(&mut self, step: &mut impl Guarded<N, G>, h: f64) {
-        let start = *step.start();
-        self.start = read(step, start.t, &start.x, &start.rate, h);
+    fn read_start(&mut self, step: &mut dyn Guarded, h: f64) {
+        self.start.take(step, End::Start, h, &mut self.state);
+    }
+
+    /// Reads the guards at the end of the step, where the rate is known.
+    fn read_end(&mut self, step: &mut dyn Guarded) {
+        let h = step.size();
+        self.end.take(step, End::End, h, &mut self.state);
     }
 }
 
@@ -117,24 +168,6 @@ fn clearance(value: f64, negative: bool) -> f64 {
     if negative { -value } else { value }
 }
 
-fn check_finite<const G: usize>(value: &SVector<f64, G>) -> Result<(), (usize, f64)> {
-    value.iter().copied().enumerate().find(|(_, value)| !value.is_finite()).map_or(Ok(()), Err)
-}
-
-/// The guards at a point with the given rate, and their derivatives along the flow by a forward difference.
-fn read<const N: usize, const G: usize>(
-    step: &mut impl Guarded<N, G>,
-    t: f64,
-    x: &SVector<f64, N>,
-    rate: &SVector<f64, N>,
-    h: f64,
-) -> Reading<G> {
-    let ahead = AHEAD * h;
-    let value = step.guards(t, x);
-    let mut x_ahead = *x;
-    for (x, rate) in x_ahead.data.0[0].iter_mut().zip(&rate.data.0[0]) {
-        *x += rate * ahead;
-    }
-    let slope = (step.guards(t + ahead, &x_ahead) - value) / ahead;
-    Reading { value, slope, noise: [0.0; G] }
+fn check_finite(value: &[f64]) -> Result<(), (usize, f64)> {
+    first_not_finite(value).map_or(Ok(()), Err)
 }

@@ -69,6 +69,10 @@ impl AnyMethod {
 impl Method for AnyMethod {
     hand_on!(inside);
 
+    fn chosen(&mut self) -> Option<&mut AnyMethod> {
+        Some(self)
+    }
+
     fn needs_series(&self) -> bool {
         inside!((&) self, method => method.needs_series())
     }

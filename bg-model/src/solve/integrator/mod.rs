@@ -34,9 +34,9 @@ mod vectors;
 use alloc::vec;
 use core::ops::Range;
 
-use nalgebra::{Complex, SVector};
+use nalgebra::{Complex, DVector};
 
-use crate::model::capability::Operations;
+pub use crate::model::capability::SeriesSize;
 use crate::model::linear::{Sparsity, differences};
 pub use any::AnyMethod;
 pub use auto::{Auto, Change, Reason};
@@ -161,31 +161,23 @@ pub trait Flow {
     fn count_factorisation(&self, _is_fallback: bool) {}
 }
 
-/// What a Taylor series takes.
-#[derive(Clone, Copy, Debug)]
-pub struct SeriesSize {
-    /// How many numbers each order takes as work space.
-    pub width: usize,
-    /// What a series costs beside a rate, where that has been counted.
-    pub operations: Option<Operations>,
-}
-
 /// A point of a trajectory.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point<const N: usize> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
     /// Time, s.
     pub t: f64,
     /// State.
-    pub x: SVector<f64, N>,
+    pub x: DVector<f64>,
     /// dx/dt at `t` and `x`.
-    pub rate: SVector<f64, N>,
+    pub rate: DVector<f64>,
 }
 
-impl<const N: usize> Point<N> {
+impl Point {
     /// The point at time `t` (s) and state `x`, its rate not yet known: zero.
     #[must_use]
-    pub fn at(t: f64, x: SVector<f64, N>) -> Self {
-        Self { t, x, rate: SVector::zeros() }
+    pub fn at(t: f64, x: DVector<f64>) -> Self {
+        let rate = DVector::zeros(x.len());
+        Self { t, x, rate }
     }
 
     /// The same for a method.
@@ -193,6 +185,13 @@ impl<const N: usize> Point<N> {
     #[must_use]
     pub fn borrowed(&self) -> PointRef<'_> {
         PointRef { t: self.t, x: self.x.as_slice(), rate: self.rate.as_slice() }
+    }
+
+    /// Becomes another one of as many states; allocates nothing.
+    pub(crate) fn become_that(&mut self, other: PointRef<'_>) {
+        self.t = other.t;
+        self.x.as_mut_slice().copy_from_slice(other.x);
+        self.rate.as_mut_slice().copy_from_slice(other.rate);
     }
 }
 
@@ -293,6 +292,12 @@ pub trait Method {
 
     /// What was known of the flow no longer holds: a run begins, or a switch has changed its branch.
     fn restart(&mut self) {}
+
+    /// The method itself where it is one that was chosen at run time: for runs side by side.
+    #[doc(hidden)]
+    fn chosen(&mut self) -> Option<&mut AnyMethod> {
+        None
+    }
 
     /// When another method took over, of a method that chooses between several.
     fn changes(&self) -> &[Change] {

@@ -5,8 +5,6 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::SVector;
-
 use super::{Flow, PointRef};
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::fraction;
@@ -14,16 +12,16 @@ use crate::model::scalar::double::fraction;
 /// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`, with the value at the start of the
 /// step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tolerances<const N: usize> {
+pub struct Tolerances {
     /// The part that grows with the state; from [`Tolerances::SMALLEST_RELATIVE`].
     pub relative: f64,
     /// The part that does not.
-    pub absolute: Absolute<N>,
+    pub absolute: Absolute,
 }
 
 /// An absolute tolerance, positive.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Absolute<const N: usize> {
+pub enum Absolute {
     /// A tenth of the relative tolerance of the largest value that each state has had so far, or a thousandth of it of
     /// the value at which the state would count beside the energy stored so far, where that is more: the same steps in
     /// any units and at any size of the machine. A driver of runs finds these sizes; a step by itself takes them to be
@@ -32,10 +30,10 @@ pub enum Absolute<const N: usize> {
     /// The same for all states, each in its own unit.
     Scalar(f64),
     /// One for each state, in its unit.
-    PerState(SVector<f64, N>),
+    PerState(Vec<f64>),
 }
 
-impl<const N: usize> Tolerances<N> {
+impl Tolerances {
     /// The smallest relative tolerance that makes sense in `f64`: ten times the rounding unit, as in Hairer's programs.
     pub const SMALLEST_RELATIVE: f64 = 10.0 * f64::EPSILON;
 
@@ -52,7 +50,7 @@ impl<const N: usize> Tolerances<N> {
     }
 }
 
-impl<const N: usize> Default for Tolerances<N> {
+impl Default for Tolerances {
     /// 1e-8 relative, the absolute ones follow the sizes of the states.
     fn default() -> Self {
         Self::relative(1e-8)
@@ -79,12 +77,16 @@ pub struct Scale<S = f64> {
     pub weights: Vec<S>,
 }
 
-impl<const N: usize> From<&Tolerances<N>> for Scale {
-    fn from(tolerances: &Tolerances<N>) -> Self {
-        let absolute = match &tolerances.absolute {
-            Absolute::OfSizes => vec![f64::MIN_POSITIVE; N],
-            Absolute::Scalar(absolute) => vec![*absolute; N],
-            Absolute::PerState(absolute) => absolute.as_slice().to_vec(),
+impl Scale {
+    /// The tolerances of so many states.
+    #[must_use]
+    pub fn new(tolerances: &Tolerances, states: usize) -> Self {
+        let absolute: Vec<f64> = match &tolerances.absolute {
+            Absolute::OfSizes => vec![f64::MIN_POSITIVE; states],
+            Absolute::Scalar(absolute) => vec![*absolute; states],
+            Absolute::PerState(absolute) => {
+                (0..states).map(|i| absolute.get(i).map_or(f64::MIN_POSITIVE, |of| *of)).collect()
+            }
         };
         let coarsest = match &tolerances.absolute {
             Absolute::OfSizes => tolerances.relative,
@@ -93,7 +95,7 @@ impl<const N: usize> From<&Tolerances<N>> for Scale {
             }
         };
         let growth = if tolerances.absolute == Absolute::OfSizes { GROWTH } else { f64::INFINITY };
-        Self { relative: tolerances.relative, absolute, coarsest, growth, weights: vec![1.0; N] }
+        Self { relative: tolerances.relative, absolute, coarsest, growth, weights: vec![1.0; states] }
     }
 }
 
@@ -227,8 +229,7 @@ mod tests {
 
     #[test]
     fn the_allowed_error_is_that_of_the_value() {
-        let scale =
-            Scale::from(&Tolerances::<2> { relative: 0.1, absolute: Absolute::PerState(SVector::from([1.0, 2.0])) });
+        let scale = Scale::new(&Tolerances { relative: 0.1, absolute: Absolute::PerState(vec![1.0, 2.0]) }, 2);
         assert_eq!(scale.allowed(0, -30.0), 4.0);
         assert_eq!(scale.allowed_between(1, 0.0, -20.0), 4.0);
         let scale = Scale { growth: 1e6, ..scale };

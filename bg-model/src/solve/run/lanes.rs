@@ -4,12 +4,13 @@
 //! if it were made by itself.
 
 use std::ops::ControlFlow;
+use std::rc::Rc;
 
-use nalgebra::SVector;
 use thiserror::Error;
 
 use super::clock::Clock;
 use super::{Made, Reason, Request, RunError, Simulation, Trajectory, observer};
+use crate::model::dynamics::{Machine, shared};
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
 #[cfg(target_arch = "x86_64")]
@@ -59,6 +60,13 @@ pub fn in_lanes<Me: Mechanism>(
     many.all_alone()
 }
 
+/// What a run has of its own.
+struct Own {
+    model: Rc<dyn Machine>,
+    start: Vec<f64>,
+    method: AnyMethod,
+}
+
 /// What is to be made.
 struct Many<'a, Me> {
     model: &'a Me,
@@ -91,38 +99,40 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
         _: impl Fn(&[&Li], fn(&[Lanes<V>]) -> Lanes<V>) -> Ot,
     ) -> Self::Output
     where
-        Mo: Model<f64, N, G, M>,
+        Mo: Model<f64, N, G, M> + Clone + 'static,
         Li: Model<Lanes<V>, N, G, M>,
         Ot: Model<Lanes<V>, N, G, M>,
     {
         let settings = self.request.settings(0.0);
         let method: AnyMethod = self.request.method.method(self.request.fixed_step);
         let span = Span { t0: 0.0, t_end: self.request.t_end };
-        let Some(together) = AnyInLanes::of(&method, N).filter(|_| lanes::fits(model, span, &settings)) else {
+        let Some(together) =
+            AnyInLanes::of(&method, N).filter(|_| lanes::fits(&*shared(model.clone()), span, &settings))
+        else {
             return self.all_alone();
         };
         let clock = Clock::started();
         // What each run has of its own: its model, its start, its method.
-        let made = |values: &Vec<f64>| {
-            let model = other(values).ok()?;
-            let start: SVector<f64, N> = model.start().ok()?;
-            Some((model, start, method.clone()))
+        let made = |values: &Vec<f64>| -> Option<Own> {
+            let model = shared(other(values).ok()?);
+            let start = model.start().ok()?;
+            Some(Own { model, start, method: method.clone() })
         };
-        let mut own: Vec<Option<(Mo, SVector<f64, N>, AnyMethod)>> = self.values.iter().map(made).collect();
+        let mut own: Vec<Option<Own>> = self.values.iter().map(made).collect();
         // What a start pose decides is one number for all lanes.
-        let decided = own.iter().flatten().next().map(|(model, ..)| model.decided());
+        let decided = own.iter().flatten().next().map(|own| own.model.decided());
         for own in &mut own {
-            *own = own.take().filter(|(model, ..)| Some(model.decided()) == decided);
+            *own = own.take().filter(|own| Some(own.model.decided()) == decided);
         }
         let jobs = own.iter_mut().zip(self.values).enumerate().filter_map(|(number, (own, values))| {
-            let (model, start, method) = own.as_mut()?;
-            let model = &*model;
+            let Own { model, start, method } = own.as_mut()?;
+            let model = &**model;
             let observer = observer(model, &self.request.parts, Box::new(|_| ControlFlow::Continue(())), None);
-            Some(lanes::Job { number, model, values, method, start: *start, observer })
+            Some(lanes::Job { number, model, values, method, start, observer })
         });
         let mut finished: Vec<_> = self.values.iter().map(|_| None).collect();
         let pack = |values: &[Lanes<V>]| lifted(values).expect("models were made of these parameters");
-        lanes::integrate(jobs, together, pack, span, &settings, |number, (recorder, _), finish| {
+        lanes::integrate(jobs, together, pack, span, &settings, &mut |number, (recorder, _), finish| {
             finished[number] = finish.map(|finish| (recorder, finish));
         });
         let method = method.name();

@@ -17,9 +17,11 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use clock::Clock;
-use nalgebra::SVector;
+use nalgebra::DVector;
 
-pub use ending::{Ending, Sample, Unconditional, When};
+use ending::{Ending, of_state};
+
+pub use ending::Sample;
 pub use instants::sample_times;
 pub use lanes::{LaneError, in_lanes};
 pub use request::Request;
@@ -29,13 +31,14 @@ pub use trajectory::{Stopped, Trajectory};
 use thiserror::Error;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::mechanism::{Mechanism, ModelVisitor};
+use crate::model::dynamics::Machine;
+use crate::model::mechanism::Mechanism;
 use crate::model::standing::{CLOSE, Standing};
-use crate::model::system::Model;
+use crate::solve::event::Condition;
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason, Scale};
-use crate::solve::simulation::{Beginning, Observer, Part, Recorder, Samples, Span, Switching};
+use crate::solve::simulation::{Beginning, Observer, Part, Recorder, Samples, Span, Switching, make};
 use crate::solve::statistics::Statistics;
 
 /// A run to be made.
@@ -69,12 +72,12 @@ use crate::solve::statistics::Statistics;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use = "a run is made by `run`"]
-pub struct Simulation<'a, Me, E = Unconditional> {
+pub struct Simulation<'a, Me> {
     model: &'a Me,
     request: Request,
     start: Option<State>,
     each_step: EachStep<'a>,
-    ending: E,
+    ending: Option<Ending<'a>>,
 }
 
 /// Is told the time reached, s, after each step, and says whether the run goes on.
@@ -89,18 +92,16 @@ impl<'a, Me: Mechanism> Simulation<'a, Me> {
     /// A run of `model` from its start as it is asked for.
     pub fn of(model: &'a Me, request: Request) -> Self {
         let each_step = Box::new(|_| ControlFlow::Continue(()));
-        Self { model, request, start: None, each_step, ending: Unconditional }
+        Self { model, request, start: None, each_step, ending: None }
     }
 
     /// Ends the run where `condition` passes through zero, in either direction; located like an event, by steps to its
     /// zero. A condition that is zero at the start ends the run the next time.
-    pub fn stop_when<F: FnMut(&Sample<'_>) -> f64>(self, condition: F) -> Simulation<'a, Me, When<F>> {
-        let Self { model, request, start, each_step, ending: Unconditional } = self;
-        Simulation { model, request, start, each_step, ending: When(condition) }
+    pub fn stop_when(mut self, condition: impl FnMut(&Sample<'_>) -> f64 + 'a) -> Self {
+        self.ending = Some(Box::new(condition));
+        self
     }
-}
 
-impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
     /// The integrator.
     pub fn method(mut self, method: Integrator) -> Self {
         self.request.method = method;
@@ -163,7 +164,9 @@ impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
     /// # Errors
     /// The start cannot be assembled, the state is not one of this mechanism, or the mechanism cannot stand in it.
     pub fn start(&self) -> Result<State, RunError> {
-        self.model.visit(Start { start: self.start.as_ref() })
+        let model = &*self.model.machine();
+        let (t, Beginning { x, largest, negative }) = Start { start: self.start.as_ref() }.beginning(model)?;
+        Ok(State::new(model.description(), t, x.as_slice(), largest.as_slice(), negative.as_deref()))
     }
 
     /// Makes the run.
@@ -173,7 +176,7 @@ impl<'a, Me: Mechanism, E: Ending> Simulation<'a, Me, E> {
     /// error has what was reached.
     pub fn run(self) -> Result<Trajectory, RunError> {
         let Self { model, request, start, each_step, ending } = self;
-        model.visit(Integration { request, start, each_step, ending })
+        Integration { request, start, each_step, ending }.recorded(&*model.machine(), None)
     }
 }
 
@@ -197,80 +200,40 @@ struct Start<'a> {
 }
 
 impl Start<'_> {
-    fn beginning<Mo, const N: usize, const G: usize, const M: usize>(
-        &self,
-        model: &Mo,
-    ) -> Result<(f64, Beginning<N, G>), RunError>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
+    fn beginning(&self, model: &dyn Machine) -> Result<(f64, Beginning), RunError> {
         let Some(state) = self.start else {
             let x = model.start()?;
-            return Ok((0.0, Beginning::at(x)));
+            return Ok((0.0, Beginning::at(DVector::from_vec(x))));
         };
-        let Beginning { x, largest, negative } = state.beginning::<N, G>(model.description())?;
-        let standing = Standing::new(model, state.t, &largest, CLOSE);
-        let negative = negative.map(|negative| standing.possible(&x, negative));
-        let x = standing.closed(&x, negative.as_ref()).map_err(StateError::from)?;
-        Ok((state.t, Beginning { x, largest, negative }))
+        let Beginning { x, largest, negative } = state.beginning(model.description())?;
+        let standing = Standing::new(model, state.t, largest.as_slice(), CLOSE);
+        let negative = negative.map(|negative| standing.possible(x.as_slice(), negative));
+        let x = standing.closed(x.as_slice(), negative.as_deref()).map_err(StateError::from)?;
+        Ok((state.t, Beginning { x: DVector::from_vec(x), largest, negative }))
     }
 }
 
-impl ModelVisitor<f64> for Start<'_> {
-    type Output = Result<State, RunError>;
-
-    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        let (t, Beginning { x, largest, negative }) = self.beginning(model)?;
-        let negative = negative.as_ref().map(<[bool; G]>::as_slice);
-        Ok(State::new(model.description(), t, x.as_slice(), largest.as_slice(), negative))
-    }
-}
-
-/// What is integrated. Every run passes here, so that each model is compiled once.
-struct Integration<'a, E> {
+/// What is integrated.
+struct Integration<'a> {
     request: Request,
     start: Option<State>,
     each_step: EachStep<'a>,
-    ending: E,
-}
-
-impl<E: Ending> ModelVisitor<f64> for Integration<'_, E> {
-    type Output = Result<Trajectory, RunError>;
-
-    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        self.recorded(model, None)
-    }
+    ending: Option<Ending<'a>>,
 }
 
 /// Makes a run of `model` from its start as it is asked for, with another observer.
-pub(crate) fn observed<Mo, const N: usize, const G: usize, const M: usize>(
-    model: &Mo,
+pub(crate) fn observed(
+    model: &dyn Machine,
     request: &Request,
-    observer: &mut dyn Observer<N, G>,
-) -> Result<Trajectory, RunError>
-where
-    Mo: Model<f64, N, G, M>,
-{
+    observer: &mut dyn Observer,
+) -> Result<Trajectory, RunError> {
     let each_step = Box::new(|_| ControlFlow::Continue(()));
     let request = request.clone();
-    Integration { request, start: None, each_step, ending: Unconditional }.recorded(model, Some(observer))
+    Integration { request, start: None, each_step, ending: None }.recorded(model, Some(observer))
 }
 
-impl<E: Ending> Integration<'_, E> {
-    fn recorded<Mo, const N: usize, const G: usize, const M: usize>(
-        self,
-        model: &Mo,
-        another: Option<&mut dyn Observer<N, G>>,
-    ) -> Result<Trajectory, RunError>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
+impl Integration<'_> {
+    fn recorded(self, model: &dyn Machine, another: Option<&mut dyn Observer>) -> Result<Trajectory, RunError> {
         let Self { request, start, each_step, ending } = self;
         let clock = Clock::started();
         let (t0, beginning) = Start { start: start.as_ref() }.beginning(model)?;
@@ -278,9 +241,11 @@ impl<E: Ending> Integration<'_, E> {
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
         let mut observer = observer(model, &request.parts, each_step, another);
-        observer.0.largest = beginning.largest;
+        observer.0.largest.copy_from_slice(beginning.largest.as_slice());
         let span = Span { t0, t_end: request.t_end };
-        let outcome = ending.integrate(model, &mut method, &beginning, span, &settings, &mut observer);
+        let mut ending = ending.map(|ending| of_state(model, ending));
+        let ending = ending.as_mut().map(|ending| ending as &mut Condition<'_>);
+        let outcome = make(model, &mut method, &beginning, span, &settings, ending, &mut observer);
         let (finish, cause) = match outcome {
             Ok(finish) => (finish, None),
             Err(failure) => (*failure.last, Some(failure.cause)),
@@ -294,24 +259,20 @@ impl<E: Ending> Integration<'_, E> {
 }
 
 /// The observers of a run: what records it, what hands its steps on, another one.
-type Observers<'a, 'b, 'c, Mo, const N: usize, const G: usize, const M: usize> =
-    (Recorder<'a, Mo, N, G, M>, (Told<'b>, Another<'c, N, G>));
+type Observers<'a, 'b, 'c> = (Recorder<'a>, (Told<'b>, Another<'c>));
 
-fn observer<'a, 'b, 'c, Mo, const N: usize, const G: usize, const M: usize>(
-    model: &'a Mo,
+fn observer<'a, 'b, 'c>(
+    model: &'a dyn Machine,
     parts: &[Part],
     each_step: EachStep<'b>,
-    another: Option<&'c mut dyn Observer<N, G>>,
-) -> Observers<'a, 'b, 'c, Mo, N, G, M>
-where
-    Mo: Model<f64, N, G, M>,
-{
+    another: Option<&'c mut dyn Observer>,
+) -> Observers<'a, 'b, 'c> {
     (Recorder::new(model, parts), (Told { each_step, is_done: false }, Another(another)))
 }
 
 /// A run that has been made.
-struct Made<const N: usize, const G: usize> {
-    finish: Finish<N, G>,
+struct Made {
+    finish: Finish,
     /// Why it failed.
     cause: Option<Cause>,
     /// The methods that made its steps, the first from its start.
@@ -319,23 +280,20 @@ struct Made<const N: usize, const G: usize> {
     wall: Duration,
 }
 
-impl<const N: usize, const G: usize> Made<N, G> {
+impl Made {
     /// What it gives.
-    fn concluded<Mo, const M: usize>(
+    fn concluded(
         self,
-        model: &Mo,
-        mut recorder: Recorder<'_, Mo, N, G, M>,
+        model: &dyn Machine,
+        mut recorder: Recorder<'_>,
         request: Request,
-    ) -> Result<Trajectory, RunError>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
+    ) -> Result<Trajectory, RunError> {
         let Self { finish, cause, methods, wall } = self;
         let starts_at_zero = methods.first().is_some_and(|first| first.t == 0.0);
         // The end of a run that was stopped is none of the instants that were listed before it.
         let is_sampled = recorder.recording.times.last().is_some_and(|&t| t >= finish.t);
         if matches!(request.samples, Samples::Every(_)) && cause.is_none() && !is_sampled {
-            recorder.sample(finish.t, &finish.x, &finish.negative);
+            recorder.sample(finish.t, finish.x.as_slice(), &finish.negative);
         }
         // What could not be calculated was so before anything else failed.
         let fault = recorder.fault.map(Cause::from);
@@ -343,8 +301,8 @@ impl<const N: usize, const G: usize> Made<N, G> {
             None => (None, finish.ended),
             cause => (cause, Ended::ByFailure),
         };
-        let states = model.description().states.iter().zip(finish.uncontrolled);
-        let uncontrolled = states.filter(|(_, is)| *is).map(|(of, _)| of.name).collect();
+        let states = model.description().states.iter().zip(&finish.uncontrolled);
+        let uncontrolled = states.filter(|(_, is)| **is).map(|(of, _)| of.name).collect();
         let trajectory = Trajectory {
             recording: recorder.recording,
             ended,
@@ -354,7 +312,7 @@ impl<const N: usize, const G: usize> Made<N, G> {
             wall,
             redundant: model.redundant(),
             impulse_energy: if starts_at_zero { model.impulse_energy().unwrap_or(0.0) } else { 0.0 },
-            last: Last { model, finish: &finish, largest: recorder.largest }.state(),
+            last: last(model, &finish, &recorder.largest),
             request,
         };
         match cause {
@@ -364,43 +322,31 @@ impl<const N: usize, const G: usize> Made<N, G> {
     }
 }
 
-/// Where a run has come to.
-struct Last<'a, Mo, const N: usize, const G: usize> {
-    model: &'a Mo,
-    finish: &'a Finish<N, G>,
-    largest: SVector<f64, N>,
-}
-
-impl<Mo, const N: usize, const G: usize> Last<'_, Mo, N, G> {
-    /// The same by name. What coarse steps have left of gaps is closed: another run could not start there.
-    fn state<const M: usize>(&self) -> State
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        /// The part of a state that a projection may move it by, to be left as it is.
-        const EXACT: f64 = 1e-12;
-        const ROUNDS: usize = 4;
-        let Self { model, finish: Finish { t, x, negative, .. }, .. } = self;
-        let largest = self.largest.sup(&x.abs());
-        let mut x = *x;
-        for _ in 0..ROUNDS {
-            let mut closer = x;
-            model.project(*t, negative, &mut closer);
-            let moves = |index: usize| (closer[index] - x[index]).abs() > EXACT * largest[index];
-            if !(0..N).any(moves) || closer.iter().any(|value| !value.is_finite()) {
-                break;
-            }
-            x = closer;
+/// Where a run has come to, by name; its states have been as large as `largest` before. What coarse steps have left of
+/// gaps is closed: another run could not start there.
+fn last(model: &dyn Machine, Finish { t, x, negative, .. }: &Finish, largest: &[f64]) -> State {
+    /// The part of a state that a projection may move it by, to be left as it is.
+    const EXACT: f64 = 1e-12;
+    const ROUNDS: usize = 4;
+    let largest: Vec<f64> = largest.iter().zip(x).map(|(largest, x)| largest.max(x.abs())).collect();
+    let mut x = x.as_slice().to_vec();
+    for _ in 0..ROUNDS {
+        let mut closer = x.clone();
+        model.project(*t, negative, &mut closer);
+        let moves = |index: usize| (closer[index] - x[index]).abs() > EXACT * largest[index];
+        if !(0..x.len()).any(moves) || closer.iter().any(|value| !value.is_finite()) {
+            break;
         }
-        State::new(model.description(), *t, x.as_slice(), largest.as_slice(), Some(negative))
+        x = closer;
     }
+    State::new(model.description(), *t, &x, &largest, Some(negative))
 }
 
-/// Another observer, which runs without one need not be compiled for.
-struct Another<'a, const N: usize, const G: usize>(Option<&'a mut dyn Observer<N, G>>);
+/// Another observer, where there is one.
+struct Another<'a>(Option<&'a mut dyn Observer>);
 
-impl<const N: usize, const G: usize> Observer<N, G> for Another<'_, N, G> {
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+impl Observer for Another<'_> {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
         if let Some(another) = &mut self.0 {
             another.sample(t, x, negative);
         }
@@ -412,13 +358,13 @@ impl<const N: usize, const G: usize> Observer<N, G> for Another<'_, N, G> {
         }
     }
 
-    fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {
+    fn passed(&mut self, start: &Point, end: &Point, negative: &[bool]) {
         if let Some(another) = &mut self.0 {
             another.passed(start, end, negative);
         }
     }
 
-    fn switched(&mut self, switching: &Switching<N, G>) {
+    fn switched(&mut self, switching: &Switching) {
         if let Some(another) = &mut self.0 {
             another.switched(switching);
         }
@@ -435,7 +381,7 @@ struct Told<'a> {
     is_done: bool,
 }
 
-impl<const N: usize, const G: usize> Observer<N, G> for Told<'_> {
+impl Observer for Told<'_> {
     fn step(&mut self, t: f64, _t_end: f64, _statistics: &Statistics) {
         self.is_done = (self.each_step)(t).is_break();
     }

@@ -37,7 +37,7 @@ impl Default for Request {
             atol: None,
             samples: Samples::Steps,
             parts: vec![Part::Outputs],
-            step_limit: Settings::<0>::default().step_limit,
+            step_limit: Settings::default().step_limit,
         }
     }
 }
@@ -45,12 +45,12 @@ impl Default for Request {
 impl Request {
     /// The tolerances of each step.
     #[must_use]
-    pub fn tolerances<const N: usize>(&self) -> Tolerances<N> {
+    pub fn tolerances(&self) -> Tolerances {
         self.atol.map_or(Tolerances::relative(self.rtol), |atol| Tolerances::new(self.rtol, atol))
     }
 
     /// The same for the driver, of a run from `t0` (s) on.
-    pub(crate) fn settings<const N: usize>(&self, t0: f64) -> Settings<N> {
+    pub(crate) fn settings(&self, t0: f64) -> Settings {
         let samples = match &self.samples {
             // The driver says what is wrong with an interval that cannot be.
             Samples::Every(interval) if interval.is_finite() && self.is_countable(t0, *interval) => {

@@ -3,7 +3,7 @@
 //! In: the states of a model at some time, the branches of its switches where they are known. Out: the same as JSON,
 //! and back for a model of the same states.
 
-use nalgebra::SVector;
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -165,10 +165,7 @@ impl State {
     }
 
     /// The state for a model.
-    pub(super) fn beginning<const N: usize, const G: usize>(
-        &self,
-        of: &Description,
-    ) -> Result<Beginning<N, G>, StateError> {
+    pub(super) fn beginning(&self, of: &Description) -> Result<Beginning, StateError> {
         let Description { name: model, states, switches, .. } = *of;
         if self.model != model {
             return Err(StateError::OtherModel { expected: model.to_owned(), found: self.model.clone() });
@@ -189,10 +186,10 @@ impl State {
             }
         }
         self.check_finite()?;
-        let x = SVector::from_fn(|index, _| self.states[index].1);
-        let largest = SVector::from_fn(|index, _| self.largest.get(index).map_or(x[index], |value| *value).abs());
-        let negative = self.branches.as_ref().map(|branches| std::array::from_fn(|index| branches[index].1));
-        Ok(Beginning { x, largest, negative })
+        let x = DVector::from_vec(self.values());
+        let largest =
+            DVector::from_fn(x.len(), |index, _| self.largest.get(index).map_or(x[index], |value| *value).abs());
+        Ok(Beginning { x, largest, negative: self.negative() })
     }
 
     fn check_finite(&self) -> Result<(), StateError> {

@@ -11,7 +11,7 @@ use super::{Direction, SensitivityError};
 use crate::model::assembly::AssemblyError;
 use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
-use crate::model::system::Model;
+use crate::model::system::{Model, switches};
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
@@ -85,7 +85,7 @@ where
     }
 
     /// Begins at the first state of the run, which is to be that of the start. Gives whether it has begun.
-    fn has_begun(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) -> bool {
+    fn has_begun(&mut self, t: f64, x: &[f64], negative: &[bool]) -> bool {
         if self.has_begun {
             return true;
         }
@@ -95,7 +95,7 @@ where
                 return false;
             }
             let mut start = *begin;
-            system.project(Gradient::from_f64(t), negative, &mut start);
+            system.project(Gradient::from_f64(t), switches(negative), &mut start);
             set_values(&mut start, x);
             self.steps.set(place, &start);
         }
@@ -106,7 +106,7 @@ where
     /// The derivatives of the states where the run has come to, for each direction.
     pub fn states(&self) -> Vec<Vec<f64>> {
         let of_part = |(place, part): (usize, &Part<Li, N>)| {
-            let now = self.steps.now(place, &SVector::zeros());
+            let now = self.steps.now(place, &[0.0; N]);
             let of = |l: usize| now.iter().map(|state| state.slopes()[l]).collect();
             (0..part.slopes.len()).map(of).collect::<Vec<_>>()
         };
@@ -127,11 +127,11 @@ where
     }
 }
 
-impl<Li, const N: usize, const G: usize, const M: usize> Observer<N, G> for Follower<Li, N, G, M>
+impl<Li, const N: usize, const G: usize, const M: usize> Observer for Follower<Li, N, G, M>
 where
     Li: Model<Gradient, N, G, M>,
 {
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
         if self.error.is_some() {
             return;
         }
@@ -146,7 +146,7 @@ where
         for (place, Part { system, slopes, .. }) in self.parts.iter_mut().enumerate() {
             let reached = if is_inside { self.steps.looked_at(place, x) } else { self.steps.now(place, x) };
             let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
-            system.outputs(Gradient::from_f64(t), &reached, negative, &mut outputs);
+            system.outputs(Gradient::from_f64(t), &reached, switches(negative), &mut outputs);
             for &output in &self.outputs {
                 let of_output = outputs[output].slopes();
                 slopes.iter_mut().zip(of_output).for_each(|(columns, slope)| columns[output].push(slope));
@@ -158,25 +158,25 @@ where
         self.steps.measure(scale);
     }
 
-    fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {
+    fn passed(&mut self, start: &Point, end: &Point, negative: &[bool]) {
         if self.error.is_some() {
             return;
         }
-        if !self.has_begun(start.t, &start.x, negative) {
+        if !self.has_begun(start.t, start.x.as_slice(), negative) {
             return;
         }
-        (self.start, self.negative, self.t) = (start.t, *negative, end.t);
-        if !self.steps.pass(negative, start, end) {
+        (self.start, self.negative, self.t) = (start.t, *switches(negative), end.t);
+        if !self.steps.pass(switches(negative), start, end) {
             self.error = Some(SensitivityError::Inexact { t: start.t });
         }
     }
 
-    fn switched(&mut self, switching: &Switching<N, G>) {
+    fn switched(&mut self, switching: &Switching) {
         if self.error.is_some() {
             return;
         }
         for (place, Part { system, .. }) in self.parts.iter().enumerate() {
-            let now = self.steps.now(place, &switching.before.x);
+            let now = self.steps.now(place, switching.before.x.as_slice());
             let Some(after) = jumped(&**system, &*self.plain, &now, switching) else {
                 let switch = switching.reached.iter().position(|&reached| reached).unwrap_or_default();
                 let name = system.switch_name(switch).unwrap_or("a switch");

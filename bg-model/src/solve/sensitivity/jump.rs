@@ -6,13 +6,14 @@
 //! from there the rate f+ leads back: S+ = dx+/dp - f+ dt*/dp. Without an impact that is S+ = S + (f - f+) dt*/dp.
 //! Source: E. N. Rozenwasser, R. Yusupov, Sensitivity of Automatic Control Systems (2000), chapter 3.
 
-use nalgebra::SVector;
+use nalgebra::{DVector, SVector};
 
 use super::step::Sloped;
-use crate::model::reactions::Collision;
+use crate::model::capability::Impacts;
+use crate::model::reactions::{Collision, impacts_in};
 use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
-use crate::model::system::System;
+use crate::model::system::{System, switches};
 use crate::solve::simulation::Switching;
 
 /// The slopes after the event of the state `x`, which has its value before it; `plain` is the same system with slopes
@@ -21,7 +22,7 @@ pub(super) fn jumped<Sys, const N: usize, const G: usize>(
     system: &Sys,
     plain: &Sys,
     x: &Sloped<N>,
-    event: &Switching<N, G>,
+    event: &Switching,
 ) -> Option<Sloped<N>>
 where
     Sys: System<Gradient, N, G>,
@@ -33,7 +34,7 @@ where
         return Some(after_with(&|i| x[i].slopes()));
     }
     let delays = delays(system, plain, x, event)?;
-    let along = |rate: &SVector<f64, N>, i: usize, l: usize| rate[i] * delays[l];
+    let along = |rate: &DVector<f64>, i: usize, l: usize| rate[i] * delays[l];
     let at_event = |i: usize| std::array::from_fn(|l| x[i].slopes()[l] + along(&before.rate, i, l));
     let moved = SVector::from_fn(|i, _| Gradient::new(before.x[i], at_event(i)));
     let moved = struck(system, event, Gradient::new(before.t, delays), moved);
@@ -45,7 +46,7 @@ fn delays<Sys, const N: usize, const G: usize>(
     system: &Sys,
     plain: &Sys,
     x: &Sloped<N>,
-    event: &Switching<N, G>,
+    event: &Switching,
 ) -> Option<[f64; WIDTH]>
 where
     Sys: System<Gradient, N, G>,
@@ -57,7 +58,7 @@ where
 
 /// The guard that decides on the instant, and how fast it passes through zero, in its unit per s. `plain` has slopes of
 /// nothing.
-pub(super) fn passed<Sys, const N: usize, const G: usize>(plain: &Sys, event: &Switching<N, G>) -> Option<(usize, f64)>
+pub(super) fn passed<Sys, const N: usize, const G: usize>(plain: &Sys, event: &Switching) -> Option<(usize, f64)>
 where
     Sys: System<Gradient, N, G>,
 {
@@ -71,7 +72,7 @@ where
 /// The guards at the end of the step that leads to the event, at the state `x` and where time has these slopes.
 pub(super) fn guards<Sys, const N: usize, const G: usize>(
     system: &Sys,
-    event: &Switching<N, G>,
+    event: &Switching,
     by_time: f64,
     x: &Sloped<N>,
 ) -> SVector<Gradient, G>
@@ -79,14 +80,14 @@ where
     Sys: System<Gradient, N, G>,
 {
     let mut guards = SVector::repeat(Gradient::from_f64(0.0));
-    system.guards(Gradient::new(event.before.t, [by_time; WIDTH]), x, &event.negative_before, &mut guards);
+    system.guards(Gradient::new(event.before.t, [by_time; WIDTH]), x, switches(&event.negative_before), &mut guards);
     guards
 }
 
 /// The state `x` at the instant `t` (s) after the impact of an event, if it has one.
 pub(super) fn struck<Sys, const N: usize, const G: usize>(
     system: &Sys,
-    event: &Switching<N, G>,
+    event: &Switching,
     t: Gradient,
     mut x: Sloped<N>,
 ) -> Sloped<N>
@@ -97,7 +98,8 @@ where
     if let (true, Some(impacts)) = (*jumps, system.impacts()) {
         let closed = |k: usize| reached[k] || !negative_before[k];
         let is_low = |k: usize, _: f64, _: bool| !left[k];
-        Collision::new(impacts).strike(impacts, (t, &mut x), negative_before, closed, is_low);
+        let mut collision = Collision::new(impacts.stops(), impacts.kept());
+        collision.strike(&impacts_in(impacts), (t, x.as_mut_slice()), negative_before, closed, is_low);
     }
     x
 }

@@ -38,10 +38,10 @@ mod follow;
 mod jump;
 mod step;
 
-use nalgebra::SVector;
 use thiserror::Error;
 
 use crate::model::assembly::AssemblyError;
+use crate::model::dynamics::shared;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::Gradient;
@@ -247,7 +247,7 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
         joined: impl Fn(&[&Li], fn(&[Gradient]) -> GradientIn<V>) -> Fa,
     ) -> Self::Output
     where
-        Mo: Model<f64, N, G, M>,
+        Mo: Model<f64, N, G, M> + Clone + 'static,
         Li: Model<Gradient, N, G, M> + 'static,
         Fa: Model<GradientIn<V>, N, G, M> + 'static,
     {
@@ -269,11 +269,11 @@ impl Following<'_> {
         steps: &MakesSteps<'_, Li, N, G>,
     ) -> Result<Sensitivities, SensitivityError>
     where
-        Mo: Model<f64, N, G, M>,
+        Mo: Model<f64, N, G, M> + Clone + 'static,
         Li: Model<Gradient, N, G, M>,
     {
         let start = model.start()?;
-        let scale = Scale::from(&self.request.tolerances::<N>());
+        let scale = Scale::new(&self.request.tolerances(), N);
         let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
         let follower = |directions: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
             let systems = directions.chunks(WIDTH).map(system).collect::<Result<Vec<_>, _>>()?;
@@ -284,7 +284,7 @@ impl Following<'_> {
         };
         let followers = self.directions.chunks(lanes).map(follower).collect::<Result<Vec<_>, _>>()?;
         let mut followers = Followers(followers);
-        let outcome = observed(model, self.request, &mut followers);
+        let outcome = observed(&*shared(model.clone()), self.request, &mut followers);
         let Followers(mut followers) = followers;
         followers.iter_mut().try_for_each(Follower::check)?;
         let trajectory = outcome?;
@@ -301,8 +301,8 @@ type MakesSteps<'a, Li, const N: usize, const G: usize> = dyn Fn(&[&Li], Scale, 
 /// Several observers of one kind.
 struct Followers<O>(Vec<O>);
 
-impl<O: Observer<N, G>, const N: usize, const G: usize> Observer<N, G> for Followers<O> {
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+impl<O: Observer> Observer for Followers<O> {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
         self.0.iter_mut().for_each(|each| each.sample(t, x, negative));
     }
 
@@ -310,11 +310,11 @@ impl<O: Observer<N, G>, const N: usize, const G: usize> Observer<N, G> for Follo
         self.0.iter_mut().for_each(|each| each.measured(scale));
     }
 
-    fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {
+    fn passed(&mut self, start: &Point, end: &Point, negative: &[bool]) {
         self.0.iter_mut().for_each(|each| each.passed(start, end, negative));
     }
 
-    fn switched(&mut self, switching: &Switching<N, G>) {
+    fn switched(&mut self, switching: &Switching) {
         self.0.iter_mut().for_each(|each| each.switched(switching));
     }
 

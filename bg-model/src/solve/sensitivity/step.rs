@@ -49,17 +49,17 @@ pub(super) trait Steps<const N: usize, const G: usize> {
     fn measure(&mut self, scale: &Scale);
 
     /// The state `x` with the slopes of this part where it has come to.
-    fn now(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N>;
+    fn now(&self, part: usize, x: &[f64]) -> Sloped<N>;
 
     /// Goes on by a step of the run, from one state to the other, whose values it takes, in the branches `negative`.
     /// Gives whether it did: not where the slopes stay too inexact or are not finite.
-    fn pass(&mut self, negative: &[bool; G], start: &Point<N>, end: &Point<N>) -> bool;
+    fn pass(&mut self, negative: &[bool; G], start: &Point, end: &Point) -> bool;
 
     /// Looks at the time `to` (s) inside the last step, which started at `from`. Gives whether it could.
     fn look(&mut self, negative: &[bool; G], from: f64, to: f64) -> bool;
 
     /// The state `x` with the slopes of this part where it has looked at last.
-    fn looked_at(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N>;
+    fn looked_at(&self, part: usize, x: &[f64]) -> Sloped<N>;
 }
 
 /// The method with its work space.
@@ -108,12 +108,12 @@ impl<V: Slopes, Sys, const N: usize> Stepper<V, Sys, N> {
 }
 
 /// The state `x` gets these values.
-pub(super) fn set_values<V, const N: usize>(x: &mut SlopedIn<V, N>, values: &SVector<f64, N>) {
-    x.data.0[0].iter_mut().zip(&values.data.0[0]).for_each(|(x, &value)| x.value = value);
+pub(super) fn set_values<V, const N: usize>(x: &mut SlopedIn<V, N>, values: &[f64]) {
+    x.data.0[0].iter_mut().zip(values).for_each(|(x, &value)| x.value = value);
 }
 
 /// The slopes of this part.
-fn of_part<V: Slopes, const N: usize>(slopes: &SlopedIn<V, N>, part: usize, x: &SVector<f64, N>) -> Sloped<N> {
+fn of_part<V: Slopes, const N: usize>(slopes: &SlopedIn<V, N>, part: usize, x: &[f64]) -> Sloped<N> {
     SVector::from_fn(|i, _| {
         let mut of_state = [0.0; WIDTH];
         of_state.copy_from_slice(&slopes[i].slopes().as_ref()[part * WIDTH..][..WIDTH]);
@@ -138,17 +138,17 @@ where
         self.work.scale = scale.clone();
     }
 
-    fn now(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N> {
+    fn now(&self, part: usize, x: &[f64]) -> Sloped<N> {
         of_part(&self.now, part, x)
     }
 
-    fn pass(&mut self, negative: &[bool; G], start: &Point<N>, end: &Point<N>) -> bool {
+    fn pass(&mut self, negative: &[bool; G], start: &Point, end: &Point) -> bool {
         let Self { system, from, now, work, .. } = self;
         let system = &**system;
         core::mem::swap(from, now);
-        set_values(from, &start.x);
+        set_values(from, start.x.as_slice());
         let is_exact = V::vectorized(Crossing { work, system, negative, span: [start.t, end.t], x: from, end: now });
-        set_values(now, &end.x);
+        set_values(now, end.x.as_slice());
         is_exact
     }
 
@@ -158,7 +158,7 @@ where
         V::vectorized(Crossing { work, system, negative, span: [from, to], x: start, end: between })
     }
 
-    fn looked_at(&self, part: usize, x: &SVector<f64, N>) -> Sloped<N> {
+    fn looked_at(&self, part: usize, x: &[f64]) -> Sloped<N> {
         of_part(&self.between, part, x)
     }
 }

@@ -4,18 +4,11 @@
 
 use super::run::{Faulty, Run};
 use crate::model::input;
-use crate::model::system::System;
-use crate::solve::event::Condition;
 use crate::solve::failure::{Cause, Quantity};
-use crate::solve::integrator::{Method, first_not_finite};
+use crate::solve::integrator::first_not_finite;
 use crate::solve::stepper::Stepper;
 
-impl<Sys, M, C, const N: usize, const G: usize> Run<'_, Sys, M, C, N, G>
-where
-    Sys: System<f64, N, G>,
-    M: Method,
-    C: Condition<N, G>,
-{
+impl Run<'_> {
     /// Fails where a rate or a guard at the start of the next step is not finite.
     pub fn check_start(&self) -> Result<(), Cause> {
         match first_not_finite(self.stepper.start.rate.as_slice()) {
@@ -78,7 +71,7 @@ where
     }
 
     /// The first of `switches` finds no branch.
-    pub fn accumulate(&self, switches: [bool; G]) -> Cause {
+    pub fn accumulate(&self, switches: &[bool]) -> Cause {
         let switch = switches.iter().position(|switch| *switch).unwrap_or(0);
         let name = self.stepper.system.switch_name(switch).unwrap_or_default();
         Cause::EventsAccumulate { switch, name, t: self.stepper.start.t }

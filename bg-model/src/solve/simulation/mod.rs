@@ -18,17 +18,19 @@ mod sizes;
 mod step_size;
 
 use alloc::boxed::Box;
+use alloc::vec::Vec;
 
-use nalgebra::SVector;
+use nalgebra::{DVector, SVector};
 
 pub use observer::{EachSample, EachStep, Observer, Switching};
 pub use ongoing::Ongoing;
 pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
-pub use sizes::sizes;
+pub use sizes::{sizes, sizes_of};
 
-use crate::model::system::System;
-use crate::solve::event::{Condition, Located, Never};
+use crate::model::dynamics::{Dynamics, Typed};
+use crate::model::system::{System, switches, values};
+use crate::solve::event::{Condition, Located};
 pub use crate::solve::failure::NoNumber;
 use crate::solve::failure::{Cause, Failure};
 pub use crate::solve::finish::{Ended, Finish};
@@ -49,15 +51,15 @@ pub fn integrate<Sys, M, O, const N: usize, const G: usize>(
     method: &mut M,
     start: &SVector<f64, N>,
     span: Span,
-    settings: &Settings<N>,
+    settings: &Settings,
     observer: &mut O,
-) -> Result<Finish<N, G>, Failure<N, G>>
+) -> Result<Finish, Failure>
 where
     Sys: System<f64, N, G>,
     M: Method,
-    O: Observer<N, G>,
+    O: Observer,
 {
-    make(system, method, &Beginning::at(*start), span, settings, Never, observer)
+    drive(&Typed::system(system), method, start.as_slice(), span, settings, None, observer)
 }
 
 /// As [`integrate`], but the run also ends where `condition` passes through zero, in either direction.
@@ -100,62 +102,77 @@ pub fn integrate_until<Sys, M, C, O, const N: usize, const G: usize>(
     method: &mut M,
     start: &SVector<f64, N>,
     span: Span,
-    settings: &Settings<N>,
-    condition: C,
+    settings: &Settings,
+    mut condition: C,
     observer: &mut O,
-) -> Result<Finish<N, G>, Failure<N, G>>
+) -> Result<Finish, Failure>
 where
     Sys: System<f64, N, G>,
     M: Method,
     C: FnMut(f64, &SVector<f64, N>, &[bool; G]) -> f64,
-    O: Observer<N, G>,
+    O: Observer,
 {
-    make(system, method, &Beginning::at(*start), span, settings, Located::new(condition), observer)
+    let mut condition = |t: f64, x: &[f64], negative: &[bool]| condition(t, values(x), switches(negative));
+    drive(&Typed::system(system), method, start.as_slice(), span, settings, Some(&mut condition), observer)
+}
+
+/// As [`integrate`], of a system over slices, whatever the number of its states; with a condition as
+/// [`integrate_until`].
+///
+/// # Errors
+/// As there.
+pub fn drive<'a>(
+    system: &'a dyn Dynamics,
+    method: &'a mut dyn Method,
+    start: &[f64],
+    span: Span,
+    settings: &'a Settings,
+    condition: Option<&'a mut Condition<'a>>,
+    observer: &mut dyn Observer,
+) -> Result<Finish, Failure> {
+    make(system, method, &Beginning::at(DVector::from_column_slice(start)), span, settings, condition, observer)
 }
 
 /// What is known of a state that a run starts from.
-#[derive(Clone, Copy, Debug)]
-pub struct Beginning<const N: usize, const G: usize> {
+#[derive(Clone, Debug)]
+pub struct Beginning {
     /// The state.
-    pub x: SVector<f64, N>,
+    pub x: DVector<f64>,
     /// How large each state has been in the runs that led here: errors are measured by that.
-    pub largest: SVector<f64, N>,
+    pub largest: DVector<f64>,
     /// The branches of the switches, where they are known.
-    pub negative: Option<[bool; G]>,
+    pub negative: Option<Vec<bool>>,
 }
 
-impl<const N: usize, const G: usize> Beginning<N, G> {
+impl Beginning {
     /// A state that nothing has led to.
-    pub(crate) fn at(x: SVector<f64, N>) -> Self {
-        Self { x, largest: x.abs(), negative: None }
+    pub(crate) fn at(x: DVector<f64>) -> Self {
+        let largest = x.abs();
+        Self { x, largest, negative: None }
     }
 }
 
 /// Makes a run that `condition` may end.
-pub(crate) fn make<Sys, M, C, O, const N: usize, const G: usize>(
-    system: &Sys,
-    method: &mut M,
-    Beginning { x: start, largest, negative }: &Beginning<N, G>,
+pub(crate) fn make<'a>(
+    system: &'a dyn Dynamics,
+    method: &'a mut dyn Method,
+    Beginning { x: start, largest, negative }: &Beginning,
     span: Span,
-    settings: &Settings<N>,
-    condition: C,
-    observer: &mut O,
-) -> Result<Finish<N, G>, Failure<N, G>>
-where
-    Sys: System<f64, N, G>,
-    M: Method,
-    C: Condition<N, G>,
-    O: Observer<N, G>,
-{
+    settings: &'a Settings,
+    condition: Option<&'a mut Condition<'a>>,
+    observer: &mut dyn Observer,
+) -> Result<Finish, Failure> {
     let control = method.control();
     let needs_series = method.needs_series().then(|| method.name());
-    let stepper = Stepper::new(system, method, Scale::from(&settings.tolerances), Point::at(span.t0, *start));
-    let mut run = Run::new(stepper, condition, control, span, settings);
+    settings::check_fit(system, span.t0, start)?;
+    let scale = Scale::new(&settings.tolerances, system.states());
+    let stepper = Stepper::new(system, method, scale, Point::at(span.t0, start.clone()));
+    let mut run = Run::new(stepper, condition.map(Located::new), control, span, settings);
     run.sizes.remember(&run.stepper, largest);
-    let outcome = settings::check(system, control, start, span, settings)
+    let outcome = settings::check(system, control, start.as_slice(), span, settings)
         .and_then(|()| settings::check_series(system, needs_series))
         .map_err(Cause::from)
-        .and_then(|()| run.begin(control, settings, *negative))
+        .and_then(|()| run.begin(control, settings, negative.as_deref()))
         .and_then(|()| run.advance_to_end(observer));
     match outcome {
         Ok(ended) => Ok(run.finish(ended)),

@@ -6,8 +6,10 @@
 //! in between is the start looked at anew, and then too the size of the step stays.
 
 use alloc::boxed::Box;
+use alloc::vec;
+use alloc::vec::Vec;
 
-use nalgebra::SVector;
+use nalgebra::DVector;
 
 use super::observer::Observer;
 use super::rounding::RoundingMonitor;
@@ -15,8 +17,9 @@ use super::run::Run;
 use super::settings::{self, Settings, Span};
 use super::sizes::SizeMonitor;
 use super::step_size::StepSizeController;
+use crate::model::dynamics::{Dynamics, Typed};
 use crate::model::system::System;
-use crate::solve::event::{EventMonitor, Never};
+use crate::solve::event::EventMonitor;
 use crate::solve::failure::{Cause, Failure};
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Method, Point, Scale};
@@ -38,7 +41,7 @@ use crate::solve::stepper::Stepper;
 ///     }
 /// }
 ///
-/// let (mut run, mut method) = (Ongoing::at(0.0, SVector::from([1.0])), Dop853::new());
+/// let (mut run, mut method) = (Ongoing::at(0.0, &[1.0]), Dop853::new());
 /// for k in 1..=10 {
 ///     run.advance(&Decay, &mut method, 0.1 * f64::from(k), &Settings::default(), &mut ())?;
 /// }
@@ -46,17 +49,17 @@ use crate::solve::stepper::Stepper;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Ongoing<const N: usize, const G: usize> {
-    start: Point<N>,
-    negative: [bool; G],
+pub struct Ongoing {
+    start: Point,
+    negative: Vec<bool>,
     /// Whether these branches are known.
     is_known: bool,
-    monitor: EventMonitor<G>,
+    monitor: EventMonitor,
     rounding: Option<RoundingMonitor>,
     /// None before the first piece.
-    sizes: Option<SizeMonitor<N>>,
+    sizes: Option<SizeMonitor>,
     /// How large each state has been before that.
-    largest: SVector<f64, N>,
+    largest: DVector<f64>,
     /// None where the start has to be looked at.
     controller: Option<StepSizeController>,
     /// The size of the next step, s, where it is known.
@@ -64,35 +67,37 @@ pub struct Ongoing<const N: usize, const G: usize> {
     statistics: Statistics,
 }
 
-impl<const N: usize, const G: usize> Ongoing<N, G> {
+impl Ongoing {
     /// A run from state `x` at time `t` (s).
     #[must_use]
-    pub fn at(t: f64, x: SVector<f64, N>) -> Self {
+    pub fn at(t: f64, x: &[f64]) -> Self {
         Self::with(t, x, None)
     }
 
     /// The same in these branches of the switches. A branch that the sign of its guard contradicts is found anew.
     #[must_use]
-    pub fn standing(t: f64, x: SVector<f64, N>, negative: [bool; G]) -> Self {
+    pub fn standing(t: f64, x: &[f64], negative: &[bool]) -> Self {
         Self::with(t, x, Some(negative))
     }
 
     /// The same where the states have been as large as `largest` before: errors are measured by that.
     #[must_use]
-    pub fn grown(self, largest: &SVector<f64, N>) -> Self {
-        Self { largest: self.largest.sup(&largest.abs()), ..self }
+    pub fn grown(mut self, largest: &[f64]) -> Self {
+        self.largest.iter_mut().zip(largest).for_each(|(largest, other)| *largest = largest.max(other.abs()));
+        self
     }
 
-    fn with(t: f64, x: SVector<f64, N>, negative: Option<[bool; G]>) -> Self {
-        let (start, statistics) = (Point::at(t, x), Statistics::default());
+    fn with(t: f64, x: &[f64], negative: Option<&[bool]>) -> Self {
+        let x = DVector::from_column_slice(x);
+        let (largest, statistics) = (x.abs(), Statistics::default());
         Self {
-            start,
-            negative: negative.unwrap_or([false; G]),
+            start: Point::at(t, x),
+            negative: negative.unwrap_or_default().to_vec(),
             is_known: negative.is_some(),
-            monitor: EventMonitor::new(),
+            monitor: EventMonitor::new(0),
             rounding: None,
             sizes: None,
-            largest: x.abs(),
+            largest,
             controller: None,
             step: None,
             statistics,
@@ -107,13 +112,13 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
 
     /// The state there.
     #[must_use]
-    pub const fn state(&self) -> &SVector<f64, N> {
-        &self.start.x
+    pub fn state(&self) -> &[f64] {
+        self.start.x.as_slice()
     }
 
-    /// The branches from there on; all positive before the first piece, unless they were given.
+    /// The branches from there on; none before the first piece, unless they were given.
     #[must_use]
-    pub const fn negative(&self) -> &[bool; G] {
+    pub fn negative(&self) -> &[bool] {
         &self.negative
     }
 
@@ -141,27 +146,44 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
     ///
     /// # Errors
     /// As [`integrate`](super::integrate); the run then is at its last good point.
-    pub fn advance<Sys, M, O>(
+    pub fn advance<Sys, M, O, const N: usize, const G: usize>(
         &mut self,
         system: &Sys,
         method: &mut M,
         t_end: f64,
-        settings: &Settings<N>,
+        settings: &Settings,
         observer: &mut O,
-    ) -> Result<Ended, Failure<N, G>>
+    ) -> Result<Ended, Failure>
     where
         Sys: System<f64, N, G>,
         M: Method,
-        O: Observer<N, G>,
+        O: Observer,
     {
+        self.drive(&Typed::system(system), method, t_end, settings, observer)
+    }
+
+    /// The same of a system over slices.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn drive(
+        &mut self,
+        system: &dyn Dynamics,
+        method: &mut dyn Method,
+        t_end: f64,
+        settings: &Settings,
+        observer: &mut dyn Observer,
+    ) -> Result<Ended, Failure> {
+        settings::check_fit(system, self.start.t, &self.start.x)?;
         let span = Span { t0: self.start.t, t_end };
         let control = method.control();
         let needs_series = method.needs_series().then(|| method.name());
         // A step that was shortened to nothing says nothing of the next one.
         let step = self.step.filter(|step| *step > span.resolution());
         let settings = &Settings { first_step: step.or(settings.first_step), ..settings.clone() };
-        let stepper = Stepper::new(system, method, Scale::from(&settings.tolerances), self.start);
-        let mut run = Run::new(stepper, Never, control, span, settings);
+        let scale = Scale::new(&settings.tolerances, system.states());
+        let stepper = Stepper::new(system, method, scale, self.start.clone());
+        let mut run = Run::new(stepper, None, control, span, settings);
         run.stepper.statistics = self.statistics;
         if let Some(mut sizes) = self.sizes.take() {
             sizes.go_on(&run.sizes, &mut run.stepper.scale);
@@ -169,14 +191,14 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
         } else {
             run.sizes.remember(&run.stepper, &self.largest);
         }
-        let outcome = settings::check(system, control, &self.start.x, span, settings)
+        let outcome = settings::check(system, control, self.start.x.as_slice(), span, settings)
             .and_then(|()| settings::check_series(system, needs_series))
             .map_err(Cause::from)
             .and_then(|()| match self.controller.take().filter(|known| !known.is_adaptive() || step.is_some()) {
-                None => run.begin(control, settings, self.is_known.then_some(self.negative)),
+                None => run.begin(control, settings, self.is_known.then_some(self.negative.as_slice())),
                 Some(controller) => {
                     (run.stepper.negative, run.controller, run.monitor) =
-                        (self.negative, controller, self.monitor.clone());
+                        (self.negative.clone(), controller, self.monitor.clone());
                     run.rounding = self.rounding.take();
                     Ok(())
                 }
@@ -197,9 +219,9 @@ impl<const N: usize, const G: usize> Ongoing<N, G> {
                 Ok(ended)
             }
             Err(cause) => {
-                let (Point { t, x, .. }, ended) = (self.start, Ended::ByFailure);
-                let Self { negative, statistics, .. } = *self;
-                let last = Finish { t, x, negative, ended, uncontrolled: [false; N], statistics };
+                let (Point { t, x, .. }, negative) = (self.start.clone(), self.negative.clone());
+                let (ended, uncontrolled) = (Ended::ByFailure, vec![false; x.len()]);
+                let last = Finish { t, x, negative, ended, uncontrolled, statistics: self.statistics };
                 Err(Failure { cause, last: Box::new(last) })
             }
         }
@@ -211,6 +233,7 @@ mod tests {
     use super::*;
     use crate::solve::integrator::{Dop853, Tolerances};
     use crate::solve::simulation::integrate;
+    use nalgebra::SVector;
 
     /// A mass of 1 kg on a spring of 1 N/m that is pulled with 0.3 N to the middle: by a relay.
     struct Relay;
@@ -223,7 +246,7 @@ mod tests {
         }
     }
 
-    fn settings() -> Settings<2> {
+    fn settings() -> Settings {
         Settings { tolerances: Tolerances::new(1e-10, 1e-11), ..Settings::default() }
     }
 
@@ -232,14 +255,15 @@ mod tests {
         let start = SVector::from([1.0, 0.0]);
         let span = Span { t0: 0.0, t_end: 10.0 };
         let whole = integrate(&Relay, &mut Dop853::new(), &start, span, &settings(), &mut ()).unwrap();
-        let (mut run, mut method) = (Ongoing::at(0.0, start), Dop853::new());
+        let (mut run, mut method) = (Ongoing::at(0.0, start.as_slice()), Dop853::new());
         let mut ends = Vec::new();
         for k in 1..=1000 {
             run.advance(&Relay, &mut method, f64::from(k) / 100.0, &settings(), &mut ()).unwrap();
             ends.push(run.time());
         }
-        assert_eq!((ends[0], ends[999], run.negative()), (0.01, 10.0, &whole.negative));
-        assert!((run.state() - whole.x).amax() < 1e-8, "{} {}", run.state(), whole.x);
+        assert_eq!((ends[0], ends[999], run.negative()), (0.01, 10.0, whole.negative.as_slice()));
+        let reached = DVector::from_column_slice(run.state());
+        assert!((&reached - &whole.x).amax() < 1e-8, "{reached} {}", whole.x);
         let (cost, events) = (run.statistics(), whole.statistics.events);
         // At acos(0.3 / 1.3) = 1.338 s, then every 2.676 s.
         assert_eq!((cost.events, events), (4, 4));
@@ -262,11 +286,11 @@ mod tests {
                 guards[0] = self.0;
             }
         }
-        let (mut run, mut method) = (Ongoing::at(0.0, SVector::from([0.0])), Dop853::new());
+        let (mut run, mut method) = (Ongoing::at(0.0, &[0.0]), Dop853::new());
         run.advance(&Pushed(1.0), &mut method, 1.0, &Settings::default(), &mut ()).unwrap();
         run.renew(None);
         run.advance(&Pushed(-1.0), &mut method, 3.0, &Settings::default(), &mut ()).unwrap();
-        assert!((run.state()[0] + 1.0).abs() < 1e-12, "{}", run.state());
+        assert!((run.state()[0] + 1.0).abs() < 1e-12, "{:?}", run.state());
         let failure = run.advance(&Pushed(-1.0), &mut method, 2.0, &Settings::default(), &mut ()).unwrap_err();
         assert_eq!((run.time(), failure.last.t), (3.0, 3.0));
     }

@@ -9,12 +9,12 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::SVector;
 use thiserror::Error;
 
 use super::Observer;
 use crate::model::description::Description;
-use crate::model::system::{Model, Powers};
+use crate::model::dynamics::Machine;
+use crate::model::system::Powers;
 use crate::solve::failure::NoNumber;
 
 /// What is recorded at each sample beside its time.
@@ -132,48 +132,42 @@ impl Recording {
 
 /// An observer that records a model's samples and the times of its events. Allocates at each sample. Where a value is
 /// not finite the run ends, and [`Recorder::fault`] says which.
-#[derive(Clone, Debug)]
-pub struct Recorder<'a, Mo, const N: usize, const G: usize, const M: usize> {
-    model: &'a Mo,
+#[derive(Clone)]
+pub struct Recorder<'a> {
+    model: &'a dyn Machine,
     parts: Vec<Part>,
     /// The values of a sample on their way.
     row: Vec<f64>,
     /// What has been recorded.
     pub recording: Recording,
     /// The largest absolute value of each state at the samples.
-    pub largest: SVector<f64, N>,
+    pub largest: Vec<f64>,
     /// The first value that could not be calculated: nothing is recorded from there on, and the run ends.
     pub fault: Option<NoNumber>,
 }
 
-impl<'a, Mo, const N: usize, const G: usize, const M: usize> Recorder<'a, Mo, N, G, M>
-where
-    Mo: Model<f64, N, G, M>,
-{
+impl<'a> Recorder<'a> {
     /// Records these parts of a model, in this order.
     #[must_use]
-    pub fn new(model: &'a Mo, parts: &[Part]) -> Self {
+    pub fn new(model: &'a dyn Machine, parts: &[Part]) -> Self {
         let columns = parts.iter().flat_map(|part| part.columns(model.description())).collect();
         let (parts, recording) = (parts.to_vec(), Recording::new(columns));
-        Self { model, parts, row: Vec::new(), recording, largest: SVector::zeros(), fault: None }
+        Self { model, parts, row: Vec::new(), recording, largest: vec![0.0; model.states()], fault: None }
     }
 
     /// The model.
     #[cfg(feature = "std")]
-    pub(crate) const fn model(&self) -> &'a Mo {
+    pub(crate) const fn model(&self) -> &'a dyn Machine {
         self.model
     }
 }
 
-impl<Mo, const N: usize, const G: usize, const M: usize> Observer<N, G> for Recorder<'_, Mo, N, G, M>
-where
-    Mo: Model<f64, N, G, M>,
-{
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+impl Observer for Recorder<'_> {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
         if self.fault.is_some() {
             return;
         }
-        self.largest = self.largest.sup(&x.abs());
+        self.largest.iter_mut().zip(x).for_each(|(largest, x)| *largest = largest.max(x.abs()));
         self.row.clear();
         let mut faulty = None;
         for part in &self.parts {
@@ -197,7 +191,7 @@ where
         }
     }
 
-    fn event(&mut self, t: f64, _: &SVector<f64, N>, _: usize, _: &[bool; G]) {
+    fn event(&mut self, t: f64, _: &[f64], _: usize, _: &[bool]) {
         if self.fault.is_none() {
             self.recording.events.push(t);
         }
@@ -220,23 +214,14 @@ impl Part {
         }
     }
 
-    fn write<Mo, const N: usize, const G: usize, const M: usize>(
-        self,
-        model: &Mo,
-        t: f64,
-        x: &SVector<f64, N>,
-        negative: &[bool; G],
-        row: &mut Vec<f64>,
-    ) where
-        Mo: Model<f64, N, G, M>,
-    {
+    fn write(self, model: &dyn Machine, t: f64, x: &[f64], negative: &[bool], row: &mut Vec<f64>) {
         match self {
             Self::Outputs => {
-                let mut outputs = SVector::<f64, M>::zeros();
-                model.outputs(t, x, negative, &mut outputs);
-                row.extend(outputs.iter());
+                let first = row.len();
+                row.resize(first + model.description().outputs.len(), 0.0);
+                model.outputs(t, x, negative, &mut row[first..]);
             }
-            Self::States => row.extend(x.iter()),
+            Self::States => row.extend(x),
             Self::Energy => row.push(model.stored_energy(t, x, negative)),
             Self::Powers => {
                 let Powers { supplied, dissipated } = model.powers(t, x, negative);

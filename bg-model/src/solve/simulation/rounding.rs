@@ -5,8 +5,9 @@
 //! the states changes the rates so much that the estimate exceeds a tight tolerance: the steps become shorter, and the
 //! result no better.
 
+use alloc::vec;
+
 use super::sizes::SizeMonitor;
-use crate::model::system::System;
 use crate::solve::integrator::{Method, StepControl, rounding};
 use crate::solve::stepper::Stepper;
 
@@ -32,22 +33,16 @@ impl RoundingMonitor {
     }
 
     /// Counts an accepted step before it is taken over.
-    pub fn follow<Sys, M, const N: usize, const G: usize>(
-        &mut self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        sizes: &SizeMonitor<N>,
-    ) where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    pub fn follow(&mut self, stepper: &mut Stepper<'_>, sizes: &SizeMonitor) {
         if stepper.statistics.steps.is_multiple_of(WAIT) {
             self.is_above = is_exposed(stepper.method) && {
                 let h = stepper.h;
                 let (_, flow, start, _, scale) = stepper.split();
-                let [mut there, mut rate, mut changes] = [[0.0; N]; 3];
+                let states = start.x.len();
+                let [mut there, mut rate, mut changes] = [(); 3].map(|()| vec![0.0; states]);
                 rounding(&flow, start.borrowed(), [&mut there, &mut rate, &mut changes]);
                 let allowed = |i| sizes.without_noise(i, scale) + scale.relative * start.x[i].abs();
-                (0..N).any(|i| (changes[i] * (ESTIMATE * h)).abs() / allowed(i) > 1.0)
+                (0..states).any(|i| (changes[i] * (ESTIMATE * h)).abs() / allowed(i) > 1.0)
             };
         }
         stepper.statistics.rounded += u64::from(self.is_above);
@@ -60,6 +55,6 @@ pub(super) fn may_matter(relative: f64) -> bool {
 }
 
 /// An implicit method damps what rounding does, and Taylor series take no differences of rates.
-pub(super) fn is_exposed(method: &impl Method) -> bool {
+pub(super) fn is_exposed(method: &dyn Method) -> bool {
     matches!(method.control(), StepControl::Stabilised { .. }) && !method.needs_series()
 }

@@ -3,6 +3,9 @@
 //! In: a system, a method, a condition that may end the run. Out: the point where the run ends and why it does, with
 //! samples and events told to the observer on the way; or why it cannot go on (`cause`).
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::observer::{Observer, Switching};
 use super::rounding::RoundingMonitor;
 use super::sampling::Sampling;
@@ -14,11 +17,10 @@ use crate::model::reactions::LoopsInLanes;
 use crate::model::reactions::{After, Broken, Collision, LoopMonitor};
 #[cfg(feature = "std")]
 use crate::model::scalar::lanes::Vector;
-use crate::model::system::System;
-use crate::solve::event::{Condition, Crossing, EventMonitor, Stop, Struck};
+use crate::solve::event::{Crossing, EventMonitor, Located, Stop, Struck};
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
-use crate::solve::integrator::{Method, StepControl, is_finite};
+use crate::solve::integrator::{Point, StepControl, is_finite};
 use crate::solve::stepper::Stepper;
 
 /// The norm of a projection above which it is looked at more closely. It is below 2 where a step errs by as much as is
@@ -31,13 +33,14 @@ const PROJECTIONS: usize = 6;
 const AGAIN: f64 = 0.05;
 
 /// A run under way.
-pub(crate) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
-    pub stepper: Stepper<'a, Sys, M, N, G>,
+pub(crate) struct Run<'a> {
+    pub stepper: Stepper<'a>,
     pub controller: StepSizeController,
     /// What was not finite at the end of a longer step from the present start.
     pub faulty: Option<Faulty>,
-    pub monitor: EventMonitor<G>,
-    condition: C,
+    pub monitor: EventMonitor,
+    /// What ends the run beside its span.
+    condition: Option<Located<'a>>,
     pub sampling: Sampling<'a>,
     pub span: Span,
     pub attempts: u64,
@@ -47,9 +50,11 @@ pub(crate) struct Run<'a, Sys, M, C, const N: usize, const G: usize> {
     /// Of impacts on stops, where there are any.
     collision: Option<Collision<f64>>,
     /// Of the sizes of the states, by which errors are measured.
-    pub sizes: SizeMonitor<N>,
+    pub sizes: SizeMonitor,
     /// Of the error estimates, where the tolerances may be below it.
     pub rounding: Option<RoundingMonitor>,
+    /// Room for the state at a sample.
+    sample: Vec<f64>,
 }
 
 /// What is monitored in a step and is not finite at its end.
@@ -61,27 +66,23 @@ pub(super) enum Faulty {
     Condition(f64),
 }
 
-impl<'a, Sys, M, C, const N: usize, const G: usize> Run<'a, Sys, M, C, N, G>
-where
-    Sys: System<f64, N, G>,
-    M: Method,
-    C: Condition<N, G>,
-{
+impl<'a> Run<'a> {
     pub fn new(
-        stepper: Stepper<'a, Sys, M, N, G>,
-        condition: C,
+        stepper: Stepper<'a>,
+        condition: Option<Located<'a>>,
         control: StepControl,
         span: Span,
-        settings: &'a Settings<N>,
+        settings: &'a Settings,
     ) -> Self {
-        let has_breaks = stepper.system.next_break(span.t0) < f64::INFINITY;
-        let loops = stepper.system.joints().and_then(LoopMonitor::new);
-        let collision = stepper.system.impacts().map(Collision::new);
+        let (system, states) = (stepper.system, stepper.system.states());
+        let has_breaks = system.next_break(span.t0) < f64::INFINITY;
+        let loops = LoopMonitor::new(system);
+        let collision = system.stops().map(|stops| Collision::new(stops, system.kept_of_stops()));
         Self {
             stepper,
             controller: StepSizeController::new(control, span, settings, has_breaks),
             faulty: None,
-            monitor: EventMonitor::new(),
+            monitor: EventMonitor::new(system.switches()),
             condition,
             sampling: Sampling::new(&settings.samples, span),
             span,
@@ -89,18 +90,14 @@ where
             limit: settings.step_limit,
             loops,
             collision,
-            sizes: SizeMonitor::new(&settings.tolerances, span.t0),
+            sizes: SizeMonitor::new(&settings.tolerances, states, span.t0),
             rounding: RoundingMonitor::new(settings.tolerances.relative),
+            sample: vec![0.0; states],
         }
     }
 
     /// Finds the first step, the branches at the start, from those that are `known` on, and the condition's side.
-    pub fn begin(
-        &mut self,
-        control: StepControl,
-        settings: &Settings<N>,
-        known: Option<[bool; G]>,
-    ) -> Result<(), Cause> {
+    pub fn begin(&mut self, control: StepControl, settings: &Settings, known: Option<&[bool]>) -> Result<(), Cause> {
         self.sizes.start(&mut self.stepper);
         let clear = self.monitor.begin_by_sign(&mut self.stepper, self.collision.as_mut(), known);
         self.stepper.evaluate_start();
@@ -113,11 +110,12 @@ where
             let first = step_size::first_step(&flow, start, scale, order, longest);
             self.controller.begin(first);
         }
-        self.monitor.begin_by_probe(&mut self.stepper, clear, self.controller.reach());
-        self.stepper.end = self.stepper.start;
+        self.monitor.begin_by_probe(&mut self.stepper, &clear, self.controller.reach());
+        self.stepper.end.become_that(self.stepper.start.borrowed());
         self.check_start()?;
-        let outcome = self.condition.begin(&mut self.stepper, self.controller.reach());
-        self.stepper.end = self.stepper.start;
+        let reach = self.controller.reach();
+        let outcome = self.condition.as_mut().map_or(Ok(()), |condition| condition.begin(&mut self.stepper, reach));
+        self.stepper.end.become_that(self.stepper.start.borrowed());
         outcome.map_err(|value| self.not_finite_monitored(Faulty::Condition(value), 0.0))
     }
 
@@ -137,8 +135,8 @@ where
     /// Sees to it that the joints which close loops say where the mechanism goes at the end of the step.
     pub fn check_joints(&mut self) -> Result<(), Cause> {
         let Stepper { system, end, negative, .. } = &self.stepper;
-        let (Some(loops), Some(joints)) = (&mut self.loops, system.joints()) else { return Ok(()) };
-        match loops.check(joints, (end.t, &end.x), negative) {
+        let Some(loops) = &mut self.loops else { return Ok(()) };
+        match loops.check(*system, (end.t, end.x.as_slice()), negative) {
             Some(Broken::Torn(slipping)) => Err(Cause::Torn { slipping, t: end.t }),
             Some(Broken::Singular(redundancy)) => Err(Cause::Singular { redundancy, t: end.t }),
             None => Ok(()),
@@ -146,7 +144,7 @@ where
     }
 
     /// Makes steps until the run ends; gives why it does.
-    pub fn advance_to_end(&mut self, observer: &mut impl Observer<N, G>) -> Result<Ended, Cause> {
+    pub fn advance_to_end(&mut self, observer: &mut dyn Observer) -> Result<Ended, Cause> {
         observer.measured(&self.stepper.scale);
         self.sample(observer, self.span.t0);
         loop {
@@ -158,7 +156,7 @@ where
 
     /// Makes a step, or finds another branch at its start; gives why the run ends, if it does.
     #[inline]
-    pub fn advance(&mut self, observer: &mut impl Observer<N, G>) -> Result<Option<Ended>, Cause> {
+    pub fn advance(&mut self, observer: &mut dyn Observer) -> Result<Option<Ended>, Cause> {
         if self.stepper.start.t >= self.span.t_end {
             return Ok(Some(Ended::AtEnd));
         }
@@ -178,15 +176,17 @@ where
     /// Takes over the step that was made, which ends at `crossing` or has none; gives why the run ends, if it does.
     pub fn conclude(
         &mut self,
-        crossing: Option<Crossing<G>>,
-        observer: &mut impl Observer<N, G>,
+        crossing: Option<Crossing>,
+        observer: &mut dyn Observer,
     ) -> Result<Option<Ended>, Cause> {
         if crossing.as_ref().is_some_and(|crossing| crossing.is_at_start) {
             let jumps = self.change_branches(crossing, observer)?;
             return Ok(jumps.then(|| self.end_at_start(observer)));
         }
         let h = self.stepper.h;
-        match self.condition.inspect(&mut self.stepper, crossing.is_some()) {
+        let is_at_event = crossing.is_some();
+        let condition = self.condition.as_mut();
+        match condition.map_or(Ok(None), |condition| condition.inspect(&mut self.stepper, is_at_event)) {
             Err(value) => self.reject_not_finite(Faulty::Condition(value)).map(|()| None),
             Ok(Some(Stop::AtStart)) => Ok(Some(self.end_at_start(observer))),
             Ok(Some(Stop::AtEnd)) => {
@@ -253,8 +253,8 @@ where
     /// Whether the step begins or ends in the neighbourhood of a singular pose.
     pub fn is_around_singular(&mut self) -> bool {
         let Stepper { system, start, end, negative, .. } = &self.stepper;
-        let (Some(loops), Some(joints)) = (&mut self.loops, system.joints()) else { return false };
-        [start, end].into_iter().any(|point| loops.is_around(joints, (point.t, &point.x), negative))
+        let Some(loops) = &mut self.loops else { return false };
+        [start, end].into_iter().any(|point| loops.is_around(*system, (point.t, point.x.as_slice()), negative))
     }
 
     /// Projects the end of the step; gives whether it is still on the branch of the motion on which the step began.
@@ -302,7 +302,7 @@ where
 
     /// Takes the step over: gives its samples and makes its end the start of the next one. Gives whether the observer
     /// ends the run with it.
-    fn accept(&mut self, observer: &mut impl Observer<N, G>) -> Result<bool, Cause> {
+    fn accept(&mut self, observer: &mut dyn Observer) -> Result<bool, Cause> {
         self.check_joints()?;
         self.faulty = None;
         if let Some(rounding) = &mut self.rounding {
@@ -327,18 +327,19 @@ where
     }
 
     /// Gives the samples up to the end of the step at `t`.
-    pub fn sample(&mut self, observer: &mut impl Observer<N, G>, t: f64) {
+    pub fn sample(&mut self, observer: &mut dyn Observer, t: f64) {
         while let Some(instant) = self.sampling.next_up_to(t) {
             if instant >= t {
-                observer.sample(t, &self.stepper.end.x, &self.stepper.negative);
+                observer.sample(t, self.stepper.end.x.as_slice(), &self.stepper.negative);
                 continue;
             }
             let part = (instant - self.stepper.start.t) / self.stepper.h;
-            let mut x = self.stepper.dense(part.min(1.0));
+            let Self { stepper, sample, .. } = self;
+            stepper.dense(part.min(1.0), sample);
             // The dense output errs more than the step, and most near a singular pose.
             let most = if self.loops.is_some() { PROJECTIONS } else { 1 };
-            let _ = (0..most).find(|_| self.stepper.project_state(instant, &mut x) <= MOVED);
-            observer.sample(instant, &x, &self.stepper.negative);
+            let _ = (0..most).find(|_| stepper.project_state(instant, sample) <= MOVED);
+            observer.sample(instant, sample, &stepper.negative);
         }
     }
 
@@ -349,66 +350,66 @@ where
     }
 
     /// The run ends where the last accepted step has led.
-    fn end_at_start(&mut self, observer: &mut impl Observer<N, G>) -> Ended {
-        let start = self.stepper.start;
-        self.stepper.end = start;
-        self.end_span(start.t);
-        self.sample(observer, start.t);
+    fn end_at_start(&mut self, observer: &mut dyn Observer) -> Ended {
+        let t = self.stepper.start.t;
+        self.stepper.end.become_that(self.stepper.start.borrowed());
+        self.end_span(t);
+        self.sample(observer, t);
         Ended::ByCondition
     }
 
     /// What is left of an event at the end of a step that the condition has shortened: nothing where it is later.
-    fn still_crossing(&mut self, crossing: Option<Crossing<G>>) -> Option<Crossing<G>> {
-        let switches = self.monitor.still_at_zero(&mut self.stepper, crossing?.switches);
+    fn still_crossing(&mut self, crossing: Option<Crossing>) -> Option<Crossing> {
+        let switches = self.monitor.still_at_zero(&mut self.stepper, &crossing?.switches);
         switches.contains(&true).then_some(Crossing { switches, is_at_start: false })
     }
 
     /// Goes on with the branches that hold after the step: the old ones where nothing has crossed. Gives whether the
     /// condition has jumped through zero by that.
-    fn change_branches(
-        &mut self,
-        crossing: Option<Crossing<G>>,
-        observer: &mut impl Observer<N, G>,
-    ) -> Result<bool, Cause> {
+    fn change_branches(&mut self, crossing: Option<Crossing>, observer: &mut dyn Observer) -> Result<bool, Cause> {
         let Some(Crossing { switches, is_at_start }) = crossing else {
             self.monitor.advance();
-            self.condition.advance();
+            if let Some(condition) = &mut self.condition {
+                condition.advance();
+            }
             return Ok(false);
         };
-        let before = self.stepper.negative;
+        let before = self.stepper.negative.clone();
         let h = self.stepper.h;
-        let jumps = self.switch(switches, observer)?;
+        let jumps = self.switch(&switches, observer)?;
         if is_at_start && self.stepper.negative == before && !jumps {
             // The branch is right, so the step was too long for the guard's course.
             self.stepper.statistics.rejected += 1;
             self.controller.reject(h, f64::NAN);
             if self.controller.is_lost(self.stepper.start.t) {
-                return Err(self.accumulate(switches));
+                return Err(self.accumulate(&switches));
             }
         }
-        let jumps = self.condition.jumps(&mut self.stepper, self.controller.reach());
+        let reach = self.controller.reach();
+        let condition = self.condition.as_mut();
+        let jumps = condition.map_or(Ok(false), |condition| condition.jumps(&mut self.stepper, reach));
         jumps.map_err(|value| self.not_finite_monitored(Faulty::Condition(value), 0.0))
     }
 
     /// Lets the switches whose guards are at zero find their branches at the start of the next step, where the state
     /// jumps if something has hit a stop. Gives whether it does.
-    fn switch(&mut self, switches: [bool; G], observer: &mut impl Observer<N, G>) -> Result<bool, Cause> {
+    fn switch(&mut self, reached: &[bool], observer: &mut dyn Observer) -> Result<bool, Cause> {
         let t = self.stepper.start.t;
-        let (before, point, reached) = (self.stepper.negative, self.stepper.start, switches);
-        let struck = self.monitor.strike(&mut self.stepper, switches, self.collision.as_mut());
+        let (before, point) = (self.stepper.negative.clone(), self.stepper.start.clone());
+        let struck = self.monitor.strike(&mut self.stepper, reached.to_vec(), self.collision.as_mut());
         let Struck { switches, rebounds, jumps } = struck;
-        self.monitor.settle(&mut self.stepper, switches, self.controller.reach());
+        self.monitor.settle(&mut self.stepper, switches.clone(), self.controller.reach());
         self.check_start()?;
         if jumps || self.stepper.negative != before {
-            let mut left = [false; G];
+            let mut left = vec![false; before.len()];
             let outcomes = self.collision.as_ref().filter(|_| jumps).into_iter().flat_map(Collision::outcomes);
             outcomes.for_each(|(k, after)| left[k] = after == After::Clear);
             observer.switched(&Switching {
                 before: point,
-                after: self.stepper.start,
-                negative_before: before,
-                negative_after: self.stepper.negative,
-                reached,
+                after: self.stepper.start.clone(),
+                negative_before: before.clone(),
+                negative_after: self.stepper.negative.clone(),
+                reached: reached.to_vec(),
                 left,
                 jumps,
             });
@@ -416,17 +417,19 @@ where
         for (switch, before) in before.into_iter().enumerate() {
             if self.stepper.negative[switch] != before || rebounds[switch] {
                 self.stepper.statistics.events += 1;
-                observer.event(t, &self.stepper.start.x, switch, &self.stepper.negative);
+                observer.event(t, self.stepper.start.x.as_slice(), switch, &self.stepper.negative);
             }
         }
         let is_crowded = self.monitor.is_crowded(t, self.span.t_end - self.span.t0);
-        if is_crowded { Err(self.accumulate(switches)) } else { Ok(jumps) }
+        if is_crowded { Err(self.accumulate(&switches)) } else { Ok(jumps) }
     }
 
-    pub fn finish(self, ended: Ended) -> Finish<N, G> {
-        let is_adaptive = self.controller.is_adaptive();
-        let uncontrolled = if is_adaptive { self.sizes.uncontrolled(&self.stepper.scale) } else { [false; N] };
-        let Stepper { start, negative, statistics, .. } = self.stepper;
-        Finish { t: start.t, x: start.x, negative, ended, uncontrolled, statistics }
+    pub fn finish(self, ended: Ended) -> Finish {
+        let Stepper { start: Point { t, x, .. }, negative, statistics, scale, .. } = self.stepper;
+        let mut uncontrolled = self.sizes.uncontrolled(&scale);
+        if !self.controller.is_adaptive() {
+            uncontrolled.fill(false);
+        }
+        Finish { t, x, negative, ended, uncontrolled, statistics }
     }
 }

@@ -1,13 +1,16 @@
 //! What a run is asked for, and the check that it can be done.
 
+use alloc::boxed::Box;
+use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::SVector;
+use nalgebra::DVector;
 
-use crate::model::scalar::Scalar;
-use crate::model::system::System;
-use crate::solve::failure::BadInput;
+use crate::model::dynamics::Dynamics;
+use crate::solve::failure::{BadInput, Failure};
+use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Absolute, StepControl, Tolerances};
+use crate::solve::statistics::Statistics;
 
 /// The time that a run covers, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +35,9 @@ impl Span {
 
 /// How a run is made.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings<const N: usize> {
+pub struct Settings {
     /// The error allowed in a step; without effect on a fixed-step method.
-    pub tolerances: Tolerances<N>,
+    pub tolerances: Tolerances,
     /// The first step, s; by default it is estimated. One beyond the end of the run is one to the end. Without effect
     /// on a fixed-step method.
     pub first_step: Option<f64>,
@@ -46,7 +49,7 @@ pub struct Settings<const N: usize> {
     pub samples: Samples,
 }
 
-impl<const N: usize> Default for Settings<N> {
+impl Default for Settings {
     fn default() -> Self {
         Self {
             tolerances: Tolerances::default(),
@@ -70,23 +73,32 @@ pub enum Samples {
     At(Vec<f64>),
 }
 
+/// Refuses a start at `t` (s) of another number of states than the system has.
+pub(super) fn check_fit(system: &dyn Dynamics, t: f64, start: &DVector<f64>) -> Result<(), Failure> {
+    let (given, states) = (start.len(), system.states());
+    if given == states {
+        return Ok(());
+    }
+    let (negative, uncontrolled) = (vec![false; system.switches()], vec![false; given]);
+    let (ended, statistics) = (Ended::ByFailure, Statistics::default());
+    let last = Finish { t, x: start.clone(), negative, ended, uncontrolled, statistics };
+    Err(Failure { cause: BadInput::States { given, states }.into(), last: Box::new(last) })
+}
+
 /// Refuses what cannot be done.
-pub(super) fn check<Sys, const N: usize, const G: usize>(
-    system: &Sys,
+pub(super) fn check(
+    system: &dyn Dynamics,
     control: StepControl,
-    start: &SVector<f64, N>,
+    start: &[f64],
     span: Span,
-    settings: &Settings<N>,
-) -> Result<(), BadInput>
-where
-    Sys: System<f64, N, G>,
-{
+    settings: &Settings,
+) -> Result<(), BadInput> {
     let Span { t0, t_end } = span;
     if !(t0.is_finite() && t_end.is_finite() && t0 <= t_end && (t_end - t0).is_finite()) {
         return Err(BadInput::Span { t0, t_end });
     }
     check_tolerances(system, &settings.tolerances)?;
-    if let Some((index, value)) = crate::solve::integrator::first_not_finite(start.as_slice()) {
+    if let Some((index, value)) = crate::solve::integrator::first_not_finite(start) {
         return Err(BadInput::Start { state: system.state_name(index), value });
     }
     let smallest = span.resolution();
@@ -105,34 +117,25 @@ where
 }
 
 /// Refuses the method of this name, if there is one, on a system without a Taylor series.
-pub(super) fn check_series<Sys, const N: usize, const G: usize>(
-    system: &Sys,
-    method: Option<&'static str>,
-) -> Result<(), BadInput>
-where
-    Sys: System<f64, N, G>,
-{
+pub(super) fn check_series(system: &dyn Dynamics, method: Option<&'static str>) -> Result<(), BadInput> {
     match method {
         Some(method) if system.series().is_none() => Err(BadInput::NoSeries { method }),
         _ => Ok(()),
     }
 }
 
-fn check_tolerances<Sys, S, const N: usize, const G: usize>(
-    system: &Sys,
-    tolerances: &Tolerances<N>,
-) -> Result<(), BadInput>
-where
-    S: Scalar,
-    Sys: System<S, N, G>,
-{
-    let (value, smallest) = (tolerances.relative, Tolerances::<N>::SMALLEST_RELATIVE);
+fn check_tolerances(system: &dyn Dynamics, tolerances: &Tolerances) -> Result<(), BadInput> {
+    let (value, smallest) = (tolerances.relative, Tolerances::SMALLEST_RELATIVE);
     if !(value.is_finite() && value >= smallest) {
         return Err(BadInput::RelativeTolerance { value, smallest });
     }
+    let states = system.states();
     let faulty = |value: f64| !(value.is_finite() && value >= f64::MIN_POSITIVE);
     let (index, value) = match &tolerances.absolute {
-        Absolute::Scalar(value) if N > 0 && faulty(*value) => (0, *value),
+        Absolute::Scalar(value) if states > 0 && faulty(*value) => (0, *value),
+        Absolute::PerState(values) if values.len() != states => {
+            return Err(BadInput::AbsoluteTolerances { given: values.len(), states });
+        }
         Absolute::PerState(values) => match values.iter().position(|value| faulty(*value)) {
             Some(index) => (index, values[index]),
             None => return Ok(()),

@@ -17,13 +17,16 @@
 //! The sizes are looked at anew where a state has outgrown them, or a step that of rounding: the steps between have one
 //! norm.
 
-use nalgebra::SVector;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use nalgebra::{DVector, SVector};
 
 use super::rounding::is_exposed;
-use crate::model::capability::Storages;
 use crate::model::description::StateKind;
-use crate::model::system::{System, branches};
-use crate::solve::integrator::{Absolute, Dop853, Method, Point, Scale, Tolerances, displaced, rounding};
+use crate::model::dynamics::{Dynamics, Typed, branches};
+use crate::model::system::System;
+use crate::solve::integrator::{Absolute, Dop853, Point, Scale, Tolerances, displaced, rounding};
 use crate::solve::stepper::Stepper;
 
 /// The part of a state's largest value that its absolute tolerance is, over the relative one. A smaller one costs steps
@@ -53,49 +56,49 @@ const LINEAR: f64 = 0.5;
 const ROUNDING: f64 = 1e-12;
 
 /// How large states have been.
-#[derive(Clone, Copy, Debug)]
-struct Sizes<const N: usize> {
+#[derive(Clone, Debug)]
+struct Sizes {
     /// The largest magnitude of each, in its unit.
-    own: SVector<f64, N>,
+    own: DVector<f64>,
     /// Where each would count beside the others, in its unit.
-    beside: SVector<f64, N>,
+    beside: DVector<f64>,
     /// The largest energy, J.
     energy: f64,
 }
 
 /// Follows the sizes of a run.
 #[derive(Clone, Debug)]
-pub(super) struct SizeMonitor<const N: usize> {
+pub(super) struct SizeMonitor {
     relative: f64,
     /// Whether the absolute tolerances follow the sizes: not where they were given.
     is_leading: bool,
     /// The start of the run, s.
     t0: f64,
-    sizes: Sizes<N>,
+    sizes: Sizes,
     /// The sizes before the next step, while those of a way ahead stand for its own.
-    before: Option<Sizes<N>>,
+    before: Option<Sizes>,
     /// What rounding makes of each state in a step.
-    noise: SVector<f64, N>,
+    noise: DVector<f64>,
     /// The magnitude from which on each state has outgrown its size, and the step (s) that outgrows the noise.
-    limit: SVector<f64, N>,
+    limit: DVector<f64>,
     longest: f64,
     /// The largest magnitude of each state at the end of a step.
-    largest: SVector<f64, N>,
+    largest: DVector<f64>,
 }
 
-impl<const N: usize> SizeMonitor<N> {
-    pub fn new(tolerances: &Tolerances<N>, t0: f64) -> Self {
-        let none = SVector::zeros();
+impl SizeMonitor {
+    pub fn new(tolerances: &Tolerances, states: usize, t0: f64) -> Self {
+        let none = || DVector::zeros(states);
         Self {
             relative: tolerances.relative,
             is_leading: tolerances.absolute == Absolute::OfSizes,
             t0,
-            sizes: Sizes { own: none, beside: none, energy: 0.0 },
+            sizes: Sizes { own: none(), beside: none(), energy: 0.0 },
             before: None,
-            noise: none,
-            limit: none,
+            noise: none(),
+            limit: none(),
             longest: 0.0,
-            largest: none,
+            largest: none(),
         }
     }
 
@@ -107,70 +110,52 @@ impl<const N: usize> SizeMonitor<N> {
 
     /// The states have been as large as `largest` before the start of the run, and their storages have stored that
     /// much.
-    pub fn remember<Sys, M, const G: usize>(&mut self, stepper: &Stepper<'_, Sys, M, N, G>, largest: &SVector<f64, N>)
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        let (Point { t, x, .. }, mut curvatures) = (stepper.start, SVector::zeros());
-        (self.sizes.own, self.largest) = (*largest, *largest);
-        if let Some(storages) = stepper.system.storages().filter(|_| x.abs() != *largest) {
-            storages.energy(t, &x, &stepper.negative, &mut curvatures);
-            for i in (0..N).filter(|&i| largest[i] > x[i].abs()) {
+    pub fn remember(&mut self, stepper: &Stepper<'_>, largest: &DVector<f64>) {
+        let Point { t, x, .. } = &stepper.start;
+        self.sizes.own.copy_from(largest);
+        self.largest.copy_from(largest);
+        if stepper.system.stored().is_some() && x.abs() != *largest {
+            let mut curvatures = vec![0.0; x.len()];
+            stepper.system.energy(*t, x.as_slice(), &stepper.negative, &mut curvatures);
+            for i in (0..x.len()).filter(|&i| largest[i] > x[i].abs()) {
                 self.sizes.energy = larger(0.5 * curvatures[i] * largest[i] * largest[i], self.sizes.energy);
             }
         }
     }
 
     /// Takes the sizes from the state at the start, whose rate is not known.
-    pub fn start<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        self.largest = self.largest.sup(&stepper.start.x.abs());
+    pub fn start(&mut self, stepper: &mut Stepper<'_>) {
+        raise(&mut self.largest, &stepper.start.x);
         self.measure(stepper.system, &stepper.start, &stepper.negative);
         self.lead(&mut stepper.scale);
     }
 
     /// The same where the rate is known.
-    pub fn begin<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    pub fn begin(&mut self, stepper: &mut Stepper<'_>) {
         if !self.is_leading {
             return;
         }
-        let (start, negative) = (stepper.start, stepper.negative);
-        self.sizes.energy = larger(self.sizes.energy, self.work(stepper.system, &start));
-        self.measure(stepper.system, &start, &negative);
+        self.sizes.energy = larger(self.sizes.energy, self.work(stepper.system, &stepper.start));
+        self.measure(stepper.system, &stepper.start, &stepper.negative);
         self.lead(&mut stepper.scale);
     }
 
     /// Whether nothing has moved so far, so that no size is known.
-    pub fn is_at_rest<Sys, const G: usize>(&self, system: &Sys) -> bool
-    where
-        Sys: System<f64, N, G>,
-    {
-        let knows_energy = system.storages().is_some();
+    pub fn is_at_rest(&self, system: &dyn Dynamics) -> bool {
+        let knows_energy = system.stored().is_some();
         self.is_leading && if knows_energy { self.sizes.energy == 0.0 } else { self.sizes.own.amax() == 0.0 }
     }
 
     /// Takes the sizes of the next step from a way ahead, at most `longest` (s) long.
-    pub fn look_ahead<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, longest: f64)
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    pub fn look_ahead(&mut self, stepper: &mut Stepper<'_>, longest: f64) {
         if !self.is_leading || !stepper.method.measures() {
             return;
         }
         if let Some(ahead) = self.way_ahead(stepper, longest) {
-            let (start, negative) = (stepper.start, stepper.negative);
-            self.before = Some(self.sizes);
-            self.measure(stepper.system, &ahead, &negative);
+            self.before = Some(self.sizes.clone());
+            self.measure(stepper.system, &ahead, &stepper.negative);
             self.drift(stepper, &ahead, ahead.t - self.t0);
+            let start = stepper.start.clone();
             self.listen(stepper, &start, ahead.t - start.t);
             self.lead(&mut stepper.scale);
             // The step ends what stands for its sizes.
@@ -179,8 +164,8 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// Takes the sizes of states of which none is known from an attempt that was rejected.
-    pub fn guess(&mut self, end: &SVector<f64, N>, scale: &mut Scale) {
-        for i in 0..N {
+    pub fn guess(&mut self, end: &DVector<f64>, scale: &mut Scale) {
+        for i in 0..end.len() {
             if self.is_leading && scale.absolute[i] == f64::MIN_POSITIVE {
                 scale.absolute[i] = larger(self.relative * OWN * end[i].abs(), f64::MIN_POSITIVE);
             }
@@ -188,12 +173,8 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// Looks at the end of an accepted step; gives whether the scale has changed.
-    pub fn follow<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>) -> bool
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        self.largest = self.largest.sup(&stepper.end.x.abs());
+    pub fn follow(&mut self, stepper: &mut Stepper<'_>) -> bool {
+        raise(&mut self.largest, &stepper.end.x);
         let is_outgrown = self.is_leading && (self.is_outgrown(&stepper.end.x) || stepper.h > self.longest);
         if is_outgrown {
             self.renew(stepper);
@@ -203,15 +184,19 @@ impl<const N: usize> SizeMonitor<N> {
 
     /// Whether a state has outgrown its size.
     #[inline(always)]
-    fn is_outgrown(&self, x: &SVector<f64, N>) -> bool {
-        (0..N).fold(false, |is_outgrown, i| is_outgrown | (x.data.0[0][i].abs() > self.limit.data.0[0][i]))
+    fn is_outgrown(&self, x: &DVector<f64>) -> bool {
+        x.iter().zip(&self.limit).fold(false, |is_outgrown, (x, limit)| is_outgrown | (x.abs() > *limit))
     }
 
     /// The magnitudes from which on states have outgrown their sizes, and the step (s) from which on it has outgrown
     /// the noise; infinite where the scale is given.
     #[cfg(feature = "std")]
-    pub fn limits(&self) -> (SVector<f64, N>, f64) {
-        if self.is_leading { (self.limit, self.longest) } else { (SVector::repeat(f64::INFINITY), f64::INFINITY) }
+    pub fn limits(&self) -> (DVector<f64>, f64) {
+        if self.is_leading {
+            (self.limit.clone(), self.longest)
+        } else {
+            (self.limit.map(|_| f64::INFINITY), f64::INFINITY)
+        }
     }
 
     /// The absolute tolerance of state `i` in a run of this scale as it would be without noise.
@@ -220,18 +205,14 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// Takes the sizes at the end of the step.
-    pub fn renew<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>)
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    pub fn renew(&mut self, stepper: &mut Stepper<'_>) {
         if let Some(before) = self.before.take() {
             self.sizes = before;
         }
-        let (end, negative, h) = (stepper.end, stepper.negative, stepper.h);
-        self.measure(stepper.system, &end, &negative);
+        self.measure(stepper.system, &stepper.end, &stepper.negative);
         // Else projections alone are measured.
         if stepper.method.measures() {
+            let (end, h) = (stepper.end.clone(), stepper.h);
             self.drift(stepper, &end, end.t - self.t0);
             self.listen(stepper, &end, h);
         } else {
@@ -243,27 +224,25 @@ impl<const N: usize> SizeMonitor<N> {
 
     /// States whose errors were never controlled, with the tolerances of this scale: above rounding, and below their
     /// tolerance all the time.
-    pub fn uncontrolled(&self, scale: &Scale) -> [bool; N] {
-        core::array::from_fn(|i| {
+    pub fn uncontrolled(&self, scale: &Scale) -> Vec<bool> {
+        let is_uncontrolled = |i: usize| {
             let rounding = ROUNDING * larger(self.sizes.beside[i], f64::MIN_POSITIVE);
             self.largest[i] > rounding && self.largest[i] < scale.absolute[i]
-        })
+        };
+        (0..self.largest.len()).map(is_uncontrolled).collect()
     }
 
     /// Raises the sizes to those of a point.
-    fn measure<Sys, const G: usize>(&mut self, system: &Sys, Point { t, x, .. }: &Point<N>, negative: &[bool; G])
-    where
-        Sys: System<f64, N, G>,
-    {
+    fn measure(&mut self, system: &dyn Dynamics, Point { t, x, .. }: &Point, negative: &[bool]) {
         let Sizes { own, beside, energy } = &mut self.sizes;
-        *own = own.sup(&x.abs());
-        let Some(storages) = system.storages() else {
-            *beside = beside.sup(&SVector::repeat(own.amax() * AMONG / BESIDE));
+        raise(own, x);
+        let Some(states) = system.stored() else {
+            let among = own.amax() * AMONG / BESIDE;
+            beside.apply(|beside| *beside = beside.max(among));
             return;
         };
-        let mut curvatures = SVector::zeros();
-        *energy = larger(storages.energy(*t, x, negative, &mut curvatures).abs(), *energy);
-        let states = storages.states();
+        let mut curvatures = vec![0.0; x.len()];
+        *energy = larger(system.energy(*t, x.as_slice(), negative, &mut curvatures).abs(), *energy);
         let length = length(states.iter().map(|state| state.kind), own);
         for (i, state) in states.iter().enumerate() {
             let size = match state.kind {
@@ -280,13 +259,10 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// The work of the forces at the start over the machine's length, and of the torques over a radian, J.
-    fn work<Sys, const G: usize>(&self, system: &Sys, start: &Point<N>) -> f64
-    where
-        Sys: System<f64, N, G>,
-    {
-        let Some(storages) = system.storages() else { return 0.0 };
-        let length = length(storages.states().iter().map(|state| state.kind), &self.sizes.own);
-        storages.states().iter().zip(start.rate.iter()).fold(0.0, |work, (state, effort)| {
+    fn work(&self, system: &dyn Dynamics, start: &Point) -> f64 {
+        let Some(states) = system.stored() else { return 0.0 };
+        let length = length(states.iter().map(|state| state.kind), &self.sizes.own);
+        states.iter().zip(start.rate.iter()).fold(0.0, |work, (state, effort)| {
             let way = match (state.kind, state.unit) {
                 (StateKind::Momentum(_), "kg*m/s") => length,
                 (StateKind::Momentum(_), "kg*m^2/s") => 1.0,
@@ -297,27 +273,19 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// A point ahead of a start at rest, so near that the rates on the way to it depend little on it.
-    fn way_ahead<Sys, M, const G: usize>(
-        &self,
-        stepper: &mut Stepper<'_, Sys, M, N, G>,
-        longest: f64,
-    ) -> Option<Point<N>>
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    fn way_ahead(&self, stepper: &mut Stepper<'_>, longest: f64) -> Option<Point> {
         const TRIES: usize = 100;
         const SHORTER: [f64; 2] = [1e-6, 0.5];
         let weights = weights(stepper);
-        let norm = |rate: &SVector<f64, N>| rate.component_mul(&weights).amax();
-        let start = stepper.start;
+        let norm = |rate: &DVector<f64>| rate.component_mul(&weights).amax();
+        let start = stepper.start.clone();
         let mut h = longest;
         for _ in 0..TRIES {
-            let mut rate = |x: &SVector<f64, N>| stepper.rate(start.t + h, x);
+            let mut rate = |x: &DVector<f64>| stepper.rate(start.t + h, x.as_slice());
             let alone = rate(&start.x);
-            let there = rate(&(start.x + (start.rate + alone) * (0.5 * h)));
-            let (depends, all) = (norm(&(there - alone)), larger(norm(&alone), norm(&start.rate)));
-            let x = start.x + (start.rate + there) * (0.5 * h);
+            let there = rate(&(&start.x + (&start.rate + &alone) * (0.5 * h)));
+            let (depends, all) = (norm(&(&there - &alone)), larger(norm(&alone), norm(&start.rate)));
+            let x = &start.x + (&start.rate + &there) * (0.5 * h);
             if depends <= LINEAR * all && x.iter().all(|x| x.is_finite()) {
                 return Some(Point { t: start.t + h, x, rate: there });
             }
@@ -329,42 +297,33 @@ impl<const N: usize> SizeMonitor<N> {
 
     /// Raises the sizes of what has none by energy to the way of its rate in `elapsed` (s) where storages are displaced
     /// by theirs.
-    fn drift<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, point: &Point<N>, elapsed: f64)
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
-        let Some(storages) = stepper.system.storages() else { return };
-        let states = storages.states();
+    fn drift(&mut self, stepper: &mut Stepper<'_>, point: &Point, elapsed: f64) {
+        let Some(states) = stepper.system.stored() else { return };
         let is_stored = |i: usize| matches!(states[i].kind, StateKind::Momentum(_) | StateKind::Displacement(_));
         let drifts = |i: usize| matches!(states[i].kind, StateKind::Position(_) | StateKind::Way | StateKind::Integral);
-        if !(0..N).any(drifts) {
+        if !(0..states.len()).any(drifts) {
             return;
         }
-        let displaced = SVector::from_fn(|i, _| {
+        let displaced = DVector::from_fn(states.len(), |i, _| {
             let by = if is_stored(i) { self.sizes.beside[i] } else { 0.0 };
             point.x[i] + if i.count_ones() % 2 == 0 { by } else { -by }
         });
-        let change = (stepper.rate(point.t, &displaced) - point.rate).abs();
-        for i in (0..N).filter(|&i| drifts(i) && change[i].is_finite()) {
+        let change = (stepper.rate(point.t, displaced.as_slice()) - &point.rate).abs();
+        for i in (0..states.len()).filter(|&i| drifts(i) && change[i].is_finite()) {
             self.sizes.beside[i] = larger(change[i] * elapsed, self.sizes.beside[i]);
         }
     }
 
     /// Takes what rounding at a point makes of each state in a step of size `h` (s).
-    fn listen<Sys, M, const G: usize>(&mut self, stepper: &mut Stepper<'_, Sys, M, N, G>, point: &Point<N>, h: f64)
-    where
-        Sys: System<f64, N, G>,
-        M: Method,
-    {
+    fn listen(&mut self, stepper: &mut Stepper<'_>, point: &Point, h: f64) {
         let (is_exposed, mixed) = (is_exposed(stepper.method), self.mixed(stepper.system));
         let (_, flow, ..) = stepper.split();
-        let [mut there, mut rate, mut own, mut in_turn] = [[0.0; N]; 4];
+        let [mut there, mut rate, mut own, mut in_turn] = [(); 4].map(|()| vec![0.0; point.x.len()]);
         rounding(&flow, point.borrowed(), [&mut there, &mut rate, &mut own]);
-        let own = SVector::from(own) * (NOISE * h);
+        let own = DVector::from_vec(own) * (NOISE * h);
         // What that moves in turn, as a position that follows a momentum.
         displaced(&flow, point.borrowed(), |i| own[i], [&mut there, &mut rate, &mut in_turn]);
-        let noise = own.sup(&(SVector::from(in_turn) * h));
+        let noise = own.sup(&(DVector::from_vec(in_turn) * h));
         let noise = noise.zip_map(&self.sizes.beside, |noise, beside| {
             if is_exposed || beside == 0.0 { noise } else { noise.min(DAMPED * beside) }
         });
@@ -373,13 +332,10 @@ impl<const N: usize> SizeMonitor<N> {
     }
 
     /// What orientations and projections leave of rounding.
-    fn mixed<Sys, const G: usize>(&self, system: &Sys) -> SVector<f64, N>
-    where
-        Sys: System<f64, N, G>,
-    {
+    fn mixed(&self, system: &dyn Dynamics) -> DVector<f64> {
         let mixes = |kind: StateKind| matches!(kind, StateKind::Orientation(..) | StateKind::Position(_));
-        let has_bodies = system.storages().is_some_and(|all| all.states().iter().any(|state| mixes(state.kind)));
-        self.sizes.beside * if has_bodies || system.joints().is_some() { MIXED } else { 0.0 }
+        let has_bodies = system.stored().is_some_and(|states| states.iter().any(|state| mixes(state.kind)));
+        &self.sizes.beside * if has_bodies || system.held().is_some() { MIXED } else { 0.0 }
     }
 
     /// The absolute tolerances and limits of these sizes.
@@ -387,7 +343,7 @@ impl<const N: usize> SizeMonitor<N> {
         if !self.is_leading {
             return;
         }
-        for i in 0..N {
+        for i in 0..self.limit.len() {
             scale.absolute[i] = larger(self.noise[i], self.without_noise(i, scale));
             scale.weights[i] = if self.sizes.beside[i] > 0.0 { 1.0 / self.sizes.beside[i] } else { 0.0 };
             self.limit[i] = OUTGROWN / OWN * self.size(i);
@@ -403,16 +359,22 @@ impl<const N: usize> SizeMonitor<N> {
 /// How large each state is to be taken for at time `t` (s) and state `x`, in its unit: where an error norm would take
 /// it to count, by its own value, the stored energy and what present forces can do; of a start at rest by what happens
 /// within a second. Zero where nothing is known. For the nominal values that other programs ask for.
-pub fn sizes<Sys, const N: usize, const G: usize>(system: &Sys, t: f64, x: &SVector<f64, N>) -> SVector<f64, N>
+pub fn sizes<Sys, const N: usize, const G: usize>(system: &Sys, t: f64, x: &SVector<f64, N>) -> DVector<f64>
 where
     Sys: System<f64, N, G>,
 {
+    sizes_of(&Typed::system(system), t, x.as_slice())
+}
+
+/// The same over slices.
+pub fn sizes_of(system: &dyn Dynamics, t: f64, x: &[f64]) -> DVector<f64> {
     const AHEAD: f64 = 1.0;
     let (mut method, tolerances) = (Dop853::new(), Tolerances::default());
-    let mut stepper = Stepper::new(system, &mut method, Scale::from(&tolerances), Point::at(t, *x));
+    let start = Point::at(t, DVector::from_column_slice(x));
+    let mut stepper = Stepper::new(system, &mut method, Scale::new(&tolerances, x.len()), start);
     stepper.negative = branches(system, t, x);
     stepper.evaluate_start();
-    let mut monitor = SizeMonitor::new(&tolerances, t);
+    let mut monitor = SizeMonitor::new(&tolerances, x.len(), t);
     monitor.start(&mut stepper);
     monitor.begin(&mut stepper);
     monitor.look_ahead(&mut stepper, AHEAD);
@@ -420,22 +382,26 @@ where
 }
 
 /// The size of the machine: its largest coordinate, m.
-fn length<const N: usize>(kinds: impl Iterator<Item = StateKind>, own: &SVector<f64, N>) -> f64 {
+fn length(kinds: impl Iterator<Item = StateKind>, own: &DVector<f64>) -> f64 {
     let positions = kinds.zip(own.iter()).filter(|(kind, _)| matches!(kind, StateKind::Position(_)));
     positions.fold(0.0, |length, (_, &own)| larger(own, length))
 }
 
 /// What makes changes of storages comparable: the roots of the second derivatives of the energy. In a system that does
 /// not know what it stores all states are alike.
-fn weights<Sys, M, const N: usize, const G: usize>(stepper: &Stepper<'_, Sys, M, N, G>) -> SVector<f64, N>
-where
-    Sys: System<f64, N, G>,
-    M: Method,
-{
-    let Some(storages) = stepper.system.storages() else { return SVector::repeat(1.0) };
-    let (Point { t, x, .. }, mut curvatures) = (stepper.start, SVector::zeros());
-    storages.energy(t, &x, &stepper.negative, &mut curvatures);
+fn weights(stepper: &Stepper<'_>) -> DVector<f64> {
+    let Point { t, x, .. } = &stepper.start;
+    let mut curvatures = x.map(|_| 1.0);
+    if stepper.system.stored().is_none() {
+        return curvatures;
+    }
+    stepper.system.energy(*t, x.as_slice(), &stepper.negative, curvatures.as_mut_slice());
     curvatures.map(|curvature| if curvature.is_finite() { libm::sqrt(curvature.abs()) } else { 0.0 })
+}
+
+/// Raises sizes to the magnitudes of a state.
+fn raise(sizes: &mut DVector<f64>, x: &DVector<f64>) {
+    sizes.iter_mut().zip(x).for_each(|(size, x)| *size = size.max(x.abs()));
 }
 
 /// The larger number; `b` where `a` is none, or is infinite.

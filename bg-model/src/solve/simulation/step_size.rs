@@ -8,7 +8,7 @@
 //! 0.4 / order, without which a tenth of all steps is rejected where stability limits them. Predictive control:
 //! Gustafsson's for implicit methods, as in Hairer's `radau5.f` (Hairer, Wanner II, section IV.8, equation (8.25)).
 
-use nalgebra::SVector;
+use nalgebra::DVector;
 
 use super::settings::{Settings, Span};
 use crate::model::scalar::Scalar;
@@ -83,7 +83,7 @@ pub(super) struct StepSizeController {
 }
 
 impl StepSizeController {
-    pub fn new<const N: usize>(control: StepControl, span: Span, settings: &Settings<N>, has_breaks: bool) -> Self {
+    pub fn new(control: StepControl, span: Span, settings: &Settings, has_breaks: bool) -> Self {
         let asked = match control {
             StepControl::Fixed { step } => step,
             _ => settings.first_step.unwrap_or(span.t_end - span.t0),
@@ -320,23 +320,17 @@ pub(super) fn noted<S: Scalar>(logarithm: S) -> S {
 }
 
 /// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.
-pub(super) fn first_step<const N: usize>(
-    flow: &dyn Flow,
-    start: &Point<N>,
-    scale: &Scale,
-    order: f64,
-    longest: f64,
-) -> f64 {
+pub(super) fn first_step(flow: &dyn Flow, start: &Point, scale: &Scale, order: f64, longest: f64) -> f64 {
     // The factors are those of HINIT; where it takes 1e-6 for a state at rest, this part of the longest step is taken.
     const AT_REST: f64 = 1e-6;
     let rates = scale.norm(start.rate.as_slice(), start.x.as_slice());
     let states = scale.norm(start.x.as_slice(), start.x.as_slice());
     let is_at_rest = rates <= 1e-5 || states <= 1e-5;
     let guess = if is_at_rest { AT_REST * longest } else { states / rates * 0.01 }.min(longest);
-    let ahead = start.x + start.rate * guess;
-    let mut rate: SVector<f64, N> = SVector::zeros();
+    let ahead = &start.x + &start.rate * guess;
+    let mut rate = DVector::zeros(ahead.len());
     flow.rate(start.t + guess, ahead.as_slice(), rate.as_mut_slice());
-    let bend = scale.norm((rate - start.rate).as_slice(), start.x.as_slice()) / guess;
+    let bend = scale.norm((rate - &start.rate).as_slice(), start.x.as_slice()) / guess;
     let steepest = bend.max(rates);
     let step =
         if steepest <= 1e-15 { (AT_REST * longest).max(guess * 1e-3) } else { libm::pow(0.01 / steepest, 1.0 / order) };
@@ -350,7 +344,7 @@ mod tests {
 
     /// A controller of a run of 100 s from a first step of 1 s.
     fn controller(control: StepControl, largest_step: f64) -> StepSizeController {
-        let settings = Settings::<1> { first_step: Some(1.0), largest_step, ..Settings::default() };
+        let settings = Settings { first_step: Some(1.0), largest_step, ..Settings::default() };
         StepSizeController::new(control, Span { t0: 0.0, t_end: 100.0 }, &settings, true)
     }
 
@@ -400,7 +394,7 @@ mod tests {
 
     #[test]
     fn a_first_step_beyond_the_end_reaches_as_far_as_the_run() {
-        let settings = Settings::<1> { first_step: Some(f64::INFINITY), ..Settings::default() };
+        let settings = Settings { first_step: Some(f64::INFINITY), ..Settings::default() };
         let span = Span { t0: 1.0, t_end: 3.0 };
         let mut controller = StepSizeController::new(StepControl::Adaptive { order: 5.0 }, span, &settings, false);
         assert_eq!((controller.reach(), controller.next_end(1.0, f64::INFINITY)), (2.0, 3.0));

@@ -1,18 +1,15 @@
 //! A system as integrators see it: its switches frozen, its evaluations counted.
 //!
-//! In: a system, the branches of its switches, the statistics of the run. Out: a [`Flow`], and capabilities of a system
-//! without switches.
+//! In: a system, the branches of its switches, the statistics of the run. Out: a [`Flow`].
 
 use core::cell::Cell;
 use core::ops::Range;
 
-use nalgebra::{Complex, SVector};
-use pulp::NullaryFnOnce;
+use nalgebra::Complex;
 
-use crate::model::capability::{Elimination, Linearised, SecondOrder, Series};
-use crate::model::linear::{Field, Sparsity, differences};
-use crate::model::system::System;
-use crate::solve::integrator::{Arch, Flow, SeriesSize};
+use crate::model::dynamics::Dynamics;
+use crate::model::linear::Sparsity;
+use crate::solve::integrator::{Flow, SeriesSize};
 use crate::solve::statistics::Statistics;
 
 /// The counters of a run.
@@ -44,236 +41,97 @@ fn count(counter: &Cell<u64>, more: u64) {
 }
 
 /// A system with its switches frozen, counting its evaluations.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Frozen<'a, Sys, const N: usize, const G: usize> {
-    system: &'a Sys,
-    negative: &'a [bool; G],
+#[derive(Clone, Copy)]
+pub(crate) struct Frozen<'a> {
+    system: &'a dyn Dynamics,
+    negative: &'a [bool],
     counters: Counters<'a>,
-    /// The machine's vectors.
-    arch: Arch,
 }
 
-impl<'a, Sys, const N: usize, const G: usize> Frozen<'a, Sys, N, G>
-where
-    Sys: System<f64, N, G>,
-{
-    pub fn new(system: &'a Sys, negative: &'a [bool; G], statistics: &'a mut Statistics, arch: Arch) -> Self {
-        Self { system, negative, counters: Counters::from(statistics), arch }
-    }
-
-    /// The elimination made for the system's sparsity.
-    #[inline(always)]
-    fn elimination(&self) -> Option<&'a impl Elimination<f64, N>> {
-        self.system.linearised().and_then(Linearised::elimination)
-    }
-
-    fn eliminated<F: Field<f64>>(&self, c: F, entries: &[f64], factors: &mut [F]) -> bool {
-        let in_vectors = |elimination| self.arch.dispatch(Eliminate { elimination, c, entries, factors });
-        self.elimination().is_some_and(in_vectors)
-    }
-
-    fn substituted<F: Field<f64>>(&self, factors: &[F], b: &mut [F]) {
-        if let Some(elimination) = self.elimination() {
-            let b = b.first_chunk_mut().expect("there is a number for each state");
-            self.arch.dispatch(Substitute { elimination, factors, b });
-        }
+impl<'a> Frozen<'a> {
+    pub fn new(system: &'a dyn Dynamics, negative: &'a [bool], statistics: &'a mut Statistics) -> Self {
+        Self { system, negative, counters: Counters::from(statistics) }
     }
 }
 
-struct Rate<'a, Sys, const N: usize, const G: usize> {
-    system: &'a Sys,
-    t: f64,
-    x: &'a SVector<f64, N>,
-    negative: &'a [bool; G],
-    dx: &'a mut SVector<f64, N>,
-}
-
-impl<Sys: System<f64, N, G>, const N: usize, const G: usize> NullaryFnOnce for Rate<'_, Sys, N, G> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.system.inlined_rate(self.t, self.x, self.negative, self.dx);
-    }
-}
-
-struct Eliminate<'a, E, F, const N: usize> {
-    elimination: &'a E,
-    c: F,
-    entries: &'a [f64],
-    factors: &'a mut [F],
-}
-
-impl<E: Elimination<f64, N>, F: Field<f64>, const N: usize> NullaryFnOnce for Eliminate<'_, E, F, N> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        self.elimination.eliminate(self.c, self.entries, self.factors)
-    }
-}
-
-struct Substitute<'a, E, F, const N: usize> {
-    elimination: &'a E,
-    factors: &'a [F],
-    b: &'a mut [F; N],
-}
-
-impl<E: Elimination<f64, N>, F: Field<f64>, const N: usize> NullaryFnOnce for Substitute<'_, E, F, N> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.elimination.substitute(self.factors, self.b);
-    }
-}
-
-struct Forces<'a, C, const N: usize, const G: usize> {
-    second: &'a C,
-    t: f64,
-    x: &'a SVector<f64, N>,
-    negative: &'a [bool; G],
-    dx: &'a mut SVector<f64, N>,
-}
-
-impl<C: SecondOrder<f64, N, G>, const N: usize, const G: usize> NullaryFnOnce for Forces<'_, C, N, G> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.second.forces(self.t, self.x, self.negative, self.dx);
-    }
-}
-
-struct Expansion<'a, C, const N: usize, const G: usize> {
-    expansion: &'a C,
-    t: f64,
-    h: f64,
-    negative: &'a [bool; G],
-    rows: &'a mut [f64],
-    series: &'a mut [SVector<f64, N>],
-}
-
-impl<C: Series<f64, N, G>, const N: usize, const G: usize> NullaryFnOnce for Expansion<'_, C, N, G> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.expansion.expand(self.t, self.h, self.negative, self.rows, self.series);
-    }
-}
-
-/// The numbers of all states as a system takes them.
-#[inline(always)]
-fn whole<const N: usize>(of: &[f64]) -> &SVector<f64, N> {
-    bytemuck::from_bytes(bytemuck::cast_slice(of))
-}
-
-#[inline(always)]
-fn whole_mut<const N: usize>(of: &mut [f64]) -> &mut SVector<f64, N> {
-    bytemuck::from_bytes_mut(bytemuck::cast_slice_mut(of))
-}
-
-impl<Sys, const N: usize, const G: usize> Flow for Frozen<'_, Sys, N, G>
-where
-    Sys: System<f64, N, G>,
-{
+impl Flow for Frozen<'_> {
     fn states(&self) -> usize {
-        N
+        self.system.states()
     }
 
     fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         count(self.counters.rates, 1);
-        self.arch.dispatch(Rate { system: self.system, t, x: whole(x), negative: self.negative, dx: whole_mut(dx) });
+        self.system.rate(t, x, self.negative, dx);
     }
 
     fn sparsity(&self) -> Sparsity {
-        self.system.linearised().map_or(Sparsity::Full, Linearised::sparsity)
+        self.system.sparsity()
     }
 
     fn jacobian(&self, t: f64, x: &[f64], entries: &mut [f64], slope: &mut [f64]) {
         count(self.counters.jacobians, 1);
-        match self.system.linearised() {
-            Some(linearised) => linearised.jacobian(t, whole(x), self.negative, entries, whole_mut(slope)),
-            None => {
-                let rate = |t, x: &[f64], dx: &mut [f64]| self.system.rate(t, whole(x), self.negative, whole_mut(dx));
-                differences(rate, t, x, entries, slope, &mut [0.0; N]);
-            }
-        }
+        self.system.jacobian(t, x, self.negative, entries, slope);
     }
 
     fn damping_sparsity(&self) -> Sparsity {
-        self.system.linearised().map_or(Sparsity::Full, Linearised::damping_sparsity)
+        self.system.damping_sparsity()
     }
 
     fn damping(&self, t: f64, x: &[f64], entries: &mut [f64]) {
-        match self.system.linearised() {
-            Some(linearised) => {
-                count(self.counters.jacobians, 1);
-                linearised.damping(t, whole(x), self.negative, entries);
-            }
-            None => self.jacobian(t, x, entries, &mut [0.0; N]),
-        }
+        count(self.counters.jacobians, 1);
+        self.system.damping(t, x, self.negative, entries);
     }
 
     fn factors(&self) -> Option<usize> {
-        self.elimination().map(Elimination::factors)
+        self.system.factors()
     }
 
     fn eliminate(&self, c: f64, entries: &[f64], factors: &mut [f64]) -> bool {
-        self.eliminated(c, entries, factors)
+        self.system.eliminate(c, entries, factors)
     }
 
     fn eliminate_complex(&self, c: Complex<f64>, entries: &[f64], factors: &mut [Complex<f64>]) -> bool {
-        self.eliminated(c, entries, factors)
+        self.system.eliminate_complex(c, entries, factors)
     }
 
     fn substitute(&self, factors: &[f64], b: &mut [f64]) {
-        self.substituted(factors, b);
+        self.system.substitute(factors, b);
     }
 
     fn substitute_complex(&self, factors: &[Complex<f64>], b: &mut [Complex<f64>]) {
-        self.substituted(factors, b);
+        self.system.substitute_complex(factors, b);
     }
 
     fn second(&self) -> Range<usize> {
-        self.system.second_order().map_or(0..0, |second| second.states())
+        self.system.second()
     }
 
     fn second_derivatives(&self, x: &[f64], dx: &mut [f64]) {
-        if let Some(second) = self.system.second_order() {
-            second.second_derivatives(whole(x), whole_mut(dx));
-        }
+        self.system.second_derivatives(x, dx);
     }
 
     fn forces(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        match self.system.second_order() {
-            Some(second) => {
-                count(self.counters.rates, 1);
-                self.arch.dispatch(Forces { second, t, x: whole(x), negative: self.negative, dx: whole_mut(dx) });
-            }
-            None => self.rate(t, x, dx),
-        }
+        count(self.counters.rates, 1);
+        self.system.forces(t, x, self.negative, dx);
     }
 
     fn operations_of_forces(&self) -> Option<[u32; 2]> {
-        self.system.second_order()?.operations()
+        self.system.operations_of_forces()
     }
 
     fn series(&self) -> Option<SeriesSize> {
-        self.system.series().map(|series| SeriesSize { width: series.width(), operations: series.operations() })
+        self.system.series()
     }
 
     fn expand(&self, t: f64, h: f64, rows: &mut [f64], series: &mut [f64]) {
-        let series: &mut [SVector<f64, N>] = bytemuck::cast_slice_mut(series);
-        if let Some(expansion) = self.system.series().filter(|_| !series.is_empty()) {
-            count(self.counters.series_orders, (series.len() - 1) as u64);
-            self.arch.dispatch(Expansion { expansion, t, h, negative: self.negative, rows, series });
+        if !series.is_empty() {
+            count(self.counters.series_orders, (series.len() / self.states() - 1) as u64);
+            self.system.expand(t, h, self.negative, rows, series);
         }
     }
 
     fn is_held(&self) -> bool {
-        self.system.joints().is_some()
+        self.system.held().is_some()
     }
 
     fn count_factorisation(&self, is_fallback: bool) {

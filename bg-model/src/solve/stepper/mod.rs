@@ -3,12 +3,13 @@
 mod frozen;
 
 use alloc::vec;
+use alloc::vec::Vec;
 
-use nalgebra::SVector;
+use nalgebra::DVector;
 
+use crate::model::dynamics::Dynamics;
 use crate::model::origin::Origin;
-use crate::model::system::System;
-use crate::solve::integrator::{Arch, Flow, Method, Point, Scale, first_not_finite, is_finite};
+use crate::solve::integrator::{Flow, Method, Point, PointRef, Scale, first_not_finite, is_finite};
 use crate::solve::statistics::Statistics;
 pub(crate) use frozen::Frozen;
 
@@ -19,41 +20,47 @@ const SETTLED: f64 = 1e-8;
 const ROUNDING: f64 = 10.0;
 
 /// A system, a method and the step between two points that is being made.
-#[derive(Debug)]
-pub(crate) struct Stepper<'a, Sys, M, const N: usize, const G: usize> {
-    pub system: &'a Sys,
-    pub method: &'a mut M,
+pub(crate) struct Stepper<'a> {
+    pub system: &'a dyn Dynamics,
+    pub method: &'a mut dyn Method,
     pub scale: Scale,
     /// The branches that hold during the step.
-    pub negative: [bool; G],
+    pub negative: Vec<bool>,
     pub statistics: Statistics,
     /// Where the step starts; the rate is known.
-    pub start: Point<N>,
+    pub start: Point,
     /// Where the last attempt led.
-    pub end: Point<N>,
+    pub end: Point,
     /// The size of the last attempt, s. More precise than the difference of the two times.
     pub h: f64,
     dense_is_ready: bool,
-    /// The machine's vectors.
-    arch: Arch,
+    /// Whether joints may be rigid.
+    is_held: bool,
+    /// A state before it is projected.
+    before: DVector<f64>,
 }
 
-impl<'a, Sys, M, const N: usize, const G: usize> Stepper<'a, Sys, M, N, G>
-where
-    Sys: System<f64, N, G>,
-    M: Method,
-{
-    pub fn new(system: &'a Sys, method: &'a mut M, scale: Scale, start: Point<N>) -> Self {
-        let statistics = Statistics::default();
-        let negative = [false; G];
-        let arch = Arch::new();
-        method.fit(N);
-        Self { system, method, scale, negative, statistics, start, end: start, h: 0.0, dense_is_ready: false, arch }
+impl<'a> Stepper<'a> {
+    pub fn new(system: &'a dyn Dynamics, method: &'a mut dyn Method, scale: Scale, start: Point) -> Self {
+        method.fit(system.states());
+        Self {
+            system,
+            method,
+            scale,
+            negative: vec![false; system.switches()],
+            statistics: Statistics::default(),
+            before: start.x.clone(),
+            end: start.clone(),
+            start,
+            h: 0.0,
+            dense_is_ready: false,
+            is_held: system.held().is_some(),
+        }
     }
 
     /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
-    pub fn split(&mut self) -> (&mut M, Frozen<'_, Sys, N, G>, &Point<N>, &mut Point<N>, &Scale) {
-        let flow = Frozen::new(self.system, &self.negative, &mut self.statistics, self.arch);
+    pub fn split(&mut self) -> (&mut dyn Method, Frozen<'_>, &Point, &mut Point, &Scale) {
+        let flow = Frozen::new(self.system, &self.negative, &mut self.statistics);
         (self.method, flow, &self.start, &mut self.end, &self.scale)
     }
 
@@ -68,28 +75,24 @@ where
     }
 
     /// Takes over an attempt of size `h` (s) to `end`, which was made elsewhere. Its method is to know its stages.
-    pub fn take_over(&mut self, h: f64, end: Point<N>) {
-        (self.h, self.end, self.dense_is_ready) = (h, end, false);
+    pub fn take_over(&mut self, h: f64, end: PointRef<'_>) {
+        self.end.become_that(end);
+        (self.h, self.dense_is_ready) = (h, false);
     }
 
     /// The norm of what the projection leaves of the last attempt's error, at most 1 where that is rounding; none where
     /// the method does not say.
     pub fn error_after_projection(&mut self) -> Option<f64> {
-        let (system, negative, h) = (self.system, self.negative, self.h);
+        let (system, negative, h) = (self.system, self.negative.clone(), self.h);
         let (method, flow, start, end, scale) = self.split();
         // Newton's steps: what the second leaves is rounding.
-        let project = |x: &mut SVector<f64, N>| {
+        let project = |x: &mut [f64]| {
             system.project(end.t, &negative, x);
             system.project(end.t, &negative, x);
         };
-        let project_slice = |x: &mut [f64]| {
-            let mut state = SVector::from_column_slice(x);
-            project(&mut state);
-            x.copy_from_slice(state.as_slice());
-        };
-        let error = method.error_after(&flow, start.borrowed(), h, scale, end.x.as_slice(), &project_slice)?;
-        let mut reached = end.x;
-        project(&mut reached);
+        let error = method.error_after(&flow, start.borrowed(), h, scale, end.x.as_slice(), &project)?;
+        let mut reached = end.x.clone();
+        project(reached.as_mut_slice());
         let rounding = self.rounding_of_projection(&reached);
         Some(if error <= ROUNDING * rounding { error.min(1.0) } else { error })
     }
@@ -97,8 +100,14 @@ where
     /// Moves the end of the step back onto the invariants. Gives the norm of what that changes where joints may be
     /// rigid: it is of the size of the error, unless the step has led to another branch of the motion.
     pub fn project(&mut self) -> f64 {
-        let Self { system, scale, negative, end, .. } = self;
-        project(*system, scale, negative, end.t, &mut end.x)
+        if !self.is_held {
+            self.system.project(self.end.t, &self.negative, self.end.x.as_mut_slice());
+            return 0.0;
+        }
+        let Self { system, scale, negative, end, before, .. } = self;
+        before.copy_from(&end.x);
+        system.project(end.t, negative, end.x.as_mut_slice());
+        moved(scale, before.as_slice(), end.x.as_slice())
     }
 
     /// The same until it moves no more. What one of Newton's steps leaves is below the tolerances, but not below what a
@@ -120,32 +129,38 @@ where
     }
 
     /// The same with any state, at time `t` (s).
-    pub fn project_state(&self, t: f64, x: &mut SVector<f64, N>) -> f64 {
-        project(self.system, &self.scale, &self.negative, t, x)
+    pub fn project_state(&mut self, t: f64, x: &mut [f64]) -> f64 {
+        if !self.is_held {
+            self.system.project(t, &self.negative, x);
+            return 0.0;
+        }
+        self.before.as_mut_slice().copy_from_slice(x);
+        self.system.project(t, &self.negative, x);
+        moved(&self.scale, self.before.as_slice(), x)
     }
 
     /// The norm of what a projection has changed where joints may be rigid, else 0.
     #[cfg(feature = "std")]
-    pub fn moved(&self, before: &SVector<f64, N>, after: &SVector<f64, N>) -> f64 {
-        moved(self.system, &self.scale, before, after)
+    pub fn moved(&self, before: &[f64], after: &[f64]) -> f64 {
+        if self.is_held { moved(&self.scale, before, after) } else { 0.0 }
     }
 
     /// The norm of what the projection makes of the rounding of a state `x` at the end of the step, which grows into a
     /// singular pose. It is the difference to the same state rounded otherwise: what is left of its own rounding may be
     /// nothing by chance.
-    pub fn rounding_of_projection(&self, x: &SVector<f64, N>) -> f64 {
-        let [projected, otherwise] = [*x, rounded_otherwise(x)].map(|mut x| {
-            self.system.project(self.end.t, &self.negative, &mut x);
+    pub fn rounding_of_projection(&self, x: &DVector<f64>) -> f64 {
+        let [projected, otherwise] = [x.clone(), rounded_otherwise(x)].map(|mut x| {
+            self.system.project(self.end.t, &self.negative, x.as_mut_slice());
             x
         });
-        self.scale.norm((otherwise - projected).as_slice(), projected.as_slice())
+        self.scale.norm((otherwise - &projected).as_slice(), projected.as_slice())
     }
 
     /// The rate at time `t` (s) and state `x` in the branches of the step.
-    pub fn rate(&mut self, t: f64, x: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut rate = SVector::zeros();
+    pub fn rate(&mut self, t: f64, x: &[f64]) -> DVector<f64> {
+        let mut rate = DVector::zeros(x.len());
         self.statistics.rate_evaluations += 1;
-        self.system.rate(t, x, &self.negative, &mut rate);
+        self.system.rate(t, x, &self.negative, rate.as_mut_slice());
         rate
     }
 
@@ -161,7 +176,7 @@ where
         self.method.restart();
         self.statistics.rate_evaluations += 1;
         let Point { t, x, rate } = &mut self.start;
-        self.system.rate(*t, x, &self.negative, rate);
+        self.system.rate(*t, x.as_slice(), &self.negative, rate.as_mut_slice());
     }
 
     /// The first state whose rate has a derivative at the start of the step that is not finite, and that derivative;
@@ -171,14 +186,15 @@ where
         if statistics.jacobian_evaluations == 0 {
             return None;
         }
-        let flow = Frozen::new(self.system, &self.negative, &mut statistics, self.arch);
+        let states = self.system.states();
+        let flow = Frozen::new(self.system, &self.negative, &mut statistics);
         let sparsity = flow.sparsity();
-        let (mut entries, mut slope) = (vec![0.0; sparsity.len(N)], [0.0; N]);
+        let (mut entries, mut slope) = (vec![0.0; sparsity.len(states)], vec![0.0; states]);
         flow.jacobian(self.start.t, self.start.x.as_slice(), &mut entries, &mut slope);
         let is_faulty = |(_, value): &(usize, f64)| !value.is_finite();
         let state = |k: usize| {
-            let (row, column) = sparsity.place(k, N);
-            if row < N { Some(row) } else { Some(column).filter(|&column| column < N) }
+            let (row, column) = sparsity.place(k, states);
+            if row < states { Some(row) } else { Some(column).filter(|&column| column < states) }
         };
         let mut faulty = entries.into_iter().enumerate().filter(is_faulty);
         let entry = faulty.find_map(|(k, value)| Some((state(k)?, value)));
@@ -191,24 +207,24 @@ where
     pub fn origin(&self, at_least: f64) -> Option<Origin> {
         const PARTS: u32 = 16;
         const FURTHER: [f64; 7] = [8.0, 64.0, 512.0, 4096.0, 32_768.0, 262_144.0, 2_097_152.0];
-        let Point { t, x, rate } = self.start;
+        let Point { t, x, rate } = &self.start;
         let way = self.h.max(at_least);
         let inside = (1..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
         let ahead = inside.chain(FURTHER).map(|part| way * part);
         let on_the_way = ahead.map(|ahead| (t + ahead, x + rate * ahead));
-        let mut points = core::iter::once((t, x)).chain(on_the_way).chain([(self.end.t, self.end.x)]);
-        points
-            .find_map(|(t, x)| is_finite(x.as_slice()).then(|| self.system.not_finite(t, &x, &self.negative)).flatten())
+        let mut points = core::iter::once((*t, x.clone())).chain(on_the_way).chain([(self.end.t, self.end.x.clone())]);
+        let not_finite = |t: f64, x: &[f64]| self.system.not_finite(t, x, &self.negative);
+        points.find_map(|(t, x)| is_finite(x.as_slice()).then(|| not_finite(t, x.as_slice())).flatten())
     }
 
     /// The end of the step becomes the start of the next one.
     pub fn advance(&mut self) {
         self.method.advance();
-        self.start = self.end;
+        self.start.become_that(self.end.borrowed());
     }
 
-    /// The state at the part `theta` of the step, not projected. The rates at both ends must be known.
-    pub fn dense(&mut self, theta: f64) -> SVector<f64, N> {
+    /// Writes the state at the part `theta` of the step, not projected, into `x`. The rates at both ends must be known.
+    pub fn dense(&mut self, theta: f64, x: &mut [f64]) {
         if !self.dense_is_ready {
             let before = self.statistics.rate_evaluations;
             let h = self.h;
@@ -217,39 +233,17 @@ where
             self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
             self.dense_is_ready = true;
         }
-        let mut x = SVector::<f64, N>::zeros();
-        self.method.dense(self.start.borrowed(), self.h, self.end.borrowed(), theta, x.as_mut_slice());
-        x
+        self.method.dense(self.start.borrowed(), self.h, self.end.borrowed(), theta, x);
     }
 }
 
-/// Moves a state at time `t` (s) back onto the invariants; gives the norm of what that changes where joints may be
-/// rigid.
-#[inline(always)]
-fn project<const N: usize, const G: usize>(
-    system: &impl System<f64, N, G>,
-    scale: &Scale,
-    negative: &[bool; G],
-    t: f64,
-    x: &mut SVector<f64, N>,
-) -> f64 {
-    let before = *x;
-    system.project(t, negative, x);
-    moved(system, scale, &before, x)
-}
-
-/// The norm of what a projection has changed where joints may be rigid, else 0.
-#[inline(always)]
-fn moved<const N: usize, const G: usize>(
-    system: &impl System<f64, N, G>,
-    scale: &Scale,
-    before: &SVector<f64, N>,
-    after: &SVector<f64, N>,
-) -> f64 {
-    if system.joints().is_some() { scale.norm((after - before).as_slice(), after.as_slice()) } else { 0.0 }
+/// The norm of what a projection has changed.
+fn moved(scale: &Scale, before: &[f64], after: &[f64]) -> f64 {
+    scale.norm_of(after, |i| after[i] - before[i])
 }
 
 /// A state with each number as the next rounding would have it, up or down.
-fn rounded_otherwise<const N: usize>(x: &SVector<f64, N>) -> SVector<f64, N> {
-    SVector::from_fn(|i, _| x[i] * if i.count_ones() % 2 == 0 { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON })
+fn rounded_otherwise(x: &DVector<f64>) -> DVector<f64> {
+    let otherwise = |i: usize| if i.count_ones() % 2 == 0 { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON };
+    DVector::from_fn(x.len(), |i, _| x[i] * otherwise(i))
 }

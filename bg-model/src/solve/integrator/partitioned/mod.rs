@@ -183,7 +183,7 @@ mod tests {
             let settings = Settings { tolerances: Tolerances::new(1e-7, 1e-8), ..Settings::default() };
             let finish = integrate(&Row, &mut method, &start, Span { t0: 0.0, t_end: 10.0 }, &settings, &mut ());
             let finish = finish.expect("a smooth system");
-            (finish.x.data.0[0].map(f64::to_bits), finish.statistics.steps)
+            (finish.x.map(f64::to_bits), finish.statistics.steps)
         };
         let (everywhere, here) = (of(Arch::Scalar), of(Arch::new()));
         assert!((100..10_000).contains(&everywhere.1), "{}", everywhere.1);

@@ -5,6 +5,7 @@ use crate::solve::integrator::Arch;
 use nalgebra::SVector;
 
 use crate::model::capability::{Elimination, Linearised, Series};
+use crate::model::dynamics::Typed;
 use crate::model::linear::{Field, Pivot};
 use crate::model::series::{InnerProducts, quotient, store};
 use crate::model::system::System;
@@ -169,7 +170,7 @@ fn bits<Me: Method>(mut method: Me) -> ([u64; N], u64, u64) {
     let span = Span { t0: 0.0, t_end: 5.0 };
     let finish = integrate(&Row, &mut method, &start, span, &settings, &mut ()).expect("a smooth system");
     assert_eq!(finish.statistics.pivoted_factorisations, 0);
-    (finish.x.data.0[0].map(f64::to_bits), finish.statistics.steps, finish.statistics.rate_evaluations)
+    (core::array::from_fn(|i| finish.x[i].to_bits()), finish.statistics.steps, finish.statistics.rate_evaluations)
 }
 
 #[test]
@@ -197,7 +198,8 @@ fn a_flow_has_the_same_bytes_in_all_vectors() {
     const ORDER: usize = 6;
     let of = |arch: Arch| {
         let mut statistics = Statistics::default();
-        let flow = Frozen::<_, N, 0>::new(&Row, &[], &mut statistics, arch);
+        let system = Typed::<_, N, 0, 0> { of: &Row, arch };
+        let flow = Frozen::new(&system, &[], &mut statistics);
         let x: [f64; N] = core::array::from_fn(|i| 0.3 - 0.07 * i as f64);
         let (mut rate, mut slope, mut entries, mut factors) = ([0.0; N], [0.0; N], [0.0; N * N], [0.0; N * N]);
         flow.rate(0.0, &x, &mut rate);

@@ -14,7 +14,7 @@ use super::super::step::Sloped;
 use super::lifted::Lifted;
 use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
-use crate::model::system::Model;
+use crate::model::system::{Model, values};
 use crate::solve::simulation::Switching;
 
 /// Replaces the `weights` of the state after an event by those of the state before it, and adds to the derivatives by
@@ -22,7 +22,7 @@ use crate::solve::simulation::Switching;
 /// guard passes through zero with a speed.
 pub(super) fn back_over<Li, const N: usize, const G: usize, const M: usize>(
     lifted: &mut Lifted<Li>,
-    event: &Switching<N, G>,
+    event: &Switching,
     gained: f64,
     weights: &mut SVector<f64, N>,
 ) -> Option<()>
@@ -33,9 +33,10 @@ where
     if !jumps && before.rate == after.rate && gained == 0.0 {
         return Some(());
     }
-    let given: Sloped<N> = before.x.map(Gradient::from_f64);
+    let [x, rate, rate_after] = [&before.x, &before.rate, &after.rate].map(|of| values::<N>(of.as_slice()));
+    let given: Sloped<N> = x.map(Gradient::from_f64);
     let (guard, speed) = passed(lifted.plain(), event)?;
-    let mut by_instant = gained - weights.dot(&after.rate);
+    let mut by_instant = gained - weights.dot(rate_after);
     if *jumps {
         let after = *weights;
         let weighted = |system: &Li, t: Gradient, x: &Sloped<N>| {
@@ -45,11 +46,11 @@ where
         let t = Gradient::from_f64(before.t);
         by_instant += weighted(lifted.plain(), Gradient::new(before.t, [1.0; WIDTH]), &given)[0];
         lifted.add_by_parameters(1.0, |system| weighted(system, t, &given));
-        *weights = lifted.by_states(&before.x, |plain, x| weighted(plain, t, x));
+        *weights = lifted.by_states(x, |plain, x| weighted(plain, t, x));
     }
-    by_instant += weights.dot(&before.rate);
+    by_instant += weights.dot(rate);
     let later = -by_instant / speed;
-    *weights += lifted.by_states(&before.x, |plain, x| guards(plain, event, 0.0, x)[guard].slopes()) * later;
+    *weights += lifted.by_states(x, |plain, x| guards(plain, event, 0.0, x)[guard].slopes()) * later;
     lifted.add_by_parameters(later, |system| guards(system, event, 0.0, &given)[guard].slopes());
     later.is_finite().then_some(())
 }

@@ -18,10 +18,11 @@ use nalgebra::SVector;
 use super::{Direction, SensitivityError};
 use crate::model::capability::Reversed;
 use crate::model::description::Description;
+use crate::model::dynamics::shared;
 use crate::model::mechanism::{LiftedVisitor, Mechanism};
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::Gradient;
-use crate::model::system::Model;
+use crate::model::system::{Model, switches, values};
 use crate::solve::integrator::Scale;
 use crate::solve::run::{Request, Trajectory, observed};
 use crate::solve::simulation;
@@ -140,7 +141,7 @@ impl LiftedVisitor<Gradient, Gradient> for Asked<'_> {
         _: impl Fn(&[&Li], fn(&[Gradient]) -> Gradient) -> Ot,
     ) -> Self::Output
     where
-        Mo: Model<f64, N, G, M>,
+        Mo: Model<f64, N, G, M> + Clone + 'static,
         Li: Model<Gradient, N, G, M>,
         Ot: Model<Gradient, N, G, M>,
     {
@@ -154,14 +155,14 @@ impl LiftedVisitor<Gradient, Gradient> for Asked<'_> {
             at_samples.add(t, outputs.as_slice())
         };
         let mut record = Record::new(Box::new(add), start, self.states);
-        let outcome = observed(model, &self.request, &mut record);
+        let outcome = observed(&*shared(model.clone()), &self.request, &mut record);
         if let Some(error) = record.error.take() {
             return Err(error);
         }
         let trajectory = outcome?;
         let of = |chunk: &[Direction]| Ok(lifted(&super::sloped(&self.values, chunk))?);
         let lifted = Lifted::new(self.directions, of)?;
-        let scale = record.scale.clone().unwrap_or_else(|| Scale::from(&self.request.tolerances::<N>()));
+        let scale = record.scale.clone().unwrap_or_else(|| Scale::new(&self.request.tolerances(), N));
         let back = Back::new((model, sweeps, lifted), scale, &self.objective.integrals);
         let mut backwards = Backwards { back, record: &record, model, weights: SVector::zeros() };
         backwards.back_to_start()?;
@@ -253,7 +254,7 @@ where
             let events = &self.record.events;
             let happened = events[..events.partition_point(|happened| happened.steps <= number + 1)].last();
             let next = match happened.filter(|happened| happened.steps == number + 1) {
-                Some(Happened { switching, .. }) => switching.after.x,
+                Some(Happened { switching, .. }) => *values(switching.after.x.as_slice()),
                 None => {
                     let (Step { from, to, branches }, x) = (self.record.steps[number], &starts[starts.len() - 1]);
                     let negative = &self.record.branches[branches as usize];
@@ -307,13 +308,13 @@ where
     }
 
     /// Follows an event backwards.
-    fn over(&mut self, happened: &Happened<N, G>) -> Result<(), SensitivityError> {
+    fn over(&mut self, happened: &Happened) -> Result<(), SensitivityError> {
         let event = &*happened.switching;
         let gained = self.back.integrand.map_or(0.0, |factors| {
             let ends = [(&event.before, &event.negative_before), (&event.after, &event.negative_after)];
             let [before, after] = ends.map(|(point, negative)| {
                 let mut outputs = SVector::zeros();
-                self.model.outputs(point.t, &point.x, negative, &mut outputs);
+                self.model.outputs(point.t, values(point.x.as_slice()), switches(negative), &mut outputs);
                 factors.dot(&outputs)
             });
             before - after

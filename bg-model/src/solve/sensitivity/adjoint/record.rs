@@ -8,6 +8,7 @@
 use nalgebra::SVector;
 
 use super::super::SensitivityError;
+use crate::model::system::{switches, values};
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
@@ -29,10 +30,10 @@ pub(super) struct Sample<const N: usize> {
 }
 
 /// What has happened after a step.
-pub(super) struct Happened<const N: usize, const G: usize> {
+pub(super) struct Happened {
     /// The number of steps before it.
     pub steps: usize,
-    pub switching: Box<Switching<N, G>>,
+    pub switching: Box<Switching>,
 }
 
 /// A step.
@@ -57,7 +58,7 @@ pub(super) struct Record<'a, const N: usize, const G: usize> {
     pub stride: usize,
     most: usize,
     pub branches: Vec<[bool; G]>,
-    pub events: Vec<Happened<N, G>>,
+    pub events: Vec<Happened>,
     pub samples: Vec<Sample<N>>,
     /// What errors are measured by, at the end of the run.
     pub scale: Option<Scale>,
@@ -91,8 +92,9 @@ impl<'a, const N: usize, const G: usize> Record<'a, N, G> {
     }
 }
 
-impl<const N: usize, const G: usize> Observer<N, G> for Record<'_, N, G> {
-    fn sample(&mut self, t: f64, x: &SVector<f64, N>, negative: &[bool; G]) {
+impl<const N: usize, const G: usize> Observer for Record<'_, N, G> {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
+        let (x, negative) = (values(x), switches(negative));
         if let Some(weights) = (self.samples_of)(t, x, negative) {
             let branches = self.number(negative);
             self.samples.push(Sample { steps: self.steps.len(), t, x: *x, branches, weights });
@@ -103,8 +105,9 @@ impl<const N: usize, const G: usize> Observer<N, G> for Record<'_, N, G> {
         self.scale = Some(scale.clone());
     }
 
-    fn passed(&mut self, start: &Point<N>, end: &Point<N>, negative: &[bool; G]) {
-        if self.steps.is_empty() && start.x != self.start {
+    fn passed(&mut self, start: &Point, end: &Point, negative: &[bool]) {
+        let x = values(start.x.as_slice());
+        if self.steps.is_empty() && *x != self.start {
             self.error = Some(SensitivityError::ImpactAtStart);
         }
         if self.steps.len().is_multiple_of(self.stride) {
@@ -117,15 +120,15 @@ impl<const N: usize, const G: usize> Observer<N, G> for Record<'_, N, G> {
                 self.stride *= 2;
             }
             if self.steps.len().is_multiple_of(self.stride) {
-                self.states.push(start.x);
+                self.states.push(*x);
             }
         }
-        let branches = self.number(negative);
+        let branches = self.number(switches(negative));
         self.steps.push(Step { from: start.t, to: end.t, branches });
     }
 
-    fn switched(&mut self, switching: &Switching<N, G>) {
-        self.events.push(Happened { steps: self.steps.len(), switching: Box::new(*switching) });
+    fn switched(&mut self, switching: &Switching) {
+        self.events.push(Happened { steps: self.steps.len(), switching: Box::new(switching.clone()) });
     }
 
     fn is_done(&self) -> bool {
@@ -136,12 +139,13 @@ impl<const N: usize, const G: usize> Observer<N, G> for Record<'_, N, G> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::DVector;
 
     #[test]
     fn of_a_long_run_every_so_many_states_are_kept() {
         let mut record: Record<'_, 1, 0> = Record::new(Box::new(|_, _, _| None), SVector::zeros(), 6);
         for step in 0..1000_u32 {
-            let point = |at: u32| Point::at(f64::from(at), SVector::repeat(f64::from(at)));
+            let point = |at: u32| Point::at(f64::from(at), DVector::from_element(1, f64::from(at)));
             record.passed(&point(step), &point(step + 1), &[]);
             assert!(record.states.len() <= 6, "{}", record.states.len());
         }

@@ -182,7 +182,7 @@ mod tests {
             return;
         }
         let (span, order) = (Span { t0: 0.0, t_end: 100.0 }, 8.0);
-        let settings = Settings::<1> { first_step: Some(1.0), ..Settings::default() };
+        let settings = Settings { first_step: Some(1.0), ..Settings::default() };
         let mut own = StepSizeController::new(StepControl::Stabilised { order }, span, &settings, false);
         let place = V::LANES - 1;
         let mut others = Controllers::<V>::new(Control { span, largest: settings.largest_step, order });

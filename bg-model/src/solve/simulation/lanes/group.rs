@@ -3,7 +3,7 @@
 //! In: where each run stands, the step that it is to try. Out: where that leads, its error, whether it can be taken
 //! over without a closer look. Nothing of one place enters another.
 
-use nalgebra::SVector;
+use nalgebra::{DVector, SVector};
 use pulp::NullaryFnOnce;
 
 use super::controllers::{Control, Controllers, Judged, Lead};
@@ -13,7 +13,7 @@ use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace, take};
 use crate::model::system::System;
 use crate::solve::event::{Readings, Steps};
-use crate::solve::integrator::{AnyInLanes, Begin, OfOne, Point, Rates, Scale, Side};
+use crate::solve::integrator::{AnyInLanes, Begin, OfOne, PointRef, Rates, Scale, Side};
 use crate::solve::statistics::Statistics;
 
 /// How much less than the projection that is looked at a projection may move a state.
@@ -165,44 +165,34 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         (step, at(&self.errors), Judgement { logarithm: at(logarithm), factor: at(factor) })
     }
 
-    /// Takes over a run at a place: where it stands, its branches, the readings of its guards, what its method carries
-    /// over.
-    pub fn load(
-        &mut self,
-        lane: usize,
-        point: &Point<N>,
-        negative: [bool; G],
-        guards: [SVector<f64, G>; 2],
-        compensation: &[f64],
-    ) {
+    /// Takes over a run at a place: where it stands, its branches, the readings of its guards.
+    pub fn load(&mut self, lane: usize, point: PointRef<'_>, negative: &[bool], guards: [&[f64]; 2]) {
         let bit = 1 << lane;
         for (mask, is_negative) in self.negative.iter_mut().zip(negative) {
             let others = V::bits(*mask) & !bit;
-            *mask = V::mask(others | if is_negative { bit } else { 0 });
+            *mask = V::mask(others | if *is_negative { bit } else { 0 });
         }
         self.whole[0] &= !bit;
         *self.t.0.at_mut(lane) = point.t;
         let [x, rate] = &mut self.start;
-        put(lane, x.as_mut_slice(), point.x.as_slice());
-        put(lane, rate.as_mut_slice(), point.rate.as_slice());
-        for (to, from) in self.readings.start.iter_mut().zip(&guards) {
-            put(lane, to.as_mut_slice(), from.as_slice());
+        put(lane, x.as_mut_slice(), point.x);
+        put(lane, rate.as_mut_slice(), point.rate);
+        for (to, from) in self.readings.start.iter_mut().zip(guards) {
+            put(lane, to.as_mut_slice(), from);
         }
-        self.set_compensation(lane, compensation);
     }
 
     /// What errors are allowed in a run, and from which magnitudes and step (s) on it has outgrown its sizes.
-    pub fn measure(&mut self, lane: usize, scale: &Scale, (limit, longest): &(SVector<f64, N>, f64)) {
+    pub fn measure(&mut self, lane: usize, scale: &Scale, (limit, longest): &(DVector<f64>, f64)) {
         put(lane, &mut self.scale.absolute, &scale.absolute);
         put(lane, &mut self.scale.weights, &scale.weights);
         put(lane, self.limit.as_mut_slice(), limit.as_slice());
         *self.longest.0.at_mut(lane) = *longest;
     }
 
-    /// The start of a run's step at time `t` (s).
-    pub fn start(&self, lane: usize, t: f64) -> Point<N> {
-        let [x, rate] = self.start.each_ref().map(|states| at(lane, states.as_slice()));
-        Point { t, x, rate }
+    /// The state and the rate at the start of a run's step.
+    pub fn start(&self, lane: usize) -> [SVector<f64, N>; 2] {
+        self.start.each_ref().map(|states| at(lane, states.as_slice()))
     }
 
     /// Writes what a run's method carries over from step to step into `to`.

@@ -10,18 +10,19 @@ mod group;
 
 use core::ops::Range;
 
-use nalgebra::SVector;
+use nalgebra::{DVector, SVector};
 
 use super::observer::Observer;
 use super::run::{Faulty, MOVED, Run};
 use super::settings::{self, Settings, Span};
 use super::step_size::{Judgement, Kept};
 use crate::model::capability::SecondOrder;
+use crate::model::dynamics::{Dynamics, Machine};
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
-use crate::solve::event::{Crossing, Found, Never, Shortening};
+use crate::solve::event::{Crossing, Found, Shortening};
 use crate::solve::finish::{Ended, Finish};
-use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, Scale};
+use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, PointRef, Scale};
 use crate::solve::simulation::Samples;
 use crate::solve::statistics::Statistics;
 use crate::solve::stepper::Stepper;
@@ -29,39 +30,38 @@ use controllers::{Control, Lead};
 use group::{Group, Tried};
 
 /// A run to be made.
-pub(crate) struct Job<'a, Mo, O, const N: usize> {
+pub(crate) struct Job<'a, O> {
     /// Its number, for who asked for it.
     pub number: usize,
     /// Its model.
-    pub model: &'a Mo,
+    pub model: &'a dyn Machine,
     /// The values of its parameters.
     pub values: &'a [f64],
     /// A method of its own.
     pub method: &'a mut AnyMethod,
     /// Its start.
-    pub start: SVector<f64, N>,
+    pub start: &'a [f64],
     /// Its observer.
     pub observer: O,
 }
 
 /// Whether runs of `model` over `span` can be made side by side with these settings.
-pub(crate) fn fits<Mo, const N: usize, const G: usize>(model: &Mo, span: Span, settings: &Settings<N>) -> bool
-where
-    Mo: System<f64, N, G>,
-{
+pub(crate) fn fits(model: &dyn Dynamics, span: Span, settings: &Settings) -> bool {
     let each_step = settings.samples == Samples::Steps;
     let has_breaks = model.next_break(span.t0) < f64::INFINITY;
     model.runs_in_lanes() && !has_breaks && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
 }
 
 /// A run at its place.
-struct Lane<'a, Mo, O, const N: usize, const G: usize> {
+struct Lane<'a, O> {
     number: usize,
     values: &'a [f64],
-    run: Run<'a, Mo, AnyMethod, Never, N, G>,
+    run: Run<'a>,
     observer: O,
     /// Its step is being shortened to an event.
-    shortening: Option<Shortening<G>>,
+    shortening: Option<Shortening>,
+    /// The evaluations of the guards in a step that has no event.
+    guards: u64,
 }
 
 /// What a run does next.
@@ -102,37 +102,34 @@ enum Outcome {
     Fails,
 }
 
-impl<'a, Mo, O, const N: usize, const G: usize> Lane<'a, Mo, O, N, G>
-where
-    Mo: System<f64, N, G>,
-    O: Observer<N, G>,
-{
+impl<'a, O: Observer> Lane<'a, O> {
     /// The run at its start; none where it fails there.
-    fn new(job: Job<'a, Mo, O, N>, span: Span, settings: &'a Settings<N>) -> Result<Self, (usize, O)> {
+    fn new(job: Job<'a, O>, span: Span, settings: &'a Settings) -> Result<Self, (usize, O)> {
         let Job { number, model, values, method, start, mut observer } = job;
         let control = method.control();
-        let stepper = Stepper::new(model, method, Scale::from(&settings.tolerances), Point::at(span.t0, start));
-        let mut run = Run::new(stepper, Never, control, span, settings);
-        let is_fine = settings::check(model, control, &start, span, settings).is_ok();
+        let (scale, x) = (Scale::new(&settings.tolerances, start.len()), DVector::from_column_slice(start));
+        let stepper = Stepper::new(model, method, scale, Point::at(span.t0, x));
+        let mut run = Run::new(stepper, None, control, span, settings);
+        let is_fine = settings::check(model, control, start, span, settings).is_ok();
         // What is at rest looks ahead before each step, by itself.
         if !is_fine || run.begin(control, settings, None).is_err() || run.sizes.is_at_rest(model) {
             return Err((number, observer));
         }
         run.sample(&mut observer, span.t0);
-        Ok(Self { number, values, run, observer, shortening: None })
+        let guards = if model.switches() == 0 { 0 } else { 3 };
+        Ok(Self { number, values, run, observer, shortening: None, guards })
     }
 
-    /// The evaluations of the guards in a step that has no event.
-    const GUARDS: u64 = if G == 0 { 0 } else { 3 };
-
     fn method(&mut self) -> &mut dyn OfOne {
-        self.run.stepper.method.of_one().expect("only runs by such methods are side by side")
+        let chosen = self.run.stepper.method.chosen();
+        chosen.and_then(AnyMethod::of_one).expect("only runs by such methods are side by side")
     }
 
     /// Whether the run's method begins anew to look for the fastest oscillation.
     fn begins(&mut self, second: &Range<usize>) -> bool {
         let stepper = &mut self.run.stepper;
-        stepper.method.of_one().is_some_and(|method| method.begins(second, &stepper.scale.weights))
+        let method = stepper.method.chosen().and_then(AnyMethod::of_one);
+        method.is_some_and(|method| method.begins(second, &stepper.scale.weights))
     }
 
     fn is_at_end(&self) -> bool {
@@ -168,7 +165,7 @@ where
     }
 
     /// The group's controller goes on from the run's.
-    fn lead<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+    fn lead<V: Vector, const N: usize, const G: usize>(&mut self, group: &mut Group<V, N, G>, place: usize) {
         let run = &self.run;
         let lead = Lead {
             controller: run.controller.kept(),
@@ -180,7 +177,7 @@ where
     }
 
     /// The run's controller goes on from the group's.
-    fn follow<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+    fn follow<V: Vector, const N: usize, const G: usize>(&mut self, group: &mut Group<V, N, G>, place: usize) {
         let Some((controller, made, t)) = group.leave(place) else { return };
         let Statistics { steps, rejected, .. } = made;
         let rates = self.method().rates();
@@ -189,7 +186,7 @@ where
         run.attempts += steps + rejected;
         run.stepper.statistics.add(&Statistics {
             rate_evaluations: steps * (rates + 1) + rejected * rates,
-            guard_evaluations: steps * Self::GUARDS,
+            guard_evaluations: steps * self.guards,
             ..made
         });
         run.stepper.start.t = t;
@@ -200,7 +197,7 @@ where
 
     /// What an attempt leads to that the group has made; `is_fine` says whether it leads to finite numbers, `is_clear`
     /// whether the guards keep to their sides.
-    fn attempted<V: Vector>(
+    fn attempted<V: Vector, const N: usize, const G: usize>(
         &mut self,
         group: &mut Group<V, N, G>,
         place: usize,
@@ -231,9 +228,10 @@ where
         let is_quiet = !self.run.sampling.is_due(t)
             && (is_clear && self.run.monitor.is_plain() || {
                 let (end, middle) = group.guards(place);
-                let negative = self.run.stepper.negative;
-                self.run.monitor.take_start(group.guards_at_start(place));
-                self.run.monitor.pass(negative, end, &middle, h, is_clear)
+                let Run { monitor, stepper, .. } = &mut self.run;
+                monitor.take_start(group.guards_at_start(place).each_ref().map(SVector::as_slice));
+                let end = end.each_ref().map(SVector::as_slice);
+                monitor.pass(&stepper.negative, end, middle.as_slice(), h, is_clear)
             });
         if !is_quiet {
             return self.inspected(group, place, attempted.step);
@@ -241,9 +239,9 @@ where
         if !self.holds_together(group, place, t) {
             return Outcome::Fails;
         }
-        self.run.stepper.statistics.guard_evaluations += Self::GUARDS;
+        self.run.stepper.statistics.guard_evaluations += self.guards;
         self.run.faulty = None;
-        self.run.stepper.end = Point { t, x: group.end(place), rate: group.rate(place) };
+        self.take_end(group, place, t);
         self.run.stepper.h = h;
         if self.run.sizes.follow(&mut self.run.stepper) {
             measure(group, place, &self.run);
@@ -255,12 +253,17 @@ where
     }
 
     /// Takes an attempt over that satisfies the tolerances, and looks for events in it.
-    fn inspected<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize, Step { h, t, .. }: Step) -> Outcome {
+    fn inspected<V: Vector, const N: usize, const G: usize>(
+        &mut self,
+        group: &mut Group<V, N, G>,
+        place: usize,
+        Step { h, t, .. }: Step,
+    ) -> Outcome {
         self.take_start(group, place);
         group.hand_over(place, self.method());
-        let end = Point { t, x: group.end(place), rate: group.rate(place) };
+        let (x, rate) = (group.end(place), group.rate(place));
         let run = &mut self.run;
-        run.stepper.take_over(h, end);
+        run.stepper.take_over(h, PointRef { t, x: x.as_slice(), rate: rate.as_slice() });
         let crossing = match run.monitor.look(&mut run.stepper) {
             Ok(None) => None,
             Ok(Some(Found::AtStart(crossing))) => Some(crossing),
@@ -283,14 +286,19 @@ where
     }
 
     /// Looks at an attempt at the step that is being shortened.
-    fn shortened<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, Step { h, t, .. }: Step) -> Outcome {
+    fn shortened<V: Vector, const N: usize, const G: usize>(
+        &mut self,
+        group: &Group<V, N, G>,
+        place: usize,
+        Step { h, t, .. }: Step,
+    ) -> Outcome {
         let x = group.end(place);
         self.run.stepper.statistics.rate_evaluations += self.method().rates();
         let Some(mut shortening) = self.shortening.take() else { return Outcome::Again };
         let run = &mut self.run;
-        run.stepper.take_over(h, Point::at(t, x));
-        if run.stepper.system.joints().is_some() {
-            let moved = run.stepper.moved(&group.reached(place), &x);
+        run.stepper.take_over(h, PointRef { t, x: x.as_slice(), rate: &[0.0; N] });
+        if run.stepper.system.held().is_some() {
+            let moved = run.stepper.moved(group.reached(place).as_slice(), x.as_slice());
             run.stepper.settle_further(moved);
         }
         while !shortening.take(&run.monitor, &mut run.stepper) {
@@ -304,31 +312,57 @@ where
     }
 
     /// The run takes its step over, and goes on after it.
-    fn concluded(&mut self, crossing: Option<Crossing<G>>) -> Outcome {
+    fn concluded(&mut self, crossing: Option<Crossing>) -> Outcome {
         if self.run.conclude(crossing, &mut self.observer).is_ok() { Outcome::Elsewhere } else { Outcome::Fails }
     }
 
     /// Takes over from the group where the run stands.
-    fn take_start<V: Vector>(&mut self, group: &mut Group<V, N, G>, place: usize) {
-        let Point { t, .. } = self.run.stepper.start;
-        self.run.stepper.start = group.start(place, t);
-        self.run.monitor.take_start(group.guards_at_start(place));
+    fn take_start<V: Vector, const N: usize, const G: usize>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+        self.take_start_point(group, place);
+        self.run.monitor.take_start(group.guards_at_start(place).each_ref().map(SVector::as_slice));
         group.take_compensation(place, self.method().compensation());
     }
 
+    /// Takes over the point from which the group's step starts.
+    fn take_start_point<V: Vector, const N: usize, const G: usize>(&mut self, group: &Group<V, N, G>, place: usize) {
+        let [x, rate] = group.start(place);
+        self.run.stepper.start.x.copy_from(&x);
+        self.run.stepper.start.rate.copy_from(&rate);
+    }
+
+    /// Takes over the end of the group's step, at `t` (s).
+    fn take_end<V: Vector, const N: usize, const G: usize>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) {
+        let (x, rate) = (group.end(place), group.rate(place));
+        self.run.stepper.end.become_that(PointRef { t, x: x.as_slice(), rate: rate.as_slice() });
+    }
+
     /// Whether a step to `t` (s) begins or ends in the neighbourhood of a singular pose.
-    fn is_around_singular<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
+    fn is_around_singular<V: Vector, const N: usize, const G: usize>(
+        &mut self,
+        group: &Group<V, N, G>,
+        place: usize,
+        t: f64,
+    ) -> bool {
         self.run.has_loops() && {
-            self.run.stepper.start = group.start(place, self.run.stepper.start.t);
-            self.run.stepper.end = Point { t, x: group.reached(place), ..self.run.stepper.end };
+            self.take_start_point(group, place);
+            let end = &mut self.run.stepper.end;
+            end.t = t;
+            end.x.copy_from(&group.reached(place));
             self.run.is_around_singular()
         }
     }
 
     /// Whether joints that close loops say where the mechanism goes at the end of a step to `t` (s).
-    fn holds_together<V: Vector>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) -> bool {
+    fn holds_together<V: Vector, const N: usize, const G: usize>(
+        &mut self,
+        group: &Group<V, N, G>,
+        place: usize,
+        t: f64,
+    ) -> bool {
         !self.run.has_loops() || {
-            self.run.stepper.end = Point { t, x: group.end(place), ..self.run.stepper.end };
+            let end = &mut self.run.stepper.end;
+            end.t = t;
+            end.x.copy_from(&group.end(place));
             self.run.check_joints().is_ok()
         }
     }
@@ -337,23 +371,22 @@ where
 /// Makes the `jobs`, whose methods are those of `method`; `lifted` makes a model of parameters side by side. `done` is
 /// told the number of each run with its observer, and where it has come to: nothing of one that is to be made by
 /// itself.
-pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
-    mut jobs: impl Iterator<Item = Job<'a, Mo, O, N>>,
+pub(crate) fn integrate<'a, V, Li, O, const N: usize, const G: usize>(
+    mut jobs: impl Iterator<Item = Job<'a, O>>,
     method: AnyInLanes<V>,
     lifted: impl Fn(&[Lanes<V>]) -> Li,
     span: Span,
-    settings: &'a Settings<N>,
-    mut done: impl FnMut(usize, O, Option<Finish<N, G>>),
+    settings: &'a Settings,
+    done: &mut dyn FnMut(usize, O, Option<Finish>),
 ) where
     V: Vector,
-    Mo: System<f64, N, G> + 'a,
     Li: System<Lanes<V>, N, G>,
-    O: Observer<N, G>,
+    O: Observer,
 {
-    let scale = Scale::from(&settings.tolerances);
+    let scale = Scale::new(&settings.tolerances, N);
     let control = Control { span, largest: settings.largest_step, order: method.order() };
     let mut group = Box::new(Group::<V, N, G>::new(method, control, &scale));
-    let mut lanes: Vec<Option<Lane<'a, Mo, O, N, G>>> = (0..V::LANES).map(|_| None).collect();
+    let mut lanes: Vec<Option<Lane<'a, O>>> = (0..V::LANES).map(|_| None).collect();
     let mut system: Option<Li> = None;
     loop {
         // Free places take the next runs.
@@ -405,24 +438,22 @@ pub(crate) fn integrate<'a, V, Mo, Li, O, const N: usize, const G: usize>(
 }
 
 /// Where a run has come to at its end. The largest values of its states are not known.
-fn finish<Mo, const N: usize, const G: usize>(run: Run<'_, Mo, AnyMethod, Never, N, G>) -> Finish<N, G>
-where
-    Mo: System<f64, N, G>,
-{
-    Finish { uncontrolled: [false; N], ..run.finish(Ended::AtEnd) }
+fn finish(run: Run<'_>) -> Finish {
+    let mut finish = run.finish(Ended::AtEnd);
+    finish.uncontrolled.fill(false);
+    finish
 }
 
 /// A step, or an attempt at one, of each run; gives a bit for each run that cannot go on in company.
-fn round<V, Mo, Li, O, const N: usize, const G: usize>(
+fn round<V, Li, O, const N: usize, const G: usize>(
     group: &mut Group<V, N, G>,
-    lanes: &mut [Option<Lane<'_, Mo, O, N, G>>],
+    lanes: &mut [Option<Lane<'_, O>>],
     model: &Li,
 ) -> u8
 where
     V: Vector,
-    Mo: System<f64, N, G>,
     Li: System<Lanes<V>, N, G>,
-    O: Observer<N, G>,
+    O: Observer,
 {
     let second = model.second_order().filter(|_| group.is_held()).map_or(0..0, |second| second.states());
     let (mut due, mut failed) = (0_u8, 0_u8);
@@ -499,28 +530,21 @@ fn occupied<T>(lanes: &mut [Option<T>]) -> impl Iterator<Item = (usize, &mut T)>
 }
 
 /// Takes a run over into the group.
-fn load<V, Mo, O, const N: usize, const G: usize>(
-    group: &mut Group<V, N, G>,
-    place: usize,
-    lane: &mut Lane<'_, Mo, O, N, G>,
-) where
+fn load<V, O, const N: usize, const G: usize>(group: &mut Group<V, N, G>, place: usize, lane: &mut Lane<'_, O>)
+where
     V: Vector,
-    Mo: System<f64, N, G>,
-    O: Observer<N, G>,
+    O: Observer,
 {
-    let (start, negative, guards) = (lane.run.stepper.start, lane.run.stepper.negative, lane.run.monitor.at_start());
-    group.load(place, &start, negative, guards, lane.method().compensation());
+    let Run { stepper, monitor, .. } = &lane.run;
+    group.load(place, stepper.start.borrowed(), &stepper.negative, monitor.at_start());
+    group.set_compensation(place, lane.method().compensation());
     measure(group, place, &lane.run);
 }
 
 /// Takes over what errors are allowed in a run.
-fn measure<V, Mo, const N: usize, const G: usize>(
-    group: &mut Group<V, N, G>,
-    place: usize,
-    run: &Run<'_, Mo, AnyMethod, Never, N, G>,
-) where
+fn measure<V, const N: usize, const G: usize>(group: &mut Group<V, N, G>, place: usize, run: &Run<'_>)
+where
     V: Vector,
-    Mo: System<f64, N, G>,
 {
     group.measure(place, &run.stepper.scale, &run.sizes.limits());
 }
