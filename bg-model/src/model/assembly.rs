@@ -8,7 +8,7 @@ use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::{DVector, SVector};
+use nalgebra::DVector;
 use thiserror::Error;
 
 use crate::model::holding::{Redundancy, Slipping};
@@ -146,21 +146,43 @@ pub fn close<const U: usize>(
     residual: impl Fn(&[f64; U], &mut [f64]),
     terms: impl Fn(&[f64; U], &mut [f64]),
 ) -> Result<[f64; U], AssemblyError> {
+    let closed = closed(
+        &guess,
+        gaps,
+        &|coordinates, sizes| residual(whole(coordinates), sizes),
+        &|coordinates, sizes| terms(whole(coordinates), sizes),
+    )?;
+    Ok(*whole(&closed))
+}
+
+/// All coordinates of a pose.
+fn whole<const U: usize>(coordinates: &[f64]) -> &[f64; U] {
+    coordinates.try_into().expect("there is a number for each coordinate")
+}
+
+/// The same for any number of coordinates.
+fn closed(
+    guess: &[f64],
+    gaps: &'static [Gap],
+    residual: &dyn Fn(&[f64], &mut [f64]),
+    terms: &dyn Fn(&[f64], &mut [f64]),
+) -> Result<Vec<f64>, AssemblyError> {
     // Half a radian, or half the size of the coordinates, so that the pose is not thrown over into another one that
     // closes as well. Gaps are linear in lengths, so those of a small machine go where the angles want them.
-    let longest = |coordinates: &SVector<f64, U>| 0.5 * coordinates.amax().max(1.0);
-    let (coordinates, sizes) = nearest(guess, gaps.len(), longest, residual, |sizes| check_finite(gaps, sizes))?;
+    let largest = |of: &[f64]| of.iter().fold(0.0_f64, |largest, of| largest.max(of.abs()));
+    let longest = |coordinates: &[f64]| 0.5 * largest(coordinates).max(1.0);
+    let found = nearest(guess, gaps.len(), &longest, residual);
+    let (coordinates, sizes) = found.map_err(|sizes| not_finite(gaps, &sizes))?;
     let mut all = vec![0.0; gaps.len()];
     terms(&coordinates, &mut all);
     check_closed(gaps, &sizes, &all)?;
     Ok(coordinates)
 }
 
-fn check_finite(gaps: &[Gap], sizes: &DVector<f64>) -> Result<(), AssemblyError> {
-    match gaps.iter().zip(sizes.iter()).find(|(_, size)| !size.is_finite()) {
-        Some((gap, value)) => Err(AssemblyError::NonFinite { gap: *gap, value: *value }),
-        None => Ok(()),
-    }
+fn not_finite(gaps: &[Gap], sizes: &DVector<f64>) -> AssemblyError {
+    let mut sizes = gaps.iter().zip(sizes.iter());
+    let (gap, value) = sizes.find(|(_, size)| !size.is_finite()).expect("one of them is not finite");
+    AssemblyError::NonFinite { gap: *gap, value: *value }
 }
 
 fn check_closed(gaps: &[Gap], sizes: &DVector<f64>, terms: &[f64]) -> Result<(), AssemblyError> {

@@ -7,41 +7,44 @@
 
 use alloc::vec::Vec;
 
-use nalgebra::{DMatrix, DVector, SVector};
+use nalgebra::{DMatrix, DVector};
 
 use crate::model::scalar::Scalar;
 
+/// Writes the residuals at some coordinates.
+type Residual<'a> = dyn Fn(&[f64], &mut [f64]) + 'a;
+
 /// The coordinates nearest to `guess`, to first order, at which the norm of the `rows` residuals falls no further, and
-/// the residuals there. `longest` limits a step; `check` sees the residuals and their derivatives.
+/// the residuals there. `longest` limits a step.
 ///
 /// # Errors
-/// Those of `check`.
-pub(crate) fn nearest<E, const U: usize>(
-    guess: [f64; U],
+/// The residuals, or their derivatives by a coordinate, where one is not finite.
+pub(crate) fn nearest(
+    guess: &[f64],
     rows: usize,
-    longest: impl Fn(&SVector<f64, U>) -> f64,
-    residual: impl Fn(&[f64; U], &mut [f64]),
-    check: impl Fn(&DVector<f64>) -> Result<(), E>,
-) -> Result<([f64; U], DVector<f64>), E> {
+    longest: &dyn Fn(&[f64]) -> f64,
+    residual: &Residual<'_>,
+) -> Result<(Vec<f64>, DVector<f64>), DVector<f64>> {
     // Quadratic convergence needs some ten iterations; more only for far guesses, whose steps are limited.
     const ITERATIONS: usize = 200;
-    let sizes_at = |coordinates: &SVector<f64, U>| {
+    let sizes_at = |coordinates: &[f64]| {
         let mut sizes = DVector::zeros(rows);
-        residual(&coordinates.data.0[0], sizes.as_mut_slice());
+        residual(coordinates, sizes.as_mut_slice());
         sizes
     };
-    let mut coordinates = SVector::from(guess);
-    let mut sizes = sizes_at(&coordinates);
-    check(&sizes)?;
-    if U > 0 {
+    let check = |sizes: DVector<f64>| if sizes.iter().all(|size| size.is_finite()) { Ok(sizes) } else { Err(sizes) };
+    let mut coordinates = guess.to_vec();
+    let mut sizes = check(sizes_at(&coordinates))?;
+    if !coordinates.is_empty() {
         for _ in 0..ITERATIONS {
-            let jacobian = jacobian(&coordinates, rows, sizes_at);
-            (0..jacobian.ncols()).try_for_each(|column| check(&jacobian.column(column).into_owned()))?;
-            let Some((nearer, smaller)) = shrink(&coordinates, &sizes, jacobian, &longest, sizes_at) else { break };
+            let jacobian = jacobian(&coordinates, rows, &sizes_at);
+            (0..jacobian.ncols()).try_for_each(|k| check(jacobian.column(k).into_owned()).map(|_| ()))?;
+            let longest = longest(&coordinates);
+            let Some((nearer, smaller)) = shrink(&coordinates, &sizes, jacobian, longest, &sizes_at) else { break };
             (coordinates, sizes) = (nearer, smaller);
         }
     }
-    Ok((coordinates.data.0[0], sizes))
+    Ok((coordinates, sizes))
 }
 
 /// The coordinates `found`, nearest to `guess`, in another scalar: with the derivatives that follow from those of the
@@ -69,16 +72,11 @@ pub fn lifted<S: Scalar, const U: usize>(
     if moved.iter().chain(&left).all(|&value| value == zero) {
         return plain;
     }
-    let sizes_at = |coordinates: &SVector<f64, U>| {
-        let sizes = residual(&coordinates.data.0[0].map(S::from_f64));
+    let sizes_at = |coordinates: &[f64]| {
+        let sizes = residual(&core::array::from_fn(|k| S::from_f64(coordinates[k])));
         DVector::from_iterator(sizes.len(), sizes.into_iter().map(S::to_f64))
     };
-    let jacobian = jacobian(&SVector::from(found), left.len(), sizes_at);
-    if jacobian.is_empty() {
-        return lifted;
-    }
-    let smallest = RANK * jacobian.norm();
-    let Ok(inverse) = jacobian.pseudo_inverse(smallest) else { return lifted };
+    let Some(inverse) = inverse(&found, left.len(), &sizes_at) else { return lifted };
     for _ in 0..SOLUTIONS {
         for (k, lifted) in lifted.iter_mut().enumerate() {
             for (row, &left) in left.iter().enumerate() {
@@ -93,21 +91,30 @@ pub fn lifted<S: Scalar, const U: usize>(
 /// Singular values below this part of the largest one are rounding errors of the differences.
 const RANK: f64 = 1e-10;
 
+/// The pseudo-inverse of the derivatives of the gaps; none where there are none.
+fn inverse(found: &[f64], rows: usize, gaps_at: &Gaps<'_>) -> Option<DMatrix<f64>> {
+    let jacobian = jacobian(found, rows, gaps_at);
+    if jacobian.is_empty() {
+        return None;
+    }
+    let smallest = RANK * jacobian.norm();
+    jacobian.pseudo_inverse(smallest).ok()
+}
+
+/// Gives the gaps at some coordinates.
+type Gaps<'a> = dyn Fn(&[f64]) -> DVector<f64> + 'a;
+
 /// The derivatives of the gaps by five-point central differences; their error is of the order 1e-13 for mechanisms of
 /// the size of 1 m.
-fn jacobian<const U: usize>(
-    coordinates: &SVector<f64, U>,
-    rows: usize,
-    gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
-) -> DMatrix<f64> {
+fn jacobian(coordinates: &[f64], rows: usize, gaps_at: &Gaps<'_>) -> DMatrix<f64> {
     // Balances the truncation error d^4 / 30 against the rounding error 1e-16 / d. Of an angle this is a part of a
     // radian; in lengths and velocities gaps and flows are linear, so that no displacement of them is too long.
     const DISPLACEMENT: f64 = 1.0 / 1024.0;
-    let mut jacobian = DMatrix::zeros(rows, U);
-    for column in 0..U {
-        let d = DISPLACEMENT * coordinates[column].abs().max(1.0);
+    let mut jacobian = DMatrix::zeros(rows, coordinates.len());
+    for (column, &coordinate) in coordinates.iter().enumerate() {
+        let d = DISPLACEMENT * coordinate.abs().max(1.0);
         let moved = |by: f64| {
-            let mut displaced = *coordinates;
+            let mut displaced = coordinates.to_vec();
             displaced[column] += by;
             gaps_at(&displaced)
         };
@@ -118,14 +125,15 @@ fn jacobian<const U: usize>(
     jacobian
 }
 
-/// The first damped step that shrinks the gaps' norm, with the new gaps; none if the norm has stopped falling.
-fn shrink<const U: usize>(
-    coordinates: &SVector<f64, U>,
+/// The first damped step, at most `longest`, that shrinks the gaps' norm, with the new gaps; none if the norm has
+/// stopped falling.
+fn shrink(
+    coordinates: &[f64],
     sizes: &DVector<f64>,
     jacobian: DMatrix<f64>,
-    longest: impl Fn(&SVector<f64, U>) -> f64,
-    gaps_at: impl Fn(&SVector<f64, U>) -> DVector<f64>,
-) -> Option<(SVector<f64, U>, DVector<f64>)> {
+    longest: f64,
+    gaps_at: &Gaps<'_>,
+) -> Option<(Vec<f64>, DVector<f64>)> {
     const DAMPINGS: [f64; 8] = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
     let norm = sizes.norm();
     if jacobian.is_empty() || norm == 0.0 {
@@ -141,8 +149,8 @@ fn shrink<const U: usize>(
             let sigma = svd.singular_values[i];
             if sigma <= RANK * largest { 0.0 } else { -projected[i] * sigma / (sigma * sigma + lambda * lambda) }
         });
-        let step = limited(v_t.tr_mul(&weights), longest(coordinates));
-        let nearer = SVector::from_fn(|i, _| coordinates[i] + step[i]);
+        let step = limited(v_t.tr_mul(&weights), longest);
+        let nearer: Vec<f64> = coordinates.iter().zip(&step).map(|(coordinate, step)| coordinate + step).collect();
         let smaller = gaps_at(&nearer);
         (smaller.norm() < norm).then_some((nearer, smaller))
     })

@@ -128,20 +128,18 @@ where
     };
     let mut values = speeds.map(|place| unknowns[place]);
     if K > 0 {
-        let residual = |values: &[f64; K], flows: &mut [f64]| {
-            let hold = read(&state(&values.map(S::from_f64)));
+        let residual = |values: &[f64], flows: &mut [f64]| {
+            let hold = read(&state(&core::array::from_fn(|k| S::from_f64(values[k]))));
             flows.iter_mut().zip(hold.flows()).for_each(|(to, flow)| *to = flow.to_f64());
         };
         let rows = held.rigid.len() + held.compliant.len();
-        let check = |flows: &DVector<f64>| match flows.iter().position(|flow| !flow.is_finite()) {
-            Some(k) => {
-                let (largest, allowed) = (slipping(&held, k, flows[k]), 0.0);
-                Err(AssemblyError::Torn { largest, allowed, others: Vec::new() })
-            }
-            None => Ok(()),
+        let torn = |flows: DVector<f64>| {
+            let k = flows.iter().position(|flow| !flow.is_finite()).expect("one of them is not finite");
+            AssemblyError::Torn { largest: slipping(&held, k, flows[k]), allowed: 0.0, others: Vec::new() }
         };
         // The flows are linear in the velocities, so the first step is the last but for rounding.
-        let found = nearest(values.map(S::to_f64), rows, |_| f64::INFINITY, residual, check)?.0;
+        let found = nearest(&values.map(S::to_f64), rows, &|_| f64::INFINITY, &residual).map_err(torn)?.0;
+        let found = core::array::from_fn(|k| found[k]);
         values = lifted(values, found, |values| read(&state(values)).flows().to_vec());
     }
     let x = state(&values);
