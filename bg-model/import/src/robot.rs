@@ -63,6 +63,14 @@ impl Inertia {
         Self { mass: self.mass, center: frame.place + frame.turned * self.center, tensor }
     }
 
+    /// The edges of the box that has this mass and these moments, along principal axes, m.
+    #[must_use]
+    pub fn box_edges(&self, axes: &Matrix3<f64>) -> Vector3<f64> {
+        let moments = (axes.transpose() * self.tensor * axes).diagonal();
+        let sum = moments.sum();
+        moments.map(|moment| (6.0 * (sum - 2.0 * moment).max(0.0) / self.mass).sqrt())
+    }
+
     /// Two in one (Steiner).
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {

@@ -52,6 +52,8 @@ fn compiles(text: &str) {
     }
 }
 
+#[path = "text/fitted.rs"]
+mod fitted;
 #[path = "text/kinds.rs"]
 mod kinds;
 #[path = "text/program.rs"]

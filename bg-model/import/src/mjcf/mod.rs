@@ -10,6 +10,7 @@ mod contents;
 mod defaults;
 mod equality;
 mod expand;
+mod fitted;
 mod fluid;
 mod meshes;
 mod orientation;

@@ -50,7 +50,7 @@ pub const RULES: &[Rule] = &[
     harmless("compiler", "meshdir", "where meshes are"),
     harmless("compiler", "assetdir", "where meshes are"),
     harmless("compiler", "strippath", "where meshes are"),
-    harmless("compiler", "fitaabb", "about shapes fitted to meshes, which are told"),
+    harmless("compiler", "fitaabb", "about shapes fitted to meshes"),
     harmless("compiler", "exactmeshinertia", "meshes are told"),
     harmless("option", "timestep", NUMERICAL),
     harmless("option", "apirate", NUMERICAL),
@@ -115,7 +115,7 @@ pub const RULES: &[Rule] = &[
     harmless("geom", "adhesion", TOUCHING),
     harmless("geom", "fluidshape", "about a fluid, which is told"),
     harmless("geom", "fluidcoef", "about a fluid, which is told"),
-    harmless("geom", "fitscale", "about shapes fitted to meshes, which are told"),
+    harmless("geom", "fitscale", "about shapes fitted to meshes"),
     // Bodies and joints.
     harmless("body", "mocap", "it stands unless a program moves it"),
     harmless("body", "sleep", NUMERICAL),

@@ -5,7 +5,7 @@ use bg_import::{Format, Imported, Options, import};
 use super::{MASS, arm, compiles};
 
 /// Without the note on contacts, which each shape makes.
-const NO_CONTACTS: Options = Options {
+pub(super) const NO_CONTACTS: Options = Options {
     free_base: false,
     keep_fixed: false,
     compliant: false,
@@ -16,13 +16,13 @@ const NO_CONTACTS: Options = Options {
     strict: false,
 };
 
-fn made(text: &str) -> Imported {
+pub(super) fn made(text: &str) -> Imported {
     let format = if text.contains("<robot") { Format::Urdf } else { Format::Mjcf };
     import(format, "robot", text, NO_CONTACTS).unwrap_or_else(|fault| panic!("{fault}\n{text}"))
 }
 
 /// A rod on a hinge with these attributes and a head.
-fn rod(head: &str, body: &str, joint: &str) -> String {
+pub(super) fn rod(head: &str, body: &str, joint: &str) -> String {
     format!(
         "<mujoco>{head}<worldbody>\n<body name='rod' pos='0 0 1' {body}>\n<joint name='pin' axis='0 1 0' {joint}/>\n\
          <inertial pos='0.3 0 0' mass='2' diaginertia='0.01 0.05 0.05'/></body></worldbody></mujoco>"
@@ -30,14 +30,14 @@ fn rod(head: &str, body: &str, joint: &str) -> String {
 }
 
 /// Two of them beside each other.
-fn rods(rest: &str) -> String {
+pub(super) fn rods(rest: &str) -> String {
     let second = "<body name='other' pos='1 0 1'><joint name='pin2' axis='0 1 0'/>\
                   <inertial pos='0.3 0 0' mass='2' diaginertia='0.01 0.05 0.05'/></body></worldbody>";
     rod("", "", "").replace("</worldbody>", &format!("{second}{rest}"))
 }
 
 /// A body of these shapes on a hinge.
-fn shapes(head: &str, shapes: &str) -> String {
+pub(super) fn shapes(head: &str, shapes: &str) -> String {
     format!(
         "<mujoco>{head}<worldbody><body name='b'><joint name='pin' axis='0 1 0'/>{shapes}</body></worldbody></mujoco>"
     )
@@ -61,7 +61,7 @@ fn what_is_not_used_is_a_note_with_its_line() {
         (rod("", "", "").replace("<joint", "<plugin plugin='p'/><joint"), "line 3: <plugin> in <body> is not used."),
         (
             shapes("", "<geom size='0.1'/><geom type='box' mesh='m'/>"),
-            "line 1: shape is a box fitted to a mesh: its mass is not known and left out.",
+            "line 1: shape is a box fitted to a mesh `m` that is not there: its mass is not known and left out.",
         ),
         (
             arm(MASS, "continuous", "<limit effort='5'/>"),
@@ -114,7 +114,7 @@ fn strict_makes_a_note_an_error() {
 }
 
 /// That a text has words, and has others not.
-fn has(text: &str, words: &[&str], others: &[&str]) {
+pub(super) fn has(text: &str, words: &[&str], others: &[&str]) {
     let imported = made(text);
     assert_eq!(imported.notes, [""; 0], "{text}");
     compiles(&imported.text);
