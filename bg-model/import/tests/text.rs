@@ -52,6 +52,8 @@ fn compiles(text: &str) {
     }
 }
 
+#[path = "text/attach.rs"]
+mod attach;
 #[path = "text/fitted.rs"]
 mod fitted;
 #[path = "text/kinds.rs"]

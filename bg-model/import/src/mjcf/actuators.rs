@@ -16,7 +16,7 @@ use crate::xml::Node;
 /// Values that cannot be.
 pub fn read(reader: &mut Reader, root: &Node) -> Result<(), ImportError> {
     for node in root.children("actuator").flat_map(Node::all_children) {
-        let element = reader.defaults.element(node, None)?;
+        let element = reader.scopes.element(node, None)?;
         let known = node.attribute("name").map(str::to_owned);
         match actuator(reader, &element)? {
             Ok((joint, mut actuator)) => {
@@ -81,7 +81,9 @@ fn actuator(reader: &Reader, element: &Element) -> Result<Result<(usize, Actuato
     }
     let range = |limited: &str, name: &str| {
         let is_limited = element.truth(limited)?;
-        let Some(text) = element.text(name).filter(|_| is_limited.unwrap_or(reader.settings.automatic_limits)) else {
+        let Some(text) =
+            element.text(name).filter(|_| is_limited.unwrap_or(reader.scopes.of(node).compiler.automatic_limits))
+        else {
             return Ok(None);
         };
         let [least, most] = node.array::<2>(name, text)?;

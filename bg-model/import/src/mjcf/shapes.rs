@@ -4,8 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::defaults::Element;
 use super::fitted::{self, Fitted};
-use super::meshes::Meshes;
-use super::orientation::Angles;
+use super::scope::Scopes;
 use crate::ImportError;
 use crate::geometry::Shape;
 use crate::robot::{Inertia, Pose, with_z};
@@ -28,9 +27,10 @@ const WATER: f64 = 1000.0;
 ///
 /// # Errors
 /// Sizes, mass or density that MuJoCo refuses.
-pub fn read(element: &Element, angles: &Angles, meshes: &Meshes, is_wanted: bool) -> Result<Massive, ImportError> {
+pub fn read(element: &Element, scopes: &Scopes, is_wanted: bool) -> Result<Massive, ImportError> {
     let node = element.node;
-    let mut frame = angles.pose(element)?;
+    let meshes = &scopes.of(node).meshes;
+    let mut frame = scopes.pose(element)?;
     let sizes = element.text("size").map(|text| node.list("size", text)).transpose()?.unwrap_or_default();
     let ends = element.text("fromto").map(|text| node.array::<6>("fromto", text)).transpose()?;
     let mass = element.number("mass")?;
