@@ -94,8 +94,9 @@ pub fn refuse_what_is_not_finite(robot: &Robot) -> Result<(), ImportError> {
     }
     for actuator in &robot.actuators {
         let ranges = [actuator.control, actuator.force].into_iter().flatten().flat_map(|(least, most)| [least, most]);
+        let factors = actuator.length.parts.iter().map(|part| part.1);
         let values: Vec<f64> =
-            ranges.chain(actuator.bias).chain([actuator.gear, actuator.gain, actuator.shift]).collect();
+            ranges.chain(actuator.gain).chain(actuator.bias).chain(factors).chain([actuator.length.constant]).collect();
         if !is_fine(&values) {
             return too_large(format!("actuator `{}`", actuator.name));
         }

@@ -94,8 +94,8 @@ pub fn in_order_of_the_tree(robot: &mut Robot, ground: usize) -> Result<(), Stri
     for coupling in &mut robot.couplings {
         (coupling.follower, coupling.leader) = (moved[coupling.follower], moved[coupling.leader]);
     }
-    for actuator in &mut robot.actuators {
-        actuator.joint = moved[actuator.joint];
+    for part in robot.actuators.iter_mut().flat_map(|actuator| &mut actuator.length.parts) {
+        part.0 = moved[part.0];
     }
     robot.links = order.iter().map(|&link| robot.links[link].clone()).collect();
     Ok(())
@@ -184,8 +184,8 @@ fn combine(robot: &mut Robot) {
         is_coupled[coupling.follower] = true;
         is_coupled[coupling.leader] = true;
     }
-    for actuator in &robot.actuators {
-        is_coupled[actuator.joint] = true;
+    for (joint, _) in robot.actuators.iter().flat_map(|actuator| &actuator.length.parts) {
+        is_coupled[*joint] = true;
     }
     let mut is_held = vec![false; robot.links.len()];
     for end in robot.loops.iter().flat_map(|closed| &closed.ends) {

@@ -284,26 +284,46 @@ impl Coupling {
     }
 }
 
-/// What drives a joint by a control: gear f, with f = gain u + b0 + b1 l + b2 l' within a range, where l = gear (q +
-/// shift).
+/// A sum of joints' angles and travels, each times a factor: of one joint, or of a tendon.
+#[derive(Clone, Debug, Default)]
+pub struct Length {
+    /// Joints by their index, and the length for each rad or m of it.
+    pub parts: Vec<(usize, f64)>,
+    /// The length where all joints are at 0, in the file's count.
+    pub constant: f64,
+}
+
+impl Length {
+    /// The same times a factor.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        let parts = self.parts.iter().map(|&(joint, each)| (joint, factor * each)).collect();
+        Self { parts, constant: factor * self.constant }
+    }
+
+    /// The same with the joints at other places; none where one of them is not there any more.
+    fn moved(&self, places: &[Option<usize>]) -> Option<Self> {
+        let parts = self.parts.iter().map(|&(joint, each)| Some((places[joint]?, each))).collect::<Option<_>>()?;
+        Some(Self { parts, constant: self.constant })
+    }
+}
+
+/// What drives joints by a control u: a force f = (g0 + g1 l + g2 l') u + b0 + b1 l + b2 l' within a range, along a
+/// length l.
 #[derive(Clone, Debug)]
 pub struct Actuator {
     /// As in the file, or made of the joint's name.
     pub name: String,
-    /// The index of the joint.
-    pub joint: usize,
-    /// Length for each rad or m.
-    pub gear: f64,
-    /// Force for each unit of the control.
-    pub gain: f64,
-    /// Force without a control: constant, for each unit of length, for each unit of its speed.
+    /// What it pulls along.
+    pub length: Length,
+    /// Force for each unit of the control: constant, for each unit of length, for each unit of its speed.
+    pub gain: [f64; 3],
+    /// Force without a control, in the same order.
     pub bias: [f64; 3],
     /// The least and the most control.
     pub control: Option<(f64, f64)>,
     /// The least and the most force.
     pub force: Option<(f64, f64)>,
-    /// What the file's value of the joint is at its start, rad or m.
-    pub shift: f64,
 }
 
 /// A tree of links. The first link is the ground.
@@ -379,11 +399,9 @@ impl Robot {
             Some(Coupling { follower, leader, polynomial: coupling.polynomial })
         };
         self.couplings = self.couplings.iter().filter_map(moved).collect();
-        self.actuators.retain_mut(|actuator| {
-            let place = places[actuator.joint];
-            actuator.joint = place.unwrap_or_default();
-            place.is_some()
-        });
+        let moved =
+            |actuator: &Actuator| Some(Actuator { length: actuator.length.moved(&places)?, ..actuator.clone() });
+        self.actuators = self.actuators.iter().filter_map(moved).collect();
     }
 }
 

@@ -52,6 +52,8 @@ fn compiles(text: &str) {
     }
 }
 
+#[path = "text/actuators.rs"]
+mod actuators;
 #[path = "text/attach.rs"]
 mod attach;
 #[path = "text/fitted.rs"]

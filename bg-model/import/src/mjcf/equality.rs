@@ -64,8 +64,7 @@ fn coupled(reader: &mut Reader, node: &Node) -> Result<(), ImportError> {
     node.mark("name");
     let find = |attribute: &'static str| {
         let name = node.needed(attribute)?;
-        let unknown = || ImportError::Unknown { place: node.place.clone(), what: "joint", name: name.to_owned() };
-        let joint = reader.joints.get(name).copied().ok_or_else(unknown)?;
+        let joint = reader.joint_of(node, name)?;
         let is_scalar = reader.robot.joints[joint].is_scalar();
         if is_scalar { Ok(joint) } else { Err(node.bad(attribute, name, "a hinge or a slide")) }
     };

@@ -27,7 +27,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::robot::{Inertia, Joint, Kind, Law, Link, Pose, Robot, Spring};
+use crate::robot::{Inertia, Joint, Kind, Law, Length, Link, Pose, Robot, Spring};
 use crate::xml::{Node, unread};
 use crate::{Folder, ImportError, Options};
 use compiler::FromShapes;
@@ -60,6 +60,7 @@ pub fn read(text: &str, folder: Folder, options: Options) -> Result<Robot, Impor
         reader.scale(total);
     }
     reader.damp_springs();
+    actuators::load_joints(&mut reader, root)?;
     reader.armatures_of_free_joints();
     equality::read(&mut reader, root)?;
     if options.actuators && reader.settings.actuators {
@@ -88,6 +89,8 @@ struct Reader<'n> {
     spring_dampers: Vec<(usize, [f64; 2])>,
     /// What MuJoCo counts from, of joints where that is not 0.
     references: BTreeMap<usize, f64>,
+    /// The range of each joint that has one, whether it is kept or not, from where the joint is at 0.
+    ranges: BTreeMap<usize, (f64, f64)>,
     /// Whether a shape could touch another one.
     has_shapes: bool,
     robot: Robot,
@@ -107,6 +110,7 @@ impl<'n> Reader<'n> {
             places: vec![Pose::identity()],
             spring_dampers: Vec::new(),
             references: BTreeMap::new(),
+            ranges: BTreeMap::new(),
             has_shapes: false,
             robot: Robot { gravity: settings.gravity, ..Robot::new(name, "MJCF") },
             settings,
@@ -321,6 +325,19 @@ impl<'n> Reader<'n> {
         }
     }
 
+    /// The index of a joint that an element names.
+    fn joint_of(&self, node: &Node, name: &str) -> Result<usize, ImportError> {
+        let unknown = || ImportError::Unknown { place: node.place.clone(), what: "joint", name: name.to_owned() };
+        self.joints.get(name).copied().ok_or_else(unknown)
+    }
+
+    /// The sum of joints' values, as the file counts them, each times a factor.
+    fn length(&self, parts: impl IntoIterator<Item = (usize, f64)>) -> Length {
+        let parts: Vec<(usize, f64)> = parts.into_iter().collect();
+        let shift = |part: &(usize, f64)| part.1 * self.references.get(&part.0).copied().unwrap_or(0.0);
+        Length { constant: parts.iter().map(shift).sum(), parts }
+    }
+
     fn scalar_joint(&mut self, element: &Element<'n>, joint: &mut Joint, item: &Item<'n>) -> Result<(), ImportError> {
         let name = joint.name.clone();
         let axis = element.vector("axis")?.unwrap_or(Vector3::z());
@@ -344,6 +361,7 @@ impl<'n> Reader<'n> {
         }
         let limits = self.limits(element, unit, reference)?;
         joint.limits = limits.filter(|_| self.settings.limits);
+        self.ranges.extend(limits.map(|limits| (self.robot.joints.len(), limits)));
         if reference != 0.0 {
             self.references.insert(self.robot.joints.len(), reference);
             let shift = crate::number::number(reference);

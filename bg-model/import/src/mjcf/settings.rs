@@ -23,6 +23,10 @@ pub struct Settings {
     pub contacts: bool,
     /// Actuators act.
     pub actuators: bool,
+    /// Controls stay in their ranges.
+    pub clamps: bool,
+    /// The groups of actuators that do not act.
+    pub idle_groups: Vec<f64>,
 }
 
 impl Settings {
@@ -33,6 +37,9 @@ impl Settings {
     pub fn new(root: &Node) -> Result<Self, ImportError> {
         let flags = Flags::new(root)?;
         let gravity = last_option(root, "gravity").map(|node| node.vector("gravity")).transpose()?.flatten();
+        let idle_groups = last_option(root, "actuatorgroupdisable")
+            .and_then(|node| Some(node.list("actuatorgroupdisable", node.peek("actuatorgroupdisable")?)))
+            .transpose()?;
         Ok(Self {
             gravity: if flags.is_on("gravity") {
                 gravity.unwrap_or(Vector3::new(0.0, 0.0, -9.81))
@@ -46,6 +53,8 @@ impl Settings {
             friction: flags.is_on("frictionloss") && flags.is_on("constraint"),
             contacts: flags.is_on("contact") && flags.is_on("constraint"),
             actuators: flags.is_on("actuation"),
+            clamps: flags.is_on("clampctrl"),
+            idle_groups: idle_groups.unwrap_or_default(),
         })
     }
 }
@@ -59,8 +68,18 @@ fn last_option<'n>(root: &'n Node, name: &str) -> Option<&'n Node> {
 struct Flags<'n>(Vec<&'n Node>);
 
 /// Those that are looked at here.
-const FLAGS: [&str; 9] =
-    ["gravity", "spring", "damper", "limit", "constraint", "equality", "frictionloss", "contact", "actuation"];
+const FLAGS: [&str; 10] = [
+    "gravity",
+    "spring",
+    "damper",
+    "limit",
+    "constraint",
+    "equality",
+    "frictionloss",
+    "contact",
+    "actuation",
+    "clampctrl",
+];
 
 impl<'n> Flags<'n> {
     fn new(root: &'n Node) -> Result<Self, ImportError> {

@@ -1,10 +1,11 @@
-//! `springdamper`: a joint's stiffness and damping from a time constant t and a damping ratio d.
+//! What follows from the inertia that a joint moves in the file's pose.
 //!
-//! With the inertia m of all that the joint moves, in the file's pose, stiffness m / (t d)^2 and damping 2 m / t.
-//! Source: MuJoCo's XML reference, `joint/springdamper`; checked against MuJoCo 4.0.
+//! `springdamper`: with that inertia m, a time constant t and a damping ratio d, stiffness m / (t d)^2 and damping
+//! 2 m / t. Along a length of several joints the inertia is 1 / sum(a^2 / m) of their factors a. Source: MuJoCo's XML
+//! reference, `joint/springdamper` and `actuator/position/dampratio`; checked against MuJoCo 4.0.
 
 use super::Reader;
-use crate::robot::{Inertia, Kind, Law};
+use crate::robot::{Inertia, Kind, Law, Length};
 
 impl Reader<'_> {
     /// Gives the joints that ask for it their springs and dampers.
@@ -15,7 +16,7 @@ impl Reader<'_> {
         }
         let moved = self.moved();
         for (index, [time, ratio]) in asked {
-            let inertia = self.along(index, moved[self.robot.joints[index].child]) + self.robot.joints[index].armature;
+            let inertia = self.of_joint(index, &moved);
             let joint = &mut self.robot.joints[index];
             if let Some(spring) = &mut joint.spring {
                 spring.law = Law([inertia / (time * ratio).powi(2), 0.0, 0.0]);
@@ -25,6 +26,19 @@ impl Reader<'_> {
             }
             joint.spring = joint.spring.filter(|spring| self.settings.springs && !spring.law.is_zero());
         }
+    }
+
+    /// The inertia that something feels along a length.
+    pub fn inertia_along(&self, length: &Length) -> f64 {
+        let moved = self.moved();
+        let yields = |&(joint, each): &(usize, f64)| each * each / self.of_joint(joint, &moved);
+        1.0 / length.parts.iter().map(yields).sum::<f64>()
+    }
+
+    /// The inertia that a joint moves along its axis, with its own.
+    fn of_joint(&self, index: usize, moved: &[Option<Inertia>]) -> f64 {
+        let joint = &self.robot.joints[index];
+        self.along(index, moved[joint.child]) + joint.armature
     }
 
     /// Each link with all that it carries, seen from the ground.

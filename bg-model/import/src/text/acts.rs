@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::law::{energy, odd, polynomial, sum, within};
 use super::{JointNames, Writer, axis, coordinate, coordinate_word, effort, is_point, line};
 use crate::number::{number, rotation, vector};
-use crate::robot::{Actuator, Coupling, Drag, Joint, Kind, Pose, Spring};
+use crate::robot::{Actuator, Coupling, Drag, Joint, Kind, Length, Pose, Spring};
 
 impl Writer<'_> {
     /// What brakes a spherical joint: a resistance to the relative angular velocity.
@@ -58,11 +58,9 @@ impl Writer<'_> {
         text
     }
 
-    /// What drives a joint by a control.
+    /// What drives joints by a control.
     pub(super) fn actuator(&self, actuator: &Actuator, name: &str) -> String {
-        let Actuator { joint, gear, gain, bias, control, force, shift, .. } = actuator;
-        let (joint, on) = (&self.robot.joints[*joint], &self.joints[*joint].joint);
-        let (word, unit) = effort(joint);
+        let Actuator { length, gain, bias, control, force, .. } = actuator;
         let mut text = String::new();
         let input = control.map_or_else(
             || name.to_owned(),
@@ -71,20 +69,54 @@ impl Writer<'_> {
                 format!("{name}_control")
             },
         );
-        let (place, speed) = (format!("{on}.{}", coordinate_word(joint)), format!("{on}.{}.flow", axis(joint)));
-        let constant = bias[0] + bias[1] * gear * shift;
-        let terms = [(*gain, input.as_str()), (constant, ""), (bias[1] * gear, &place), (bias[2] * gear, &speed)];
-        let law = sum(terms.into_iter());
-        let value = force.map_or_else(
-            || format!("{} * ({law})", number(*gear)),
-            |range| {
-                line(&mut text, &format!("let {name}_effort: {unit} = {law};"));
-                let limited = within(&format!("{name}_effort"), range);
-                if *gear == 1.0 { limited } else { format!("{} * ({limited})", number(*gear)) }
-            },
-        );
-        line(&mut text, &format!("drive {name}_drive on {on} {word} = {value};"));
+        let [by_control, alone] = [gain, bias].map(|factors| self.affine(length, *factors));
+        let mut terms = vec![(gain[0] + gain[1] * length.constant, input.clone())];
+        if by_control.iter().any(|(factor, _)| *factor != 0.0) {
+            terms.push((1.0, format!("{input} * ({})", sum(&by_control))));
+        }
+        terms.push((bias[0] + bias[1] * length.constant, String::new()));
+        terms.extend(alone);
+        let law = sum(&terms);
+        let mut value = format!("({law})");
+        let is_shared = length.parts.len() > 1;
+        if force.is_some() || is_shared {
+            line(&mut text, &format!("let {name}_effort: {} = {law};", self.unit_along(length)));
+            value = format!("{name}_effort");
+        }
+        if let Some(range) = force {
+            value = format!("({})", within(&value, *range));
+        }
+        for (k, &(joint, factor)) in length.parts.iter().enumerate() {
+            let (word, _) = effort(&self.robot.joints[joint]);
+            let on = &self.joints[joint].joint;
+            let drive = if is_shared { format!("{name}_drive{}", k + 1) } else { format!("{name}_drive") };
+            let value = if force.is_some() && factor == 1.0 && !is_shared {
+                value[1..value.len() - 1].to_owned()
+            } else {
+                format!("{} * {value}", number(factor))
+            };
+            line(&mut text, &format!("drive {drive} on {on} {word} = {value};"));
+        }
         text
+    }
+
+    /// What a length and its speed give, without what is constant.
+    fn affine(&self, length: &Length, [_, place, speed]: [f64; 3]) -> Vec<(f64, String)> {
+        let terms = |factor: f64, word: &dyn Fn(&Joint) -> &'static str| {
+            let term = |&(joint, each): &(usize, f64)| {
+                let (on, word) = (&self.joints[joint].joint, word(&self.robot.joints[joint]));
+                (factor * each, format!("{on}.{word}"))
+            };
+            length.parts.iter().map(term).collect::<Vec<_>>()
+        };
+        let flow = |joint: &Joint| if joint.kind == Kind::Prismatic { "slide.flow" } else { "spin.flow" };
+        [terms(place, &coordinate_word), terms(speed, &flow)].concat()
+    }
+
+    /// The unit of a force along a length: that of a joint's effort where all are of one kind.
+    fn unit_along(&self, length: &Length) -> &'static str {
+        let is_turning = |part: &(usize, f64)| self.robot.joints[part.0].kind == Kind::Revolute;
+        if length.parts.iter().all(is_turning) { "N*m" } else { "N" }
     }
 
     /// What acts on the free axis of a joint.
@@ -148,7 +180,8 @@ impl Writer<'_> {
         let brakes = |[plain, square]: [f64; 2], sizes: &Vector3<f64>, of: &str| {
             let parts = ["x", "y", "z"].into_iter().zip(sizes.iter()).map(|(axis, size)| {
                 let speed = format!("{name}_{of}.{axis}");
-                sum([(-plain, speed.as_str()), (-square * size, &format!("{speed} * abs({speed})"))].into_iter())
+                let squared = format!("{speed} * abs({speed})");
+                sum(&[(-plain, speed), (-square * size, squared)])
             });
             format!("[{}]", parts.collect::<Vec<_>>().join(", "))
         };

@@ -38,7 +38,11 @@ pub fn write(robot: &Robot, file: &str, options: Options) -> String {
     };
     let bodies: Vec<String> = robot.links.iter().enumerate().map(body).collect();
     let joints: Vec<JointNames> = robot.joints.iter().map(|joint| JointNames::new(joint, &mut names)).collect();
-    let control = |actuator: &Actuator| names.take(&actuator.name, "control", &["control", "effort", "drive"]);
+    let control = |actuator: &Actuator| {
+        let drives: Vec<String> = (1..=actuator.length.parts.len()).map(|k| format!("drive{k}")).collect();
+        let made = ["control", "effort", "drive"].into_iter().chain(drives.iter().map(String::as_str));
+        names.take(&actuator.name, "control", &made.collect::<Vec<_>>())
+    };
     let controls: Vec<String> = robot.actuators.iter().map(control).collect();
     let loops: Vec<String> = robot.loops.iter().map(|closed| names.take(&closed.name, "loop", &[])).collect();
     let lift = |(k, link): (usize, &Link)| {
@@ -196,7 +200,8 @@ impl Writer<'_> {
     fn inputs(&self) -> String {
         let mut text = String::new();
         for (actuator, name) in self.robot.actuators.iter().zip(&self.controls) {
-            line(&mut text, &format!("/// Controls `{}`.", self.joints[actuator.joint].joint));
+            let on = actuator.length.parts.iter().map(|part| format!("`{}`", self.joints[part.0].joint));
+            line(&mut text, &format!("/// Controls {}.", on.collect::<Vec<_>>().join(", ")));
             line(&mut text, &format!("input {name}: 1;"));
         }
         for (joint, names) in self.scalar().filter(|_| self.has_drives()) {
