@@ -101,6 +101,20 @@ pub fn refuse_what_is_not_finite(robot: &Robot) -> Result<(), ImportError> {
             return too_large(format!("actuator `{}`", actuator.name));
         }
     }
+    for tendon in &robot.tendons {
+        let spring = tendon.spring.map_or([0.0; 4], |spring| {
+            let [a, b, c] = spring.law.0;
+            [a, b, c, spring.rest]
+        });
+        let limits = tendon.limits.map_or([0.0; 2], |(least, most)| [least, most]);
+        let limits = limits.into_iter().filter(|end| end.is_finite());
+        let factors = tendon.length.parts.iter().map(|part| part.1);
+        let own = [tendon.slack, tendon.friction];
+        let values: Vec<f64> = factors.chain(limits).chain(spring).chain(tendon.damping.0).chain(own).collect();
+        if !is_fine(&values) {
+            return too_large(format!("tendon `{}`", tendon.name));
+        }
+    }
     let is_coupled = |coupling: &crate::robot::Coupling| is_fine(&coupling.polynomial);
     if robot.couplings.iter().all(is_coupled) { Ok(()) } else { too_large("what couples two joints".to_owned()) }
 }

@@ -294,6 +294,12 @@ pub struct Length {
 }
 
 impl Length {
+    /// How much longer it is where joints are at these values.
+    #[must_use]
+    pub fn at(&self, joints: &[Joint]) -> f64 {
+        self.parts.iter().map(|&(joint, each)| each * joints[joint].start).sum()
+    }
+
     /// The same times a factor.
     #[must_use]
     pub fn times(&self, factor: f64) -> Self {
@@ -305,6 +311,34 @@ impl Length {
     fn moved(&self, places: &[Option<usize>]) -> Option<Self> {
         let parts = self.parts.iter().map(|&(joint, each)| Some((places[joint]?, each))).collect::<Option<_>>()?;
         Some(Self { parts, constant: self.constant })
+    }
+}
+
+/// A fixed tendon: what acts along a sum of joints' angles and travels. Lengths count from the file's pose.
+#[derive(Clone, Debug)]
+pub struct Tendon {
+    /// As in the file, or made of a number.
+    pub name: String,
+    /// Which joints it pulls.
+    pub length: Length,
+    /// Force from how far it is from the least length at which it is loose.
+    pub spring: Option<Spring>,
+    /// How much longer it is loose.
+    pub slack: f64,
+    /// Force from the speed of its length.
+    pub damping: Law,
+    /// Dry friction, not negative.
+    pub friction: f64,
+    /// The least and the most length.
+    pub limits: Option<(f64, f64)>,
+}
+
+impl Tendon {
+    /// Whether anything acts along it.
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        let has_any = self.spring.is_some() || !self.damping.is_zero() || self.friction > 0.0 || self.limits.is_some();
+        has_any && !self.length.parts.is_empty()
     }
 }
 
@@ -345,6 +379,8 @@ pub struct Robot {
     pub loops: Vec<Loop>,
     /// Joints that follow others.
     pub couplings: Vec<Coupling>,
+    /// What acts along several joints.
+    pub tendons: Vec<Tendon>,
     /// What drives joints; without any each joint has an input of its own.
     pub actuators: Vec<Actuator>,
     /// What is other than in the file, a sentence each.
@@ -366,10 +402,17 @@ impl Robot {
             joints: Vec::new(),
             loops: Vec::new(),
             couplings: Vec::new(),
+            tendons: Vec::new(),
             actuators: Vec::new(),
             notes: Vec::new(),
             remarks: Vec::new(),
         }
+    }
+
+    /// All lengths along which something acts.
+    pub fn lengths(&self) -> impl Iterator<Item = &Length> {
+        let tendons = self.tendons.iter().map(|tendon| &tendon.length);
+        tendons.chain(self.actuators.iter().map(|actuator| &actuator.length))
     }
 
     /// The joints that each link carries.
@@ -402,6 +445,12 @@ impl Robot {
         let moved =
             |actuator: &Actuator| Some(Actuator { length: actuator.length.moved(&places)?, ..actuator.clone() });
         self.actuators = self.actuators.iter().filter_map(moved).collect();
+        let (kept, lost): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.tendons).into_iter().partition(|tendon| tendon.length.moved(&places).is_some());
+        let moved = |tendon: Tendon| Tendon { length: tendon.length.moved(&places).unwrap_or_default(), ..tendon };
+        self.tendons = kept.into_iter().map(moved).collect();
+        let note = |tendon: &Tendon| format!("Tendon `{}` is left out with a joint that it pulls.", tendon.name);
+        self.notes.extend(lost.iter().map(note));
     }
 }
 

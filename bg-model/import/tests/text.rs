@@ -65,6 +65,9 @@ mod program;
 #[path = "text/safety.rs"]
 mod safety;
 
+#[path = "text/tendons.rs"]
+mod tendons;
+
 #[test]
 fn a_urdf_with_skew_axes_and_merged_links() {
     is_the_text("double_pendulum.urdf", "double_pendulum.rs", PLAIN);

@@ -8,8 +8,11 @@
 //! whether something is controlled or not. Source: MuJoCo's XML reference, `actuator`, and its chapter on computation;
 //! checked against MuJoCo 4.0.
 
+use std::cell::OnceCell;
+
 use super::Reader;
 use super::defaults::Element;
+use super::moved::Moved;
 use crate::ImportError;
 use crate::robot::{Actuator, Length};
 use crate::xml::Node;
@@ -28,6 +31,7 @@ const STATE: &str = "it has a state of its own";
 /// # Errors
 /// Values that cannot be.
 pub fn read(reader: &mut Reader, root: &Node) -> Result<(), ImportError> {
+    let moved = OnceCell::new();
     for node in root.children("actuator").flat_map(Node::all_children) {
         let element = reader.scopes.element(node, None)?;
         let group = element.number("group")?.unwrap_or(0.0);
@@ -35,7 +39,7 @@ pub fn read(reader: &mut Reader, root: &Node) -> Result<(), ImportError> {
             node.mark_deep();
             continue;
         }
-        match actuator(reader, &element)? {
+        match actuator(reader, &element, &moved)? {
             Ok(actuator) => reader.robot.actuators.push(actuator),
             Err(why) => {
                 let name = node.attribute("name").map(|name| format!(" `{name}`")).unwrap_or_default();
@@ -93,7 +97,7 @@ fn three(element: &Element, name: &str) -> Result<Option<Affine>, ImportError> {
 }
 
 /// An actuator, or why it is left out.
-fn actuator(reader: &Reader, element: &Element) -> Read<Actuator> {
+fn actuator(reader: &Reader, element: &Element, moved: &OnceCell<Moved>) -> Read<Actuator> {
     let node = element.node;
     let (gain, mut bias) = match law(element)? {
         Ok(law) => law,
@@ -106,7 +110,7 @@ fn actuator(reader: &Reader, element: &Element) -> Read<Actuator> {
     let length = length.times(gear(element)?);
     // A positive damping of a servo is a ratio.
     if gain[1..] == [0.0; 2] && bias[1] == -gain[0] && bias[2] > 0.0 {
-        bias[2] *= -2.0 * (gain[0] * reader.inertia_along(&length)).sqrt();
+        bias[2] *= -2.0 * (gain[0] * moved.get_or_init(|| Moved::new(reader)).along(&length)).sqrt();
     }
     let mut control = range(reader, element, "ctrllimited", "ctrlrange")?;
     if let ("position", inherited @ 1e-300..) = (node.name.as_str(), first(element, "inheritrange", 0.0)?) {
@@ -179,8 +183,13 @@ fn law(element: &Element) -> Read<(Affine, Affine)> {
 /// Along which length it pulls, before the gear, and what that is called; or why it is left out.
 fn length<'e>(reader: &Reader, element: &Element<'e>) -> Read<(Length, &'e str)> {
     let node = element.node;
+    if let Some(name) = element.text("tendon") {
+        let unknown = || ImportError::Unknown { place: node.place.clone(), what: "tendon", name: name.to_owned() };
+        let known = reader.tendons.get(name).ok_or_else(unknown)?;
+        return Ok(known.clone().map(|length| (length, name)).ok_or("its tendon is no sum of joints"));
+    }
     let Some(name) = element.text("joint").or(element.text("jointinparent")) else {
-        return Ok(Err("it does not act on a joint"));
+        return Ok(Err("it acts on no joint and no tendon"));
     };
     let joint = reader.joint_of(node, name)?;
     if !reader.robot.joints[joint].is_scalar() {

@@ -5,6 +5,7 @@
 //! the classes, meshes and `compiler` of its model, not those around it; what a body's frame is inside of is left
 //! behind. Source: MuJoCo's XML reference, `attach`; checked against MuJoCo 4.0.
 
+use super::defaults::MAIN;
 use super::expand::{Expanded, needed_folder};
 use super::references::{SECTIONS, named, references, renamed};
 use crate::xml::Node;
@@ -12,9 +13,6 @@ use crate::{Folder, ImportError};
 
 /// What stays in an attached model's own tree: what it says of its elements.
 pub const STAY: [&str; 5] = ["compiler", "option", "default", "asset", "extension"];
-
-/// The outermost class.
-const MAIN: &str = "main";
 
 /// The models that a file names: name and index.
 type Known = Vec<(String, usize)>;

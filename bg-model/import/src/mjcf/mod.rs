@@ -15,6 +15,7 @@ mod expand;
 mod fitted;
 mod fluid;
 mod meshes;
+mod moved;
 mod orientation;
 mod references;
 mod rules;
@@ -22,6 +23,7 @@ mod scope;
 mod settings;
 mod shapes;
 mod spring;
+mod tendons;
 
 use std::collections::BTreeMap;
 
@@ -61,6 +63,7 @@ pub fn read(text: &str, folder: Folder, options: Options) -> Result<Robot, Impor
     }
     reader.damp_springs();
     actuators::load_joints(&mut reader, root)?;
+    tendons::read(&mut reader, root)?;
     reader.armatures_of_free_joints();
     equality::read(&mut reader, root)?;
     if options.actuators && reader.settings.actuators {
@@ -83,6 +86,8 @@ struct Reader<'n> {
     bodies: BTreeMap<String, usize>,
     /// The joints that the file names.
     joints: BTreeMap<String, usize>,
+    /// The tendons that the file names, and the length of each; none where it is no sum of joints.
+    tendons: BTreeMap<String, Option<Length>>,
     /// The frame of each body in the ground, with all joints at 0.
     places: Vec<Pose>,
     /// Time constant and damping ratio of joints that have their springs so.
@@ -107,6 +112,7 @@ impl<'n> Reader<'n> {
             options,
             bodies: BTreeMap::from([("world".to_owned(), 0)]),
             joints: BTreeMap::new(),
+            tendons: BTreeMap::new(),
             places: vec![Pose::identity()],
             spring_dampers: Vec::new(),
             references: BTreeMap::new(),
@@ -495,21 +501,12 @@ impl<'n> Reader<'n> {
     }
 
     fn left_out(&mut self, root: &Node) {
-        for (element, what) in [
-            (
-                "actuator",
-                "The actuators are left out; each joint has an input of its own. With --actuators those that act on \
-                 joints are not.",
-            ),
-            ("tendon", "The tendons are left out."),
-        ] {
-            let sections: Vec<&Node> = root.children(element).collect();
-            let is_off = element == "actuator" && !self.settings.actuators;
-            if element == "actuator" && self.options.actuators {
-                continue;
-            }
+        if !self.options.actuators {
+            let sections: Vec<&Node> = root.children("actuator").collect();
             sections.iter().for_each(|section| section.mark_deep());
-            if sections.iter().any(|section| !section.children.is_empty()) && !is_off {
+            if self.settings.actuators && sections.iter().any(|section| !section.children.is_empty()) {
+                let what = "The actuators are left out; each joint has an input of its own. With --actuators those that \
+                            act on joints are not.";
                 self.robot.notes.push(what.to_owned());
             }
         }

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::law::{energy, odd, polynomial, sum, within};
+use super::law::{energy, loose, odd, polynomial, sum, within};
 use super::{JointNames, Writer, axis, coordinate, coordinate_word, effort, is_point, line};
 use crate::number::{number, rotation, vector};
-use crate::robot::{Actuator, Coupling, Drag, Joint, Kind, Length, Pose, Spring};
+use crate::robot::{Actuator, Coupling, Drag, Joint, Kind, Law, Length, Pose, Spring, Tendon};
 
 impl Writer<'_> {
     /// What brakes a spherical joint: a resistance to the relative angular velocity.
@@ -122,49 +122,54 @@ impl Writer<'_> {
     /// What acts on the free axis of a joint.
     pub(super) fn actors(&self, text: &mut String, joint: &Joint, names: &JointNames) {
         let JointNames { joint: name, start, effort: input } = names;
-        let slides = joint.kind == Kind::Prismatic;
-        let axis = axis(joint);
-        let is_plain = joint.damping.is_linear() && joint.damping.0[0] >= 0.0;
-        if joint.friction > 0.0 {
-            let viscous = if is_plain && !joint.damping.is_zero() {
-                format!(" viscous {};", number(joint.damping.0[0]))
-            } else {
-                String::new()
-            };
-            line(
-                text,
-                &format!("friction {name}_friction on {name} {{ coulomb {};{viscous} }}", number(joint.friction)),
-            );
-        }
-        let is_said = is_plain && joint.friction > 0.0;
-        if !(is_said || joint.damping.is_zero()) {
-            let law = if is_plain { format!(" = {}", number(joint.damping.0[0])) } else { odd(&joint.damping, "w") };
-            line(text, &format!("R {name}_bearing{law}; {name}.{axis} -> {name}_bearing;"));
-        }
-        if let Some(Spring { law, rest }) = joint.spring {
-            let from = match number(-rest) {
-                zero if zero == "0" => start.clone(),
-                rest if rest.starts_with('-') => format!("{start} - {}", &rest[1..]),
-                rest => format!("{start} + {rest}"),
-            };
-            let (law, energy) = (odd(&law, "q"), energy(&law, "q"));
-            line(text, &format!("C {name}_spring{law} start {from}{energy}; {name}.{axis} -> {name}_spring;"));
+        let flow = format!("{name}.{}", axis(joint));
+        brakes(text, name, (name, &flow), &joint.damping, joint.friction);
+        if let Some(spring) = joint.spring {
+            line(text, &coil(name, &flow, &spring, 0.0, start));
         }
         if joint.armature > 0.0 {
-            line(text, &format!("I {name}_rotor = {}; {name}.{axis} -> {name}_rotor;", number(joint.armature)));
+            line(text, &format!("I {name}_rotor = {}; {flow} -> {name}_rotor;", number(joint.armature)));
         }
-        if let Some((least, most)) = joint.limits.filter(|_| self.options.limits) {
-            let from = if slides { String::new() } else { format!(" start {start};") };
-            let end = |word: &str, value: f64| {
-                if value.is_finite() { format!("at {word} {}; ", number(value)) } else { String::new() }
-            };
-            let ends = end("least", least) + &end("most", most);
-            line(text, &format!("stop {name}_stop on {name} {{ {ends}restitution 0;{from} }}"));
+        if let Some(limits) = joint.limits.filter(|_| self.options.limits) {
+            let start = if joint.kind == Kind::Prismatic { "" } else { start };
+            line(text, &stop(name, name, limits, start));
         }
         if self.has_drives() {
             let value = joint.effort.map_or_else(|| input.clone(), |most| within(input, (-most, most)));
             line(text, &format!("drive {name}_motor on {name} {} = {value};", effort(joint).0));
         }
+    }
+
+    /// What acts along several joints: a junction whose flow is the sum of theirs, each times a factor.
+    pub(super) fn tendon(&self, tendon: &Tendon, name: &str) -> String {
+        let Tendon { length, spring, slack, damping, friction, limits, .. } = tendon;
+        let domain = if self.unit_along(length) == "N" { "translation" } else { "rotation" };
+        let unit = if domain == "translation" { "m" } else { "rad" };
+        let mut text = String::new();
+        let joints = length.parts.iter().map(|part| (&self.robot.joints[part.0], &self.joints[part.0], part.1));
+        let terms = |of: &dyn Fn(&JointNames) -> String| {
+            joints.clone().map(|(_, names, each)| (each, of(names))).collect::<Vec<_>>()
+        };
+        let sums = sum(&terms(&|names| format!("`{}`", names.joint)));
+        line(&mut text, &format!("// Along {sums}."));
+        line(&mut text, &format!("0 {name}_sum: {domain}; 1 {name}_pull: {domain}; {name}_sum -> {name}_pull;"));
+        for (k, (joint, names, each)) in joints.clone().enumerate() {
+            let (ratio, flow) = (format!("{name}_ratio{}", k + 1), format!("{}.{}", names.joint, axis(joint)));
+            line(&mut text, &format!("TF {ratio} = {}; {flow} -> {ratio} -> {name}_sum;", number(each)));
+        }
+        let start = format!("{name}_start");
+        if spring.is_some() || limits.is_some() {
+            line(&mut text, &format!("let {start}: {unit} = {};", sum(&terms(&|names| names.start.clone()))));
+        }
+        let flow = format!("{name}_pull");
+        brakes(&mut text, name, (&flow, &flow), damping, *friction);
+        if let Some(spring) = spring {
+            line(&mut text, &coil(name, &flow, spring, *slack, &start));
+        }
+        if let Some(limits) = limits {
+            line(&mut text, &stop(name, &flow, *limits, &start));
+        }
+        text
     }
 
     /// What a fluid does to a body: a force at a place and a torque, along axes of the body.
@@ -196,4 +201,40 @@ impl Writer<'_> {
         line(&mut text, &format!("drive {name}_torque on {body} torque = {name}_axes * {torque};"));
         text
     }
+}
+
+/// What brakes a flow: a resistance, dry friction, or both in one. `on` is what the friction acts on, and its junction.
+fn brakes(text: &mut String, name: &str, (on, flow): (&str, &str), damping: &Law, friction: f64) {
+    let is_plain = damping.is_linear() && damping.0[0] >= 0.0;
+    if friction > 0.0 {
+        let viscous =
+            if is_plain && !damping.is_zero() { format!(" viscous {};", number(damping.0[0])) } else { String::new() };
+        line(text, &format!("friction {name}_friction on {on} {{ coulomb {};{viscous} }}", number(friction)));
+    }
+    let is_said = is_plain && friction > 0.0;
+    if !(is_said || damping.is_zero()) {
+        let law = if is_plain { format!(" = {}", number(damping.0[0])) } else { odd(damping, "w") };
+        line(text, &format!("R {name}_bearing{law}; {flow} -> {name}_bearing;"));
+    }
+}
+
+/// A spring on a flow, from where the displacement is at the start; loose over some of it.
+fn coil(name: &str, flow: &str, Spring { law, rest }: &Spring, slack: f64, start: &str) -> String {
+    let from = match number(-rest) {
+        zero if zero == "0" => start.to_owned(),
+        rest if rest.starts_with('-') => format!("{start} - {}", &rest[1..]),
+        rest => format!("{start} + {rest}"),
+    };
+    let (law, energy) = if slack > 0.0 { loose(law, "q", slack) } else { (odd(law, "q"), energy(law, "q")) };
+    format!("C {name}_spring{law} start {from}{energy}; {flow} -> {name}_spring;")
+}
+
+/// A stop with an end or two.
+fn stop(name: &str, on: &str, (least, most): (f64, f64), start: &str) -> String {
+    let from = if start.is_empty() { String::new() } else { format!(" start {start};") };
+    let end = |word: &str, value: f64| {
+        if value.is_finite() { format!("at {word} {}; ", number(value)) } else { String::new() }
+    };
+    let ends = end("least", least) + &end("most", most);
+    format!("stop {name}_stop on {on} {{ {ends}restitution 0;{from} }}")
 }

@@ -19,6 +19,20 @@ pub fn energy(law: &Law, variable: &str) -> String {
     format!(" energy {}", sum(&law.0.into_iter().zip(powers).collect::<Vec<_>>()))
 }
 
+/// A linear law and its energy that are 0 from 0 to `slack`.
+pub fn loose(law: &Law, variable: &str, slack: f64) -> (String, String) {
+    let (each, slack) = (number(law.0[0]), number(slack));
+    let above = format!("{variable} - {slack}");
+    let cases = |above: String, below: String| {
+        format!("if {variable} > {slack} {{ {above} }} else if {variable} < 0 {{ {below} }} else {{ 0 }}")
+    };
+    let energy = |arm: &str| format!("{each} * pow({arm}, 2) / 2");
+    (
+        format!("({variable}) = {}", cases(format!("{each} * ({above})"), format!("{each} * {variable}"))),
+        format!(" energy {}", cases(energy(&above), energy(variable))),
+    )
+}
+
 /// A polynomial, constant first.
 pub fn polynomial(coefficients: &[f64], variable: &str) -> String {
     let power = |k: usize| match k {

@@ -158,7 +158,7 @@ fn what_drives_nothing_is_told_with_its_reason() {
         ("general name='m' joint='pin' dyntype='filter'", "it has a state of its own"),
         ("general name='m' joint='pin' gaintype='muscle'", "its gain is neither fixed nor affine"),
         ("general name='m' joint='pin' biastype='muscle'", "its bias is not affine"),
-        ("motor name='m' site='s'", "it does not act on a joint"),
+        ("motor name='m' site='s'", "it acts on no joint and no tendon"),
         ("adhesion name='m' body='rod'", "it sticks to what shapes touch, and shapes touch nothing"),
         ("pid name='m' joint='pin'", "it is a controller or a motor with states of its own: write it in the graph"),
         ("plugin name='m' joint='pin'", "it is of a kind that is not read"),

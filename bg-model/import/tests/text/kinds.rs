@@ -278,6 +278,41 @@ fn springs_and_dampers_are_mujocos() {
     );
 }
 
+/// Stiffness and damping as MuJoCo 4.0.0 has them: the inertia of a joint in a chain is that of one whose others are
+/// free.
+#[test]
+fn springs_by_time_constants_feel_the_whole_mechanism() {
+    let chain = "<body name='tip' pos='0.6 0 0' euler='0 0 40'>\
+        <joint name='hook' axis='1 1 0' pos='0 0.1 0' springdamper='0.1 2'/><joint name='draw' type='slide' axis='0 1 1'/>\
+        <inertial pos='0.1 0.2 0' mass='1' diaginertia='0.02 0.03 0.04'/></body></body>";
+    let floating = |kind: &str| {
+        format!(
+            "<body name='ball' pos='3 0 0'><joint name='b' type='{kind}'/><inertial pos='0 0.1 0' mass='2' diaginertia='0.02 0.03 0.04'/>\
+             <body name='arm' pos='1 0 0'><joint name='w' axis='0 1 0' springdamper='0.1 1'/>\
+             <inertial pos='0.1 0.2 0' mass='1' diaginertia='0.02 0.03 0.04'/></body></body></worldbody>"
+        )
+    };
+    for (kind, stiffness) in [("ball", 2.427_480_916_030_542_6), ("free", 2.423_954_372_623_582_4)] {
+        let text = rod("", "", "springdamper='0.2 0.5' armature='0.1'")
+            .replace("</body>", chain)
+            .replace("</worldbody>", &floating(kind));
+        let made = made(&text).text;
+        for (name, stiffness, damping) in [
+            ("pin", 48.036_002_152_598_32, 4.803_600_215_259_833),
+            ("hook", 0.593_276_184_149_105, 0.474_620_947_319_284_06),
+            ("w", stiffness, 0.2 * stiffness),
+        ] {
+            let after = |words: String| -> f64 {
+                let rest = made.split(&words).nth(1).unwrap_or_else(|| panic!("no `{words}` in\n{made}"));
+                rest.split([' ', ';']).next().and_then(|word| word.parse().ok()).expect("a number")
+            };
+            let found = [after(format!("C {name}_spring(q) = ")), after(format!("R {name}_bearing = "))];
+            assert!((found[0] / stiffness - 1.0).abs() < 1e-11, "{name}: {found:?}");
+            assert!((found[1] / damping - 1.0).abs() < 1e-11, "{name}: {found:?}");
+        }
+    }
+}
+
 #[test]
 fn joints_that_follow_others_are_rigid_rows() {
     let mimic = "<robot name='r'><link name='a'/><link name='b'>MASS</link><link name='c'>MASS</link>\
