@@ -109,7 +109,7 @@ pub fn outputs<Me: Scenes>(program: &Program<Me>, scene: Option<&str>) -> Result
 /// It cannot be made.
 pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<Ran, Refused> {
     let request = asked.integration.request(0.0, None).map_err(refused)?;
-    let (scene, chosen, inputs) = chosen(program, asked)?;
+    let Given { scene, chosen, inputs } = given(program, asked)?;
     let begin = match asked.start {
         Started::Model => Begin::Model,
         Started::Equilibrium => Begin::Equilibrium,
@@ -126,7 +126,7 @@ pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<Ran, Refu
 /// # Errors
 /// There is none.
 pub fn linearize<Me: Scenes>(program: &Program<Me>, asked: &Asked, at: Option<f64>) -> Result<StateSpace, Refused> {
-    let (scene, chosen, _) = chosen(program, asked)?;
+    let Given { scene, chosen, .. } = given(program, asked)?;
     linearised(program, scene, &chosen, at).map_err(Refused)
 }
 
@@ -142,7 +142,7 @@ pub fn sensitivity<Me: Scenes>(
     of: &[String],
 ) -> Result<(Ran, Vec<Course>), Refused> {
     let request = asked.integration.request(0.0, None).map_err(refused)?;
-    let (scene, chosen, inputs) = chosen(program, asked)?;
+    let Given { scene, chosen, inputs } = given(program, asked)?;
     let (run, courses) = derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)?;
     Ok((Ran { run, failure: None, inputs }, courses))
 }
@@ -156,16 +156,20 @@ pub fn toml_of_json(text: &str) -> Result<String, Refused> {
     toml::to_string(&value).map_err(refused)
 }
 
-fn chosen<'a, Me: Scenes>(
-    program: &'a Program<Me>,
-    asked: &Asked,
-) -> Result<(&'a Scene, Chosen<Me::Parameters>, Vec<Named>), Refused> {
+/// What a run is made of.
+struct Given<'a, P> {
+    scene: &'a Scene,
+    chosen: Chosen<P>,
+    inputs: Vec<Named>,
+}
+
+fn given<'a, Me: Scenes>(program: &'a Program<Me>, asked: &Asked) -> Result<Given<'a, Me::Parameters>, Refused> {
     let scene = program.find_scene(asked.scene.as_deref()).map_err(Refused)?;
     let mut chosen = Chosen::<Me::Parameters>::default();
     for (name, &value) in &asked.set {
         parameters::set(&mut chosen, &format!("{name}={}", number(value)), name, value).map_err(refused)?;
     }
-    let (inputs, named) = inputs::chosen_and_named(&asked.inputs, Me::describe().inputs).map_err(refused)?;
-    chosen.inputs = inputs;
-    Ok((scene, chosen, named))
+    let (values, inputs) = inputs::chosen_and_named(&asked.inputs, Me::describe().inputs).map_err(refused)?;
+    chosen.inputs = values;
+    Ok(Given { scene, chosen, inputs })
 }
