@@ -162,5 +162,7 @@ pub const RULES: &[Rule] = &[
     harmless("weld", "solimp", "its stiffness is loop_stiffness"),
     harmless("joint", "solref", "what it couples is held exactly"),
     harmless("joint", "solimp", "what it couples is held exactly"),
+    harmless("tendon", "solref", "what it couples is held exactly"),
+    harmless("tendon", "solimp", "what it couples is held exactly"),
     told("weld", "torquescale", "its stiffness is loop_stiffness"),
 ];

@@ -94,6 +94,38 @@ fn an_actuator_on_a_tendon_drives_all_its_joints() {
 }
 
 #[test]
+fn an_equality_of_tendons_lets_one_of_two_joints_follow() {
+    let second = |inner: &str, tied: &str| {
+        robot(
+            "",
+            &format!(
+                "<tendon><fixed name='b'>{inner}</fixed><fixed name='c'><joint joint='j' coef='4'/></fixed></tendon>\
+                            <equality><tendon name='e' {tied}/></equality>"
+            ),
+        )
+    };
+    let hinge = "<joint joint='k' coef='3'/>";
+    // Counted from the file's pose, as in MuJoCo 4.0.0: 2 j - k = 0.5, whatever the other coefficients.
+    let alone = second(hinge, "tendon1='cord' polycoef='0.5 7 8'");
+    has(&alone, &["let j_start: m = 0.25 + 0.5 * k_start;", "TF j_ratio = 0.5;"], &[]);
+    // 4 j = 0.1 + 2 (3 k) + 4 (3 k)^2.
+    let curved = second(hinge, "tendon1='c' tendon2='b' polycoef='0.1 2 4'");
+    has(&curved, &["let j_start: m = 0.025 + 1.5 * k_start + 9 * pow(k_start, 2);"], &[]);
+    // 2 j - k = 4 (3 k).
+    let linear = second(hinge, "tendon1='cord' tendon2='b' polycoef='0 4'");
+    has(&linear, &["let j_start: m = 6.5 * k_start;"], &[]);
+    let class = linear.replace("<worldbody>", "<default><tendon stiffness='4'/></default><worldbody>");
+    has(&class, &["let j_start: m = 6.5 * k_start;"], &[]);
+    let one = asked(&second(hinge, "tendon1='b'")).expect("a robot");
+    let note = "The equality `e` of the kind `tendon` is left out: two joints can follow each other here, and it ties other numbers of them.";
+    assert_eq!(one.notes, [note]);
+    assert_eq!(
+        asked(&second(hinge, "tendon1='x'")).expect_err("it is not there"),
+        "line 2: there is no tendon `x`: check the spelling"
+    );
+}
+
+#[test]
 fn what_is_not_said_of_a_tendon_is_told() {
     let cases = [
         (robot("armature='4'", ""), "line 2: `armature` of <fixed> is not used: nothing moves along the tendon."),
