@@ -94,10 +94,25 @@ pub fn refuse_what_is_not_finite(robot: &Robot) -> Result<(), ImportError> {
     }
     for actuator in &robot.actuators {
         let ranges = [actuator.control, actuator.force].into_iter().flatten().flat_map(|(least, most)| [least, most]);
+        let factors = actuator.length.parts.iter().map(|part| part.1);
         let values: Vec<f64> =
-            ranges.chain(actuator.bias).chain([actuator.gear, actuator.gain, actuator.shift]).collect();
+            ranges.chain(actuator.gain).chain(actuator.bias).chain(factors).chain([actuator.length.constant]).collect();
         if !is_fine(&values) {
             return too_large(format!("actuator `{}`", actuator.name));
+        }
+    }
+    for tendon in &robot.tendons {
+        let spring = tendon.spring.map_or([0.0; 4], |spring| {
+            let [a, b, c] = spring.law.0;
+            [a, b, c, spring.rest]
+        });
+        let limits = tendon.limits.map_or([0.0; 2], |(least, most)| [least, most]);
+        let limits = limits.into_iter().filter(|end| end.is_finite());
+        let factors = tendon.length.parts.iter().map(|part| part.1);
+        let own = [tendon.slack, tendon.friction];
+        let values: Vec<f64> = factors.chain(limits).chain(spring).chain(tendon.damping.0).chain(own).collect();
+        if !is_fine(&values) {
+            return too_large(format!("tendon `{}`", tendon.name));
         }
     }
     let is_coupled = |coupling: &crate::robot::Coupling| is_fine(&coupling.polynomial);

@@ -42,12 +42,14 @@ pub fn merge(mut robot: Robot, options: Options) -> Result<Robot, ImportError> {
     }
     if !options.limits {
         robot.joints.iter_mut().for_each(|joint| joint.limits = None);
+        robot.tendons.iter_mut().for_each(|tendon| tendon.limits = None);
     }
     couple::settle(&mut robot);
     combine(&mut robot);
     give_masses(&mut robot);
     give_starts(&mut robot);
     couple::start(&mut robot);
+    start_tendons(&mut robot);
     forget_unused(&mut robot);
     check::tell_open_loops(&mut robot);
     check::refuse_what_is_not_finite(&robot)?;
@@ -94,8 +96,9 @@ pub fn in_order_of_the_tree(robot: &mut Robot, ground: usize) -> Result<(), Stri
     for coupling in &mut robot.couplings {
         (coupling.follower, coupling.leader) = (moved[coupling.follower], moved[coupling.leader]);
     }
-    for actuator in &mut robot.actuators {
-        actuator.joint = moved[actuator.joint];
+    let lengths = robot.actuators.iter_mut().map(|actuator| &mut actuator.length);
+    for part in lengths.chain(robot.tendons.iter_mut().map(|tendon| &mut tendon.length)).flat_map(|l| &mut l.parts) {
+        part.0 = moved[part.0];
     }
     robot.links = order.iter().map(|&link| robot.links[link].clone()).collect();
     Ok(())
@@ -184,8 +187,8 @@ fn combine(robot: &mut Robot) {
         is_coupled[coupling.follower] = true;
         is_coupled[coupling.leader] = true;
     }
-    for actuator in &robot.actuators {
-        is_coupled[actuator.joint] = true;
+    for (joint, _) in robot.lengths().flat_map(|length| &length.parts) {
+        is_coupled[*joint] = true;
     }
     let mut is_held = vec![false; robot.links.len()];
     for end in robot.loops.iter().flat_map(|closed| &closed.ends) {
@@ -330,6 +333,17 @@ fn give_starts(robot: &mut Robot) {
             joint.start = middle;
             let (name, start) = (&joint.name, number(joint.start));
             robot.remarks.push(format!("Joint `{name}` starts at {start}, inside of its limits: 0 is outside."));
+        }
+    }
+}
+
+/// Limits of tendons that do not exclude the start, from which no run begins.
+fn start_tendons(robot: &mut Robot) {
+    for tendon in &mut robot.tendons {
+        let start = tendon.length.at(&robot.joints);
+        if tendon.limits.take_if(|(least, most)| start < *least || start > *most).is_some() {
+            let name = &tendon.name;
+            robot.notes.push(format!("The limits of tendon `{name}` are left out: it starts outside of them."));
         }
     }
 }

@@ -63,6 +63,14 @@ impl Inertia {
         Self { mass: self.mass, center: frame.place + frame.turned * self.center, tensor }
     }
 
+    /// The edges of the box that has this mass and these moments, along principal axes, m.
+    #[must_use]
+    pub fn box_edges(&self, axes: &Matrix3<f64>) -> Vector3<f64> {
+        let moments = (axes.transpose() * self.tensor * axes).diagonal();
+        let sum = moments.sum();
+        moments.map(|moment| (6.0 * (sum - 2.0 * moment).max(0.0) / self.mass).sqrt())
+    }
+
     /// Two in one (Steiner).
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
@@ -276,26 +284,80 @@ impl Coupling {
     }
 }
 
-/// What drives a joint by a control: gear f, with f = gain u + b0 + b1 l + b2 l' within a range, where l = gear (q +
-/// shift).
+/// A sum of joints' angles and travels, each times a factor: of one joint, or of a tendon.
+#[derive(Clone, Debug, Default)]
+pub struct Length {
+    /// Joints by their index, and the length for each rad or m of it.
+    pub parts: Vec<(usize, f64)>,
+    /// The length where all joints are at 0, in the file's count.
+    pub constant: f64,
+}
+
+impl Length {
+    /// How much longer it is where joints are at these values.
+    #[must_use]
+    pub fn at(&self, joints: &[Joint]) -> f64 {
+        self.parts.iter().map(|&(joint, each)| each * joints[joint].start).sum()
+    }
+
+    /// The same times a factor.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        let parts = self.parts.iter().map(|&(joint, each)| (joint, factor * each)).collect();
+        Self { parts, constant: factor * self.constant }
+    }
+
+    /// The same with the joints at other places; none where one of them is not there any more.
+    fn moved(&self, places: &[Option<usize>]) -> Option<Self> {
+        let parts = self.parts.iter().map(|&(joint, each)| Some((places[joint]?, each))).collect::<Option<_>>()?;
+        Some(Self { parts, constant: self.constant })
+    }
+}
+
+/// A fixed tendon: what acts along a sum of joints' angles and travels. Lengths count from the file's pose.
+#[derive(Clone, Debug)]
+pub struct Tendon {
+    /// As in the file, or made of a number.
+    pub name: String,
+    /// Which joints it pulls.
+    pub length: Length,
+    /// Force from how far it is from the least length at which it is loose.
+    pub spring: Option<Spring>,
+    /// How much longer it is loose.
+    pub slack: f64,
+    /// Force from the speed of its length.
+    pub damping: Law,
+    /// Dry friction, not negative.
+    pub friction: f64,
+    /// The least and the most length.
+    pub limits: Option<(f64, f64)>,
+}
+
+impl Tendon {
+    /// Whether anything acts along it.
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        let has_any = self.spring.is_some() || !self.damping.is_zero() || self.friction > 0.0 || self.limits.is_some();
+        has_any && !self.length.parts.is_empty()
+    }
+}
+
+/// What drives joints by a control u: a force f = (g0 + g1 l + g2 l') u + b0 + b1 l + b2 l' within a range, along a
+/// length l.
 #[derive(Clone, Debug)]
 pub struct Actuator {
     /// As in the file, or made of the joint's name.
     pub name: String,
-    /// The index of the joint.
-    pub joint: usize,
-    /// Length for each rad or m.
-    pub gear: f64,
-    /// Force for each unit of the control.
-    pub gain: f64,
-    /// Force without a control: constant, for each unit of length, for each unit of its speed.
+    /// What it pulls along.
+    pub length: Length,
+    /// Force for each unit of the control: constant, for each unit of length, for each unit of its speed.
+    pub gain: [f64; 3],
+    /// Force without a control, in the same order.
     pub bias: [f64; 3],
     /// The least and the most control.
     pub control: Option<(f64, f64)>,
     /// The least and the most force.
     pub force: Option<(f64, f64)>,
-    /// What the file's value of the joint is at its start, rad or m.
-    pub shift: f64,
 }
 
 /// A tree of links. The first link is the ground.
@@ -317,6 +379,8 @@ pub struct Robot {
     pub loops: Vec<Loop>,
     /// Joints that follow others.
     pub couplings: Vec<Coupling>,
+    /// What acts along several joints.
+    pub tendons: Vec<Tendon>,
     /// What drives joints; without any each joint has an input of its own.
     pub actuators: Vec<Actuator>,
     /// What is other than in the file, a sentence each.
@@ -338,10 +402,17 @@ impl Robot {
             joints: Vec::new(),
             loops: Vec::new(),
             couplings: Vec::new(),
+            tendons: Vec::new(),
             actuators: Vec::new(),
             notes: Vec::new(),
             remarks: Vec::new(),
         }
+    }
+
+    /// All lengths along which something acts.
+    pub fn lengths(&self) -> impl Iterator<Item = &Length> {
+        let tendons = self.tendons.iter().map(|tendon| &tendon.length);
+        tendons.chain(self.actuators.iter().map(|actuator| &actuator.length))
     }
 
     /// The joints that each link carries.
@@ -371,11 +442,15 @@ impl Robot {
             Some(Coupling { follower, leader, polynomial: coupling.polynomial })
         };
         self.couplings = self.couplings.iter().filter_map(moved).collect();
-        self.actuators.retain_mut(|actuator| {
-            let place = places[actuator.joint];
-            actuator.joint = place.unwrap_or_default();
-            place.is_some()
-        });
+        let moved =
+            |actuator: &Actuator| Some(Actuator { length: actuator.length.moved(&places)?, ..actuator.clone() });
+        self.actuators = self.actuators.iter().filter_map(moved).collect();
+        let (kept, lost): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.tendons).into_iter().partition(|tendon| tendon.length.moved(&places).is_some());
+        let moved = |tendon: Tendon| Tendon { length: tendon.length.moved(&places).unwrap_or_default(), ..tendon };
+        self.tendons = kept.into_iter().map(moved).collect();
+        let note = |tendon: &Tendon| format!("Tendon `{}` is left out with a joint that it pulls.", tendon.name);
+        self.notes.extend(lost.iter().map(note));
     }
 }
 

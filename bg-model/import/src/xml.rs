@@ -39,6 +39,8 @@ pub struct Node {
     pub name: String,
     /// Where it is.
     pub place: Place,
+    /// Which model it is from: 0 is the file itself, others are attached to it.
+    pub model: usize,
     attributes: Vec<(String, String)>,
     /// The elements inside.
     pub children: Vec<Node>,
@@ -130,12 +132,39 @@ impl Node {
         Self {
             name: prefixed(node.tag_name().namespace(), node.tag_name().name()),
             place: Place { file: file.cloned(), line: u32::try_from(line).unwrap_or(u32::MAX) },
+            model: 0,
             attributes: node.attributes().map(|a| (prefixed(a.namespace(), a.name()), a.value().to_owned())).collect(),
             children: Vec::new(),
             is_read: Cell::new(false),
             used: RefCell::default(),
             inherited: RefCell::default(),
         }
+    }
+
+    /// An element without attributes and content, at the place of another one and of its model.
+    #[must_use]
+    pub fn beside(&self, name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            place: self.place.clone(),
+            model: self.model,
+            attributes: Vec::new(),
+            children: Vec::new(),
+            is_read: Cell::new(true),
+            used: RefCell::default(),
+            inherited: RefCell::default(),
+        }
+    }
+
+    /// Says of all that is inside which model it is from.
+    pub fn set_model(&mut self, model: usize) {
+        self.model = model;
+        self.children.iter_mut().for_each(|child| child.set_model(model));
+    }
+
+    /// Names and values of all attributes, which are only looked at.
+    pub fn attributes(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.attributes.iter().map(|(name, value)| (name.as_str(), value.as_str()))
     }
 
     /// An attribute, which is used from now on.

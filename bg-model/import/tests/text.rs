@@ -52,12 +52,21 @@ fn compiles(text: &str) {
     }
 }
 
+#[path = "text/actuators.rs"]
+mod actuators;
+#[path = "text/attach.rs"]
+mod attach;
+#[path = "text/fitted.rs"]
+mod fitted;
 #[path = "text/kinds.rs"]
 mod kinds;
 #[path = "text/program.rs"]
 mod program;
 #[path = "text/safety.rs"]
 mod safety;
+
+#[path = "text/tendons.rs"]
+mod tendons;
 
 #[test]
 fn a_urdf_with_skew_axes_and_merged_links() {

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use bg_model::description::ParameterInfo;
 use bg_model::mechanism::Scenes;
 use bg_model::nalgebra::DMatrix;
-use bg_model::run::Trajectory;
 use bg_workbench::Program;
-use bg_workbench::calls::{self, Asked, Started};
+use bg_workbench::calls::{self, Asked, Ran, Started};
+use bg_workbench::inputs::Named;
 use bg_workbench::linear::StateSpace;
 use bg_workbench::sensitivity::Course;
 use bg_workbench::sweep::folder::{Folder, Kind};
@@ -41,9 +41,9 @@ trait Workbench: Send + Sync {
     fn scenes(&self) -> Vec<(String, String)>;
     fn parameters(&self, scene: Option<&str>) -> Result<Vec<ParameterInfo>, String>;
     fn outputs(&self, scene: Option<&str>) -> Result<Vec<(String, String)>, String>;
-    fn run(&self, asked: &Asked) -> Result<(Trajectory, Option<String>), String>;
+    fn run(&self, asked: &Asked) -> Result<Ran, String>;
     fn linearize(&self, asked: &Asked, at: Option<f64>) -> Result<StateSpace, String>;
-    fn sensitivity(&self, asked: &Asked, by: &[String], of: &[String]) -> Result<(Trajectory, Vec<Course>), String>;
+    fn sensitivity(&self, asked: &Asked, by: &[String], of: &[String]) -> Result<(Ran, Vec<Course>), String>;
     fn shards(&self, plan: &Source) -> Result<usize, String>;
     fn sweep(&self, work: &Work, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, String>;
 }
@@ -92,7 +92,7 @@ impl<Me: Scenes> Workbench for Of<Me> {
         calls::outputs(&(self.0)(), scene).map_err(|fault| fault.to_string())
     }
 
-    fn run(&self, asked: &Asked) -> Result<(Trajectory, Option<String>), String> {
+    fn run(&self, asked: &Asked) -> Result<Ran, String> {
         calls::run(&(self.0)(), asked).map_err(|fault| fault.to_string())
     }
 
@@ -100,7 +100,7 @@ impl<Me: Scenes> Workbench for Of<Me> {
         calls::linearize(&(self.0)(), asked, at).map_err(|fault| fault.to_string())
     }
 
-    fn sensitivity(&self, asked: &Asked, by: &[String], of: &[String]) -> Result<(Trajectory, Vec<Course>), String> {
+    fn sensitivity(&self, asked: &Asked, by: &[String], of: &[String]) -> Result<(Ran, Vec<Course>), String> {
         calls::sensitivity(&(self.0)(), asked, by, of).map_err(|fault| fault.to_string())
     }
 
@@ -191,8 +191,9 @@ impl Model {
     /// Run the model; parameters are keyword arguments, inputs numbers or names of CSV files.
     ///
     /// Gives a table with the time `t` in s every `step` s until `t_end` s, and all outputs of the scene. `set` takes
-    /// parameters whose names are no Python names. Raises ValueError where something cannot be, RunFailed where the run
-    /// stops before its end.
+    /// parameters whose names are no Python names. `info["inputs"]` has of each input its `unit`, whether it was given,
+    /// and its `value` or the `table` that it follows: file, CRC-32, rows, first and last row. Raises ValueError where
+    /// something cannot be, RunFailed where the run stops before its end.
     #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, rtol=None, atol=None, fixed_step=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn run(
@@ -213,8 +214,9 @@ impl Model {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let (run, failure) = interruptible(py, |_| self.workbench.run(&asked))?.map_err(PyValueError::new_err)?;
-        let table = table(py, run)?;
+        let mut ran = interruptible(py, |_| self.workbench.run(&asked))?.map_err(PyValueError::new_err)?;
+        let failure = ran.failure.take();
+        let table = table(py, ran)?;
         match failure {
             None => Ok(table),
             Some(failure) => {
@@ -274,9 +276,9 @@ impl Model {
         integrated(&mut asked, t_end, step, method, rtol, atol)?;
         let (by, outputs) = (by.unwrap_or_default(), outputs.unwrap_or_default());
         let found = interruptible(py, |_| self.workbench.sensitivity(&asked, &by, &outputs))?;
-        let (run, courses) = found.map_err(PyValueError::new_err)?;
-        let info = about_run(py, &run)?;
-        let t = ("t".to_owned(), "s".to_owned(), Values::Real(run.recording.times));
+        let (ran, courses) = found.map_err(PyValueError::new_err)?;
+        let info = about_run(py, &ran)?;
+        let t = ("t".to_owned(), "s".to_owned(), Values::Real(ran.run.recording.times));
         let courses = courses.into_iter().map(|course| (course.name, course.unit, Values::Real(course.values)));
         Table::new(py, std::iter::once(t).chain(courses), info)
     }
@@ -383,9 +385,10 @@ fn source(plan: &Bound<'_, PyAny>) -> PyResult<Source> {
     calls::toml_of_json(&text).map(Source::Text).map_err(|fault| PyValueError::new_err(fault.to_string()))
 }
 
-/// How a run was integrated, what it cost, where it ended.
-fn about_run<'py>(py: Python<'py>, run: &Trajectory) -> PyResult<Bound<'py, PyDict>> {
+/// How a run was integrated, what it cost, where it ended, what its inputs were.
+fn about_run<'py>(py: Python<'py>, Ran { run, inputs, .. }: &Ran) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
+    info.set_item("inputs", named(py, inputs)?)?;
     let statistics = &run.statistics;
     info.set_item("methods", PyList::new(py, run.methods.iter().map(|change| (change.t, change.method)))?)?;
     info.set_item("rtol", run.request.rtol)?;
@@ -399,10 +402,23 @@ fn about_run<'py>(py: Python<'py>, run: &Trajectory) -> PyResult<Bound<'py, PyDi
     Ok(info)
 }
 
+/// The inputs by name, each a dict as the command line writes it into a summary's JSON.
+fn named<'py>(py: Python<'py>, inputs: &[Named]) -> PyResult<Bound<'py, PyDict>> {
+    let loads = py.import("json")?.getattr("loads")?;
+    let all = PyDict::new(py);
+    for input in inputs {
+        let text = serde_json::to_string(input).map_err(|fault| PyValueError::new_err(fault.to_string()))?;
+        let one = loads.call1((text,))?;
+        one.del_item("name")?;
+        all.set_item(input.name, one)?;
+    }
+    Ok(all)
+}
+
 /// A run as columns.
-fn table(py: Python<'_>, run: Trajectory) -> PyResult<Table> {
-    let info = about_run(py, &run)?;
-    let recording = run.recording;
+fn table(py: Python<'_>, ran: Ran) -> PyResult<Table> {
+    let info = about_run(py, &ran)?;
+    let recording = ran.run.recording;
     let columns = recording.columns.into_iter().map(|column| (column.name, column.unit, Values::Real(column.values)));
     let t = ("t".to_owned(), "s".to_owned(), Values::Real(recording.times));
     Table::new(py, std::iter::once(t).chain(columns), info)

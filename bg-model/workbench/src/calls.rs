@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use crate::Program;
 use crate::command::{derivatives, linearised};
-use crate::inputs;
+use crate::inputs::{self, Named};
 use crate::linear::StateSpace;
 use crate::machine::Making;
 use crate::parameters::{self, Chosen, number};
@@ -50,6 +50,17 @@ pub struct Asked {
     pub integration: Integration,
     /// Where it begins.
     pub start: Started,
+}
+
+/// A run that was made.
+#[derive(Debug)]
+pub struct Ran {
+    /// The run, to its end or as far as it went.
+    pub run: Trajectory,
+    /// Why it stopped before its end, if it did.
+    pub failure: Option<String>,
+    /// The model's inputs in their order: what each was set to.
+    pub inputs: Vec<Named>,
 }
 
 fn refused(fault: impl std::fmt::Display) -> Refused {
@@ -92,13 +103,13 @@ pub fn outputs<Me: Scenes>(program: &Program<Me>, scene: Option<&str>) -> Result
     Ok(scene.description.outputs.iter().map(|output| (output.name.to_owned(), output.unit.to_owned())).collect())
 }
 
-/// Makes the run; with it comes why it stopped before its end, if it did.
+/// Makes the run, as far as it goes.
 ///
 /// # Errors
 /// It cannot be made.
-pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<(Trajectory, Option<String>), Refused> {
+pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<Ran, Refused> {
     let request = asked.integration.request(0.0, None).map_err(refused)?;
-    let (scene, chosen) = chosen(program, asked)?;
+    let Given { scene, chosen, inputs } = given(program, asked)?;
     let begin = match asked.start {
         Started::Model => Begin::Model,
         Started::Equilibrium => Begin::Equilibrium,
@@ -107,7 +118,7 @@ pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<(Trajecto
     let machine = making.made::<Me>().map_err(refused)?;
     let from = begin.state(&*machine).map_err(refused)?;
     let outcome = follow(&*machine, request, from.as_ref(), |_| ()).map_err(refused)?;
-    Ok((outcome.run, outcome.failure))
+    Ok(Ran { run: outcome.run, failure: outcome.failure, inputs })
 }
 
 /// The linear model where the run is at `at`, s, or at the equilibrium near the start.
@@ -115,12 +126,12 @@ pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<(Trajecto
 /// # Errors
 /// There is none.
 pub fn linearize<Me: Scenes>(program: &Program<Me>, asked: &Asked, at: Option<f64>) -> Result<StateSpace, Refused> {
-    let (scene, chosen) = chosen(program, asked)?;
+    let Given { scene, chosen, .. } = given(program, asked)?;
     linearised(program, scene, &chosen, at).map_err(Refused)
 }
 
-/// A run with the derivatives of the outputs `of` by the parameters `by` over it; without names of all outputs, or by
-/// all that the scene leaves adjustable. It begins at the model's own start.
+/// A run to its end, with the derivatives of the outputs `of` by the parameters `by` over it; without names of all
+/// outputs, or by all that the scene leaves adjustable. It begins at the model's own start.
 ///
 /// # Errors
 /// It cannot be made, or has no derivatives.
@@ -129,10 +140,11 @@ pub fn sensitivity<Me: Scenes>(
     asked: &Asked,
     by: &[String],
     of: &[String],
-) -> Result<(Trajectory, Vec<Course>), Refused> {
+) -> Result<(Ran, Vec<Course>), Refused> {
     let request = asked.integration.request(0.0, None).map_err(refused)?;
-    let (scene, chosen) = chosen(program, asked)?;
-    derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)
+    let Given { scene, chosen, inputs } = given(program, asked)?;
+    let (run, courses) = derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)?;
+    Ok((Ran { run, failure: None, inputs }, courses))
 }
 
 /// What is written in JSON, as TOML.
@@ -144,15 +156,20 @@ pub fn toml_of_json(text: &str) -> Result<String, Refused> {
     toml::to_string(&value).map_err(refused)
 }
 
-fn chosen<'a, Me: Scenes>(
-    program: &'a Program<Me>,
-    asked: &Asked,
-) -> Result<(&'a Scene, Chosen<Me::Parameters>), Refused> {
+/// What a run is made of.
+struct Given<'a, P> {
+    scene: &'a Scene,
+    chosen: Chosen<P>,
+    inputs: Vec<Named>,
+}
+
+fn given<'a, Me: Scenes>(program: &'a Program<Me>, asked: &Asked) -> Result<Given<'a, Me::Parameters>, Refused> {
     let scene = program.find_scene(asked.scene.as_deref()).map_err(Refused)?;
     let mut chosen = Chosen::<Me::Parameters>::default();
     for (name, &value) in &asked.set {
         parameters::set(&mut chosen, &format!("{name}={}", number(value)), name, value).map_err(refused)?;
     }
-    chosen.inputs = inputs::chosen(&asked.inputs, Me::describe().inputs).map_err(refused)?;
-    Ok((scene, chosen))
+    let (values, inputs) = inputs::chosen_and_named(&asked.inputs, Me::describe().inputs).map_err(refused)?;
+    chosen.inputs = values;
+    Ok(Given { scene, chosen, inputs })
 }

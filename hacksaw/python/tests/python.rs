@@ -16,7 +16,7 @@ fn python() -> Option<PathBuf> {
 fn installed() -> tempfile::TempDir {
     let test = std::env::current_exe().expect("the test has a path");
     let built = test.parent().expect("in `deps` of the target's folder");
-    let library = format!("{}_hacksaw{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let library = |name: &str| format!("{}{name}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let end = if cfg!(windows) { "pyd" } else { "abi3.so" };
     let (folder, here) = (tempfile::tempdir().expect("a folder"), Path::new(env!("CARGO_MANIFEST_DIR")));
     let package = folder.path().join("hacksaw");
@@ -27,7 +27,11 @@ fn installed() -> tempfile::TempDir {
             std::fs::copy(&path, package.join(path.file_name().expect("a name"))).expect("a copy");
         }
     }
-    std::fs::copy(built.join(library), package.join(format!("_hacksaw.{end}"))).expect("cargo built the library");
+    std::fs::copy(built.join(library("_hacksaw")), package.join(format!("_hacksaw.{end}")))
+        .expect("cargo built the library");
+    let example = built.with_file_name("examples").join(library("_driven"));
+    std::fs::copy(example, folder.path().join(format!("_driven.{end}")))
+        .expect("`cargo test` without `--test` builds the example");
     folder
 }
 

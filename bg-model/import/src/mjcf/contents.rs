@@ -6,8 +6,8 @@
 
 use nalgebra::Vector3;
 
-use super::defaults::{Defaults, Element};
-use super::orientation::Angles;
+use super::defaults::Element;
+use super::scope::Scopes;
 use crate::ImportError;
 use crate::robot::Pose;
 use crate::xml::Node;
@@ -42,28 +42,22 @@ const COPIES: f64 = 1e4;
 ///
 /// # Errors
 /// Values that cannot be.
-pub fn contents<'n>(around: &Item<'n>, angles: &Angles, defaults: &Defaults<'n>) -> Result<Vec<Item<'n>>, ImportError> {
+pub fn contents<'n>(around: &Item<'n>, scopes: &Scopes<'n>) -> Result<Vec<Item<'n>>, ImportError> {
     let mut found = Vec::new();
-    collect(around, angles, defaults, &mut found)?;
+    collect(around, scopes, &mut found)?;
     Ok(found)
 }
 
-fn collect<'n>(
-    around: &Item<'n>,
-    angles: &Angles,
-    defaults: &Defaults<'n>,
-    found: &mut Vec<Item<'n>>,
-) -> Result<(), ImportError> {
+fn collect<'n>(around: &Item<'n>, scopes: &Scopes<'n>, found: &mut Vec<Item<'n>>) -> Result<(), ImportError> {
     for node in &around.node.children {
         match node.name.as_str() {
             "frame" => {
                 node.mark("name");
-                let frame = around.frame.then(&angles.pose(&Element::plain(node))?);
-                let class = node.attribute("childclass").or(around.class);
-                class.map_or(Ok(()), |class| defaults.known(node, class))?;
-                collect(&Item { node, frame, class, ending: around.ending.clone() }, angles, defaults, found)?;
+                let frame = around.frame.then(&scopes.pose(&Element::plain(node))?);
+                let class = scopes.class_inside(node, around.class)?;
+                collect(&Item { node, frame, class, ending: around.ending.clone() }, scopes, found)?;
             }
-            "replicate" => copies(&Item { node, ..around.clone() }, angles, defaults, found)?,
+            "replicate" => copies(&Item { node, ..around.clone() }, scopes, found)?,
             name if READ.contains(&name) => found.push(Item { node, ..around.clone() }),
             _ => {}
         }
@@ -71,30 +65,33 @@ fn collect<'n>(
     Ok(())
 }
 
-fn copies<'n>(
-    around: &Item<'n>,
-    angles: &Angles,
-    defaults: &Defaults<'n>,
-    found: &mut Vec<Item<'n>>,
-) -> Result<(), ImportError> {
+fn copies<'n>(around: &Item<'n>, scopes: &Scopes<'n>, found: &mut Vec<Item<'n>>) -> Result<(), ImportError> {
     let node = around.node;
+    let step = Pose {
+        place: node.vector("offset")?.unwrap_or_default(),
+        turned: scopes.of(node).compiler.angles.euler(&node.vector("euler")?.unwrap_or(Vector3::zeros())),
+    };
+    let mut frame = around.frame;
+    for own in endings(node)? {
+        let ending = own + &around.ending;
+        collect(&Item { frame, ending, ..around.clone() }, scopes, found)?;
+        frame = frame.then(&step);
+    }
+    Ok(())
+}
+
+/// What the names in each copy of a `replicate` end with.
+///
+/// # Errors
+/// It does not say how many there are.
+pub fn endings(node: &Node) -> Result<Vec<String>, ImportError> {
     let count = node.number("count")?.ok_or_else(|| node.missing("count"))?;
     if !(0.0..=COPIES).contains(&count) || count.fract() != 0.0 {
         return Err(node.bad("count", node.peek("count").unwrap_or_default(), "a whole number up to 10000"));
     }
-    let step = Pose {
-        place: node.vector("offset")?.unwrap_or_default(),
-        turned: angles.euler(&node.vector("euler")?.unwrap_or(Vector3::zeros())),
-    };
     let separator = node.attribute("sep").unwrap_or_default();
     // At most COPIES, so a whole number stays what it is.
     let count = count as usize;
     let width = count.saturating_sub(1).to_string().len();
-    let mut frame = around.frame;
-    for copy in 0..count {
-        let ending = format!("{separator}{copy:0width$}{}", around.ending);
-        collect(&Item { frame, ending, ..around.clone() }, angles, defaults, found)?;
-        frame = frame.then(&step);
-    }
-    Ok(())
+    Ok((0..count).map(|copy| format!("{separator}{copy:0width$}")).collect())
 }

@@ -33,8 +33,11 @@ const ACTUATORS: [&str; 12] = [
     "orientation",
 ];
 
+/// Kinds of tendons, of which a class speaks as `tendon`.
+const TENDONS: [&str; 2] = ["fixed", "spatial"];
+
 /// The outermost class.
-const MAIN: &str = "main";
+pub const MAIN: &str = "main";
 
 /// An element with its defaults.
 pub struct Element<'n> {
@@ -96,7 +99,8 @@ impl<'n> Defaults<'n> {
         // All actuators of a class share what it says of any.
         let is_same = |child: &&'n Node| {
             let are_actuators = [&child.name, &node.name].iter().all(|name| ACTUATORS.contains(&name.as_str()));
-            child.name == node.name || are_actuators
+            let is_tendon = child.name == "tendon" && TENDONS.contains(&node.name.as_str());
+            child.name == node.name || are_actuators || is_tendon
         };
         let same = |class: &'n Node| class.children.iter().rev().filter(is_same);
         let defaults: Vec<&Node> = self.classes.get(class).into_iter().flatten().copied().flat_map(same).collect();

@@ -40,9 +40,7 @@ impl Fluid {
 
     /// What brakes a body whose box has these axes, in the body's frame.
     pub fn drag(&self, inertia: &Inertia, axes: Matrix3<f64>) -> Drag {
-        let moments = (axes.transpose() * inertia.tensor * axes).diagonal();
-        let edge = |k: usize| (6.0 * (moments.sum() - 2.0 * moments[k]).max(0.0) / inertia.mass).sqrt();
-        let edges = Vector3::new(edge(0), edge(1), edge(2));
+        let edges = inertia.box_edges(&axes);
         let diameter = edges.sum() / 3.0;
         let across = |k: usize| (edges[(k + 1) % 3], edges[(k + 2) % 3]);
         let area = |k: usize| across(k).0 * across(k).1;

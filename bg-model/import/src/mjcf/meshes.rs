@@ -6,6 +6,7 @@ use std::path::Path;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::defaults::{Defaults, Element};
+use super::fitted::{self, Fitted};
 use crate::mesh::{Mass, Mesh};
 use crate::robot::Inertia;
 use crate::xml::Node;
@@ -18,6 +19,8 @@ pub struct Meshes<'n> {
     folders: Option<(&'n Path, String)>,
     /// Of a mesh's path its last part counts alone.
     strips_path: bool,
+    /// Primitives are fitted to the bounds of meshes, not to their moments.
+    fits_bounds: bool,
 }
 
 impl<'n> Meshes<'n> {
@@ -36,11 +39,27 @@ impl<'n> Meshes<'n> {
             meshes.insert(named.ok_or_else(|| node.missing("name"))?, defaults.element(node, None)?);
         }
         let strips_path = last("strippath") == Some("true");
-        Ok(Self { meshes, folders: folder.map(|folder| (folder, mesh_folder)), strips_path })
+        let fits_bounds = last("fitaabb") == Some("true");
+        Ok(Self { meshes, folders: folder.map(|folder| (folder, mesh_folder)), strips_path, fits_bounds })
     }
 
     /// Mass and moments of a mesh for a density of 1, in its own frame; why not in words.
     pub fn inertia(&self, name: &str, is_shell: bool) -> Result<Inertia, String> {
+        self.known(name, is_shell).map(|(_, inertia)| inertia)
+    }
+
+    /// A primitive fitted to a mesh, its sizes times `scale`; why not in words.
+    pub fn fitted(&self, name: &str, kind: fitted::Kind, scale: f64) -> Result<Fitted, String> {
+        let (mesh, inertia) = self.known(name, false)?;
+        Ok(if self.fits_bounds {
+            fitted::to_bounds(kind, &mesh, &inertia, scale)
+        } else {
+            fitted::to_moments(kind, &inertia, scale)
+        })
+    }
+
+    /// A mesh with its mass and moments for a density of 1.
+    fn known(&self, name: &str, is_shell: bool) -> Result<(Mesh, Inertia), String> {
         let Some(element) = self.meshes.get(name) else { return Err(format!("a mesh `{name}` that is not there")) };
         let mass = match (is_shell, element.text("inertia")) {
             (true, _) | (_, Some("shell")) => Mass::Shell,
@@ -49,7 +68,8 @@ impl<'n> Meshes<'n> {
             (_, Some(other)) => return Err(format!("a mesh whose mass is by its {other} hull")),
         };
         let mesh = self.surface(element)?;
-        mesh.inertia(mass).ok_or_else(|| "a mesh that encloses nothing".to_owned())
+        let inertia = mesh.inertia(mass).ok_or_else(|| "a mesh that encloses nothing".to_owned())?;
+        Ok((mesh, inertia))
     }
 
     fn surface(&self, element: &Element) -> Result<Mesh, String> {

@@ -6,101 +6,117 @@
 //! `inertial`, its shapes give its mass. Source: MuJoCo's XML reference, 4.0.
 
 mod actuators;
+mod attach;
+mod compiler;
 mod contents;
 mod defaults;
 mod equality;
 mod expand;
+mod fitted;
 mod fluid;
 mod meshes;
+mod moved;
 mod orientation;
+mod references;
 mod rules;
+mod scope;
 mod settings;
 mod shapes;
 mod spring;
+mod tendons;
 
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::robot::{Inertia, Joint, Kind, Law, Link, Pose, Robot, Spring};
+use crate::robot::{Inertia, Joint, Kind, Law, Length, Link, Pose, Robot, Spring};
 use crate::xml::{Node, unread};
 use crate::{Folder, ImportError, Options};
+use compiler::FromShapes;
 use contents::{Item, contents};
-use defaults::{Defaults, Element};
+use defaults::Element;
+use expand::Model;
 use fluid::Fluid;
-use meshes::Meshes;
-use settings::{FromShapes, Settings};
+use scope::Scopes;
+use settings::Settings;
 
 /// Reads a robot; `folder` has the files that it includes.
 ///
 /// # Errors
 /// What is no MJCF, or has values that cannot be.
 pub fn read(text: &str, folder: Folder, options: Options) -> Result<Robot, ImportError> {
-    let mut root = Node::parse(text, None)?;
+    let root = Node::parse(text, None)?;
     if root.name != "mujoco" {
         let action = "give an MJCF file, or use `urdf` for a URDF";
         return Err(ImportError::WrongRoot { found: root.name, wanted: "mujoco", action });
     }
-    expand::include(&mut root, folder)?;
-    let root = &root;
-    if let Some(node) = root.descendants().into_iter().find(|node| node.name == "attach") {
-        let action = "save the model with MuJoCo (mj_saveLastXML), which writes it out".to_owned();
-        return Err(ImportError::NotExpanded { place: node.place.clone(), element: node.name.clone(), action });
-    }
-    let mut reader = Reader::new(root, folder, options)?;
+    let expanded = expand::expand(root, folder)?;
+    let (root, attached) = expanded.split();
+    let mut reader = Reader::new(&expanded.models, options)?;
+    reader.robot.notes.extend(expanded.notes.iter().cloned());
     root.needed_child("worldbody")?;
     for world in root.children("worldbody") {
         reader.world(world)?;
     }
-    if let Some(total) = reader.settings.total {
+    if let Some(total) = reader.scopes.of(root).compiler.total {
         reader.scale(total);
     }
     reader.damp_springs();
+    actuators::load_joints(&mut reader, root)?;
+    tendons::read(&mut reader, root)?;
     reader.armatures_of_free_joints();
     equality::read(&mut reader, root)?;
     if options.actuators && reader.settings.actuators {
         actuators::read(&mut reader, root)?;
     }
     reader.left_out(root);
-    reader.robot.notes.extend(crate::unread::notes(&unread(root), rules::RULES));
+    for model in attached {
+        model.mark_what_does_not_count();
+    }
+    let unread: Vec<_> = expanded.models.iter().flat_map(|model| unread(&model.root)).collect();
+    reader.robot.notes.extend(crate::unread::notes(&unread, rules::RULES));
     Ok(reader.robot)
 }
 
 struct Reader<'n> {
-    defaults: Defaults<'n>,
+    scopes: Scopes<'n>,
     settings: Settings,
-    meshes: Meshes<'n>,
     fluid: Option<Fluid>,
     options: Options,
     bodies: BTreeMap<String, usize>,
     /// The joints that the file names.
     joints: BTreeMap<String, usize>,
+    /// The tendons that the file names, and the length of each; none where it is no sum of joints.
+    tendons: BTreeMap<String, Option<Length>>,
     /// The frame of each body in the ground, with all joints at 0.
     places: Vec<Pose>,
     /// Time constant and damping ratio of joints that have their springs so.
     spring_dampers: Vec<(usize, [f64; 2])>,
     /// What MuJoCo counts from, of joints where that is not 0.
     references: BTreeMap<usize, f64>,
+    /// The range of each joint that has one, whether it is kept or not, from where the joint is at 0.
+    ranges: BTreeMap<usize, (f64, f64)>,
     /// Whether a shape could touch another one.
     has_shapes: bool,
     robot: Robot,
 }
 
 impl<'n> Reader<'n> {
-    fn new(root: &'n Node, folder: Folder<'n>, options: Options) -> Result<Self, ImportError> {
+    fn new(models: &'n [Model], options: Options) -> Result<Self, ImportError> {
+        let root = &models[0].root;
         let settings = Settings::new(root)?;
         let name = root.attribute("model").unwrap_or("robot");
-        let defaults = Defaults::new(root)?;
         Ok(Self {
-            meshes: Meshes::new(root, folder, &defaults)?,
+            scopes: Scopes::new(models)?,
             fluid: Fluid::new(root)?.filter(|_| settings.springs || settings.dampers),
-            defaults,
             options,
             bodies: BTreeMap::from([("world".to_owned(), 0)]),
             joints: BTreeMap::new(),
+            tendons: BTreeMap::new(),
             places: vec![Pose::identity()],
             spring_dampers: Vec::new(),
             references: BTreeMap::new(),
+            ranges: BTreeMap::new(),
             has_shapes: false,
             robot: Robot { gravity: settings.gravity, ..Robot::new(name, "MJCF") },
             settings,
@@ -110,7 +126,7 @@ impl<'n> Reader<'n> {
     fn world(&mut self, node: &'n Node) -> Result<(), ImportError> {
         let world = Item { node, frame: Pose::identity(), class: node.attribute("childclass"), ending: String::new() };
         node.mark("name");
-        let items = contents(&world, &self.settings.angles, &self.defaults)?;
+        let items = contents(&world, &self.scopes)?;
         self.sum_of_shapes(&items)?;
         // A body before what it carries, without a call for each level.
         let inner = |items: Vec<Item<'n>>, parent: usize| {
@@ -127,11 +143,10 @@ impl<'n> Reader<'n> {
     /// A body and its joints; its link and what is inside.
     fn body(&mut self, item: &Item<'n>, parent: usize) -> Result<(usize, Vec<Item<'n>>), ImportError> {
         let node = item.node;
-        let class = node.attribute("childclass").or(item.class);
-        class.map_or(Ok(()), |class| self.defaults.known(node, class))?;
-        let pose = item.frame.then(&self.settings.angles.pose(&Element::plain(node))?);
+        let class = self.scopes.class_inside(node, item.class)?;
+        let pose = item.frame.then(&self.scopes.pose(&Element::plain(node))?);
         let inside = Item { frame: Pose::identity(), class, ..item.clone() };
-        let items = contents(&inside, &self.settings.angles, &self.defaults)?;
+        let items = contents(&inside, &self.scopes)?;
         let (inertia, axes) = self.inertia(node, &items)?;
         let joints: Vec<&Item> = items.iter().filter(|item| item.node.name.ends_with("joint")).collect();
         self.refuse_joints(node, &joints, parent)?;
@@ -192,7 +207,7 @@ impl<'n> Reader<'n> {
         let link = &mut self.robot.links[link];
         let Some(inertia) = link.inertia.filter(|inertia| inertia.mass > 0.0) else { return Ok(()) };
         for item in items.iter().filter(|item| item.node.name == "geom") {
-            if self.defaults.element(item.node, item.class)?.text("fluidshape") == Some("ellipsoid") {
+            if self.scopes.element(item.node, item.class)?.text("fluidshape") == Some("ellipsoid") {
                 let what = "the fluid around its ellipsoids (fluidshape) does not act on it";
                 self.robot.notes.push(format!("{}: body `{}`: {what}.", item.node.place, link.name));
                 return Ok(());
@@ -230,7 +245,7 @@ impl<'n> Reader<'n> {
         if item.node.name == "freejoint" {
             return Ok(Kind::Free);
         }
-        let element = self.defaults.element(item.node, item.class)?;
+        let element = self.scopes.element(item.node, item.class)?;
         match element.text("type").unwrap_or("hinge") {
             "free" => Ok(Kind::Free),
             "ball" => Ok(Kind::Spherical),
@@ -254,7 +269,7 @@ impl<'n> Reader<'n> {
             self.robot.joints.push(Joint::new(name, kind, ends, frame));
             return Ok(());
         }
-        let element = self.defaults.element(item.node, item.class)?;
+        let element = self.scopes.element(item.node, item.class)?;
         let place = if kind == Kind::Free { Vector3::zeros() } else { element.vector("pos")?.unwrap_or_default() };
         let anchor = Pose::at(if kind == Kind::Free { place } else { item.frame.then(&Pose::at(place)).place });
         let mut joint = Joint { in_child: anchor, ..Joint::new(name, kind, ends, frame.then(&anchor)) };
@@ -316,6 +331,19 @@ impl<'n> Reader<'n> {
         }
     }
 
+    /// The index of a joint that an element names.
+    fn joint_of(&self, node: &Node, name: &str) -> Result<usize, ImportError> {
+        let unknown = || ImportError::Unknown { place: node.place.clone(), what: "joint", name: name.to_owned() };
+        self.joints.get(name).copied().ok_or_else(unknown)
+    }
+
+    /// The sum of joints' values, as the file counts them, each times a factor.
+    fn length(&self, parts: impl IntoIterator<Item = (usize, f64)>) -> Length {
+        let parts: Vec<(usize, f64)> = parts.into_iter().collect();
+        let shift = |part: &(usize, f64)| part.1 * self.references.get(&part.0).copied().unwrap_or(0.0);
+        Length { constant: parts.iter().map(shift).sum(), parts }
+    }
+
     fn scalar_joint(&mut self, element: &Element<'n>, joint: &mut Joint, item: &Item<'n>) -> Result<(), ImportError> {
         let name = joint.name.clone();
         let axis = element.vector("axis")?.unwrap_or(Vector3::z());
@@ -324,7 +352,7 @@ impl<'n> Reader<'n> {
         let size = axis.amax();
         let direction = if size > 1e-8 { (axis / size).normalize() } else { return Err(bad()) };
         joint.axis = item.frame.turned * direction;
-        let unit = if joint.kind == Kind::Revolute { self.settings.angles.unit } else { 1.0 };
+        let unit = if joint.kind == Kind::Revolute { self.scopes.of(element.node).compiler.angles.unit } else { 1.0 };
         let reference = element.number("ref")?.unwrap_or(0.0) * unit;
         let friction = element.not_negative("frictionloss")?;
         joint.friction = if self.settings.friction { friction } else { 0.0 };
@@ -339,6 +367,7 @@ impl<'n> Reader<'n> {
         }
         let limits = self.limits(element, unit, reference)?;
         joint.limits = limits.filter(|_| self.settings.limits);
+        self.ranges.extend(limits.map(|limits| (self.robot.joints.len(), limits)));
         if reference != 0.0 {
             self.references.insert(self.robot.joints.len(), reference);
             let shift = crate::number::number(reference);
@@ -353,7 +382,10 @@ impl<'n> Reader<'n> {
         if is_limited == Some(true) && element.text("range").is_none() {
             return Err(element.node.missing("range"));
         }
-        let Some(text) = element.text("range").filter(|_| is_limited.unwrap_or(self.settings.automatic_limits)) else {
+        let Some(text) = element
+            .text("range")
+            .filter(|_| is_limited.unwrap_or(self.scopes.of(element.node).compiler.automatic_limits))
+        else {
             return Ok(None);
         };
         let [least, most] = ends_of_range(element.node, text)?;
@@ -378,7 +410,8 @@ impl<'n> Reader<'n> {
             let what = "a second <inertial> of one body: leave one of the two out".to_owned();
             return Err(ImportError::Wrong { place: second.node.place.clone(), what });
         }
-        let is_used = match self.settings.from_shapes {
+        let compiler = &self.scopes.of(body).compiler;
+        let is_used = match compiler.from_shapes {
             FromShapes::Always => from_shapes.is_none(),
             FromShapes::Otherwise | FromShapes::Never => true,
         };
@@ -388,18 +421,18 @@ impl<'n> Reader<'n> {
                 item.node.mark_all();
                 from_shapes
             }
-            None if self.settings.from_shapes == FromShapes::Never => None,
+            None if compiler.from_shapes == FromShapes::Never => None,
             None => from_shapes,
         };
         let axes = match first {
             Some(item) if is_used => {
                 let is_full = item.node.peek("fullinertia").is_some();
-                let own = self.settings.angles.pose(&Element::plain(item.node))?;
+                let own = self.scopes.pose(&Element::plain(item.node))?;
                 Some(item.frame.turned * own.turned).filter(|_| !is_full)
             }
             _ => axes_of_shape,
         };
-        Ok((self.settings.bounded(inertia, first.map_or(body, |item| item.node))?, axes))
+        Ok((compiler.bounded(inertia, first.map_or(body, |item| item.node))?, axes))
     }
 
     /// What `inertial` says; of a body that a joint moves also its moments.
@@ -425,7 +458,7 @@ impl<'n> Reader<'n> {
             }
             Matrix3::from_diagonal(&Vector3::from(moments))
         };
-        let frame = item.frame.then(&self.settings.angles.pose(&Element::plain(node))?);
+        let frame = item.frame.then(&self.scopes.pose(&Element::plain(node))?);
         let is_something = mass > 0.0 || tensor != Matrix3::zeros();
         Ok(is_something.then(|| Inertia { mass, center: Vector3::zeros(), tensor }.seen_from(&frame)))
     }
@@ -435,11 +468,12 @@ impl<'n> Reader<'n> {
         let mut sum: Option<Inertia> = None;
         let mut axes = Vec::new();
         for item in items.iter().filter(|item| item.node.name == "geom") {
-            let element = self.defaults.element(item.node, item.class)?;
+            let element = self.scopes.element(item.node, item.class)?;
             let group = element.number("group")?.unwrap_or(0.0);
-            let has_mass = group >= self.settings.groups.0 && group <= self.settings.groups.1;
-            let kept = has_mass && self.settings.from_shapes != FromShapes::Never;
-            let shape = shapes::read(&element, &self.settings.angles, &self.meshes, kept)?;
+            let compiler = &self.scopes.of(item.node).compiler;
+            let has_mass = group >= compiler.groups.0 && group <= compiler.groups.1;
+            let kept = has_mass && compiler.from_shapes != FromShapes::Never;
+            let shape = shapes::read(&element, &self.scopes, kept)?;
             self.robot.notes.extend(shape.note);
             self.has_shapes |=
                 ["contype", "conaffinity"].iter().any(|name| element.text(name).map(str::trim) != Some("0"));
@@ -467,21 +501,12 @@ impl<'n> Reader<'n> {
     }
 
     fn left_out(&mut self, root: &Node) {
-        for (element, what) in [
-            (
-                "actuator",
-                "The actuators are left out; each joint has an input of its own. With --actuators those that act on \
-                 joints are not.",
-            ),
-            ("tendon", "The tendons are left out."),
-        ] {
-            let sections: Vec<&Node> = root.children(element).collect();
-            let is_off = element == "actuator" && !self.settings.actuators;
-            if element == "actuator" && self.options.actuators {
-                continue;
-            }
+        if !self.options.actuators {
+            let sections: Vec<&Node> = root.children("actuator").collect();
             sections.iter().for_each(|section| section.mark_deep());
-            if sections.iter().any(|section| !section.children.is_empty()) && !is_off {
+            if self.settings.actuators && sections.iter().any(|section| !section.children.is_empty()) {
+                let what = "The actuators are left out; each joint has an input of its own. With --actuators those that \
+                            act on joints are not.";
                 self.robot.notes.push(what.to_owned());
             }
         }

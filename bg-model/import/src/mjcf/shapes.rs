@@ -3,11 +3,12 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::defaults::Element;
-use super::meshes::Meshes;
-use super::orientation::Angles;
+use super::fitted::{self, Fitted};
+use super::scope::Scopes;
 use crate::ImportError;
 use crate::geometry::Shape;
 use crate::robot::{Inertia, Pose, with_z};
+use crate::xml::Node;
 
 /// What is known of a shape's mass.
 pub struct Massive {
@@ -26,9 +27,10 @@ const WATER: f64 = 1000.0;
 ///
 /// # Errors
 /// Sizes, mass or density that MuJoCo refuses.
-pub fn read(element: &Element, angles: &Angles, meshes: &Meshes, is_wanted: bool) -> Result<Massive, ImportError> {
+pub fn read(element: &Element, scopes: &Scopes, is_wanted: bool) -> Result<Massive, ImportError> {
     let node = element.node;
-    let mut frame = angles.pose(element)?;
+    let meshes = &scopes.of(node).meshes;
+    let mut frame = scopes.pose(element)?;
     let sizes = element.text("size").map(|text| node.list("size", text)).transpose()?.unwrap_or_default();
     let ends = element.text("fromto").map(|text| node.array::<6>("fromto", text)).transpose()?;
     let mass = element.number("mass")?;
@@ -54,16 +56,41 @@ pub fn read(element: &Element, angles: &Angles, meshes: &Meshes, is_wanted: bool
     }
     let is_massless = mass == Some(0.0) || (mass.is_none() && density == Some(0.0));
     let unknown = |what: &str| {
-        let name = node.peek("name").map(|name| format!(" `{name}`")).unwrap_or_default();
+        let name = named(node);
         let note = format!("{}: shape{name} is {what}: its mass is not known and left out.", node.place);
         Massive { inertia: None, axes: None, note: (is_wanted && !is_massless).then_some(note) }
     };
+    let inertia_of = |shape: &Shape| {
+        let density = density.unwrap_or(WATER);
+        if is_shell { shape.shell(mass, density) } else { Some(shape.inertia(mass, density)) }
+    };
     if let Some(name) = element.text("mesh") {
-        if kind != "mesh" {
-            return Ok(unknown(&format!("a {kind} fitted to a mesh")));
+        if ends.is_some() {
+            return Err(node.bad("fromto", node.peek("fromto").unwrap_or_default(), "left out where a mesh is given"));
         }
         if is_massless || !is_wanted {
             return Ok(Massive { inertia: None, axes: None, note: None });
+        }
+        if kind != "mesh" {
+            let Some(fitted_kind) = fitted::Kind::new(kind) else {
+                return Ok(unknown(&format!("a {kind} fitted to a mesh")));
+            };
+            let scale = element.number("fitscale")?.unwrap_or(1.0);
+            if scale <= 0.0 {
+                return Err(node.bad("fitscale", &scale.to_string(), "above 0"));
+            }
+            let Fitted { shape, frame: within, is_unique } = match meshes.fitted(name, fitted_kind, scale) {
+                Ok(fitted) => fitted,
+                Err(what) => return Ok(unknown(&format!("a {kind} fitted to {what}"))),
+            };
+            let frame = frame.then(&within);
+            let Some(inertia) = inertia_of(&shape) else { return Ok(unknown("a shell of an ellipsoid")) };
+            let axes = is_unique.then_some(frame.turned);
+            let note = (!is_unique).then(|| {
+                let what = "fitted to a mesh with equal moments of inertia: MuJoCo may turn it otherwise";
+                format!("{}: shape{} is a {kind} {what}.", node.place, named(node))
+            });
+            return Ok(Massive { inertia: inertia.map(|inertia| inertia.seen_from(&frame)), axes, note });
         }
         return Ok(match meshes.inertia(name, is_shell) {
             Ok(unit) => {
@@ -95,13 +122,11 @@ pub fn read(element: &Element, angles: &Angles, meshes: &Meshes, is_wanted: bool
         let wanted = if needed == 1 { "above 0".to_owned() } else { format!("{needed} numbers above 0") };
         return Err(node.bad("size", element.text("size").unwrap_or_default(), &wanted));
     }
-    let inertia = if is_shell {
-        let Some(inertia) = shape.shell(mass, density.unwrap_or(WATER)) else {
-            return Ok(unknown("a shell of an ellipsoid"));
-        };
-        inertia
-    } else {
-        shape.inertia(mass, density.unwrap_or(WATER))
-    };
+    let Some(inertia) = inertia_of(&shape) else { return Ok(unknown("a shell of an ellipsoid")) };
     Ok(Massive { inertia: inertia.map(|inertia| inertia.seen_from(&frame)), axes: Some(frame.turned), note: None })
+}
+
+/// A name as it follows a word; nothing where there is none.
+fn named(node: &Node) -> String {
+    node.peek("name").map(|name| format!(" `{name}`")).unwrap_or_default()
 }

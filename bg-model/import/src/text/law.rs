@@ -6,7 +6,7 @@ use crate::robot::Law;
 /// An odd law of a variable.
 pub fn odd(law: &Law, variable: &str) -> String {
     let powers = [variable.to_owned(), format!("{variable} * abs({variable})"), format!("pow({variable}, 3)")];
-    format!("({variable}) = {}", sum(law.0.iter().zip(&powers).map(|(factor, power)| (*factor, power.as_str()))))
+    format!("({variable}) = {}", sum(&law.0.into_iter().zip(powers).collect::<Vec<_>>()))
 }
 
 /// The energy of a spring with such a law; none where the compiler finds it.
@@ -16,7 +16,21 @@ pub fn energy(law: &Law, variable: &str) -> String {
     }
     let powers =
         [format!("pow({variable}, 2) / 2"), format!("abs(pow({variable}, 3)) / 3"), format!("pow({variable}, 4) / 4")];
-    format!(" energy {}", sum(law.0.iter().zip(&powers).map(|(factor, power)| (*factor, power.as_str()))))
+    format!(" energy {}", sum(&law.0.into_iter().zip(powers).collect::<Vec<_>>()))
+}
+
+/// A linear law and its energy that are 0 from 0 to `slack`.
+pub fn loose(law: &Law, variable: &str, slack: f64) -> (String, String) {
+    let (each, slack) = (number(law.0[0]), number(slack));
+    let above = format!("{variable} - {slack}");
+    let cases = |above: String, below: String| {
+        format!("if {variable} > {slack} {{ {above} }} else if {variable} < 0 {{ {below} }} else {{ 0 }}")
+    };
+    let energy = |arm: &str| format!("{each} * pow({arm}, 2) / 2");
+    (
+        format!("({variable}) = {}", cases(format!("{each} * ({above})"), format!("{each} * {variable}"))),
+        format!(" energy {}", cases(energy(&above), energy(variable))),
+    )
 }
 
 /// A polynomial, constant first.
@@ -26,17 +40,16 @@ pub fn polynomial(coefficients: &[f64], variable: &str) -> String {
         1 => variable.to_owned(),
         _ => format!("pow({variable}, {k})"),
     };
-    let powers: Vec<String> = (0..coefficients.len()).map(power).collect();
-    sum(coefficients.iter().copied().zip(powers.iter().map(String::as_str)))
+    sum(&coefficients.iter().copied().zip((0..).map(power)).collect::<Vec<_>>())
 }
 
 /// A sum of products; those of 0 are left out, those of 1 are not, since a number takes whatever unit is asked for.
-pub fn sum<'t>(terms: impl Iterator<Item = (f64, &'t str)>) -> String {
-    let term = |(factor, power): (f64, &str)| match power {
-        "" => number(factor),
-        _ => format!("{} * {power}", number(factor)),
+pub fn sum(terms: &[(f64, String)]) -> String {
+    let term = |(factor, power): &(f64, String)| match power.as_str() {
+        "" => number(*factor),
+        _ => format!("{} * {power}", number(*factor)),
     };
-    let terms: Vec<String> = terms.filter(|(factor, _)| *factor != 0.0).map(term).collect();
+    let terms: Vec<String> = terms.iter().filter(|(factor, _)| *factor != 0.0).map(term).collect();
     if terms.is_empty() { "0".to_owned() } else { terms.join(" + ").replace("+ -", "- ") }
 }
 

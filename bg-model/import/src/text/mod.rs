@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 use crate::Options;
 use crate::names::{Names, shown, type_name};
 use crate::number::{inverse_rotation, is_identity, matrix, number, rotation, vector};
-use crate::robot::{Actuator, Coupling, Inertia, Joint, Kind, Link, Loop, Pose, Robot};
+use crate::robot::{Actuator, Coupling, Inertia, Joint, Kind, Link, Loop, Pose, Robot, Tendon};
 use frames::{Frames, frames};
 
 /// Columns of a comment.
@@ -38,8 +38,18 @@ pub fn write(robot: &Robot, file: &str, options: Options) -> String {
     };
     let bodies: Vec<String> = robot.links.iter().enumerate().map(body).collect();
     let joints: Vec<JointNames> = robot.joints.iter().map(|joint| JointNames::new(joint, &mut names)).collect();
-    let control = |actuator: &Actuator| names.take(&actuator.name, "control", &["control", "effort", "drive"]);
+    let control = |actuator: &Actuator| {
+        let drives: Vec<String> = (1..=actuator.length.parts.len()).map(|k| format!("drive{k}")).collect();
+        let made = ["control", "effort", "drive"].into_iter().chain(drives.iter().map(String::as_str));
+        names.take(&actuator.name, "control", &made.collect::<Vec<_>>())
+    };
     let controls: Vec<String> = robot.actuators.iter().map(control).collect();
+    let tendon = |tendon: &Tendon| {
+        let ratios: Vec<String> = (1..=tendon.length.parts.len()).map(|k| format!("ratio{k}")).collect();
+        let made = ["sum", "pull", "start", "bearing", "friction", "spring", "stop"].into_iter();
+        names.take(&tendon.name, "tendon", &made.chain(ratios.iter().map(String::as_str)).collect::<Vec<_>>())
+    };
+    let tendons: Vec<String> = robot.tendons.iter().map(tendon).collect();
     let loops: Vec<String> = robot.loops.iter().map(|closed| names.take(&closed.name, "loop", &[])).collect();
     let lift = |(k, link): (usize, &Link)| {
         link.lifts.iter().map(|_| names.take(&format!("{}_lifted", bodies[k]), "mass", &[])).collect()
@@ -61,6 +71,7 @@ pub fn write(robot: &Robot, file: &str, options: Options) -> String {
         bodies,
         joints,
         loops,
+        tendons,
         controls,
         lifts,
         drags,
@@ -116,6 +127,8 @@ struct Writer<'r> {
     joints: Vec<JointNames>,
     /// For each loop.
     loops: Vec<String>,
+    /// For each tendon.
+    tendons: Vec<String>,
     /// For each actuator its input.
     controls: Vec<String>,
     /// For each link those of its masses without a weight.
@@ -138,6 +151,8 @@ impl Writer<'_> {
             sections.push(self.body(joint) + &self.joint(joint, &self.joints[k]));
         }
         sections.extend(self.robot.couplings.iter().map(|coupling| self.coupling(coupling)));
+        let tendons = self.robot.tendons.iter().zip(&self.tendons);
+        sections.extend(tendons.map(|(tendon, name)| self.tendon(tendon, name)));
         let actuators = self.robot.actuators.iter().zip(&self.controls);
         sections.push(actuators.map(|(actuator, name)| self.actuator(actuator, name)).collect());
         sections.extend(self.robot.loops.iter().zip(&self.loops).map(|(closed, name)| self.closed(closed, name)));
@@ -196,7 +211,8 @@ impl Writer<'_> {
     fn inputs(&self) -> String {
         let mut text = String::new();
         for (actuator, name) in self.robot.actuators.iter().zip(&self.controls) {
-            line(&mut text, &format!("/// Controls `{}`.", self.joints[actuator.joint].joint));
+            let on = actuator.length.parts.iter().map(|part| format!("`{}`", self.joints[part.0].joint));
+            line(&mut text, &format!("/// Controls {}.", on.collect::<Vec<_>>().join(", ")));
             line(&mut text, &format!("input {name}: 1;"));
         }
         for (joint, names) in self.scalar().filter(|_| self.has_drives()) {

@@ -5,7 +5,7 @@ use bg_import::{Format, Imported, Options, import};
 use super::{MASS, arm, compiles};
 
 /// Without the note on contacts, which each shape makes.
-const NO_CONTACTS: Options = Options {
+pub(super) const NO_CONTACTS: Options = Options {
     free_base: false,
     keep_fixed: false,
     compliant: false,
@@ -16,13 +16,13 @@ const NO_CONTACTS: Options = Options {
     strict: false,
 };
 
-fn made(text: &str) -> Imported {
+pub(super) fn made(text: &str) -> Imported {
     let format = if text.contains("<robot") { Format::Urdf } else { Format::Mjcf };
     import(format, "robot", text, NO_CONTACTS).unwrap_or_else(|fault| panic!("{fault}\n{text}"))
 }
 
 /// A rod on a hinge with these attributes and a head.
-fn rod(head: &str, body: &str, joint: &str) -> String {
+pub(super) fn rod(head: &str, body: &str, joint: &str) -> String {
     format!(
         "<mujoco>{head}<worldbody>\n<body name='rod' pos='0 0 1' {body}>\n<joint name='pin' axis='0 1 0' {joint}/>\n\
          <inertial pos='0.3 0 0' mass='2' diaginertia='0.01 0.05 0.05'/></body></worldbody></mujoco>"
@@ -30,14 +30,14 @@ fn rod(head: &str, body: &str, joint: &str) -> String {
 }
 
 /// Two of them beside each other.
-fn rods(rest: &str) -> String {
+pub(super) fn rods(rest: &str) -> String {
     let second = "<body name='other' pos='1 0 1'><joint name='pin2' axis='0 1 0'/>\
                   <inertial pos='0.3 0 0' mass='2' diaginertia='0.01 0.05 0.05'/></body></worldbody>";
     rod("", "", "").replace("</worldbody>", &format!("{second}{rest}"))
 }
 
 /// A body of these shapes on a hinge.
-fn shapes(head: &str, shapes: &str) -> String {
+pub(super) fn shapes(head: &str, shapes: &str) -> String {
     format!(
         "<mujoco>{head}<worldbody><body name='b'><joint name='pin' axis='0 1 0'/>{shapes}</body></worldbody></mujoco>"
     )
@@ -61,7 +61,7 @@ fn what_is_not_used_is_a_note_with_its_line() {
         (rod("", "", "").replace("<joint", "<plugin plugin='p'/><joint"), "line 3: <plugin> in <body> is not used."),
         (
             shapes("", "<geom size='0.1'/><geom type='box' mesh='m'/>"),
-            "line 1: shape is a box fitted to a mesh: its mass is not known and left out.",
+            "line 1: shape is a box fitted to a mesh `m` that is not there: its mass is not known and left out.",
         ),
         (
             arm(MASS, "continuous", "<limit effort='5'/>"),
@@ -114,7 +114,7 @@ fn strict_makes_a_note_an_error() {
 }
 
 /// That a text has words, and has others not.
-fn has(text: &str, words: &[&str], others: &[&str]) {
+pub(super) fn has(text: &str, words: &[&str], others: &[&str]) {
     let imported = made(text);
     assert_eq!(imported.notes, [""; 0], "{text}");
     compiles(&imported.text);
@@ -276,6 +276,41 @@ fn springs_and_dampers_are_mujocos() {
         ],
         &[],
     );
+}
+
+/// Stiffness and damping as MuJoCo 4.0.0 has them: the inertia of a joint in a chain is that of one whose others are
+/// free.
+#[test]
+fn springs_by_time_constants_feel_the_whole_mechanism() {
+    let chain = "<body name='tip' pos='0.6 0 0' euler='0 0 40'>\
+        <joint name='hook' axis='1 1 0' pos='0 0.1 0' springdamper='0.1 2'/><joint name='draw' type='slide' axis='0 1 1'/>\
+        <inertial pos='0.1 0.2 0' mass='1' diaginertia='0.02 0.03 0.04'/></body></body>";
+    let floating = |kind: &str| {
+        format!(
+            "<body name='ball' pos='3 0 0'><joint name='b' type='{kind}'/><inertial pos='0 0.1 0' mass='2' diaginertia='0.02 0.03 0.04'/>\
+             <body name='arm' pos='1 0 0'><joint name='w' axis='0 1 0' springdamper='0.1 1'/>\
+             <inertial pos='0.1 0.2 0' mass='1' diaginertia='0.02 0.03 0.04'/></body></body></worldbody>"
+        )
+    };
+    for (kind, stiffness) in [("ball", 2.427_480_916_030_542_6), ("free", 2.423_954_372_623_582_4)] {
+        let text = rod("", "", "springdamper='0.2 0.5' armature='0.1'")
+            .replace("</body>", chain)
+            .replace("</worldbody>", &floating(kind));
+        let made = made(&text).text;
+        for (name, stiffness, damping) in [
+            ("pin", 48.036_002_152_598_32, 4.803_600_215_259_833),
+            ("hook", 0.593_276_184_149_105, 0.474_620_947_319_284_06),
+            ("w", stiffness, 0.2 * stiffness),
+        ] {
+            let after = |words: String| -> f64 {
+                let rest = made.split(&words).nth(1).unwrap_or_else(|| panic!("no `{words}` in\n{made}"));
+                rest.split([' ', ';']).next().and_then(|word| word.parse().ok()).expect("a number")
+            };
+            let found = [after(format!("C {name}_spring(q) = ")), after(format!("R {name}_bearing = "))];
+            assert!((found[0] / stiffness - 1.0).abs() < 1e-11, "{name}: {found:?}");
+            assert!((found[1] / damping - 1.0).abs() < 1e-11, "{name}: {found:?}");
+        }
+    }
 }
 
 #[test]
@@ -529,62 +564,4 @@ fn what_other_readers_read_is_read() {
         &[],
     );
     has(&format!("<!DOCTYPE robot>\n{}", arm(MASS, "continuous", "")), &["body b {"], &[]);
-}
-
-#[test]
-fn actuators_are_drives_on_request() {
-    let actuators = |inner: &str| rods(&format!("<actuator>\n{inner}</actuator>"));
-    let asked = Options { actuators: true, ..NO_CONTACTS };
-    let made = |text: &str| {
-        let imported = import(Format::Mjcf, "r.xml", text, asked).unwrap_or_else(|fault| panic!("{fault}\n{text}"));
-        compiles(&imported.text);
-        imported
-    };
-    let cases = [
-        (
-            "<motor name='m' joint='pin' gear='30' ctrlrange='-1 2'/>",
-            vec![
-                "input m: 1;",
-                "let m_control: 1 = if m > 2 { 2 } else if m < -1 { -1 } else { m };",
-                "drive m_drive on pin torque = 30 * (1 * m_control);",
-            ],
-        ),
-        (
-            "<velocity joint='pin' kv='5'/>",
-            vec!["drive pin_velocity_drive on pin torque = 1 * (5 * pin_velocity - 5 * pin.spin.flow);"],
-        ),
-        (
-            "<position name='servo' joint='pin' kp='20' kv='2' gear='3' forcerange='-4 4'/>",
-            vec![
-                "let servo_effort: N*m = 20 * servo - 60 * pin.angle - 6 * pin.spin.flow;",
-                "drive servo_drive on pin torque = 3 * (if servo_effort > 4 { 4 } else if servo_effort < -4 { -4 } else { servo_effort });",
-            ],
-        ),
-        (
-            "<general name='g' joint='pin' gainprm='7' biastype='affine' biasprm='1 -2 -3'/>",
-            vec!["drive g_drive on pin torque = 1 * (7 * g + 1 - 2 * pin.angle - 3 * pin.spin.flow);"],
-        ),
-    ];
-    for (inner, words) in cases {
-        let imported = made(&actuators(inner));
-        assert_eq!(imported.notes, [""; 0], "{inner}");
-        for word in words {
-            assert!(imported.text.contains(word), "no `{word}` in\n{}", imported.text);
-        }
-        assert!(!imported.text.contains("pin_torque"), "{}", imported.text);
-        let left_out = import(Format::Mjcf, "r.xml", &actuators(inner), NO_CONTACTS).expect("a robot");
-        assert_eq!(left_out.notes.len(), 1, "{:?}", left_out.notes);
-    }
-    let muscle = made(&actuators("<muscle name='m' joint='pin'/>"));
-    assert_eq!(
-        muscle.notes,
-        ["line 5: the actuator `m` is left out: only motor, position, velocity and general are read."]
-    );
-    // What is said of a joint's motor in a URDF.
-    let text = arm(MASS, "continuous", "<limit effort='5'/>");
-    let imported = import(Format::Urdf, "r.urdf", &text, asked).expect("a robot");
-    compiles(&imported.text);
-    assert_eq!(imported.notes, [""; 0]);
-    let limited = "drive j_motor on j torque = if j_torque > 5 { 5 } else if j_torque < -5 { -5 } else { j_torque };";
-    assert!(imported.text.contains(limited), "{}", imported.text);
 }

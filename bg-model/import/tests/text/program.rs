@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// A folder of its own, with these files.
-fn folder(name: &str, files: &[(&str, &[u8])]) -> PathBuf {
+pub(super) fn folder(name: &str, files: &[(&str, &[u8])]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("import").join(name);
     if folder.exists() {
         std::fs::remove_dir_all(&folder).expect("an old folder can go");

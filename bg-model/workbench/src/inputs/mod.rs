@@ -14,7 +14,7 @@ pub use named::{Named, NamedTable, lines, named, text};
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use read::CUBIC;
 #[cfg(not(target_arch = "wasm32"))]
-pub use read::{InputSettingError, chosen, chosen_and_named, settings};
+pub use read::{InputSettingError, chosen_and_named, settings};
 
 /// What an input is set to.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

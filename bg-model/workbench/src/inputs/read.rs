@@ -120,15 +120,7 @@ fn other(near: Option<&str>, known: &str) -> String {
 /// What stands before the name of a file whose rows a cubic spline joins.
 pub(crate) const CUBIC: &str = "cubic:";
 
-/// The inputs of a model that declares `infos`, as `settings` say.
-///
-/// # Errors
-/// The first setting that cannot be used.
-pub fn chosen(settings: &[String], infos: &[InputInfo]) -> Result<Vec<Input>, InputSettingError> {
-    Ok(made(&self::settings(settings, infos)?))
-}
-
-/// The same, and how results name them.
+/// The inputs of a model that declares `infos`, as `settings` say, and how results name them.
 ///
 /// # Errors
 /// The first setting that cannot be used.
@@ -277,8 +269,12 @@ mod tests {
         file
     }
 
+    fn chosen(settings: &[String]) -> Result<Vec<Input>, InputSettingError> {
+        chosen_and_named(settings, &INFOS).map(|(inputs, _)| inputs)
+    }
+
     fn fault(setting: &str) -> String {
-        chosen(&[setting.to_owned()], &INFOS).unwrap_err().to_string()
+        chosen(&[setting.to_owned()]).unwrap_err().to_string()
     }
 
     #[test]
@@ -286,12 +282,12 @@ mod tests {
         let table = file("time, a, b\n0, 1, 5\n1, 3, 6\n2, 9, 7\n");
         let path = table.path().display();
         let settings = ["torque=-2.5".to_owned(), format!("force={path}:b")];
-        let inputs = chosen(&settings, &INFOS).unwrap();
+        let inputs = chosen(&settings).unwrap();
         assert_eq!((inputs[0].value(0.5), inputs[1].value(9.0)), (5.5, -2.5));
-        let value = |setting: String| chosen(&[setting], &INFOS).unwrap()[0].value(0.5);
+        let value = |setting: String| chosen(&[setting]).unwrap()[0].value(0.5);
         // The parabola through three rows: 1 + 2 t^2.
         assert_eq!((value(format!("force={path}")), value(format!("force=cubic:{path}"))), (2.0, 1.5));
-        assert_eq!(chosen(&[], &INFOS).unwrap()[0].value(1.0), 0.0);
+        assert_eq!(chosen(&[]).unwrap()[0].value(1.0), 0.0);
     }
 
     #[test]
