@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::EquationFault;
 use super::Origin;
-use super::signals::Signals;
+use super::signals::{Place, Signals};
 use crate::expr::{Id, Node, Symbol, antiderivative, derivative, substitute};
 use crate::fault::Fault;
 use crate::graph::{BondGraph, Element, ElementKind, Law, NodeId, Storage, TrackKind};
@@ -52,7 +52,7 @@ fn is_compliance(graph: &BondGraph, node: NodeId) -> bool {
 impl Signals<'_> {
     /// Every state's rate.
     pub(super) fn rates(&mut self) {
-        for (storage, first, _) in self.layout.clone() {
+        for Place { storage, components, .. } in self.layout.clone() {
             let rate = match storage {
                 Storage::Element(node) => {
                     let bond = self.graph.node(node).bonds[0];
@@ -69,8 +69,8 @@ impl Signals<'_> {
                     self.track_rate(storage, &flow)
                 }
             };
-            for (k, id) in rate.0.into_iter().enumerate() {
-                self.states[first + k].rate = id;
+            for (k, state) in components {
+                self.states[state].rate = rate.0[k];
             }
         }
         self.way_rates();
@@ -92,8 +92,7 @@ impl Signals<'_> {
     /// Every state's value at t = 0.
     pub(super) fn starts(&mut self) {
         let graph = self.graph;
-        for (storage, first, shape) in self.layout.clone() {
-            let components = shape.suffixes().len();
+        for Place { storage, shape, components } in self.layout.clone() {
             let (term, orientation) = match storage {
                 Storage::Element(node) => (graph.element(node).and_then(|element| element.start.as_ref()), false),
                 Storage::Track(index) => {
@@ -104,10 +103,10 @@ impl Signals<'_> {
             let start = match term {
                 Some(term) => self.evaluate(term, None),
                 None if orientation => Value::identity(&mut self.pool),
-                None => Value::zero(&mut self.pool, components),
+                None => Value::zero(&mut self.pool, shape.suffixes().len()),
             };
-            for k in 0..components {
-                self.states[first + k].start = start.0[k.min(start.0.len() - 1)];
+            for (k, state) in components {
+                self.states[state].start = start.0[k.min(start.0.len() - 1)];
             }
         }
         self.starts_by_pose();
@@ -214,7 +213,7 @@ impl Signals<'_> {
         if element.displacement.is_some() {
             return self.modulation_of_displaced(node, element);
         }
-        if self.dependent.get(&node).is_some_and(|dependent| dependent.state.is_some()) {
+        if self.dependent.get(&node).is_some_and(|dependent| dependent.replaced.iter().any(Option::is_some)) {
             return self.modulation_of_dependent(node, element);
         }
         // At rest of its own states: their seeds are missing.
