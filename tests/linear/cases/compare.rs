@@ -19,7 +19,7 @@ pub const ROUNDING: f64 = 1e-12;
 
 /// The same where two-ports in a row multiply to factors of hundreds: a resistor behind them leaves a small difference
 /// of large numbers. Few graphs are such.
-const AMPLIFIED: f64 = 1e-11;
+const AMPLIFIED: f64 = 1e-10;
 
 /// What came of a graph.
 #[derive(Clone, Debug, PartialEq)]
