@@ -441,22 +441,27 @@ impl<'a> Signals<'a> {
         gaps
     }
 
-    /// One Newton-Schulz step towards the nearest orthogonal matrix, R (3 - R^T R) / 2 (Higham 2008, eq. 8.20).
+    /// What makes orientations such again: one step.
     fn projections(&mut self) -> Vec<(usize, Id)> {
         let mut projections = Vec::new();
         for Place { storage, components, .. } in
             self.layout.clone().into_iter().filter(|place| place.shape == Shape::Matrix)
         {
             let Some(turned) = self.state(storage) else { continue };
-            let pool = &mut self.pool;
-            let three = Value::identity(pool).scale(pool, 3.0);
-            let square = turned.transpose().multiply(pool, &turned).negate(pool);
-            let factor = three.add(pool, &square);
-            let projected = turned.multiply(pool, &factor).scale(pool, 0.5);
+            let projected = orthogonalized(&mut self.pool, &turned);
             projections.extend(components.into_iter().map(|(k, state)| (state, projected.0[k])));
         }
         projections
     }
+}
+
+/// One Newton-Schulz step towards the nearest orthogonal matrix, R (3 - R^T R) / 2 (Higham 2008, eq. 8.20): of what it
+/// is off by the square is left, times 3/2.
+pub(super) fn orthogonalized(pool: &mut Pool, matrix: &Value) -> Value {
+    let three = Value::identity(pool).scale(pool, 3.0);
+    let square = matrix.transpose().multiply(pool, matrix).negate(pool);
+    let factor = three.add(pool, &square);
+    matrix.multiply(pool, &factor).scale(pool, 0.5)
 }
 
 #[cfg(test)]
