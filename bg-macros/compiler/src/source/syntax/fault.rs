@@ -235,9 +235,7 @@ impl Explain for SyntaxFault {
             Self::Unexpected { found, expected } => likeliest(found, expected),
             Self::BareVector => "write a vector in brackets, such as `[0, 1, 0]`".into(),
             Self::StartOfDisplacement { name } => {
-                format!(
-                    "leave this out, and write `{name} + E` with the start E where you use it, or `let x: m = {name} + E;`"
-                )
+                format!("leave this out, and write `{name} + E` with the start E where you use it")
             }
             Self::UnitOfNumber { help, .. } => help.clone(),
             Self::MissingSemicolon { last } => format!("write `;` after {last}"),

@@ -66,7 +66,7 @@ fn a_unit_after_a_number_is_told_in_arguments_vectors_and_parentheses() {
 #[test]
 fn the_displacement_of_a_junction_has_no_start() {
     let fault = "BG0102 `slide.displacement` has no start: it counts from t = 0, where it is 0 | leave this out, and write \
-                 `slide.displacement + E` with the start E where you use it, or `let x: m = slide.displacement + E;`";
+                 `slide.displacement + E` with the start E where you use it";
     for text in ["start slide.displacement = 0.1;", "start slide.displacement at 0.1;"] {
         assert_eq!(in_graph(text).trim_end(), format!("2:7 {fault}"), "{text}");
     }
