@@ -17,16 +17,22 @@ pub struct Style {
     pub extra: usize,
     /// How many percent of the elements that a junction could have are there.
     pub elements: u32,
+    /// How many percent of the junctions have three components: between one of these and another junction there is a
+    /// transformer to a vector.
+    pub vectors: u32,
 }
 
 /// Graphs whose strokes have much to choose: few elements, many circles.
-pub const LOOSE: Style = Style { junctions: 5, extra: 4, elements: 20 };
+pub const LOOSE: Style = Style { junctions: 5, extra: 4, elements: 20, vectors: 20 };
 
 /// Graphs of which many have equations.
-pub const FULL: Style = Style { junctions: 6, extra: 1, elements: 50 };
+pub const FULL: Style = Style { junctions: 6, extra: 1, elements: 50, vectors: 20 };
 
 /// Graphs with many resistors and storages: circles of resistors, storages that determine each other.
-pub const CROWDED: Style = Style { junctions: 5, extra: 2, elements: 85 };
+pub const CROWDED: Style = Style { junctions: 5, extra: 2, elements: 85, vectors: 20 };
+
+/// Graphs with transformers between scalars and vectors: of a storage some components determine the others.
+pub const VECTORS: Style = Style { junctions: 6, extra: 2, elements: 60, vectors: 50 };
 
 /// A graph.
 #[must_use]
@@ -34,7 +40,7 @@ pub fn network(seed: u64, style: Style) -> Network {
     let mut sketch = Sketch { rng: Rng::with_seed(seed), network: Network::default(), junctions: Vec::new() };
     let count = 1 + sketch.rng.usize(..style.junctions);
     for index in 0..count {
-        sketch.junction();
+        sketch.junction(style.vectors);
         if index > 0 {
             let other = sketch.rng.usize(..index);
             sketch.link(other, index);
@@ -76,8 +82,8 @@ impl Sketch {
         format!("{word}{}", self.network.nodes.len())
     }
 
-    fn junction(&mut self) {
-        let (is_one, size) = (self.rng.bool(), if self.rng.u32(..5) == 0 { 3 } else { 1 });
+    fn junction(&mut self, vectors: u32) {
+        let (is_one, size) = (self.rng.bool(), if self.rng.u32(..100) < vectors { 3 } else { 1 });
         let name = self.name("j");
         let brackets = if size == 1 { "" } else { "[3]" };
         let text = format!("{} {name}{brackets}: translation;", u8::from(is_one));

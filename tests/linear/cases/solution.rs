@@ -3,10 +3,10 @@
 //!
 //! In: a [`Network`], the states of its storages, those whose states are not given. Out: efforts and flows. No strokes,
 //! no order, no substitution.
+//! Whether the equations are regular at all: where their Laplace transform has a determinant.
 //! Method: a row for every component of every port, and one for its rate; a storage links the rate of one variable to
 //! the other one. The rates are eliminated first, with the largest entry of a column as pivot; then efforts and flows
 //! must each have a pivot.
-
 use bg_model::nalgebra::{DMatrix, DVector};
 
 use super::network::{Law, Network, Role};
@@ -28,6 +28,17 @@ impl Solution {
     }
 }
 
+/// What the rows of a system are.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Form {
+    /// The equations themselves.
+    Values,
+    /// Their rates.
+    Rates,
+    /// Their Laplace transform at this frequency, 1/s: a rate is the frequency times the value.
+    Transformed(f64),
+}
+
 /// The system so far: rows of coefficients, the right side last.
 struct System<'a> {
     network: &'a Network,
@@ -35,26 +46,23 @@ struct System<'a> {
     starts: &'a [usize],
     /// How many efforts and flows there are; their rates come before them.
     size: usize,
-    /// 0 for the equations themselves, 1 for their rates.
-    order: usize,
+    /// What the rows are.
+    form: Form,
     rows: Vec<Vec<f64>>,
 }
 
-/// Solves a graph; `states` are the momentum or displacement of every node that stores, or nothing where others
-/// determine them. None where there is no unique solution.
+/// The components of the momentum or displacement of a node that stores; none of those that others determine.
+pub type State = Vec<Option<f64>>;
+
+/// Solves a graph whose nodes have these states. None where there is no unique solution.
 #[must_use]
-pub fn solve(network: &Network, states: &[Option<DVector<f64>>]) -> Option<Solution> {
-    let mut starts = Vec::new();
-    let mut size = 0;
-    for &(_, _, components) in &network.bonds {
-        starts.push(size);
-        size += 2 * components;
-    }
-    let mut system = System { network, starts: &starts, size, order: 0, rows: Vec::new() };
-    for order in 0..2 {
-        system.order = order;
+pub fn solve(network: &Network, states: &[State]) -> Option<Solution> {
+    let (starts, size) = places(network);
+    let mut system = System { network, starts: &starts, size, form: Form::Values, rows: Vec::new() };
+    for form in [Form::Values, Form::Rates] {
+        system.form = form;
         for (node, state) in states.iter().enumerate() {
-            system.node(node, state.as_ref());
+            system.node(node, state);
         }
     }
     let unknowns = eliminate(system.rows, size)?;
@@ -65,6 +73,30 @@ pub fn solve(network: &Network, states: &[Option<DVector<f64>>]) -> Option<Solut
     let bonds = 0..network.bonds.len();
     let (efforts, flows) = bonds.map(|bond| (part(bond, 0), part(bond, 1))).unzip();
     Some(Solution { efforts, flows })
+}
+
+/// Whether the differential and algebraic equations have one solution for each start that fits: whether the matrix of
+/// their Laplace transform is regular, at an arbitrary frequency.
+#[must_use]
+pub fn is_regular(network: &Network) -> bool {
+    let (starts, size) = places(network);
+    let mut system = System { network, starts: &starts, size, form: Form::Transformed(FREQUENCY), rows: Vec::new() };
+    (0..network.nodes.len()).for_each(|node| system.node(node, &[]));
+    eliminate(system.rows, size).is_some()
+}
+
+/// 1/s; no root of a graph's characteristic polynomial, whose coefficients are numbers of two digits.
+const FREQUENCY: f64 = 0.737_137;
+
+/// Where the unknowns of each bond start, and how many there are.
+fn places(network: &Network) -> (Vec<usize>, usize) {
+    let mut starts = Vec::new();
+    let mut size = 0;
+    for &(_, _, components) in &network.bonds {
+        starts.push(size);
+        size += 2 * components;
+    }
+    (starts, size)
 }
 
 /// The coefficients are of order one; what cancels leaves some roundings.
@@ -111,14 +143,14 @@ fn eliminate(mut rows: Vec<Vec<f64>>, size: usize) -> Option<Vec<f64>> {
 
 impl System<'_> {
     /// The column of a component of a bond's effort or flow, or of the rate of one.
-    fn column_of(&self, order: usize, bond: usize, role: Role, component: usize) -> usize {
+    fn column_of(&self, form: Form, bond: usize, role: Role, component: usize) -> usize {
         let components = self.network.bonds[bond].2;
         let place = self.starts[bond] + component + if role == Role::Effort { 0 } else { components };
-        if order == 0 { self.size + place } else { place }
+        if form == Form::Rates { place } else { self.size + place }
     }
 
     fn column(&self, bond: usize, role: Role, component: usize) -> usize {
-        self.column_of(self.order, bond, role, component)
+        self.column_of(self.form, bond, role, component)
     }
 
     /// One equation: the sum of factors times unknowns is `right`.
@@ -144,6 +176,11 @@ impl System<'_> {
         }
     }
 
+    /// What a source gives, or its rate; whether a system is regular does not depend on it.
+    fn of_source<'v>(&self, [value, rate]: &'v [DVector<f64>; 2]) -> &'v DVector<f64> {
+        if self.form == Form::Rates { rate } else { value }
+    }
+
     /// A variable of a bond has this value.
     fn is(&mut self, bond: usize, role: Role, sign: f64, value: &DVector<f64>) {
         for (k, &value) in value.iter().enumerate() {
@@ -151,31 +188,39 @@ impl System<'_> {
         }
     }
 
-    /// A storage: one variable is A times the state, whose rate is the other variable.
+    /// A storage: one variable is A times the state, whose rate is the other variable. A component of the state that is
+    /// known is that of A^-1 times the one variable.
     fn storage(
         &mut self,
         (bond, sign): (usize, f64),
         (of, by): (Role, Role),
         matrix: &DMatrix<f64>,
-        state: Option<&DVector<f64>>,
+        state: &[Option<f64>],
     ) {
         let [of_sign, by_sign] = [of, by].map(|role| if role == Role::Flow { sign } else { 1.0 });
-        match (self.order, state) {
-            (0, Some(state)) => self.is(bond, of, of_sign, &(matrix * state)),
-            (0, None) => {}
-            _ => {
-                for i in 0..matrix.nrows() {
-                    let mut terms = vec![(self.column(bond, of, i), of_sign)];
-                    let entries =
-                        (0..matrix.ncols()).map(|j| (self.column_of(0, bond, by, j), -by_sign * matrix[(i, j)]));
-                    terms.extend(entries);
-                    self.equation(&terms, 0.0);
+        let factor = match self.form {
+            Form::Values => {
+                let inverse = matrix.clone().try_inverse().expect("a law with an inverse");
+                for (i, value) in state.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?))) {
+                    let terms: Vec<(usize, f64)> =
+                        (0..matrix.ncols()).map(|j| (self.column(bond, of, j), of_sign * inverse[(i, j)])).collect();
+                    self.equation(&terms, value);
                 }
+                return;
             }
+            Form::Rates => 1.0,
+            Form::Transformed(frequency) => frequency,
+        };
+        for i in 0..matrix.nrows() {
+            let mut terms = vec![(self.column(bond, of, i), of_sign * factor)];
+            let entries =
+                (0..matrix.ncols()).map(|j| (self.column_of(Form::Values, bond, by, j), -by_sign * matrix[(i, j)]));
+            terms.extend(entries);
+            self.equation(&terms, 0.0);
         }
     }
 
-    fn node(&mut self, node: usize, state: Option<&DVector<f64>>) {
+    fn node(&mut self, node: usize, state: &[Option<f64>]) {
         let network = self.network;
         let bonds: Vec<(usize, f64)> =
             network.bonds_of(node).map(|(bond, into)| (bond, if into { 1.0 } else { -1.0 })).collect();
@@ -183,8 +228,8 @@ impl System<'_> {
         match &network.nodes[node].law {
             Law::Zero => self.junction(&bonds, Role::Effort, Role::Flow),
             Law::One => self.junction(&bonds, Role::Flow, Role::Effort),
-            Law::Effort(value) => self.is(bond, Role::Effort, 1.0, &value[self.order]),
-            Law::Flow(value) => self.is(bond, Role::Flow, 1.0, &value[self.order]),
+            Law::Effort(value) => self.is(bond, Role::Effort, 1.0, self.of_source(value)),
+            Law::Flow(value) => self.is(bond, Role::Flow, 1.0, self.of_source(value)),
             Law::Inertia(matrix) => self.storage((bond, sign), (Role::Flow, Role::Effort), matrix, state),
             Law::Stiffness(matrix) => self.storage((bond, sign), (Role::Effort, Role::Flow), matrix, state),
             Law::Resistance { matrix, of: Some(Role::Effort) } => {

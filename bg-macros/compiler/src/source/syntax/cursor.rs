@@ -393,7 +393,7 @@ impl Cursor<'_> {
     }
 
     /// The fault of a unit after a number.
-    fn unit_of_number(&self) -> Option<SyntaxFault> {
+    pub fn unit_of_number(&self) -> Option<SyntaxFault> {
         let last = self.at.checked_sub(1).and_then(|last| self.tokens.get(last))?;
         let (number, word) = (last.kind.number()?, self.word()?.to_owned());
         let help = without_unit(&number, &word)?;

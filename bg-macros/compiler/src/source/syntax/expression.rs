@@ -178,6 +178,9 @@ impl Cursor<'_> {
             let element = self.value()?;
             height = height.max(element.height);
             elements.push(element.expression);
+            if let Some(fault) = self.unit_of_number() {
+                return Err(self.note(self.span(), &fault));
+            }
             if self.eat(",").is_none() {
                 self.finish(expected)?;
             }
@@ -190,7 +193,7 @@ impl Cursor<'_> {
         let form = if delimiter == Delimiter::Brace { "`{ ... }`" } else { "`( ... )`" };
         let mut inner = self.group(delimiter, form, &GROUP)?;
         let value = inner.value()?;
-        if let Some(fault) = inner.bare_vector() {
+        if let Some(fault) = inner.bare_vector().or_else(|| inner.unit_of_number()) {
             return Err(inner.note(inner.span(), &fault));
         }
         inner.finish(expected)?;

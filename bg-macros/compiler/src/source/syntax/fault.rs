@@ -38,6 +38,11 @@ pub enum SyntaxFault {
         /// What to write.
         help: String,
     },
+    /// A start of the displacement of a junction.
+    StartOfDisplacement {
+        /// The displacement.
+        name: String,
+    },
     /// A statement without its `;`.
     MissingSemicolon {
         /// The statement's last token.
@@ -148,7 +153,10 @@ impl Explain for SyntaxFault {
     fn code(&self) -> &'static str {
         match self {
             Self::UnknownStatement { .. } => "BG0101",
-            Self::Unexpected { .. } | Self::BareVector | Self::UnitOfNumber { .. } => "BG0102",
+            Self::Unexpected { .. }
+            | Self::BareVector
+            | Self::UnitOfNumber { .. }
+            | Self::StartOfDisplacement { .. } => "BG0102",
             Self::MissingSemicolon { .. } => "BG0103",
             Self::Power { .. } => "BG0104",
             Self::NotAUnit { .. } => "BG0105",
@@ -178,6 +186,9 @@ impl Explain for SyntaxFault {
             Self::Unexpected { found, expected } => format!("found {found}, expected {expected}"),
             Self::BareVector => {
                 "found `,` after a value, expected `;`, or brackets about the components of a vector".into()
+            }
+            Self::StartOfDisplacement { name } => {
+                format!("`{name}` has no start: it counts from t = 0, where it is 0")
             }
             Self::UnitOfNumber { number, word, .. } => {
                 format!("found `{word}` after `{number}`, expected a number alone")
@@ -223,6 +234,9 @@ impl Explain for SyntaxFault {
             }
             Self::Unexpected { found, expected } => likeliest(found, expected),
             Self::BareVector => "write a vector in brackets, such as `[0, 1, 0]`".into(),
+            Self::StartOfDisplacement { name } => {
+                format!("leave this out, and write `{name} + E` with the start E where you use it")
+            }
             Self::UnitOfNumber { help, .. } => help.clone(),
             Self::MissingSemicolon { last } => format!("write `;` after {last}"),
             Self::Power { base, exponent, .. } => format!("write `pow({base}, {exponent})`"),

@@ -140,6 +140,9 @@ impl Cursor<'_> {
         const EXPECTED: &str = "`at`, `turned`, `velocity` or `spin`";
         self.advance();
         let of = self.name("the body")?;
+        if of.text.ends_with(".displacement") {
+            return Err(self.note(of.span, &SyntaxFault::StartOfDisplacement { name: of.text }));
+        }
         let kind = self.word().and_then(|word| value_of(&STARTS, word));
         let Some(kind) = kind else { return Err(self.unexpected(EXPECTED)) };
         self.advance();

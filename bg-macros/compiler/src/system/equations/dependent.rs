@@ -7,16 +7,18 @@
 //! (Karnopp, Margolis and Rosenberg, System Dynamics (2012), section 5.6). Where a law has no inverse in symbols the
 //! state stays, and what is given keeps it in step, as the residual sink of a rigid joint does. Where what is received
 //! depends on what is given without any derivative, the state stays as well: it is independent, and the two follow from
-//! each other at once.
+//! each other at once. Of a vector some components may stay and others be replaced: behind a transformer to a scalar
+//! one component determines all.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
+use super::independent::{Component, Kept, Rank, Slopes, slopes};
 use super::signals::Signals;
 use super::unknowns::{Unknown, Unknowns};
 use super::{EquationFault, Slip};
 use crate::expr::{Id, Node, Pool, Symbol, derivative, partial, same_polynomial, substitute};
 use crate::fault::Fault;
-use crate::graph::{CausalGraph, Element, ElementKind, Law, NodeId};
+use crate::graph::{CausalGraph, Element, ElementKind, Law, NodeId, Storage};
 use crate::system::Value;
 
 /// How a storage in derivative causality is calculated.
@@ -33,17 +35,19 @@ pub(super) enum Way {
 /// A storage in derivative causality.
 #[derive(Clone, Debug)]
 pub(super) struct Dependent {
-    pub way: Way,
-    /// Its state, where that is replaced.
-    pub state: Option<Value>,
+    /// How each component is calculated.
+    pub ways: Vec<Way>,
+    /// What is known of each component instead of a state; none of those that stay.
+    pub replaced: Vec<Option<Id>>,
     /// What it gives: the rate of its state.
     pub given: Value,
 }
 
-/// The storages in derivative causality with symbols for what is not known of them; of those in `kept` the states stay.
+/// The storages in derivative causality with symbols for what is not known of them; those components of their states
+/// stay that are `kept`.
 pub(super) fn dependents(
     causal: &CausalGraph,
-    kept: &BTreeSet<NodeId>,
+    kept: &Kept,
     (pool, unknowns, reactions): (&mut Pool, &mut Unknowns, &BTreeMap<NodeId, u32>),
 ) -> BTreeMap<NodeId, Dependent> {
     let graph = &causal.graph;
@@ -51,18 +55,22 @@ pub(super) fn dependents(
     for &node in &causal.derivative {
         let Some(element) = graph.element(node) else { continue };
         let components = graph.bond(graph.node(node).bonds[0]).cardinality;
-        let way = way(element, kept.contains(&node));
-        let state = (way == Way::Replaced).then(|| unknowns.symbols(pool, Unknown::State(node), components));
+        let ways: Vec<Way> = (0..components).map(|k| way(element, kept.has((node, k)))).collect();
+        let replaced = ways
+            .iter()
+            .map(|way| (*way == Way::Replaced).then(|| unknowns.symbols(pool, Unknown::State(node), 1).0[0]));
+        let replaced = replaced.collect();
         let given = match reactions.get(&node) {
             Some(&first) => Value((first..).take(components).map(|k| pool.symbol(Symbol::Multiplier(k))).collect()),
             None => unknowns.symbols(pool, Unknown::Given(node), components),
         };
-        dependents.insert(node, Dependent { way, state, given });
+        dependents.insert(node, Dependent { ways, replaced, given });
     }
     dependents
 }
 
-/// How a storage in derivative causality is calculated; `is_kept` says that what it receives depends on what it gives.
+/// How a component of a storage in derivative causality is calculated; `is_kept` says that what it receives depends on
+/// what it gives.
 pub(super) fn way(element: &Element, is_kept: bool) -> Way {
     let has_inverse = match &element.law {
         Law::Of { value, .. } => value.is_linear(),
@@ -98,62 +106,88 @@ impl Signals<'_> {
     /// The equations of the states of storages in derivative causality.
     pub(super) fn equate_dependents(&mut self) {
         let graph = self.graph;
-        for (node, Dependent { way, state, given }) in self.dependent.clone() {
+        for (node, Dependent { ways, given, .. }) in self.dependent.clone() {
             let Some(element) = graph.element(node) else { continue };
             let received = self.received(node, element);
-            match (way, state) {
-                (Way::Replaced, Some(state)) => {
-                    let value = self.storage_inverse(node, element, &received);
-                    self.unknowns.equate(&mut self.pool, &state, (&state, &value));
+            let state = self.element_state(node);
+            if ways.contains(&Way::Replaced) {
+                let value = self.storage_inverse(node, element, &received);
+                for (k, way) in ways.into_iter().enumerate() {
+                    let of = if way == Way::Replaced { state.0[k] } else { given.0[k] };
+                    let component = |value: &Value| Value(vec![value.0[k]]);
+                    self.unknowns.equate(&mut self.pool, &Value(vec![of]), (&component(&state), &component(&value)));
                 }
-                (Way::Kept, _) => {
-                    let state = self.element_state(node);
-                    let value = self.storage_law(node, element, &state);
-                    self.unknowns.equate(&mut self.pool, &given, (&value, &received));
-                }
-                _ => {}
+            } else if ways.contains(&Way::Kept) {
+                let value = self.storage_law(node, element, &state);
+                self.unknowns.equate(&mut self.pool, &given, (&value, &received));
             }
         }
     }
 
-    /// A storage whose state must stay after all: what it receives depends on what it or others like it give. Of
-    /// several the first is taken, as it may determine the others: a law without an inverse before others, then one
-    /// with a start.
-    pub(super) fn independent_after_all(&mut self) -> Option<NodeId> {
+    /// Components of states that must stay after all: what their storages receive depends on what these or others like
+    /// them give. As many stay as the others follow from; those of a law without an inverse before others, then those
+    /// with a start. A law without an inverse keeps its whole state.
+    pub(super) fn independent_after_all(&mut self) -> Kept {
         let graph = self.graph;
-        let mut found = Vec::new();
-        for (node, Dependent { way, state, .. }) in self.dependent.clone() {
+        let mut ranks: BTreeMap<Component, Rank> = BTreeMap::new();
+        let mut received = BTreeMap::new();
+        for (node, Dependent { ways, replaced, .. }) in self.dependent.clone() {
             let Some(element) = graph.element(node) else { continue };
-            let is_replaced = state.is_some();
-            let values = state.unwrap_or_else(|| self.received(node, element));
-            let values = self.without_idle(values);
-            if way != Way::Kept && self.given_in(&values).next().is_some() {
-                found.push((way != Way::Held, element.start.is_none(), node));
-            } else if let Some(dependent) = self.dependent.get_mut(&node).filter(|_| is_replaced) {
-                dependent.state = Some(values);
+            if ways.iter().all(|way| *way == Way::Kept) {
+                continue;
+            }
+            let value = self.received(node, element);
+            for (k, way) in ways.into_iter().enumerate().filter(|(_, way)| *way != Way::Kept) {
+                ranks.insert((node, k), (way != Way::Held, element.start.is_none(), node));
+                received.insert((node, k), replaced[k].unwrap_or(value.0[k]));
             }
         }
-        found.into_iter().min().map(|(_, _, node)| node)
-    }
-
-    /// The value without what storages give where that cancels.
-    fn without_idle(&mut self, value: Value) -> Value {
-        let zero = self.pool.zero();
-        let given: Vec<Symbol> = self.given_in(&value).collect();
-        given.into_iter().fold(value, |value, symbol| {
-            let slopes = partial(&mut self.pool, &value.0, symbol);
-            if !slopes.iter().all(|&slope| same_polynomial(&mut self.pool, slope, zero)) {
-                return value;
+        let given: Vec<Symbol> = ranks.keys().map(|&component| self.given_by(component)).collect();
+        let mut values: Vec<Id> = received.into_values().collect();
+        let components: Vec<Component> = ranks.keys().copied().collect();
+        let mut slopes = slopes(&mut self.pool, &values, &given);
+        self.leave_idle_out((&components, &given), &mut values, &mut slopes);
+        for (&(node, k), value) in components.iter().zip(values) {
+            if let Some(place) = self.dependent.get_mut(&node).and_then(|known| known.replaced[k].as_mut()) {
+                *place = value;
             }
-            Value(substitute(&mut self.pool, &value.0, &|other| (other == symbol).then_some(zero)))
-        })
+        }
+        let whole = |(node, k): Component| {
+            let (has_inverse, ..) = ranks[&(node, k)];
+            let components = self.dependent[&node].given.0.len();
+            if has_inverse { k..k + 1 } else { 0..components }.map(move |k| (node, k))
+        };
+        let (found, sizes) = slopes.independent(&ranks);
+        Kept { components: found.into_iter().flat_map(whole).collect(), sizes }
     }
 
-    /// What storages in derivative causality give and a value contains.
-    fn given_in(&self, value: &Value) -> impl Iterator<Item = Symbol> + use<> {
-        let all = self.dependent.values().flat_map(|dependent| &dependent.given.0);
-        let given = self.pool.symbols(&all.copied().collect::<Vec<_>>());
-        self.pool.symbols(&value.0).into_iter().filter(move |symbol| given.contains(symbol))
+    /// Takes what storages give out of values in which that cancels: of each the slope is zero, or what rounding leaves
+    /// of the parts that an earlier elimination has found it to consist of.
+    fn leave_idle_out(
+        &mut self,
+        (components, given): (&[Component], &[Symbol]),
+        values: &mut [Id],
+        slopes: &mut Slopes,
+    ) {
+        let zero = self.pool.zero();
+        for ((row, value), component) in values.iter_mut().enumerate().zip(components) {
+            for ((column, &symbol), by) in given.iter().enumerate().zip(components) {
+                let slope = partial(&mut self.pool, &[*value], symbol)[0];
+                let is_rounding = slopes.is_rounding(row, column, self.kept.size(component.0, by.0));
+                if is_rounding || same_polynomial(&mut self.pool, slope, zero) {
+                    *value = substitute(&mut self.pool, &[*value], &|other| (other == symbol).then_some(zero))[0];
+                    slopes.clear(row, column);
+                }
+            }
+        }
+    }
+
+    /// The symbol of what a storage gives, one component.
+    fn given_by(&self, (node, k): Component) -> Symbol {
+        let Node::Symbol(symbol) = *self.pool.node(self.dependent[&node].given.0[k]) else {
+            unreachable!("what a storage in derivative causality gives is a symbol")
+        };
+        symbol
     }
 
     /// Calculates what storages give whose states are replaced: the derivatives of these states, and puts it in its
@@ -162,14 +196,19 @@ impl Signals<'_> {
         let graph = self.graph;
         let mut residuals = BTreeMap::new();
         let seeds = self.rate_seeds(&[]);
-        for (node, Dependent { state, given, .. }) in self.dependent.clone() {
-            let (Some(state), Some(element)) = (state, graph.element(node)) else { continue };
-            if let Some(fault) = self.wrong(node, element, &state) {
+        for (node, Dependent { replaced, given, .. }) in self.dependent.clone() {
+            let Some(element) = graph.element(node) else { continue };
+            let (of, states): (Vec<Id>, Vec<Id>) =
+                given.0.into_iter().zip(replaced).filter_map(|(given, state)| Some((given, state?))).unzip();
+            if states.is_empty() {
+                continue;
+            }
+            if let Some(fault) = self.wrong(node, element, &states) {
                 self.fault_once(fault);
                 continue;
             }
-            let rates = Value(derivative(&mut self.pool, &state.0, &seeds));
-            self.unknowns.equate(&mut self.pool, &given, (&given, &rates));
+            let (of, rates) = (Value(of), Value(derivative(&mut self.pool, &states, &seeds)));
+            self.unknowns.equate(&mut self.pool, &of, (&of, &rates));
             residuals.append(&mut self.unknowns.residuals);
         }
         let values = self.solved(&residuals);
@@ -177,10 +216,10 @@ impl Signals<'_> {
     }
 
     /// Why a state that others determine has no derivative.
-    fn wrong(&self, node: NodeId, element: &Element, state: &Value) -> Option<Fault> {
+    fn wrong(&self, node: NodeId, element: &Element, state: &[Id]) -> Option<Fault> {
         let (kind, name) = (element.kind, self.graph.node(node).name.text.clone());
-        let symbols = self.pool.symbols(&state.0);
-        let select = self.pool.reachable(&state.0).into_iter().find_map(|id| match self.pool.node(id) {
+        let symbols = self.pool.symbols(state);
+        let select = self.pool.reachable(state).into_iter().find_map(|id| match self.pool.node(id) {
             Node::Select { switch, .. } => Some(*switch as usize),
             _ => None,
         });
@@ -202,8 +241,18 @@ impl Signals<'_> {
             return Some(self.fault_of(node, &EquationFault::DependentOpen { members, why }));
         }
         let start = element.start.as_ref()?;
-        let by = self.determining(state);
-        Some(Fault::new(start.span, &EquationFault::DependentStart { kind, name, by }))
+        let own = self.layout.iter().find(|place| place.storage == Storage::Element(node));
+        let free: Vec<String> = own
+            .into_iter()
+            .flat_map(|place| &place.components)
+            .map(|&(_, state)| format!("`{}`", self.states[state].name))
+            .collect();
+        let fault = if free.is_empty() {
+            EquationFault::DependentStart { kind, name, by: self.determining(state) }
+        } else {
+            EquationFault::PartlyDependentStart { kind, name, free }
+        };
+        Some(Fault::new(start.span, &fault))
     }
 
     fn switched(&self, switch: usize) -> Switched {
@@ -212,8 +261,8 @@ impl Signals<'_> {
     }
 
     /// The states that a state depends on, for messages.
-    fn determining(&self, state: &Value) -> Vec<String> {
-        let states = self.pool.symbols(&state.0).into_iter().filter_map(Symbol::as_state);
+    fn determining(&self, state: &[Id]) -> Vec<String> {
+        let states = self.pool.symbols(state).into_iter().filter_map(Symbol::as_state);
         states.map(|state| format!("`{}`", self.states[state].name)).collect()
     }
 

@@ -9,6 +9,7 @@ pub enum EquationFault {
     AlgebraicLoop { members: Vec<String>, reactions: Vec<String> },
     UndeterminedLoop { members: Vec<String>, why: String },
     DependentStart { kind: ElementKind, name: String, by: Vec<String> },
+    PartlyDependentStart { kind: ElementKind, name: String, free: Vec<String> },
     DependentOnInput { kind: ElementKind, name: String, input: String },
     DependentJumps { kind: ElementKind, name: String, element: String, condition: String },
     DependentOpen { members: Vec<String>, why: String },
@@ -38,7 +39,7 @@ impl Explain for EquationFault {
             F::EnergyJumps { .. } => "BG0506",
             F::EnergyNotCompared { .. } => "BG0507",
             F::UndeterminedLoop { .. } => "BG0508",
-            F::DependentStart { .. } => "BG0509",
+            F::DependentStart { .. } | F::PartlyDependentStart { .. } => "BG0509",
             F::DependentOnInput { .. } => "BG0510",
             F::DependentJumps { .. } => "BG0511",
             F::DependentOpen { .. } => "BG0512",
@@ -65,6 +66,12 @@ impl Explain for EquationFault {
                 let by = if by.is_empty() { "sources".to_owned() } else { by.join(", ") };
                 format!(
                     "{symbol} `{name}` has no start of its own: it is in derivative causality, its state follows from {by}"
+                )
+            }
+            F::PartlyDependentStart { kind, name, free } => {
+                let (symbol, free) = (kind.symbol(), free.join(", "));
+                format!(
+                    "{symbol} `{name}` cannot start anywhere: of its components only {free} is free, the others follow"
                 )
             }
             F::DependentOnInput { kind, name, input } => {
@@ -140,6 +147,7 @@ impl Explain for EquationFault {
             F::UndeterminedLoop { .. } => {
                 "leave out what says the same twice, such as a second transformer beside a first".to_owned()
             }
+            F::PartlyDependentStart { .. } => "leave `start` out, then it starts at zero".to_owned(),
             F::DependentStart { by, .. } if by.is_empty() => "leave `start` out".to_owned(),
             F::DependentStart { by, .. } => format!("leave `start` out here, and give the start of {}", by.join(", ")),
             F::DependentOnInput { kind, name, input } => format!(

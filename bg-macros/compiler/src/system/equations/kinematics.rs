@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::EquationFault;
-use super::signals::Signals;
+use super::signals::{Place, Signals};
 use super::unknowns::number;
 use crate::expr::{Id, Symbol, derivative, same_polynomial, substitute};
 use crate::fault::Fault;
@@ -45,26 +45,24 @@ impl Signals<'_> {
     /// The rates of all poses in terms of these flows.
     fn track_seeds(&mut self) -> BTreeMap<Symbol, Id> {
         let mut seeds = BTreeMap::new();
-        for (storage, first, _) in self.layout.clone() {
+        for Place { storage, components, .. } in self.layout.clone() {
             let Storage::Track(index) = storage else { continue };
             let flow = self.given_flows[&self.graph.tracks[index].junction].clone();
             let rate = self.track_rate(storage, &flow);
-            for (k, id) in rate.0.into_iter().enumerate() {
-                seeds.insert(Symbol::state(first + k), id);
-            }
+            seeds.extend(components.into_iter().map(|(k, state)| (Symbol::state(state), rate.0[k])));
         }
         seeds
     }
 
     /// The rates of the displacements of C, which the place of a stop may be.
     fn add_displacements(&mut self, seeds: &mut BTreeMap<Symbol, Id>) {
-        for (storage, first, _) in self.layout.clone() {
+        for Place { storage, components, .. } in self.layout.clone() {
             let Storage::Element(node) = storage else { continue };
             if self.graph.element(node).is_some_and(|element| element.kind == ElementKind::C) {
                 let bond = self.graph.node(node).bonds[0];
                 let flow = self.flow(bond).scale(&mut self.pool, self.graph.sign(bond, node));
                 let flow = self.without_loops(&flow);
-                seeds.extend(flow.0.into_iter().enumerate().map(|(k, id)| (Symbol::state(first + k), id)));
+                seeds.extend(components.into_iter().map(|(k, state)| (Symbol::state(state), flow.0[k])));
             }
         }
     }

@@ -82,11 +82,14 @@ impl Signals<'_> {
         if let Some(displacement) = graph.element(node).and_then(|element| element.displacement.as_ref()) {
             return self.evaluate(displacement, None);
         }
-        let replaced = self.dependent.get(&node).and_then(|dependent| dependent.state.clone());
-        match replaced.or_else(|| self.state(Storage::Element(node))) {
-            Some(state) => state,
-            None => Value::zero(&mut self.pool, graph.bond(graph.node(node).bonds[0]).cardinality),
-        }
+        let states = self.state(Storage::Element(node));
+        let Some(dependent) = self.dependent.get(&node) else {
+            let components = graph.bond(graph.node(node).bonds[0]).cardinality;
+            return states.unwrap_or_else(|| Value::zero(&mut self.pool, components));
+        };
+        // Those that others determine, and the states that are left, in their order.
+        let mut states = states.into_iter().flat_map(|value| value.0);
+        Value(dependent.replaced.iter().filter_map(|replaced| replaced.or_else(|| states.next())).collect())
     }
 
     /// Effort of a C from its displacement, or flow of an I from its momentum.

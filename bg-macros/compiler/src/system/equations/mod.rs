@@ -14,6 +14,7 @@ mod fault;
 mod friction;
 mod holding;
 pub mod impact;
+mod independent;
 mod iteration;
 mod kinematics;
 mod laws;
@@ -36,12 +37,11 @@ mod text;
 mod unknowns;
 mod ways;
 
-use std::collections::BTreeSet;
-
 use crate::expr::{Id, Pool, Symbol, text as expression_text};
 use crate::fault::Staged;
 use crate::graph::{CausalGraph, Input, Parameter};
 use crate::system::requirements::Requirements;
+use independent::Kept;
 
 pub use crate::system::equations::solution::Solution;
 pub use fallible::FallibleLaw;
@@ -216,12 +216,12 @@ pub struct Output {
 /// Algebraic loops that leave something open, storages in derivative causality whose states have no derivative,
 /// transformers that are not linear, energies that cannot be found, numbers that no physics allows.
 pub fn derive(causal: &CausalGraph) -> Staged<StateEquations> {
-    let mut kept = BTreeSet::new();
+    let mut kept = Kept::default();
     loop {
         let mut signals = signals::Signals::new(causal, &kept);
         match signals.solve_bonds() {
-            Some(node) => kept.extend([node]),
-            None => return signals.derive(),
+            more if more.components.is_empty() => return signals.derive(),
+            more => kept.extend(more),
         }
     }
 }

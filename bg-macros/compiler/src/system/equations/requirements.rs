@@ -141,7 +141,7 @@ fn laminar_ranges(graph: &BondGraph) -> Vec<Asked<'_>> {
 }
 
 /// Whether a term is a rotation by the way it is made, for all values of what it depends on.
-fn is_rotation(graph: &BondGraph, term: &Term) -> bool {
+pub(super) fn is_rotation(graph: &BondGraph, term: &Term) -> bool {
     use Builtin as B;
     match &term.kind {
         TermKind::Call(B::RotationX | B::RotationY | B::RotationZ | B::Identity, _) => true,

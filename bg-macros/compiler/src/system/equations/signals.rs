@@ -3,10 +3,11 @@
 //! In: strokes. Out: component expressions, calculated when first asked for; a variable that needs itself is an unknown
 //! until all are known.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::dependent::{Dependent, Way, dependents, way};
 use super::fallible::Nature;
+use super::independent::Kept;
 use super::iteration::Loop;
 use super::memo::{Entry, Memo};
 use super::solving::Pivot;
@@ -21,6 +22,15 @@ use crate::graph::{
 use crate::system::Value;
 use crate::system::equations::solution::Solution;
 
+/// The states of a storage.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    pub storage: Storage,
+    pub shape: Shape,
+    /// Its components that are states, and the state of each: all, unless others determine some of them.
+    pub components: Vec<(usize, usize)>,
+}
+
 /// The derivation in progress.
 pub(super) struct Signals<'a> {
     pub(super) causal: &'a CausalGraph,
@@ -30,8 +40,8 @@ pub(super) struct Signals<'a> {
     /// Flows of 1-junctions that stand for themselves (in the kinematic proof).
     pub(super) given_flows: BTreeMap<NodeId, Value>,
     pub(super) states: Vec<State>,
-    /// First state and shape of every storage, in their order.
-    pub(super) layout: Vec<(Storage, usize, Shape)>,
+    /// The states of every storage, in their order.
+    pub(super) layout: Vec<Place>,
     pub(super) first_integral: usize,
     /// The states of angles that count turns, by their number.
     pub(super) turns: BTreeMap<usize, usize>,
@@ -41,6 +51,8 @@ pub(super) struct Signals<'a> {
     pub(super) reactions: BTreeMap<NodeId, u32>,
     /// The storages in derivative causality.
     pub(super) dependent: BTreeMap<NodeId, Dependent>,
+    /// What stays a state of them.
+    pub(super) kept: &'a Kept,
     /// What has no value yet.
     pub(super) unknowns: Unknowns,
     /// The algebraic loops that are left to iterations.
@@ -58,8 +70,9 @@ pub(super) struct Signals<'a> {
 }
 
 impl<'a> Signals<'a> {
-    /// The derivation's beginning; the storages `kept` keep their states although they are in derivative causality.
-    pub(super) fn new(causal: &'a CausalGraph, kept: &BTreeSet<NodeId>) -> Self {
+    /// The derivation's beginning; the components `kept` stay states although their storages
+    /// are in derivative causality.
+    pub(super) fn new(causal: &'a CausalGraph, kept: &'a Kept) -> Self {
         let mut signals = Self {
             causal,
             graph: &causal.graph,
@@ -73,6 +86,7 @@ impl<'a> Signals<'a> {
             ways: BTreeMap::new(),
             reactions: BTreeMap::new(),
             dependent: BTreeMap::new(),
+            kept,
             unknowns: Unknowns::default(),
             loops: Vec::new(),
             pivots: Vec::new(),
@@ -89,9 +103,9 @@ impl<'a> Signals<'a> {
         signals
     }
 
-    /// Effort and flow of every bond, the states' rates. A storage in derivative causality whose state must stay after
-    /// all.
-    pub(super) fn solve_bonds(&mut self) -> Option<NodeId> {
+    /// Effort and flow of every bond, the states' rates. What must stay a state after all although its storage is in
+    /// derivative causality.
+    pub(super) fn solve_bonds(&mut self) -> Kept {
         self.prove_displacements();
         self.fallible.clear();
         for bond in (0..self.graph.bonds.len()).map(BondId) {
@@ -166,20 +180,17 @@ impl<'a> Signals<'a> {
         Ok(equations)
     }
 
-    /// Whether a storage has no state of its own.
-    fn is_replaced(&self, storage: Storage, kept: &BTreeSet<NodeId>) -> bool {
+    /// Whether a component of a storage is no state.
+    fn is_replaced(&self, storage: Storage, component: usize, kept: &Kept) -> bool {
         let Storage::Element(node) = storage else { return false };
         let is_dependent = self.causal.derivative.contains(&node);
         let element = self.graph.element(node).filter(|_| is_dependent);
-        element.is_some_and(|element| way(element, kept.contains(&node)) == Way::Replaced)
+        element.is_some_and(|element| way(element, kept.has((node, component))) == Way::Replaced)
     }
 
     /// Gives every storage its states' indices.
-    fn lay_out(&mut self, kept: &BTreeSet<NodeId>) {
+    fn lay_out(&mut self, kept: &Kept) {
         for &storage in &self.graph.storages {
-            if self.is_replaced(storage, kept) {
-                continue;
-            }
             let shape = match storage {
                 Storage::Element(node) => {
                     let bond = self.graph.node(node).bonds[0];
@@ -190,19 +201,26 @@ impl<'a> Signals<'a> {
                     TrackKind::Orientation => Shape::Matrix,
                 },
             };
-            self.layout.push((storage, self.states.len(), shape));
             let (name, unit) = storage::describe(self.graph, storage);
             let zero = self.pool.zero();
+            let mut components = Vec::new();
             for (component, suffix) in shape.suffixes().iter().enumerate() {
+                if self.is_replaced(storage, component, kept) {
+                    continue;
+                }
+                components.push((component, self.states.len()));
                 let name = format!("{name}{suffix}");
                 let origin = storage::origin(self.graph, storage, component);
                 self.states.push(State { name, unit: unit.clone(), origin, start: zero, rate: zero });
+            }
+            if !components.is_empty() {
+                self.layout.push(Place { storage, shape, components });
             }
         }
         let mut multipliers = 0;
         let is_held = |node: &NodeId| {
             let element = self.graph.element(*node);
-            element.is_some_and(|element| way(element, kept.contains(node)) == Way::Held)
+            element.is_some_and(|element| way(element, kept.has((*node, 0))) == Way::Held)
         };
         let held: Vec<NodeId> = self.causal.derivative.iter().copied().filter(is_held).collect();
         let sinks = self.elements(|kind| kind == ElementKind::RSe);
@@ -222,10 +240,10 @@ impl<'a> Signals<'a> {
         }
     }
 
-    /// The states of a storage.
+    /// The states of a storage, in the order of its components.
     pub(super) fn state(&mut self, storage: Storage) -> Option<Value> {
-        let &(_, first, shape) = self.layout.iter().find(|(known, ..)| *known == storage)?;
-        Some(Value((first..first + shape.suffixes().len()).map(|k| self.state_symbol(k)).collect()))
+        let components = self.layout.iter().find(|place| place.storage == storage)?.components.clone();
+        Some(Value(components.into_iter().map(|(_, state)| self.state_symbol(state)).collect()))
     }
 
     /// The symbol of a state.
@@ -423,26 +441,27 @@ impl<'a> Signals<'a> {
         gaps
     }
 
-    /// One Newton-Schulz step towards the nearest orthogonal matrix, R (3 - R^T R) / 2 (Higham 2008, eq. 8.20).
+    /// What makes orientations such again: one step.
     fn projections(&mut self) -> Vec<(usize, Id)> {
-        let orientations: Vec<(Storage, usize)> = self
-            .layout
-            .iter()
-            .filter(|(_, _, shape)| *shape == Shape::Matrix)
-            .map(|&(storage, first, _)| (storage, first))
-            .collect();
         let mut projections = Vec::new();
-        for (storage, first) in orientations {
+        for Place { storage, components, .. } in
+            self.layout.clone().into_iter().filter(|place| place.shape == Shape::Matrix)
+        {
             let Some(turned) = self.state(storage) else { continue };
-            let pool = &mut self.pool;
-            let three = Value::identity(pool).scale(pool, 3.0);
-            let square = turned.transpose().multiply(pool, &turned).negate(pool);
-            let factor = three.add(pool, &square);
-            let projected = turned.multiply(pool, &factor).scale(pool, 0.5);
-            projections.extend(projected.0.into_iter().enumerate().map(|(k, id)| (first + k, id)));
+            let projected = orthogonalized(&mut self.pool, &turned);
+            projections.extend(components.into_iter().map(|(k, state)| (state, projected.0[k])));
         }
         projections
     }
+}
+
+/// One Newton-Schulz step towards the nearest orthogonal matrix, R (3 - R^T R) / 2 (Higham 2008, eq. 8.20): of what it
+/// is off by the square is left, times 3/2.
+pub(super) fn orthogonalized(pool: &mut Pool, matrix: &Value) -> Value {
+    let three = Value::identity(pool).scale(pool, 3.0);
+    let square = matrix.transpose().multiply(pool, matrix).negate(pool);
+    let factor = three.add(pool, &square);
+    matrix.multiply(pool, &factor).scale(pool, 0.5)
 }
 
 #[cfg(test)]

@@ -272,9 +272,9 @@ impl Signals<'_> {
         let memo = &mut self.memo;
         let variables = memo.efforts.iter_mut().chain(&mut memo.flows);
         let done = variables.filter_map(|entry| if let Entry::Done(value) = entry { Some(value) } else { None });
-        let dependent = self.dependent.values_mut().filter_map(|dependent| dependent.state.as_mut());
-        let values = done.chain(memo.lets.iter_mut().flatten()).chain(dependent);
+        let values = done.chain(memo.lets.iter_mut().flatten());
         let mut places: Vec<&mut Id> = values.flat_map(|value| &mut value.0).collect();
+        places.extend(self.dependent.values_mut().flat_map(|dependent| dependent.replaced.iter_mut().flatten()));
         places.extend(self.states.iter_mut().map(|state| &mut state.rate));
         places.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
         places.extend(self.fallible.iter_mut().map(|law| &mut law.value));

@@ -6,7 +6,7 @@ use super::Switch;
 use super::signals::Signals;
 use crate::expr::{Function, Id, Symbol};
 use crate::graph::{
-    BinaryOperator, Builtin, Comparison, ElementKind, NodeId, NodeKind, Reference, Storage, Term, TermKind,
+    Allowed, BinaryOperator, Builtin, Comparison, ElementKind, NodeId, NodeKind, Reference, Storage, Term, TermKind,
 };
 use crate::system::Value;
 
@@ -100,7 +100,9 @@ impl Signals<'_> {
         let graph = self.graph;
         let definition = &graph.lets[index];
         let owner = std::mem::replace(&mut self.owner, definition.name.text.clone());
-        let value = self.evaluate(&definition.value, None);
+        let is_rotation = definition.clause.as_ref().is_some_and(|clause| clause.allowed == Allowed::Rotation);
+        let value = &definition.value;
+        let value = if is_rotation { self.orientation_of(value) } else { self.evaluate(value, None) };
         self.owner = owner;
         self.memo.lets[index] = Some(value.clone());
         value

@@ -3,7 +3,7 @@
 //! In: the derivation's graph. Out: one line for every bond variable, one for every state, one for what was solved.
 
 use super::dependent::Way;
-use super::signals::Signals;
+use super::signals::{Place, Signals};
 use super::unknowns::Unknown;
 use crate::expr::{Id, Symbol, text as expression_text};
 use crate::graph::{BondId, ElementKind, End, Law, NodeId, NodeKind, Role, Storage, TrackKind};
@@ -28,7 +28,7 @@ pub(super) fn equations(signals: &Signals<'_>) -> Vec<String> {
         ));
         lines.push(format!("{} = {}", variable(signals, Role::Flow, bond), given(signals, receives, bond, Role::Flow)));
     }
-    lines.extend(signals.layout.iter().map(|&(storage, ..)| rate(signals, storage)));
+    lines.extend(signals.layout.iter().map(|place| rate(signals, place)));
     for (index, state) in
         signals.turns.values().chain(signals.ways.values()).map(|&index| (index, &signals.states[index]))
     {
@@ -68,10 +68,23 @@ fn loops(signals: &Signals<'_>) -> Vec<String> {
 fn states(signals: &Signals<'_>) -> Vec<String> {
     let line = |(&node, dependent): (&NodeId, &super::dependent::Dependent)| {
         let letter = if signals.graph.element(node)?.kind == ElementKind::C { "q" } else { "p" };
-        let state = dependent.state.as_ref()?;
-        Some(format!("{}.{letter} = {}, derivative causality", name(signals, node), shown(signals, &state.0)))
+        let replaced: Vec<(usize, Id)> =
+            dependent.replaced.iter().enumerate().filter_map(|(k, id)| Some((k, (*id)?))).collect();
+        let (of, ids): (Vec<usize>, Vec<Id>) = replaced.into_iter().unzip();
+        let of = components(&of, dependent.replaced.len());
+        let value = shown(signals, &ids);
+        (!ids.is_empty()).then(|| format!("{}.{letter}{of} = {value}, derivative causality", name(signals, node)))
     };
     signals.dependent.iter().filter_map(line).collect()
+}
+
+/// Those of `all` components that are meant, as a suffix: nothing where all are.
+fn components(of: &[usize], all: usize) -> String {
+    if of.len() == all {
+        return String::new();
+    }
+    let letters: String = of.iter().map(|&k| ["x", "y", "z"][k]).collect::<Vec<_>>().join(", ");
+    if of.len() == 1 { format!("_{letters}") } else { format!("_[{letters}]") }
 }
 
 /// Components as text.
@@ -135,9 +148,10 @@ fn given(signals: &Signals<'_>, node: NodeId, bond: BondId, role: Role) -> Strin
                 }
                 ElementKind::C | ElementKind::I if signals.dependent.contains_key(&node) => {
                     let letter = if element.kind == ElementKind::C { "q" } else { "p" };
-                    match signals.dependent[&node].way {
-                        Way::Replaced => format!(" by the change of {}.{letter}", definition.name.text),
-                        Way::Held | Way::Kept => format!(" that keeps {}.{letter} in step", definition.name.text),
+                    if signals.dependent[&node].ways.contains(&Way::Replaced) {
+                        format!(" by the change of {}.{letter}", definition.name.text)
+                    } else {
+                        format!(" that keeps {}.{letter} in step", definition.name.text)
                     }
                 }
                 ElementKind::C if element.displacement.is_some() => " of its displacement in the poses".to_owned(),
@@ -178,15 +192,17 @@ fn balance(signals: &Signals<'_>, node: NodeId, bond: BondId, role: Role) -> Str
     if text.is_empty() { "0".to_owned() } else { text }
 }
 
-fn rate(signals: &Signals<'_>, storage: Storage) -> String {
-    match storage {
+fn rate(signals: &Signals<'_>, place: &Place) -> String {
+    match place.storage {
         Storage::Element(node) => {
             let definition = signals.graph.node(node);
             let bond = definition.bonds[0];
             let compliance = signals.graph.element(node).is_some_and(|element| element.kind == ElementKind::C);
             let (state, role) = if compliance { ("q", Role::Flow) } else { ("p", Role::Effort) };
             let sign = if compliance && signals.graph.sign(bond, node) < 0.0 { "-" } else { "" };
-            format!("d({}.{state})/dt = {sign}{}", definition.name.text, variable(signals, role, bond))
+            let of: Vec<usize> = place.components.iter().map(|(k, _)| *k).collect();
+            let of = components(&of, place.shape.suffixes().len());
+            format!("d({}.{state}{of})/dt = {sign}{}{of}", definition.name.text, variable(signals, role, bond))
         }
         Storage::Track(index) => {
             let track = &signals.graph.tracks[index];

@@ -54,6 +54,25 @@ fn unknown_words_have_a_near_miss_or_a_list() {
 }
 
 #[test]
+fn a_unit_after_a_number_is_told_in_arguments_vectors_and_parentheses() {
+    let help = "found `deg` after `90`, expected a number alone | write `90 * 0.017453292519943295`: numbers are in SI units, here rad";
+    for (text, column) in
+        [("let R = rotation_z(90 deg);", 23), ("let v = [1, 90 deg, 2];", 16), ("let a = 2 * (90 deg);", 17)]
+    {
+        assert_eq!(in_graph(text).trim_end(), format!("2:{column} BG0102 {help}"), "{text}");
+    }
+}
+
+#[test]
+fn the_displacement_of_a_junction_has_no_start() {
+    let fault = "BG0102 `slide.displacement` has no start: it counts from t = 0, where it is 0 | leave this out, and write \
+                 `slide.displacement + E` with the start E where you use it";
+    for text in ["start slide.displacement = 0.1;", "start slide.displacement at 0.1;"] {
+        assert_eq!(in_graph(text).trim_end(), format!("2:7 {fault}"), "{text}");
+    }
+}
+
+#[test]
 fn unexpected_tokens_name_what_could_stand_there() {
     check(&[
         ("supply => a;", "2:8 BG0102 found `=>`, expected `->` | write `->`"),

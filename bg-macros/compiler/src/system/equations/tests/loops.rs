@@ -311,6 +311,37 @@ fn a_state_that_only_the_strokes_determine_stays() {
     assert!(faults(&text.replace("e / 3", "e * e * e / 3"))[0].starts_with("BG0512"));
 }
 
+/// A mass on a straight rail with a resistor, which the transformer's effort leads to: v = r w with r = (2, 0, -1), and
+/// m |r|^2 w' = -w / g + F r. One component of the momentum is a state, the largest.
+const RAIL: &str = "1 a[3]: translation; I m = 3; Se push = [5, 7, 1]; TF rail(effort e) = dot([2, 0, -1], e); 0 b: translation; R r(effort e) = 4 * e;
+    a -> m; push -> a; a -> rail -> b -> r;";
+
+#[test]
+fn a_component_of_a_momentum_determines_the_others() {
+    let text = format!("{RAIL} observe {{ v: m/s = a.flow; p: kg*m/s = m.p; e: N = m.effort; }}");
+    let (momentum, mass, w) = (6.0, 3.0, 1.0);
+    let turn = (2.0 * 5.0 - 1.0 - w / 4.0) / (mass * 5.0);
+    let expected = [
+        ("v_x", 2.0 * w),
+        ("v_y", 0.0),
+        ("v_z", -w),
+        ("p_x", momentum),
+        ("p_z", -mass * w),
+        ("m.p_x'", mass * 2.0 * turn),
+        ("e_z", -mass * turn),
+        ("stored", 0.5 * mass * 5.0 * w * w),
+    ];
+    let equations = agrees(&text, &[("m.p_x", momentum)], &expected);
+    assert_eq!(equations.states.len(), 1);
+    let lines = &equations.texts;
+    assert!(lines.contains(&"d(m.p_x)/dt = e[a -> m]_x".to_owned()), "{lines:?}");
+    assert!(lines.contains(&"m.p_[y, z] = [0, -0.5*m.p_x], derivative causality".to_owned()), "{lines:?}");
+    assert_eq!(
+        faults(&RAIL.replace("I m = 3", "I m = 3 start [1, 2, 3]")),
+        ["BG0509 I `m` cannot start anywhere: of its components only `m.p_x` is free, the others follow"]
+    );
+}
+
 #[test]
 fn a_resistor_that_switches_in_a_loop_takes_the_branch_of_its_solution() {
     // Forward 1 Ohm, backward 99 Ohm, behind another one of 1 Ohm.
