@@ -146,12 +146,10 @@ pub fn close<const U: usize>(
     residual: impl Fn(&[f64; U], &mut [f64]),
     terms: impl Fn(&[f64; U], &mut [f64]),
 ) -> Result<[f64; U], AssemblyError> {
-    let closed = closed(
-        &guess,
-        gaps,
-        &|coordinates, sizes| residual(whole(coordinates), sizes),
-        &|coordinates, sizes| terms(whole(coordinates), sizes),
-    )?;
+    let closed =
+        closed(&guess, gaps, &|coordinates, sizes| residual(whole(coordinates), sizes), &|coordinates, sizes| {
+            terms(whole(coordinates), sizes)
+        })?;
     Ok(*whole(&closed))
 }
 

@@ -69,8 +69,10 @@ impl Reading {
         step.read_end(end, &mut self.value);
         let Point { t, x, rate } = step.point(end);
         let t = *t;
-        ahead.clear();
-        ahead.extend(x.iter().zip(rate).map(|(x, rate)| x + rate * by));
+        ahead.resize(x.len(), 0.0);
+        for ((ahead, x), rate) in ahead.iter_mut().zip(x.as_slice()).zip(rate.as_slice()) {
+            *ahead = x + rate * by;
+        }
         step.read(t + by, ahead, &mut self.slope);
         self.slope.iter_mut().zip(&self.value).for_each(|(slope, value)| *slope = (*slope - value) / by);
         self.noise.fill(0.0);

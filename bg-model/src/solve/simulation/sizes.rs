@@ -174,18 +174,24 @@ impl SizeMonitor {
 
     /// Looks at the end of an accepted step; gives whether the scale has changed.
     pub fn follow(&mut self, stepper: &mut Stepper<'_>) -> bool {
-        raise(&mut self.largest, &stepper.end.x);
-        let is_outgrown = self.is_leading && (self.is_outgrown(&stepper.end.x) || stepper.h > self.longest);
+        let outgrows = self.passes_limits(stepper.end.x.as_slice());
+        let is_outgrown = self.is_leading && (outgrows || stepper.h > self.longest);
         if is_outgrown {
             self.renew(stepper);
         }
         is_outgrown
     }
 
-    /// Whether a state has outgrown its size.
-    #[inline(always)]
-    fn is_outgrown(&self, x: &DVector<f64>) -> bool {
-        x.iter().zip(&self.limit).fold(false, |is_outgrown, (x, limit)| is_outgrown | (x.abs() > *limit))
+    /// Takes note of the magnitudes of a state; gives whether one is above its limit.
+    fn passes_limits(&mut self, x: &[f64]) -> bool {
+        let mut passes = false;
+        let known = self.largest.as_mut_slice().iter_mut().zip(self.limit.as_slice());
+        for ((largest, limit), x) in known.zip(x) {
+            let magnitude = x.abs();
+            *largest = if magnitude > *largest { magnitude } else { *largest };
+            passes |= magnitude > *limit;
+        }
+        passes
     }
 
     /// The magnitudes from which on states have outgrown their sizes, and the step (s) from which on it has outgrown
@@ -401,7 +407,8 @@ fn weights(stepper: &Stepper<'_>) -> DVector<f64> {
 
 /// Raises sizes to the magnitudes of a state.
 fn raise(sizes: &mut DVector<f64>, x: &DVector<f64>) {
-    sizes.iter_mut().zip(x).for_each(|(size, x)| *size = size.max(x.abs()));
+    let both = sizes.as_mut_slice().iter_mut().zip(x.as_slice());
+    both.for_each(|(size, x)| *size = size.max(x.abs()));
 }
 
 /// The larger number; `b` where `a` is none, or is infinite.
