@@ -1,5 +1,5 @@
 //! What documents say of files: links lead somewhere, files that are named are there, tables list the modules of their
-//! folders, decisions are short.
+//! folders, decisions are short. That each mutant has its place in the code.
 
 mod markdown;
 
@@ -206,4 +206,19 @@ fn suites_are_listed() {
     // Not one of cargo's: a script that runs the others on changed code.
     let scripts = ["mutants/".to_owned()];
     assert_eq!(listed, suites.map(|(name, _)| format!("{name}/")).chain(scripts).collect());
+}
+
+/// What a mutant replaces occurs once, so that the script that breaks the code breaks what it says.
+#[test]
+fn mutants_have_their_places() {
+    let text = read(&root().join("tests/mutants/mutants.toml"));
+    let subjects: toml::Table = text.parse().expect("a table of mutants");
+    let mutants: Vec<&toml::Value> =
+        subjects.values().flat_map(|subject| subject.as_array().expect("a list")).collect();
+    assert!(mutants.len() > 80, "{}", mutants.len());
+    let of = |mutant: &toml::Value, key: &str| mutant[key].as_str().expect("a text").to_owned();
+    let is_lost =
+        |mutant: &&&toml::Value| read(&root().join(of(mutant, "file"))).matches(&of(mutant, "old")).count() != 1;
+    let lost: Vec<String> = mutants.iter().filter(is_lost).map(|mutant| of(mutant, "name")).collect();
+    assert!(lost.is_empty(), "these have no place, or several: {lost:?}");
 }

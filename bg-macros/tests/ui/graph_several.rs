@@ -33,16 +33,17 @@ fn main() {
     let start = motor.start().expect("closed");
     let span = Span { t0: 0.0, t_end: 1e-3 };
     let finish = integrate(&motor, &mut Dop853::new(), &start, span, &Settings::default(), &mut ()).expect("runs");
-    let mut rate = finish.x;
-    motor.rate(finish.t, &finish.x, &finish.negative, &mut rate);
-    let power = motor.powers(finish.t, &finish.x, &finish.negative);
+    let (x, negative) = (finish.state(), finish.branches());
+    let mut rate = *x;
+    motor.rate(finish.t, x, negative, &mut rate);
+    let power = motor.powers(finish.t, x, negative);
     println!(
         "{} {} {} {} {} {}",
         motor.description().name,
         motor.parameters().winding,
         Motor::STATES,
         Motor::OUTPUTS,
-        motor.stored_energy(finish.t, &finish.x, &finish.negative),
+        motor.stored_energy(finish.t, x, negative),
         power.supplied - power.dissipated,
     );
 }
