@@ -244,6 +244,6 @@ fn moved(scale: &Scale, before: &[f64], after: &[f64]) -> f64 {
 
 /// A state with each number as the next rounding would have it, up or down.
 fn rounded_otherwise(x: &DVector<f64>) -> DVector<f64> {
-    let otherwise = |i: usize| if i.count_ones() % 2 == 0 { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON };
+    let otherwise = |i: usize| if i.count_ones().is_multiple_of(2) { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON };
     DVector::from_fn(x.len(), |i, _| x[i] * otherwise(i))
 }
