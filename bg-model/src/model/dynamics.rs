@@ -22,7 +22,8 @@ use crate::model::scalar::machine::Arch;
 use crate::model::system::{Model, Powers, System, decide_by_sign, switches, switches_mut, values, values_mut};
 
 /// A system of ordinary differential equations: [`System`], over slices. States `x` and all that there is one of for
-/// each of them have [`Dynamics::states`] numbers, the branches `negative` of the switches [`Dynamics::switches`].
+/// each of them have [`Dynamics::states`] numbers, the branches `negative` of the switches [`Dynamics::switches`]. Only
+/// the number of states and the rate have to be written; what else a system knows of itself it may say.
 ///
 /// # Panics
 /// Each function, where a slice is shorter.
@@ -30,104 +31,154 @@ pub trait Dynamics {
     /// The number of states.
     fn states(&self) -> usize;
 
-    /// The number of switches.
-    fn switches(&self) -> usize;
+    /// The number of switches; none by default.
+    fn switches(&self) -> usize {
+        0
+    }
 
     /// [`System::rate`].
     fn rate(&self, t: f64, x: &[f64], negative: &[bool], dx: &mut [f64]);
 
     /// [`System::guards`].
-    fn guards(&self, t: f64, x: &[f64], negative: &[bool], guards: &mut [f64]);
+    fn guards(&self, _t: f64, _x: &[f64], _negative: &[bool], _guards: &mut [f64]) {}
 
     /// [`System::first_branches`].
-    fn first_branches(&self, first: &mut [bool]);
+    fn first_branches(&self, first: &mut [bool]) {
+        first.fill(false);
+    }
 
     /// [`System::project`].
-    fn project(&self, t: f64, negative: &[bool], x: &mut [f64]);
+    fn project(&self, _t: f64, _negative: &[bool], _x: &mut [f64]) {}
 
     /// [`System::next_break`].
-    fn next_break(&self, t: f64) -> f64;
+    fn next_break(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
 
-    /// [`System::runs_in_lanes`].
-    fn runs_in_lanes(&self) -> bool;
+    /// [`System::runs_in_lanes`]; not by default, for which its numbers would have to be others.
+    fn runs_in_lanes(&self) -> bool {
+        false
+    }
 
     /// [`System::state_name`].
-    fn state_name(&self, index: usize) -> &'static str;
+    fn state_name(&self, _index: usize) -> &'static str {
+        "state"
+    }
 
     /// [`System::switch_name`].
-    fn switch_name(&self, index: usize) -> Option<&'static str>;
+    fn switch_name(&self, _index: usize) -> Option<&'static str> {
+        None
+    }
 
     /// [`System::not_finite`].
-    fn not_finite(&self, t: f64, x: &[f64], negative: &[bool]) -> Option<Origin>;
+    fn not_finite(&self, _t: f64, _x: &[f64], _negative: &[bool]) -> Option<Origin> {
+        None
+    }
 
     /// [`Linearised::sparsity`]; full where the system does not know its Jacobian.
-    fn sparsity(&self) -> Sparsity;
+    fn sparsity(&self) -> Sparsity {
+        Sparsity::Full
+    }
 
     /// [`Linearised::jacobian`]; by differences where the system does not know it.
-    fn jacobian(&self, t: f64, x: &[f64], negative: &[bool], entries: &mut [f64], slope: &mut [f64]);
+    fn jacobian(&self, t: f64, x: &[f64], negative: &[bool], entries: &mut [f64], slope: &mut [f64]) {
+        let rate = |t, x: &[f64], dx: &mut [f64]| self.rate(t, x, negative, dx);
+        differences(rate, t, x, entries, slope, &mut vec![0.0; x.len()]);
+    }
 
     /// [`Linearised::damping_sparsity`].
-    fn damping_sparsity(&self) -> Sparsity;
+    fn damping_sparsity(&self) -> Sparsity {
+        self.sparsity()
+    }
 
     /// [`Linearised::damping`].
-    fn damping(&self, t: f64, x: &[f64], negative: &[bool], entries: &mut [f64]);
+    fn damping(&self, t: f64, x: &[f64], negative: &[bool], entries: &mut [f64]) {
+        self.jacobian(t, x, negative, entries, &mut vec![0.0; x.len()]);
+    }
 
     /// [`Elimination::factors`]; none where there is no elimination.
-    fn factors(&self) -> Option<usize>;
+    fn factors(&self) -> Option<usize> {
+        None
+    }
 
     /// [`Elimination::eliminate`].
-    fn eliminate(&self, c: f64, entries: &[f64], factors: &mut [f64]) -> bool;
+    fn eliminate(&self, _c: f64, _entries: &[f64], _factors: &mut [f64]) -> bool {
+        false
+    }
 
     /// The same with a complex `c`.
-    fn eliminate_complex(&self, c: Complex<f64>, entries: &[f64], factors: &mut [Complex<f64>]) -> bool;
+    fn eliminate_complex(&self, _c: Complex<f64>, _entries: &[f64], _factors: &mut [Complex<f64>]) -> bool {
+        false
+    }
 
     /// [`Elimination::substitute`].
-    fn substitute(&self, factors: &[f64], b: &mut [f64]);
+    fn substitute(&self, _factors: &[f64], _b: &mut [f64]) {}
 
     /// The same with a complex c.
-    fn substitute_complex(&self, factors: &[Complex<f64>], b: &mut [Complex<f64>]);
+    fn substitute_complex(&self, _factors: &[Complex<f64>], _b: &mut [Complex<f64>]) {}
 
     /// [`SecondOrder::states`]; an empty range where none are known.
-    fn second(&self) -> Range<usize>;
+    fn second(&self) -> Range<usize> {
+        0..0
+    }
 
     /// [`SecondOrder::second_derivatives`].
-    fn second_derivatives(&self, x: &[f64], dx: &mut [f64]);
+    fn second_derivatives(&self, _x: &[f64], _dx: &mut [f64]) {}
 
     /// [`SecondOrder::forces`]; the rate where no states of second order are known.
-    fn forces(&self, t: f64, x: &[f64], negative: &[bool], dx: &mut [f64]);
+    fn forces(&self, t: f64, x: &[f64], negative: &[bool], dx: &mut [f64]) {
+        self.rate(t, x, negative, dx);
+    }
 
     /// [`SecondOrder::operations`].
-    fn operations_of_forces(&self) -> Option<[u32; 2]>;
+    fn operations_of_forces(&self) -> Option<[u32; 2]> {
+        None
+    }
 
     /// What a Taylor series takes; none where there is no series.
-    fn series(&self) -> Option<SeriesSize>;
+    fn series(&self) -> Option<SeriesSize> {
+        None
+    }
 
     /// [`Series::expand`]: order by order, of each all states.
-    fn expand(&self, t: f64, h: f64, negative: &[bool], rows: &mut [f64], series: &mut [f64]);
+    fn expand(&self, _t: f64, _h: f64, _negative: &[bool], _rows: &mut [f64], _series: &mut [f64]) {}
 
     /// [`Joints::held`]; none where joints hold nothing.
-    fn held(&self) -> Option<Held>;
+    fn held(&self) -> Option<Held> {
+        None
+    }
 
     /// [`Joints::kept`].
-    fn kept(&self) -> &[f64];
+    fn kept(&self) -> &[f64] {
+        &[]
+    }
 
     /// [`Joints::hold`].
-    fn hold(&self, t: f64, x: &[f64], negative: &[bool], entries: &mut [f64]);
+    fn hold(&self, _t: f64, _x: &[f64], _negative: &[bool], _entries: &mut [f64]) {}
 
     /// [`Impacts::stops`]; none where nothing is hit.
-    fn stops(&self) -> Option<Stops>;
+    fn stops(&self) -> Option<Stops> {
+        None
+    }
 
     /// [`Impacts::kept`].
-    fn kept_of_stops(&self) -> &[f64];
+    fn kept_of_stops(&self) -> &[f64] {
+        &[]
+    }
 
     /// [`Impacts::impact`].
-    fn impact(&self, t: f64, x: &[f64], negative: &[bool], entries: &mut [f64]);
+    fn impact(&self, _t: f64, _x: &[f64], _negative: &[bool], _entries: &mut [f64]) {}
 
     /// [`Storages::states`]; none of a system that does not know what it stores.
-    fn stored(&self) -> Option<&'static [StateInfo]>;
+    fn stored(&self) -> Option<&'static [StateInfo]> {
+        None
+    }
 
     /// [`Storages::energy`]; 0 where nothing is known.
-    fn energy(&self, t: f64, x: &[f64], negative: &[bool], curvatures: &mut [f64]) -> f64;
+    fn energy(&self, _t: f64, _x: &[f64], _negative: &[bool], curvatures: &mut [f64]) -> f64 {
+        curvatures.fill(0.0);
+        0.0
+    }
 }
 
 /// A model, over slices: [`Model`]. Outputs `y` are [`Description::outputs`] many.

@@ -200,7 +200,7 @@ pub enum BadInput {
         states: usize,
     },
     /// The start is one of a system with another number of states.
-    #[error("the start has {given} states and the system {states}; start from a state of this system")]
+    #[error("the start has {given} value(s) for {states} state(s); start from a state of this system")]
     States {
         /// The states of the start.
         given: usize,

@@ -4,7 +4,7 @@ use crate::problems::*;
 use bg_model::failure::{BadInput, Cause, Failure, Quantity};
 use bg_model::integrator::{Absolute, Dop853, Rk4, Tolerances};
 use bg_model::nalgebra::SVector;
-use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
+use bg_model::simulation::{EachSample, Ongoing, Samples, Settings, Span, integrate};
 
 #[test]
 fn the_counts_of_kepler_are_those_of_the_method() {
@@ -218,6 +218,11 @@ fn input_that_cannot_be_is_refused_by_name() {
         let settings = Settings { tolerances: Tolerances { relative: 1e-9, absolute }, ..good.clone() };
         assert!(matches!(refused([1.0, 0.0], unit, &settings), BadInput::AbsoluteTolerance { state: "rod.p", .. }));
     }
+    let absolute = Absolute::PerState(vec![1e-9; 3]);
+    let settings = Settings { tolerances: Tolerances { relative: 1e-9, absolute }, ..good.clone() };
+    let bad = refused([1.0, 0.0], unit, &settings);
+    assert_eq!(bad, BadInput::AbsoluteTolerances { given: 3, states: 2 });
+    assert!(bad.to_string().starts_with("there are 3 absolute tolerances for 2 states"), "{bad}");
     for step in [0.0, f64::NAN, -1.0, 1e-16] {
         let settings = Settings { first_step: Some(step), ..good.clone() };
         assert!(matches!(refused([1.0, 0.0], unit, &settings), BadInput::Step { which: "first", .. }));
@@ -243,4 +248,13 @@ fn a_fixed_step_that_cannot_be_is_refused() {
         let failure = integrate(&kepler(), &mut Rk4::new(step), &kepler_start(), span, &settings, &mut ()).unwrap_err();
         assert!(matches!(failure.cause, Cause::BadInput(BadInput::Step { which: "fixed", .. })), "{step}: {failure}");
     }
+}
+
+#[test]
+fn a_start_of_another_number_of_states_is_refused() {
+    let (mut run, mut method) = (Ongoing::at(0.0, &[1.0]), Dop853::new());
+    let failure = run.advance(&kepler(), &mut method, 1.0, &settings(1e-9), &mut ()).unwrap_err();
+    assert_eq!(failure.cause, Cause::BadInput(BadInput::States { given: 1, states: 4 }));
+    assert!(failure.to_string().starts_with("the start has 1 value(s) for 4 state(s)"), "{failure}");
+    assert_eq!((failure.last.t, failure.last.x.len()), (0.0, 1));
 }

@@ -119,6 +119,40 @@ where
 /// As [`integrate`], of a system over slices, whatever the number of its states; with a condition as
 /// [`integrate_until`].
 ///
+/// ```
+/// use bg_model::dynamics::Dynamics;
+/// use bg_model::integrator::Dop853;
+/// use bg_model::simulation::{Settings, Span, drive};
+/// use std::f64::consts::PI;
+///
+/// /// Masses of 1 kg in a row between two walls, on springs of 1 N/m: displacements, then velocities.
+/// struct Row(usize);
+/// impl Dynamics for Row {
+///     fn states(&self) -> usize {
+///         2 * self.0
+///     }
+///     fn rate(&self, _: f64, x: &[f64], _: &[bool], dx: &mut [f64]) {
+///         let (q, v) = x.split_at(self.0);
+///         let beside = |i: Option<usize>| i.and_then(|i| q.get(i)).copied().unwrap_or(0.0);
+///         for i in 0..self.0 {
+///             dx[i] = v[i];
+///             dx[self.0 + i] = beside(i.checked_sub(1)) - 2.0 * q[i] + beside(Some(i + 1));
+///         }
+///     }
+/// }
+///
+/// for masses in [1, 2, 20] {
+///     // The slowest mode, at 2 sin(pi / (2 n + 2)) rad/s.
+///     let wave = |i: usize| if i < masses { (PI * (i + 1) as f64 / (masses + 1) as f64).sin() } else { 0.0 };
+///     let start: Vec<f64> = (0..2 * masses).map(wave).collect();
+///     let span = Span { t0: 0.0, t_end: 3.0 };
+///     let finish = drive(&Row(masses), &mut Dop853::new(), &start, span, &Settings::default(), None, &mut ())?;
+///     let turned = 2.0 * (0.5 * PI / (masses + 1) as f64).sin() * finish.t;
+///     assert!((finish.x[0] - start[0] * turned.cos()).abs() < 1e-7);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As there.
 pub fn drive<'a>(
