@@ -191,7 +191,7 @@ pub enum BadInput {
         /// The refused tolerance.
         value: f64,
     },
-    /// There is an absolute tolerance for each state, but of another number of states.
+    /// There are absolute tolerances for another number of states.
     #[error("there are {given} absolute tolerances for {states} states; give one for each, or one for all")]
     AbsoluteTolerances {
         /// The absolute tolerances.

@@ -10,16 +10,13 @@ use bg_model::integrator::{Auto, Bs5, Cfmr7, Dop853, Method, Nystrom, Radau9, Rk
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Column, EachSample, Recording, Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
-use bg_model::system::{Model, System};
+use bg_model::system::{Model, System, switches, values};
 use hacksaw::mechanism::{Motion, MotionParameters, Paper, PaperParameters};
 
 use super::{Entry, Line, Run, Setting, Solver, Source, Work, by_tolerance};
 use crate::poses::{self, Poses};
 use crate::problem::{ABSOLUTE, Problem, T_END, instants, slip};
 use hacksaw_planar::State;
-
-/// States of the paper's scene.
-const N: usize = Paper::STATES;
 
 /// Our absolute tolerance over the relative one, as `hacksaw precision` has it.
 const SCENE_ABSOLUTE: f64 = 0.1;
@@ -47,7 +44,7 @@ pub fn all(problem: &Problem) -> Vec<Box<dyn Solver + '_>> {
 }
 
 /// The poses of the scene's run with `method`.
-pub fn scene_poses(method: &mut impl Method, tolerances: Tolerances<N>) -> Result<Poses, String> {
+pub fn scene_poses(method: &mut impl Method, tolerances: Tolerances) -> Result<Poses, String> {
     run_scene(&paper(), method, tolerances).map(|run| run.poses)
 }
 
@@ -97,7 +94,7 @@ fn by_hand<'a, Me: Method + 'static>(
 fn run_scene<Mo, Me, const N: usize, const M: usize>(
     model: &Mo,
     method: &mut Me,
-    tolerances: Tolerances<N>,
+    tolerances: Tolerances,
 ) -> Result<Run, String>
 where
     Mo: Model<f64, N, 1, M>,
@@ -139,7 +136,7 @@ fn run<Sys, Me, const N: usize, const G: usize>(
     system: &Sys,
     method: &mut Me,
     start: &SVector<f64, N>,
-    tolerances: Tolerances<N>,
+    tolerances: Tolerances,
 ) -> Result<Sampled<N, G>, String>
 where
     Sys: System<f64, N, G>,
@@ -147,7 +144,8 @@ where
 {
     let settings = Settings { tolerances, samples: Samples::At(instants()), ..Settings::default() };
     let mut states = Vec::with_capacity(crate::problem::SAMPLES);
-    let mut observer = EachSample(|t: f64, x: &SVector<f64, N>, negative: &[bool; G]| states.push((t, *x, *negative)));
+    let mut observer =
+        EachSample(|t: f64, x: &[f64], negative: &[bool]| states.push((t, *values(x), *switches(negative))));
     let clock = Instant::now();
     let finish = integrate(system, method, start, Span { t0: 0.0, t_end: T_END }, &settings, &mut observer);
     let wall = clock.elapsed();
