@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use bg_compiler::pipeline;
 use bg_compiler::source::syntax;
-use bg_import::{Format, Options, import};
+use bg_import::{Format, Imported, Options, import};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases")
@@ -52,6 +52,23 @@ fn compiles(text: &str) {
     }
 }
 
+/// That there is no note, and a text has words, and has others not.
+fn has(imported: &Imported, words: &[&str], others: &[&str]) {
+    assert_eq!(imported.notes, [""; 0], "{}", imported.text);
+    for word in words {
+        assert!(imported.text.contains(word), "no `{word}` in\n{}", imported.text);
+    }
+    for word in others {
+        assert!(!imported.text.contains(word), "`{word}` in\n{}", imported.text);
+    }
+}
+
+/// The same of one that compiles.
+fn compiles_with(imported: &Imported, words: &[&str], others: &[&str]) {
+    has(imported, words, others);
+    compiles(&imported.text);
+}
+
 #[path = "text/actuators.rs"]
 mod actuators;
 #[path = "text/attach.rs"]
@@ -64,7 +81,6 @@ mod kinds;
 mod program;
 #[path = "text/safety.rs"]
 mod safety;
-
 #[path = "text/tendons.rs"]
 mod tendons;
 

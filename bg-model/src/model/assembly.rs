@@ -146,11 +146,9 @@ pub fn close<const U: usize>(
     residual: impl Fn(&[f64; U], &mut [f64]),
     terms: impl Fn(&[f64; U], &mut [f64]),
 ) -> Result<[f64; U], AssemblyError> {
-    let closed =
-        closed(&guess, gaps, &|coordinates, sizes| residual(whole(coordinates), sizes), &|coordinates, sizes| {
-            terms(whole(coordinates), sizes)
-        })?;
-    Ok(*whole(&closed))
+    let residual = |coordinates: &[f64], sizes: &mut [f64]| residual(whole(coordinates), sizes);
+    let terms = |coordinates: &[f64], sizes: &mut [f64]| terms(whole(coordinates), sizes);
+    Ok(*whole(&closed(&guess, gaps, &residual, &terms)?))
 }
 
 /// All coordinates of a pose.
@@ -170,17 +168,12 @@ fn closed(
     let largest = |of: &[f64]| of.iter().fold(0.0_f64, |largest, of| largest.max(of.abs()));
     let longest = |coordinates: &[f64]| 0.5 * largest(coordinates).max(1.0);
     let found = nearest(guess, gaps.len(), &longest, residual);
-    let (coordinates, sizes) = found.map_err(|sizes| not_finite(gaps, &sizes))?;
+    let not_finite = |(row, value): (usize, f64)| AssemblyError::NonFinite { gap: gaps[row], value };
+    let (coordinates, sizes) = found.map_err(not_finite)?;
     let mut all = vec![0.0; gaps.len()];
     terms(&coordinates, &mut all);
     check_closed(gaps, &sizes, &all)?;
     Ok(coordinates)
-}
-
-fn not_finite(gaps: &[Gap], sizes: &DVector<f64>) -> AssemblyError {
-    let mut sizes = gaps.iter().zip(sizes.iter());
-    let (gap, value) = sizes.find(|(_, size)| !size.is_finite()).expect("one of them is not finite");
-    AssemblyError::NonFinite { gap: *gap, value: *value }
 }
 
 fn check_closed(gaps: &[Gap], sizes: &DVector<f64>, terms: &[f64]) -> Result<(), AssemblyError> {

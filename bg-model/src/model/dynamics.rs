@@ -19,7 +19,7 @@ use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Field, Sparsity, differences};
 use crate::model::origin::Origin;
 use crate::model::scalar::machine::Arch;
-use crate::model::system::{Model, Powers, System, decide_by_sign, switches, switches_mut, values, values_mut};
+use crate::model::system::{Model, Powers, System, decide_by_sign, switches, values, values_mut};
 
 /// A system of ordinary differential equations: [`System`], over slices. States `x` and all that there is one of for
 /// each of them have [`Dynamics::states`] numbers, the branches `negative` of the switches [`Dynamics::switches`]. Only
@@ -43,8 +43,8 @@ pub trait Dynamics {
     fn guards(&self, _t: f64, _x: &[f64], _negative: &[bool], _guards: &mut [f64]) {}
 
     /// [`System::first_branches`].
-    fn first_branches(&self, first: &mut [bool]) {
-        first.fill(false);
+    fn first_branches(&self) -> Vec<bool> {
+        vec![false; self.switches()]
     }
 
     /// [`System::project`].
@@ -53,11 +53,6 @@ pub trait Dynamics {
     /// [`System::next_break`].
     fn next_break(&self, _t: f64) -> f64 {
         f64::INFINITY
-    }
-
-    /// [`System::runs_in_lanes`]; not by default, for which its numbers would have to be others.
-    fn runs_in_lanes(&self) -> bool {
-        false
     }
 
     /// [`System::state_name`].
@@ -223,12 +218,11 @@ pub trait Machine: Dynamics {
 /// The branches of the switches of a system at time `t` (s) and state `x`.
 #[must_use]
 pub fn branches(system: &dyn Dynamics, t: f64, x: &[f64]) -> Vec<bool> {
-    let mut first = vec![false; system.switches()];
-    system.first_branches(&mut first);
-    decide_by_sign(&mut first, &mut vec![0.0; system.switches()], |negative, guards| {
+    let mut negative = system.first_branches();
+    decide_by_sign(&mut negative, &mut vec![0.0; system.switches()], |negative, guards| {
         system.guards(t, x, negative, guards);
     });
-    first
+    negative
 }
 
 /// A model over slices. What is generic over [`Model`] and asks for this is compiled once for each model.
@@ -398,8 +392,8 @@ where
         self.of.guards(t, values(x), switches(negative), values_mut(guards));
     }
 
-    fn first_branches(&self, first: &mut [bool]) {
-        *switches_mut(first) = self.of.first_branches();
+    fn first_branches(&self) -> Vec<bool> {
+        self.of.first_branches().to_vec()
     }
 
     fn project(&self, t: f64, negative: &[bool], x: &mut [f64]) {
@@ -408,10 +402,6 @@ where
 
     fn next_break(&self, t: f64) -> f64 {
         self.of.next_break(t)
-    }
-
-    fn runs_in_lanes(&self) -> bool {
-        self.of.runs_in_lanes()
     }
 
     fn state_name(&self, index: usize) -> &'static str {

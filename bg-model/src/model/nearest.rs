@@ -10,6 +10,7 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use crate::model::scalar::Scalar;
+use crate::model::scalar::double::first_not_finite;
 
 /// Writes the residuals at some coordinates.
 type Residual<'a> = dyn Fn(&[f64], &mut [f64]) + 'a;
@@ -18,13 +19,13 @@ type Residual<'a> = dyn Fn(&[f64], &mut [f64]) + 'a;
 /// the residuals there. `longest` limits a step.
 ///
 /// # Errors
-/// The residuals, or their derivatives by a coordinate, where one is not finite.
+/// The first residual, or derivative of one, that is not finite: the row and the number.
 pub(crate) fn nearest(
     guess: &[f64],
     rows: usize,
     longest: &dyn Fn(&[f64]) -> f64,
     residual: &Residual<'_>,
-) -> Result<(Vec<f64>, DVector<f64>), DVector<f64>> {
+) -> Result<(Vec<f64>, DVector<f64>), (usize, f64)> {
     // Quadratic convergence needs some ten iterations; more only for far guesses, whose steps are limited.
     const ITERATIONS: usize = 200;
     let sizes_at = |coordinates: &[f64]| {
@@ -32,13 +33,14 @@ pub(crate) fn nearest(
         residual(coordinates, sizes.as_mut_slice());
         sizes
     };
-    let check = |sizes: DVector<f64>| if sizes.iter().all(|size| size.is_finite()) { Ok(sizes) } else { Err(sizes) };
+    let check = |sizes: &[f64]| first_not_finite(sizes).map_or(Ok(()), Err);
     let mut coordinates = guess.to_vec();
-    let mut sizes = check(sizes_at(&coordinates))?;
+    let mut sizes = sizes_at(&coordinates);
+    check(sizes.as_slice())?;
     if !coordinates.is_empty() {
         for _ in 0..ITERATIONS {
             let jacobian = jacobian(&coordinates, rows, &sizes_at);
-            (0..jacobian.ncols()).try_for_each(|k| check(jacobian.column(k).into_owned()).map(|_| ()))?;
+            jacobian.column_iter().try_for_each(|column| check(column.as_slice()))?;
             let longest = longest(&coordinates);
             let Some((nearer, smaller)) = shrink(&coordinates, &sizes, jacobian, longest, &sizes_at) else { break };
             (coordinates, sizes) = (nearer, smaller);

@@ -158,7 +158,7 @@ impl<'a> Standing<'a> {
     /// The branches `negative` without those that cannot be here: something rests on a stop or sticks in dry friction
     /// only where it is and does not move. Where one cannot be the signs of the guards decide.
     pub fn possible(&self, x: &[f64], mut negative: Vec<bool>) -> Vec<bool> {
-        let first = self.first_branches();
+        let first = self.model.first_branches();
         let held: Vec<usize> = (0..first.len()).filter(|&k| first[k] && !negative[k]).collect();
         if held.is_empty() {
             return negative;
@@ -261,7 +261,7 @@ impl<'a> Standing<'a> {
 
     /// Checks stops, and moves what is a little beyond one onto it.
     fn cleared(&self, stops: Stops, mut x: Vec<f64>, negative: &[bool]) -> Result<Vec<f64>, Misplaced> {
-        let first = self.first_branches();
+        let first = self.model.first_branches();
         let mut collision = Collision::<f64>::new(stops, self.model.kept_of_stops());
         let stops = stops.stops;
         for _ in 0..ROUNDS {
@@ -350,13 +350,6 @@ impl<'a> Standing<'a> {
         self.model.hold(t, x, negative, &mut entries);
         let now = held.read(&entries);
         now.flows[..now.gaps.len()].iter().chain(now.gaps).copied().collect()
-    }
-
-    /// The branches from which the search for those at a start begins.
-    fn first_branches(&self) -> Vec<bool> {
-        let mut first = vec![false; self.model.switches()];
-        self.model.first_branches(&mut first);
-        first
     }
 }
 

@@ -204,16 +204,6 @@ pub fn switches<const G: usize>(negative: &[bool]) -> &[bool; G] {
     negative.try_into().expect("there is a branch for each switch")
 }
 
-/// The same to be written.
-///
-/// # Panics
-/// They are not `G`.
-#[inline(always)]
-#[must_use]
-pub fn switches_mut<const G: usize>(negative: &mut [bool]) -> &mut [bool; G] {
-    negative.try_into().expect("there is a branch for each switch")
-}
-
 /// The branches of the switches at time `t` (s) and state `x`.
 pub fn branches<S: Scalar<Switch = bool>, const N: usize, const G: usize>(
     system: &impl System<S, N, G>,

@@ -3,8 +3,9 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::problems::*;
+use bg_model::dynamics::Dynamics;
 use bg_model::failure::Cause;
-use bg_model::integrator::{Flow as _, Gauss6, Method, Point, Radau5, Radau9, Scale, Tolerances};
+use bg_model::integrator::{self, Gauss6, Method, Point, Radau5, Radau9, Scale, Tolerances};
 use bg_model::nalgebra::{DVector, SVector};
 use bg_model::simulation::{Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
@@ -15,15 +16,15 @@ fn assert_orders(errors: &[f64], expected: std::ops::Range<f64>) {
     assert!(found.iter().all(|order| expected.contains(order)), "{found:?}: {errors:?}");
 }
 
-/// A flow given by a closure.
+/// A system given by a closure.
 struct Free<F, const N: usize>(F);
 
-impl<F: Fn(f64, &SVector<f64, N>) -> [f64; N], const N: usize> bg_model::integrator::Flow for Free<F, N> {
+impl<F: Fn(f64, &SVector<f64, N>) -> [f64; N], const N: usize> Dynamics for Free<F, N> {
     fn states(&self) -> usize {
         N
     }
 
-    fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
+    fn rate(&self, t: f64, x: &[f64], _: &[bool], dx: &mut [f64]) {
         dx.copy_from_slice(&(self.0)(t, &SVector::from_column_slice(x)));
     }
 }
@@ -37,7 +38,8 @@ fn even<M: Method, const N: usize>(
     t_end: f64,
     steps: u32,
 ) -> SVector<f64, N> {
-    let flow = Free::<_, N>(rate);
+    let (system, mut statistics) = (Free::<_, N>(rate), Statistics::default());
+    let flow = integrator::Flow::new(&system, &[], &mut statistics);
     let scales = [Tolerances::new(1.0, 1e10), Tolerances::new(1e-10, 1e-10)].map(|of| Scale::new(&of, N));
     let h = t_end / f64::from(steps);
     let mut point = Point::at(0.0, DVector::from_column_slice(&start));
@@ -258,7 +260,8 @@ fn a_tiny_step_in_front_does_not_end_the_next_iteration_early() {
         let pull = 1e4 * (length - 1.0) / length;
         [x[2], x[3], -pull * x[0], -pull * x[1] - 9.81]
     };
-    let flow = Free::<_, 4>(rate);
+    let (system, mut statistics) = (Free::<_, 4>(rate), Statistics::default());
+    let flow = integrator::Flow::new(&system, &[], &mut statistics);
     let mut start = Point::at(0.0, DVector::from_column_slice(&[1.0, 0.0, 0.0, 1.0]));
     flow.rate(0.0, start.x.as_slice(), start.rate.as_mut_slice());
     let scale = Scale::new(&Tolerances::new(1e-4, 1e-4), 4);

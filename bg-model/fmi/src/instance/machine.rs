@@ -9,7 +9,7 @@ use bg_model::dynamics::Machine;
 use bg_model::failure::Origin;
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::run::Request;
-use bg_model::simulation::{Ongoing, Settings, sizes_of};
+use bg_model::simulation::{Ongoing, Settings, raise, sizes_of};
 use bg_model::standing::{CLOSE, Misplaced, Standing};
 use bg_model::statistics::Statistics;
 
@@ -79,11 +79,6 @@ pub(crate) fn nominals_at_start(model: &dyn Machine) -> Option<Vec<f64>> {
 
 fn misplaced(fault: Misplaced) -> Fault {
     Fault::Misplaced(fault.to_string())
-}
-
-/// Raises sizes to the magnitudes of a state.
-fn raise(largest: &mut [f64], x: &[f64]) {
-    largest.iter_mut().zip(x).for_each(|(largest, x)| *largest = largest.max(x.abs()));
 }
 
 impl Stood {

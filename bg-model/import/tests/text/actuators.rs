@@ -3,7 +3,7 @@
 use bg_import::{Format, Imported, Options, import};
 
 use super::kinds::{NO_CONTACTS, rods};
-use super::{MASS, arm, compiles};
+use super::{MASS, arm, compiles, compiles_with};
 
 const ASKED: Options = Options { actuators: true, ..NO_CONTACTS };
 
@@ -18,12 +18,7 @@ fn asked(text: &str) -> Imported {
 
 /// That there is no note, and a text has words.
 fn has(text: &str, words: &[&str]) {
-    let imported = asked(text);
-    assert_eq!(imported.notes, [""; 0], "{text}");
-    compiles(&imported.text);
-    for word in words {
-        assert!(imported.text.contains(word), "no `{word}` in\n{}", imported.text);
-    }
+    compiles_with(&asked(text), words, &[]);
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use bg_import::{Format, Imported, Options, import, import_file};
 
-use super::compiles;
 use super::kinds::NO_CONTACTS;
 use super::program::folder;
+use super::{compiles, has};
 
 const ASKED: Options = Options { actuators: true, ..NO_CONTACTS };
 
@@ -29,17 +29,6 @@ fn made(name: &str, child: &str, inner: &str) -> Result<Imported, String> {
     );
     let folder = folder(name, &[("main.xml", main.as_bytes()), ("parts/child.xml", child.as_bytes())]);
     import_file(Format::Mjcf, &folder.join("main.xml"), ASKED).map_err(|fault| fault.to_string())
-}
-
-/// That there is no note, and a text has words, and has others not.
-fn has(imported: &Imported, words: &[&str], others: &[&str]) {
-    assert_eq!(imported.notes, [""; 0]);
-    for word in words {
-        assert!(imported.text.contains(word), "no `{word}` in\n{}", imported.text);
-    }
-    for word in others {
-        assert!(!imported.text.contains(word), "`{word}` in\n{}", imported.text);
-    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use bg_import::{Format, Imported, Options, import};
 
-use super::{MASS, arm, compiles};
+use super::{MASS, arm, compiles, compiles_with};
 
 /// Without the note on contacts, which each shape makes.
 pub(super) const NO_CONTACTS: Options = Options {
@@ -114,16 +114,8 @@ fn strict_makes_a_note_an_error() {
 }
 
 /// That a text has words, and has others not.
-pub(super) fn has(text: &str, words: &[&str], others: &[&str]) {
-    let imported = made(text);
-    assert_eq!(imported.notes, [""; 0], "{text}");
-    compiles(&imported.text);
-    for word in words {
-        assert!(imported.text.contains(word), "no `{word}` in\n{}", imported.text);
-    }
-    for word in others {
-        assert!(!imported.text.contains(word), "`{word}` in\n{}", imported.text);
-    }
+fn has(text: &str, words: &[&str], others: &[&str]) {
+    compiles_with(&made(text), words, others);
 }
 
 #[test]

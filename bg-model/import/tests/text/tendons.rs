@@ -2,7 +2,7 @@
 
 use bg_import::{Format, Imported, Options, import};
 
-use super::compiles;
+use super::compiles_with;
 use super::kinds::NO_CONTACTS;
 
 const ASKED: Options = Options { actuators: true, ..NO_CONTACTS };
@@ -22,15 +22,7 @@ fn asked(text: &str) -> Result<Imported, String> {
 
 /// That there is no note, and a text has words, and has others not.
 fn has(text: &str, words: &[&str], others: &[&str]) {
-    let imported = asked(text).expect("a robot");
-    assert_eq!(imported.notes, [""; 0], "{text}");
-    compiles(&imported.text);
-    for word in words {
-        assert!(imported.text.contains(word), "no `{word}` in\n{}", imported.text);
-    }
-    for word in others {
-        assert!(!imported.text.contains(word), "`{word}` in\n{}", imported.text);
-    }
+    compiles_with(&asked(text).expect("a robot"), words, others);
 }
 
 #[test]

@@ -18,6 +18,7 @@ use alloc::vec::Vec;
 #[cfg(feature = "std")]
 use nalgebra::SVector;
 
+use super::dropped_of;
 use super::factors::{DISTINCT, Factors, Matrix};
 #[cfg(feature = "std")]
 use crate::model::capability::Impacts;
@@ -91,10 +92,7 @@ impl<S: Scalar<Switch = bool>> Collision<S> {
     /// Room for the impacts of a system.
     pub fn new(table: Stops, kept_of_stops: &[f64]) -> Self {
         let (rows, stops, zero) = (table.rows(), table.stops.len(), S::from_f64(0.0));
-        let mut dropped = vec![false; table.rigid];
-        for &(row, number) in table.closing {
-            dropped[row] = kept_of_stops[number] == 0.0;
-        }
+        let dropped = dropped_of(table.rigid, table.closing, kept_of_stops);
         Self {
             table,
             before: vec![zero; table.entries()],

@@ -17,7 +17,7 @@ mod shared;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::{DVector, SVector};
+use nalgebra::SVector;
 
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::{Joints, Storages};
@@ -133,9 +133,10 @@ where
             flows.iter_mut().zip(hold.flows()).for_each(|(to, flow)| *to = flow.to_f64());
         };
         let rows = held.rigid.len() + held.compliant.len();
-        let torn = |flows: DVector<f64>| {
-            let k = flows.iter().position(|flow| !flow.is_finite()).expect("one of them is not finite");
-            AssemblyError::Torn { largest: slipping(&held, k, flows[k]), allowed: 0.0, others: Vec::new() }
+        let torn = |(row, flow): (usize, f64)| AssemblyError::Torn {
+            largest: slipping(&held, row, flow),
+            allowed: 0.0,
+            others: Vec::new(),
         };
         // The flows are linear in the velocities, so the first step is the last but for rounding.
         let found = nearest(&values.map(S::to_f64), rows, &|_| f64::INFINITY, &residual).map_err(torn)?.0;
@@ -210,13 +211,14 @@ where
     J: Joints<S, N, G>,
     S: Scalar,
 {
-    dropped_of(&joints.held(), joints.kept())
+    let held = joints.held();
+    dropped_of(held.rigid.len(), held.closing, joints.kept())
 }
 
-/// The same of what they hold and of what is kept.
-fn dropped_of(held: &Held, kept: &[f64]) -> Vec<bool> {
-    let mut dropped = vec![false; held.rigid.len()];
-    for &(row, number) in held.closing {
+/// The same of so many rigid motions, of which some are `closing`, and of what is kept of these.
+fn dropped_of(rigid: usize, closing: &[(usize, usize)], kept: &[f64]) -> Vec<bool> {
+    let mut dropped = vec![false; rigid];
+    for &(row, number) in closing {
         dropped[row] = kept[number] == 0.0;
     }
     dropped

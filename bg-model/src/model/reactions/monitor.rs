@@ -63,7 +63,7 @@ impl LoopMonitor {
     /// Room for what is held; none where no joint closes a loop.
     pub fn new(system: &dyn Dynamics) -> Option<Self> {
         let held = system.held()?;
-        let dropped = dropped_of(&held, system.kept());
+        let dropped = dropped_of(held.rigid.len(), held.closing, system.kept());
         let factors = Factors::new(dropped.len());
         (!held.closing.is_empty()).then(|| Self { hold: Hold::new(held), factors, dropped, was_near: false })
     }

@@ -43,6 +43,12 @@ pub fn power<S: Scalar>(of: S, exponent: u32) -> S {
     result
 }
 
+/// The first number that is not finite, with its place.
+#[inline(never)]
+pub(crate) fn first_not_finite(numbers: &[f64]) -> Option<(usize, f64)> {
+    numbers.iter().copied().enumerate().find(|(_, value)| !value.is_finite())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,7 +7,6 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::guarded::{End, Guarded};
-use super::impact::first_branches;
 use super::{CERTAIN, EventMonitor, check_finite, clearance};
 use crate::model::reactions::Collision;
 use crate::model::system::decide_by_sign;
@@ -31,7 +30,7 @@ impl EventMonitor {
         if self.guards() == 0 {
             return Vec::new();
         }
-        let first = first_branches(stepper);
+        let first = stepper.system.first_branches();
         let mut negative = known.map_or_else(|| first.clone(), <[bool]>::to_vec);
         let held: Vec<bool> = first.iter().zip(&negative).map(|(first, known)| *first && !known).collect();
         let clear = self.strike_at_begin(stepper, collision, &held);
@@ -62,7 +61,7 @@ impl EventMonitor {
     /// are small compared with `step` (s). Other switches whose guards that moves to the wrong side follow at once.
     pub fn settle(&mut self, stepper: &mut Stepper<'_>, switches: Vec<bool>, step: f64) {
         let settled = self.follow(stepper, switches, step);
-        let remembers = first_branches(stepper);
+        let remembers = stepper.system.first_branches();
         // Friction at its limit on a motion that others hold: what rounding leaves of the flow may have the wrong sign.
         for k in (0..settled.len()).filter(|&k| settled[k] && remembers[k]) {
             let value = self.start.value[k];

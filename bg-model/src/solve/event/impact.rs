@@ -68,7 +68,7 @@ impl EventMonitor {
         let mut clear = vec![false; held.len()];
         let Some(collision) = collision else { return clear };
         collision.switches().for_each(|k| self.is_stop[k] = true);
-        stepper.system.first_branches(&mut stepper.negative);
+        stepper.negative = stepper.system.first_branches();
         let beyond = stepper.guards_of(End::Start);
         self.collide(stepper, collision, |k| beyond[k] >= 0.0 || held[k], &mut vec![false; held.len()]);
         collision.outcomes().for_each(|(k, after)| clear[k] = after == After::Clear);
@@ -103,7 +103,7 @@ impl EventMonitor {
         let impacts = impacts_of(stepper.system);
         let (t, negative) = (stepper.start.t, stepper.negative.clone());
         // Where all that remembers is in its first branch guards are places of stops and flows of frictions.
-        let first = first_branches(stepper);
+        let first = stepper.system.first_branches();
         stepper.negative.iter_mut().zip(&first).for_each(|(negative, first)| *negative |= first);
         let place = stepper.guards_of(End::Start);
         let noise = self.noise_of(stepper, End::Start, &place);
@@ -141,11 +141,4 @@ fn allowed(stepper: &mut Stepper<'_>, value: &[f64]) -> Vec<f64> {
     let off: Vec<f64> = x.iter().enumerate().map(|(i, x)| x + stepper.scale.allowed(i, *x)).collect();
     let displaced = stepper.guards(t, &off);
     value.iter().zip(displaced).map(|(value, displaced)| (displaced - value).abs()).collect()
-}
-
-/// The branches from which the search for those at a start begins.
-pub(super) fn first_branches(stepper: &Stepper<'_>) -> Vec<bool> {
-    let mut first = vec![false; stepper.negative.len()];
-    stepper.system.first_branches(&mut first);
-    first
 }

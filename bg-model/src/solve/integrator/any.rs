@@ -81,7 +81,7 @@ impl Method for AnyMethod {
         inside!((&mut) self, method => method.fit(states));
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         inside!((&mut) self, method => method.attempt(flow, start, h, scale, end))
     }
 

@@ -63,7 +63,7 @@ impl Gauss6 {
     }
 
     /// Tries a step as [`Method::attempt`] does, by this scale.
-    fn step(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn step(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if let Err(error) = self.core.solve(flow, start, h, scale) {
             return error;
         }
@@ -98,7 +98,7 @@ impl Method for Gauss6 {
         self.by_polynomial.resize(states, 0.0);
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let error = if let StepControl::Fixed { .. } = self.control {
             let mut own = core::mem::replace(&mut self.own, Scale::of_nothing(OF_FIXED));
             of_fixed(scale, &mut own);

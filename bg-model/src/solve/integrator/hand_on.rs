@@ -18,7 +18,7 @@ macro_rules! hand_on {
 
         fn error_after(
             &mut self,
-            flow: &dyn Flow,
+            flow: &Flow<'_>,
             start: PointRef<'_>,
             h: f64,
             scale: &Scale,
@@ -36,7 +36,7 @@ macro_rules! hand_on {
             $present!((&) self, method => method.faulty_rate())
         }
 
-        fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
             $present!((&mut) self, method => method.prepare_dense(flow, start, h, end));
         }
 

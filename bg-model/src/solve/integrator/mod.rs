@@ -14,6 +14,7 @@ mod collocation;
 mod compensated;
 mod dense;
 mod explicit;
+mod flow;
 mod gauss;
 mod hand_on;
 mod hermite;
@@ -31,13 +32,9 @@ mod taylor;
 mod tolerances;
 mod vectors;
 
-use alloc::vec;
-use core::ops::Range;
+use nalgebra::DVector;
 
-use nalgebra::{Complex, DVector};
-
-pub use crate::model::capability::SeriesSize;
-use crate::model::linear::{Sparsity, differences};
+pub(crate) use crate::model::scalar::double::first_not_finite;
 pub use any::AnyMethod;
 pub use auto::{Auto, Change, Reason};
 pub use choice::{Integrator, UnknownIntegrator};
@@ -46,6 +43,7 @@ pub(crate) use explicit::both;
 pub use explicit::{
     BogackiShampine, Bs5, CalvoFrancoMontijanoRandez, Cfmr7, Dop853, DormandPrince, Explicit, Row, Tableau,
 };
+pub use flow::Flow;
 pub use gauss::Gauss6;
 #[cfg(feature = "std")]
 pub(crate) use hermite::between;
@@ -63,103 +61,6 @@ pub use taylor::Taylor;
 pub use tolerances::{Absolute, Scale, Tolerances};
 pub(crate) use tolerances::{displaced, rounding, smaller};
 pub(crate) use vectors::Arch;
-
-/// A smooth flow: a system with its switches frozen. Only the number of its states and the rate have to be written;
-/// what else it knows of itself it may say. States, and all that there is one of for each of them, are slices: methods
-/// are compiled once, in this crate, for any flow.
-pub trait Flow {
-    /// The number of states.
-    fn states(&self) -> usize;
-
-    /// Writes dx/dt at time `t` (s) and state `x` into `dx`.
-    fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]);
-
-    /// Where the Jacobian df/dx can differ from zero.
-    fn sparsity(&self) -> Sparsity {
-        Sparsity::Full
-    }
-
-    /// Writes df/dx in the order of the sparsity into `entries` and df/dt, per s, into `slope`; by default by
-    /// differences, for which room is allocated.
-    fn jacobian(&self, t: f64, x: &[f64], entries: &mut [f64], slope: &mut [f64]) {
-        differences(|t, x, dx| self.rate(t, x, dx), t, x, entries, slope, &mut vec![0.0; x.len()]);
-    }
-
-    /// Where [`Flow::damping`] can differ from zero.
-    fn damping_sparsity(&self) -> Sparsity {
-        self.sparsity()
-    }
-
-    /// Writes at least the entries of df/dx among states that are not of second order, in the order of
-    /// [`Flow::damping_sparsity`], into `entries`; by default all, with room for what [`Flow::jacobian`] gives beside.
-    fn damping(&self, t: f64, x: &[f64], entries: &mut [f64]) {
-        self.jacobian(t, x, entries, &mut vec![0.0; x.len()]);
-    }
-
-    /// How many numbers the factors of I - c J are, along an elimination made for the sparsity; none where there is no
-    /// such one.
-    fn factors(&self) -> Option<usize> {
-        None
-    }
-
-    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it
-    /// did: not where a pivot is too small, and by default.
-    fn eliminate(&self, _c: f64, _entries: &[f64], _factors: &mut [f64]) -> bool {
-        false
-    }
-
-    /// The same with a complex `c`.
-    fn eliminate_complex(&self, _c: Complex<f64>, _entries: &[f64], _factors: &mut [Complex<f64>]) -> bool {
-        false
-    }
-
-    /// Replaces `b` by the solution y of (I - c J) y = b, with the `factors` of I - c J.
-    fn substitute(&self, _factors: &[f64], _b: &mut [f64]) {}
-
-    /// The same with a complex c.
-    fn substitute_complex(&self, _factors: &[Complex<f64>], _b: &mut [Complex<f64>]) {}
-
-    /// The states of second order, side by side; an empty range where there are none.
-    fn second(&self) -> Range<usize> {
-        0..0
-    }
-
-    /// Replaces the rates `dx` of the states of second order at state `x` by their second derivatives with respect to
-    /// time, per s^2.
-    fn second_derivatives(&self, _x: &[f64], _dx: &mut [f64]) {}
-
-    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their
-    /// second derivatives.
-    #[inline(always)]
-    fn forces(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.rate(t, x, dx);
-        self.second_derivatives(x, dx);
-    }
-
-    /// The operations of a rate and of [`Flow::forces`], where they have been counted.
-    fn operations_of_forces(&self) -> Option<[u32; 2]> {
-        None
-    }
-
-    /// What a Taylor series of the states takes; none where there is no series.
-    fn series(&self) -> Option<SeriesSize> {
-        None
-    }
-
-    /// Writes the Taylor series of the states from time `t` (s) on: order by order, of each all states. Those of order
-    /// 0 are the state there; those of order k become the coefficients of the k-th power of the time passed in parts of
-    /// `h` (s). `rows` is work space, of as many numbers for each order but the first as the series is wide.
-    fn expand(&self, _t: f64, _h: f64, _rows: &mut [f64], _series: &mut [f64]) {}
-
-    /// Whether joints hold motions, so that the end of each step is moved back onto them.
-    fn is_held(&self) -> bool {
-        false
-    }
-
-    /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small
-    /// pivot.
-    fn count_factorisation(&self, _is_fallback: bool) {}
-}
 
 /// A point of a trajectory.
 #[derive(Clone, Debug, PartialEq)]
@@ -271,13 +172,13 @@ pub trait Method {
     ///
     /// Gives the norm of the error estimate: up to 1 the step satisfies the tolerances. A fixed-step method gives 0.
     /// Not a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64;
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64;
 
     /// The norm of what `project` leaves of the last attempt's error estimate; none where the method does not say.
     /// Joints that hold a motion take away what a step errs in it.
     fn error_after(
         &mut self,
-        _flow: &dyn Flow,
+        _flow: &Flow<'_>,
         _start: PointRef<'_>,
         _h: f64,
         _scale: &Scale,
@@ -315,16 +216,10 @@ pub trait Method {
     /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
     /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be
     /// nothing to prepare.
-    fn prepare_dense(&mut self, _flow: &dyn Flow, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {}
+    fn prepare_dense(&mut self, _flow: &Flow<'_>, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {}
 
     /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
     fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]);
-}
-
-/// The first number that is not finite, with its place.
-#[inline(never)]
-pub(crate) fn first_not_finite(numbers: &[f64]) -> Option<(usize, f64)> {
-    numbers.iter().copied().enumerate().find(|(_, value)| !value.is_finite())
 }
 
 /// Whether all numbers are finite.

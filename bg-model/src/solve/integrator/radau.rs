@@ -59,7 +59,7 @@ impl<const S: usize, const P: usize> Method for Radau<S, P> {
         self.core.fit(states);
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let error = match self.core.solve(flow, start, h, scale) {
             Ok(()) => {
                 let increments = self.core.last_increment();

@@ -93,7 +93,7 @@ impl Method for Rk4 {
         self.rates.iter_mut().chain([&mut self.x]).for_each(|room| room.resize(states, 0.0));
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, _scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, _scale: &Scale, end: &mut [f64]) -> f64 {
         let Self { rates, x, .. } = self;
         rates[0].copy_from_slice(start.rate);
         for (stage, c) in C.into_iter().enumerate() {

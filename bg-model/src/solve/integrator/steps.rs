@@ -42,9 +42,6 @@ pub(crate) trait Forces<S>: Rates<S> {
     fn at_stage(&self, t: S, x: &[S], dx: &mut [S]);
 }
 
-/// Those of a flow.
-pub(super) struct OfFlow<'a>(pub &'a dyn Flow);
-
 impl<'a> Begin<'a, f64> {
     /// The start of a step of size `h` (s).
     pub fn of(start: PointRef<'a>, h: f64) -> Self {
@@ -53,31 +50,31 @@ impl<'a> Begin<'a, f64> {
     }
 }
 
-impl Rates<f64> for OfFlow<'_> {
+impl Rates<f64> for Flow<'_> {
     #[inline(always)]
     fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.0.rate(t, x, dx);
+        Flow::rate(self, t, x, dx);
     }
 
     #[inline(always)]
     fn inlined_rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.0.rate(t, x, dx);
+        Flow::rate(self, t, x, dx);
     }
 }
 
-impl Forces<f64> for OfFlow<'_> {
+impl Forces<f64> for Flow<'_> {
     #[inline(always)]
     fn second(&self) -> Range<usize> {
-        self.0.second()
+        Flow::second(self)
     }
 
     #[inline(always)]
     fn at_start(&self, x: &[f64], dx: &mut [f64]) {
-        self.0.second_derivatives(x, dx);
+        self.second_derivatives(x, dx);
     }
 
     #[inline(always)]
     fn at_stage(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.0.forces(t, x, dx);
+        self.forces(t, x, dx);
     }
 }

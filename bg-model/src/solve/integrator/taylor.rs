@@ -76,7 +76,7 @@ impl Taylor {
     /// Expands the flow from `start` to the order that `relative` calls for, with the unit of time `h` (s). Without a
     /// series, which the driver refuses, the other method makes the step.
     #[inline(always)]
-    fn expand(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, relative: f64) {
+    fn expand(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, relative: f64) {
         let size = flow.series();
         self.is_current = true;
         self.is_by_other = size.is_none();
@@ -100,7 +100,7 @@ impl Taylor {
     /// none. The method begins anew after it. The state that the step leads to becomes `end`.
     pub(super) fn error(
         &mut self,
-        flow: &dyn Flow,
+        flow: &Flow<'_>,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,
@@ -176,7 +176,7 @@ impl Default for Taylor {
 /// Of a step that the other method makes, the norm is none.
 impl Vectorised for Taylor {
     #[inline(always)]
-    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt_inlined(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if !self.is_current {
             self.expand(flow, start, h, scale.relative);
         }
@@ -244,7 +244,7 @@ impl Method for Taylor {
         }
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
         if self.is_by_other { self.other.attempt(flow, start, h, scale, end) } else { norm }
     }
@@ -279,7 +279,7 @@ impl Method for Taylor {
         self.series.chunks_exact(n.max(1)).skip(1).find_map(first_not_finite)
     }
 
-    fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
         if self.is_by_other {
             self.other.prepare_dense(flow, start, h, end);
         }

@@ -190,14 +190,14 @@ pub(crate) type Displaced<'a> = [&'a mut [f64]; 3];
 
 /// Writes the largest change of each rate at `start` where every state is rounded up or down, in some patterns, into
 /// the last of `work`: what rounding may add to the rates. Not negative. Takes four rates.
-pub(crate) fn rounding(flow: &dyn Flow, start: PointRef<'_>, work: Displaced<'_>) {
+pub(crate) fn rounding(flow: &Flow<'_>, start: PointRef<'_>, work: Displaced<'_>) {
     displaced(flow, start, |i| start.x[i] * f64::EPSILON, work);
 }
 
 /// The same where every state is displaced up or down by this much.
 #[inline(never)]
 pub(crate) fn displaced(
-    flow: &dyn Flow,
+    flow: &Flow<'_>,
     start: PointRef<'_>,
     by: impl Fn(usize) -> f64,
     [there, rate, largest]: Displaced<'_>,

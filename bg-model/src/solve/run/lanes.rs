@@ -106,9 +106,7 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
         let settings = self.request.settings(0.0);
         let method: AnyMethod = self.request.method.method(self.request.fixed_step);
         let span = Span { t0: 0.0, t_end: self.request.t_end };
-        let Some(together) =
-            AnyInLanes::of(&method, N).filter(|_| lanes::fits(&*shared(model.clone()), span, &settings))
-        else {
+        let Some(together) = AnyInLanes::of(&method, N).filter(|_| lanes::fits(model, span, &settings)) else {
             return self.all_alone();
         };
         let clock = Clock::started();

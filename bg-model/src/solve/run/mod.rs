@@ -38,7 +38,7 @@ use crate::solve::event::Condition;
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason, Scale};
-use crate::solve::simulation::{Beginning, Observer, Part, Recorder, Samples, Span, Switching, make};
+use crate::solve::simulation::{Beginning, Observer, Part, Recorder, Samples, Span, Switching, make, raise};
 use crate::solve::statistics::Statistics;
 
 /// A run to be made.
@@ -165,7 +165,7 @@ impl<'a, Me: Mechanism> Simulation<'a, Me> {
     /// The start cannot be assembled, the state is not one of this mechanism, or the mechanism cannot stand in it.
     pub fn start(&self) -> Result<State, RunError> {
         let model = &*self.model.machine();
-        let (t, Beginning { x, largest, negative }) = Start { start: self.start.as_ref() }.beginning(model)?;
+        let (t, Beginning { x, largest, negative }) = beginning(model, self.start.as_ref())?;
         Ok(State::new(model.description(), t, x.as_slice(), largest.as_slice(), negative.as_deref()))
     }
 
@@ -194,23 +194,17 @@ pub enum RunError {
     Stopped(Box<Stopped>),
 }
 
-/// The time and the states that a run starts from.
-struct Start<'a> {
-    start: Option<&'a State>,
-}
-
-impl Start<'_> {
-    fn beginning(&self, model: &dyn Machine) -> Result<(f64, Beginning), RunError> {
-        let Some(state) = self.start else {
-            let x = model.start()?;
-            return Ok((0.0, Beginning::at(DVector::from_vec(x))));
-        };
-        let Beginning { x, largest, negative } = state.beginning(model.description())?;
-        let standing = Standing::new(model, state.t, largest.as_slice(), CLOSE);
-        let negative = negative.map(|negative| standing.possible(x.as_slice(), negative));
-        let x = standing.closed(x.as_slice(), negative.as_deref()).map_err(StateError::from)?;
-        Ok((state.t, Beginning { x: DVector::from_vec(x), largest, negative }))
-    }
+/// The time (s) and the states that a run starts from: of `start`, else the model's own.
+fn beginning(model: &dyn Machine, start: Option<&State>) -> Result<(f64, Beginning), RunError> {
+    let Some(state) = start else {
+        let x = model.start()?;
+        return Ok((0.0, Beginning::at(DVector::from_vec(x))));
+    };
+    let Beginning { x, largest, negative } = state.beginning(model.description())?;
+    let standing = Standing::new(model, state.t, largest.as_slice(), CLOSE);
+    let negative = negative.map(|negative| standing.possible(x.as_slice(), negative));
+    let x = standing.closed(x.as_slice(), negative.as_deref()).map_err(StateError::from)?;
+    Ok((state.t, Beginning { x: DVector::from_vec(x), largest, negative }))
 }
 
 /// What is integrated.
@@ -236,7 +230,7 @@ impl Integration<'_> {
     fn recorded(self, model: &dyn Machine, another: Option<&mut dyn Observer>) -> Result<Trajectory, RunError> {
         let Self { request, start, each_step, ending } = self;
         let clock = Clock::started();
-        let (t0, beginning) = Start { start: start.as_ref() }.beginning(model)?;
+        let (t0, beginning) = beginning(model, start.as_ref())?;
         let mut method: AnyMethod = request.method.method(request.fixed_step);
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
@@ -312,7 +306,7 @@ impl Made {
             wall,
             redundant: model.redundant(),
             impulse_energy: if starts_at_zero { model.impulse_energy().unwrap_or(0.0) } else { 0.0 },
-            last: last(model, &finish, &recorder.largest),
+            last: last(model, &finish, recorder.largest),
             request,
         };
         match cause {
@@ -324,11 +318,11 @@ impl Made {
 
 /// Where a run has come to, by name; its states have been as large as `largest` before. What coarse steps have left of
 /// gaps is closed: another run could not start there.
-fn last(model: &dyn Machine, Finish { t, x, negative, .. }: &Finish, largest: &[f64]) -> State {
+fn last(model: &dyn Machine, Finish { t, x, negative, .. }: &Finish, mut largest: Vec<f64>) -> State {
     /// The part of a state that a projection may move it by, to be left as it is.
     const EXACT: f64 = 1e-12;
     const ROUNDS: usize = 4;
-    let largest: Vec<f64> = largest.iter().zip(x).map(|(largest, x)| largest.max(x.abs())).collect();
+    raise(&mut largest, x.as_slice());
     let mut x = x.as_slice().to_vec();
     for _ in 0..ROUNDS {
         let mut closer = x.clone();

@@ -26,7 +26,7 @@ pub use observer::{EachSample, EachStep, Observer, Switching};
 pub use ongoing::Ongoing;
 pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
-pub use sizes::{sizes, sizes_of};
+pub use sizes::{raise, sizes, sizes_of};
 
 use crate::model::dynamics::{Dynamics, Typed};
 use crate::model::system::{System, switches, values};

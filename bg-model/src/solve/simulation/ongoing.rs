@@ -15,7 +15,7 @@ use super::observer::Observer;
 use super::rounding::RoundingMonitor;
 use super::run::Run;
 use super::settings::{self, Settings, Span};
-use super::sizes::SizeMonitor;
+use super::sizes::{SizeMonitor, raise};
 use super::step_size::StepSizeController;
 use crate::model::dynamics::{Dynamics, Typed};
 use crate::model::system::System;
@@ -83,7 +83,7 @@ impl Ongoing {
     /// The same where the states have been as large as `largest` before: errors are measured by that.
     #[must_use]
     pub fn grown(mut self, largest: &[f64]) -> Self {
-        self.largest.iter_mut().zip(largest).for_each(|(largest, other)| *largest = largest.max(other.abs()));
+        raise(self.largest.as_mut_slice(), largest);
         self
     }
 

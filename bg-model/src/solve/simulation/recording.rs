@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::Observer;
+use super::{Observer, raise};
 use crate::model::description::Description;
 use crate::model::dynamics::Machine;
 use crate::model::system::Powers;
@@ -167,7 +167,7 @@ impl Observer for Recorder<'_> {
         if self.fault.is_some() {
             return;
         }
-        self.largest.iter_mut().zip(x).for_each(|(largest, x)| *largest = largest.max(x.abs()));
+        raise(&mut self.largest, x);
         self.row.clear();
         let mut faulty = None;
         for part in &self.parts {

@@ -125,7 +125,7 @@ impl SizeMonitor {
 
     /// Takes the sizes from the state at the start, whose rate is not known.
     pub fn start(&mut self, stepper: &mut Stepper<'_>) {
-        raise(&mut self.largest, &stepper.start.x);
+        raise(self.largest.as_mut_slice(), stepper.start.x.as_slice());
         self.measure(stepper.system, &stepper.start, &stepper.negative);
         self.lead(&mut stepper.scale);
     }
@@ -241,7 +241,7 @@ impl SizeMonitor {
     /// Raises the sizes to those of a point.
     fn measure(&mut self, system: &dyn Dynamics, Point { t, x, .. }: &Point, negative: &[bool]) {
         let Sizes { own, beside, energy } = &mut self.sizes;
-        raise(own, x);
+        raise(own.as_mut_slice(), x.as_slice());
         let Some(states) = system.stored() else {
             let among = own.amax() * AMONG / BESIDE;
             beside.apply(|beside| *beside = beside.max(among));
@@ -405,10 +405,9 @@ fn weights(stepper: &Stepper<'_>) -> DVector<f64> {
     curvatures.map(|curvature| if curvature.is_finite() { libm::sqrt(curvature.abs()) } else { 0.0 })
 }
 
-/// Raises sizes to the magnitudes of a state.
-fn raise(sizes: &mut DVector<f64>, x: &DVector<f64>) {
-    let both = sizes.as_mut_slice().iter_mut().zip(x.as_slice());
-    both.for_each(|(size, x)| *size = size.max(x.abs()));
+/// Raises the `largest` magnitudes so far to those of `x`, each where that is more.
+pub fn raise(largest: &mut [f64], x: &[f64]) {
+    largest.iter_mut().zip(x).for_each(|(largest, x)| *largest = largest.max(x.abs()));
 }
 
 /// The larger number; `b` where `a` is none, or is infinite.

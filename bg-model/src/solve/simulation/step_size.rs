@@ -320,7 +320,7 @@ pub(super) fn noted<S: Scalar>(logarithm: S) -> S {
 }
 
 /// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.
-pub(super) fn first_step(flow: &dyn Flow, start: &Point, scale: &Scale, order: f64, longest: f64) -> f64 {
+pub(super) fn first_step(flow: &Flow<'_>, start: &Point, scale: &Scale, order: f64, longest: f64) -> f64 {
     // The factors are those of HINIT; where it takes 1e-6 for a state at rest, this part of the longest step is taken.
     const AT_REST: f64 = 1e-6;
     let rates = scale.norm(start.rate.as_slice(), start.x.as_slice());

@@ -1,7 +1,5 @@
 //! One step of a system by a method: the attempt, the projection, the rate at its end and the states in between.
 
-mod frozen;
-
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -11,7 +9,6 @@ use crate::model::dynamics::Dynamics;
 use crate::model::origin::Origin;
 use crate::solve::integrator::{Flow, Method, Point, PointRef, Scale, first_not_finite, is_finite};
 use crate::solve::statistics::Statistics;
-pub(crate) use frozen::Frozen;
 
 /// How far a projection may move a state, in its unit or in parts of it, for the next one, whose change is the square,
 /// to be lost in rounding.
@@ -59,8 +56,8 @@ impl<'a> Stepper<'a> {
     }
 
     /// The method, the flow of the present branches, the start, the end and the scale, apart from each other.
-    pub fn split(&mut self) -> (&mut dyn Method, Frozen<'_>, &Point, &mut Point, &Scale) {
-        let flow = Frozen::new(self.system, &self.negative, &mut self.statistics);
+    pub fn split(&mut self) -> (&mut dyn Method, Flow<'_>, &Point, &mut Point, &Scale) {
+        let flow = Flow::new(self.system, &self.negative, &mut self.statistics);
         (self.method, flow, &self.start, &mut self.end, &self.scale)
     }
 
@@ -187,7 +184,7 @@ impl<'a> Stepper<'a> {
             return None;
         }
         let states = self.system.states();
-        let flow = Frozen::new(self.system, &self.negative, &mut statistics);
+        let flow = Flow::new(self.system, &self.negative, &mut statistics);
         let sparsity = flow.sparsity();
         let (mut entries, mut slope) = (vec![0.0; sparsity.len(states)], vec![0.0; states]);
         flow.jacobian(self.start.t, self.start.x.as_slice(), &mut entries, &mut slope);

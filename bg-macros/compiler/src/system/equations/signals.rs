@@ -70,8 +70,8 @@ pub(super) struct Signals<'a> {
 }
 
 impl<'a> Signals<'a> {
-    /// The derivation's beginning; the components `kept` stay states although their storages
-    /// are in derivative causality.
+    /// The derivation's beginning; the components `kept` stay states although their storages are in derivative
+    /// causality.
     pub(super) fn new(causal: &'a CausalGraph, kept: &'a Kept) -> Self {
         let mut signals = Self {
             causal,
@@ -97,7 +97,7 @@ impl<'a> Signals<'a> {
             path: Vec::new(),
             faults: Vec::new(),
         };
-        signals.lay_out(kept);
+        signals.lay_out();
         let tables = (&mut signals.pool, &mut signals.unknowns, &signals.reactions);
         signals.dependent = dependents(causal, kept, tables);
         signals
@@ -181,15 +181,15 @@ impl<'a> Signals<'a> {
     }
 
     /// Whether a component of a storage is no state.
-    fn is_replaced(&self, storage: Storage, component: usize, kept: &Kept) -> bool {
+    fn is_replaced(&self, storage: Storage, component: usize) -> bool {
         let Storage::Element(node) = storage else { return false };
         let is_dependent = self.causal.derivative.contains(&node);
         let element = self.graph.element(node).filter(|_| is_dependent);
-        element.is_some_and(|element| way(element, kept.has((node, component))) == Way::Replaced)
+        element.is_some_and(|element| way(element, self.kept.has((node, component))) == Way::Replaced)
     }
 
     /// Gives every storage its states' indices.
-    fn lay_out(&mut self, kept: &Kept) {
+    fn lay_out(&mut self) {
         for &storage in &self.graph.storages {
             let shape = match storage {
                 Storage::Element(node) => {
@@ -205,7 +205,7 @@ impl<'a> Signals<'a> {
             let zero = self.pool.zero();
             let mut components = Vec::new();
             for (component, suffix) in shape.suffixes().iter().enumerate() {
-                if self.is_replaced(storage, component, kept) {
+                if self.is_replaced(storage, component) {
                     continue;
                 }
                 components.push((component, self.states.len()));
@@ -220,7 +220,7 @@ impl<'a> Signals<'a> {
         let mut multipliers = 0;
         let is_held = |node: &NodeId| {
             let element = self.graph.element(*node);
-            element.is_some_and(|element| way(element, kept.has((*node, 0))) == Way::Held)
+            element.is_some_and(|element| way(element, self.kept.has((*node, 0))) == Way::Held)
         };
         let held: Vec<NodeId> = self.causal.derivative.iter().copied().filter(is_held).collect();
         let sinks = self.elements(|kind| kind == ElementKind::RSe);

@@ -262,7 +262,7 @@ impl Auto {
     }
 
     /// Tries the other methods.
-    fn try_others(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) {
+    fn try_others(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) {
         self.since = 0;
         self.nearest = f64::INFINITY;
         self.tried = self.typical();
@@ -283,7 +283,7 @@ impl Auto {
 
     /// Whether a step of a more implicit method meets the tolerances that is worth its cost. It takes over, or has to
     /// be confirmed.
-    fn reaches(&mut self, kind: Kind, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    fn reaches(&mut self, kind: Kind, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         // Twice as long as it has to be where what it costs varies as much as what the present one does.
         let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
         let longer = gain * kind.worth(self.kind, flow.states()) / self.dearness(self.kind);
@@ -308,7 +308,7 @@ impl Auto {
 
     /// Whether steps of a less implicit method meet the tolerances from `start` over the step `h` (s) of the present
     /// one. Each of them is twice as long as it has to be to be worth a change, so that the choice does not swing.
-    fn succeeds(&mut self, kind: Kind, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    fn succeeds(&mut self, kind: Kind, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let h = 2.0 * h * self.dearness(kind) / self.kind.worth(kind, flow.states());
         let (mut from, mut end) = (core::mem::take(&mut self.trial), core::mem::take(&mut self.end));
         from.note(start);
@@ -329,7 +329,7 @@ impl Auto {
     }
 
     /// Holds the longer step against the present method's, once these have come to its end.
-    fn confirm(&mut self, flow: &dyn Flow, start: PointRef<'_>, scale: &Scale) {
+    fn confirm(&mut self, flow: &Flow<'_>, start: PointRef<'_>, scale: &Scale) {
         let Some(claim) = self.claim.take_if(|claim| claim.t <= start.t) else { return };
         let (before, step) = (core::mem::take(&mut self.before), self.step);
         self.cut_off = 0;
@@ -354,7 +354,7 @@ impl Auto {
     }
 
     /// What rounding makes of the error of a typical step, in parts of the tolerances.
-    fn noise(&mut self, flow: &dyn Flow, start: PointRef<'_>, scale: &Scale) -> f64 {
+    fn noise(&mut self, flow: &Flow<'_>, start: PointRef<'_>, scale: &Scale) -> f64 {
         let typical = self.typical();
         let Self { end, rate, trial, .. } = self;
         rounding(flow, start, [&mut trial.x, rate, end]);
@@ -363,7 +363,7 @@ impl Auto {
 
     /// Whether from `start` a step meets the tolerances that is implicit in all states and worth more than the longest
     /// one that is implicit in some, from `h` (s) on.
-    fn is_stiff_throughout(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    fn is_stiff_throughout(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let Self { partitioned, implicit, end, .. } = self;
         partitioned.restart();
         implicit.restart();
@@ -375,7 +375,7 @@ impl Auto {
     }
 
     /// Whether an implicit step goes on where those of the present method fail.
-    fn goes_on(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    fn goes_on(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         // Where it has just handed back it does not go on either.
         let has_gone_on = !self.changes.is_empty() && self.stint < STINT;
         let Self { implicit, end, .. } = self;
@@ -440,7 +440,7 @@ impl Method for Auto {
         }
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if self.is_fresh {
             self.confirm(flow, start, scale);
         }

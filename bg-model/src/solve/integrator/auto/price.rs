@@ -37,13 +37,13 @@ const BEYOND: f64 = 1.53;
 
 /// The price of a step at the relative tolerance `relative`, in rates; none without a series, where its operations are
 /// not known, and where the tolerance is loose.
-pub(super) fn of_step(flow: &dyn Flow, relative: f64) -> Option<f64> {
+pub(super) fn of_step(flow: &Flow<'_>, relative: f64) -> Option<f64> {
     let operations = flow.series().filter(|_| relative <= LOOSEST)?.operations?;
     Some(price(&operations, flow.states(), order_for(relative)))
 }
 
 /// The price of a rate that gives second derivatives; none where there are none.
-pub(super) fn of_forces(flow: &dyn Flow) -> Option<f64> {
+pub(super) fn of_forces(flow: &Flow<'_>) -> Option<f64> {
     let price = || flow.operations_of_forces().map_or(OF_FORCES, |operations| forces(operations, flow.states()));
     (!flow.second().is_empty()).then(price)
 }

@@ -245,7 +245,7 @@ impl Race {
     }
 
     /// What a step of a method costs, in rates; none where it cannot take part.
-    fn price(&self, runner: Runner, flow: &dyn Flow, scale: &Scale) -> Option<f64> {
+    fn price(&self, runner: Runner, flow: &Flow<'_>, scale: &Scale) -> Option<f64> {
         let of_series = || (runner == Runner::Taylor).then(|| price::of_step(flow, scale.relative)).flatten();
         self.of_attempt(runner).or_else(of_series).map(|price| price + self.held)
     }
@@ -286,7 +286,7 @@ impl Race {
     }
 
     /// Passes on where a lap or a rest is over. Who has promised to be ahead takes part.
-    fn turn(&mut self, flow: &dyn Flow, start: PointRef<'_>, scale: &Scale) {
+    fn turn(&mut self, flow: &Flow<'_>, start: PointRef<'_>, scale: &Scale) {
         let Some(round) = self.round else {
             self.look(flow, start, scale);
             if self.steps >= self.rest {
@@ -322,7 +322,7 @@ impl Race {
 
     /// Looks several times in a rest whether a step of another method from `start` would get further with its price
     /// than the last steps did with their rates. Who does so once takes part in the race.
-    fn look(&mut self, flow: &dyn Flow, start: PointRef<'_>, scale: &Scale) {
+    fn look(&mut self, flow: &Flow<'_>, start: PointRef<'_>, scale: &Scale) {
         let next = BEGINNING + (self.looks + 1) * (self.rest - BEGINNING) / LOOKS;
         if self.looks == LOOKS || self.steps < next || self.counted.steps == 0 {
             return;
@@ -346,7 +346,7 @@ impl Race {
 
     /// The error of a step of this method, in parts of the tolerances, that is longer than `h` (s) by what it has to
     /// promise; infinite where its end is not finite.
-    fn error(&mut self, runner: Runner, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
+    fn error(&mut self, runner: Runner, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         if runner == Runner::Taylor {
             self.series = self.price(runner, flow, scale);
             return self.taylor.error(flow, start, PROMISE_OF_SERIES * h, scale, &mut self.end);
@@ -367,7 +367,7 @@ impl Race {
     }
 
     /// Before the first attempt: prices, and who makes it.
-    fn prepare(&mut self, flow: &dyn Flow, scale: &Scale) {
+    fn prepare(&mut self, flow: &Flow<'_>, scale: &Scale) {
         self.forces = price::of_forces(flow);
         self.held = if flow.is_held() { price::HELD } else { 0.0 };
         if scale.relative >= LOOSE && flow.states() < MANY {
@@ -421,7 +421,7 @@ impl Method for Race {
         self.end.resize(states, 0.0);
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if !core::mem::replace(&mut self.has_begun, true) {
             self.prepare(flow, scale);
         }

@@ -139,7 +139,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     /// A step that satisfied the tolerances and is tried again with another size is part of a search for an event: it
     /// is solved to rounding, and like all attempts begins at the extrapolation of the step before, so its outcome
     /// depends on its size only.
-    pub fn solve(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> Result<(), f64> {
+    pub fn solve(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> Result<(), f64> {
         self.h = h;
         let goal = if self.is_exact || self.attempts == Attempts::Satisfied { Goal::Rounding } else { Goal::Tolerance };
         if !self.has_jacobian {
@@ -161,13 +161,13 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
         }
     }
 
-    fn evaluate_jacobian(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) {
+    fn evaluate_jacobian(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) {
         self.jacobian.evaluate(flow, start, h, scale);
         (self.has_jacobian, self.is_fresh, self.factored) = (true, true, 0.0);
     }
 
     /// Makes the factors for a step of size `h` (s) where those at hand do not serve. Gives whether there are any.
-    fn factor(&mut self, flow: &dyn Flow, h: f64) -> bool {
+    fn factor(&mut self, flow: &Flow<'_>, h: f64) -> bool {
         if self.factored != 0.0 && (h - self.factored).abs() <= NEARLY * h.abs() {
             return true;
         }
@@ -187,7 +187,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     ///
     /// Section IV.8, equations (8.19) and (8.20): after a rejection and in a first step a large estimate is taken once
     /// more, with the rate at x0 and the estimate, because the first one is too large for stiff states.
-    pub fn estimate(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &[f64]) -> f64 {
+    pub fn estimate(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &[f64]) -> f64 {
         let is_doubtful = self.attempts == Attempts::Rejected || self.step_before == 0.0;
         let mut norm = self.filtered_defect(flow, start, h, scale, end, None);
         if norm > 1.0 && is_doubtful {
@@ -204,7 +204,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     /// The same of the rate at the start where no other one is given.
     fn filtered_defect(
         &mut self,
-        flow: &dyn Flow,
+        flow: &Flow<'_>,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,

@@ -49,7 +49,7 @@ fn allowance(relative: f64) -> f64 {
 
 struct Correction<'a, const S: usize, const P: usize> {
     core: &'a mut Collocation<S, P>,
-    flow: &'a dyn Flow,
+    flow: &'a Flow<'a>,
     start: PointRef<'a>,
     h: f64,
     scale: &'a Scale,
@@ -72,7 +72,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     /// Iterates from the increments at hand.
     pub(super) fn iterate(
         &mut self,
-        flow: &dyn Flow,
+        flow: &Flow<'_>,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,
@@ -120,7 +120,7 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     }
 
     /// Evaluates the rates of all stages. Gives whether they are finite; stops at the first that is not.
-    fn evaluate_stages(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64) -> bool {
+    fn evaluate_stages(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64) -> bool {
         let Self { tableau, z, f, room: [x, _], .. } = self;
         for ((c, z), f) in tableau.c.iter().zip(z).zip(f) {
             x.iter_mut().zip(start.x).zip(z).for_each(|((x, start), z)| *x = start + *z);
@@ -133,13 +133,13 @@ impl<const S: usize, const P: usize> Collocation<S, P> {
     }
 
     /// Corrects the increments once. Gives the norm of the correction.
-    fn correct(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
+    fn correct(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         let arch = self.arch;
         arch.dispatch(Correction { core: self, flow, start, h, scale })
     }
 
     #[inline(always)]
-    fn correct_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
+    fn correct_inlined(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> f64 {
         let n = flow.states();
         let Self { tableau, z, f, room: [_, sizes], real_side, complex_sides, .. } = self;
         let tableau: &Tableau<S, P> = tableau;

@@ -1,17 +1,19 @@
 //! The error norms of methods with two estimates, against their definitions.
 
 use super::{BogackiShampine, Bs5, Dop853, DormandPrince, Row, Tableau};
+use crate::model::dynamics::Dynamics;
 use crate::solve::integrator::{Flow, Method, PointRef, Scale};
+use crate::solve::statistics::Statistics;
 
 /// A rate that depends on time only: stage i has the value at c_i h.
 struct Clock<F>(F);
 
-impl<F: Fn(f64) -> f64> Flow for Clock<F> {
+impl<F: Fn(f64) -> f64> Dynamics for Clock<F> {
     fn states(&self) -> usize {
         1
     }
 
-    fn rate(&self, t: f64, _: &[f64], dx: &mut [f64]) {
+    fn rate(&self, t: f64, _: &[f64], _: &[bool], dx: &mut [f64]) {
         dx[0] = (self.0)(t);
     }
 }
@@ -22,7 +24,8 @@ fn norm(mut method: impl Method, rate: impl Fn(f64) -> f64, h: f64) -> f64 {
     let start = PointRef { t: 0.0, x: &[0.0], rate: &at_start };
     let scale = Scale { relative: 0.0, absolute: vec![1.0], coarsest: 1.0, growth: f64::INFINITY, weights: vec![1.0] };
     method.fit(1);
-    method.attempt(&Clock(rate), start, h, &scale, &mut [0.0])
+    let (clock, mut statistics) = (Clock(rate), Statistics::default());
+    method.attempt(&Flow::new(&clock, &[], &mut statistics), start, h, &scale, &mut [0.0])
 }
 
 /// The combination of the stages' rates.

@@ -26,7 +26,7 @@ pub use dop853::DormandPrince;
 use super::compensated::CompensatedSum;
 use super::dense::{FROM_ENDS, Polynomial};
 use super::side_by_side::SIDE_BY_SIDE;
-use super::steps::{Begin, OfFlow};
+use super::steps::Begin;
 use super::tolerances::{index_of_largest, largest_of, smaller};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
@@ -164,8 +164,8 @@ pub(crate) fn both<S: Scalar>(scale: S, first: S, second: S) -> S {
 
 impl<T: Tableau> Vectorised for Explicit<T> {
     #[inline(always)]
-    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
-        norm::<T, _>(h, self.stages.step(&OfFlow(flow), &Begin::of(start, h), scale, &mut self.sum, end))
+    fn attempt_inlined(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+        norm::<T, _>(h, self.stages.step(flow, &Begin::of(start, h), scale, &mut self.sum, end))
     }
 }
 
@@ -186,7 +186,7 @@ impl<T: Tableau> Method for Explicit<T> {
         }
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
         if T::LATE.is_empty() || norm > 1.0 {
             return norm;
@@ -201,7 +201,7 @@ impl<T: Tableau> Method for Explicit<T> {
 
     fn error_after(
         &mut self,
-        flow: &dyn Flow,
+        flow: &Flow<'_>,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,
@@ -243,9 +243,9 @@ impl<T: Tableau> Method for Explicit<T> {
         (1..T::END).flat_map(|stage| self.stages.stage(stage)).find(|(_, rate)| !rate.is_finite())
     }
 
-    fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
         self.stages.set_stage(T::END, |rate| rate.copy_from_slice(end.rate));
-        self.stages.evaluate(&OfFlow(flow), &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
+        self.stages.evaluate(flow, &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
         let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
         self.polynomial.set(start, h, end, |m, _, out| self.stages.write(row(m), h, out));
     }

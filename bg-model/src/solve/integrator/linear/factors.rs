@@ -15,28 +15,28 @@ use crate::solve::integrator::Flow;
 /// A number of factors: real or complex.
 pub(in crate::solve::integrator) trait Number: Field<f64> {
     /// See [`Flow::eliminate`].
-    fn eliminate(flow: &dyn Flow, c: Self, entries: &[f64], factors: &mut [Self]) -> bool;
+    fn eliminate(flow: &Flow<'_>, c: Self, entries: &[f64], factors: &mut [Self]) -> bool;
 
     /// See [`Flow::substitute`].
-    fn substitute(flow: &dyn Flow, factors: &[Self], b: &mut [Self]);
+    fn substitute(flow: &Flow<'_>, factors: &[Self], b: &mut [Self]);
 }
 
 impl Number for f64 {
-    fn eliminate(flow: &dyn Flow, c: Self, entries: &[f64], factors: &mut [Self]) -> bool {
+    fn eliminate(flow: &Flow<'_>, c: Self, entries: &[f64], factors: &mut [Self]) -> bool {
         flow.eliminate(c, entries, factors)
     }
 
-    fn substitute(flow: &dyn Flow, factors: &[Self], b: &mut [Self]) {
+    fn substitute(flow: &Flow<'_>, factors: &[Self], b: &mut [Self]) {
         flow.substitute(factors, b);
     }
 }
 
 impl Number for Complex<f64> {
-    fn eliminate(flow: &dyn Flow, c: Self, entries: &[f64], factors: &mut [Self]) -> bool {
+    fn eliminate(flow: &Flow<'_>, c: Self, entries: &[f64], factors: &mut [Self]) -> bool {
         flow.eliminate_complex(c, entries, factors)
     }
 
-    fn substitute(flow: &dyn Flow, factors: &[Self], b: &mut [Self]) {
+    fn substitute(flow: &Flow<'_>, factors: &[Self], b: &mut [Self]) {
         flow.substitute_complex(factors, b);
     }
 }
@@ -56,7 +56,7 @@ impl<T: Number> Factors<T> {
     }
 
     /// Factors I - `c` J. Gives whether the matrix is regular.
-    pub fn factor(&mut self, flow: &dyn Flow, c: T, jacobian: &Jacobian) -> bool {
+    pub fn factor(&mut self, flow: &Flow<'_>, c: T, jacobian: &Jacobian) -> bool {
         let factors = flow.factors().filter(|_| !jacobian.is_replaced);
         self.is_dense = !factors.is_some_and(|factors| {
             self.sparse.resize(factors, T::real(0.0));
@@ -72,7 +72,7 @@ impl<T: Number> Factors<T> {
     }
 
     /// Replaces `b` by the solution y of (I - c J) y = b. To be called after [`Factors::factor`].
-    pub fn solve(&self, flow: &dyn Flow, b: &mut [T]) {
+    pub fn solve(&self, flow: &Flow<'_>, b: &mut [T]) {
         match self.dense.as_ref().filter(|_| self.is_dense) {
             Some(dense) => dense.solve(b),
             None => T::substitute(flow, &self.sparse, b),

@@ -31,7 +31,7 @@ impl Jacobian {
 
     /// Evaluates the derivatives for a step of size `h` (s) from `start`, whose rate is known. Gives whether all of
     /// them are finite.
-    pub fn evaluate(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    pub fn evaluate(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let n = flow.states();
         self.is_replaced = false;
         self.entries.resize(flow.sparsity().len(n), 0.0);
@@ -53,7 +53,7 @@ impl Jacobian {
     }
 
     /// Where the entries are.
-    pub fn sparsity(&self, flow: &dyn Flow) -> Sparsity {
+    pub fn sparsity(&self, flow: &Flow<'_>) -> Sparsity {
         if self.is_replaced { Sparsity::Full } else { flow.sparsity() }
     }
 
@@ -64,7 +64,7 @@ impl Jacobian {
 
     /// Replaces each derivative that is not finite by a difference: of a state over as much as it changes in the step,
     /// and at least what its tolerance allows, of the time over the step.
-    fn replace_faulty(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) {
+    fn replace_faulty(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) {
         let (sparsity, n) = (flow.sparsity(), flow.states());
         let Self { entries, slope, room: [ahead, rate], .. } = self;
         ahead.copy_from_slice(start.x);

@@ -19,7 +19,7 @@ mod trees;
 
 use super::dense::{FROM_ENDS, Polynomial};
 use super::side_by_side::SIDE_BY_SIDE;
-use super::steps::{Begin, Forces, OfFlow};
+use super::steps::{Begin, Forces};
 use super::tolerances::index_of_largest;
 use super::vectors::{Vectorised, attempt_in};
 use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
@@ -67,8 +67,8 @@ impl Default for Nystrom {
 
 impl Vectorised for Nystrom {
     #[inline(always)]
-    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
-        self.stages.step(&OfFlow(flow), &Begin::of(start, h), scale, end)
+    fn attempt_inlined(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+        self.stages.step(flow, &Begin::of(start, h), scale, end)
     }
 }
 
@@ -88,10 +88,9 @@ impl Method for Nystrom {
         }
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
-        let forces = OfFlow(flow);
-        self.stages.arrange(forces.second());
-        self.ring.follow(&forces, start, &self.stages.second, &scale.weights);
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+        self.stages.arrange(Forces::second(flow));
+        self.ring.follow(flow, start, &self.stages.second, &scale.weights);
         let reach = self.ring.reach(h);
         if reach > 1.0 {
             return reach;
@@ -120,7 +119,7 @@ impl Method for Nystrom {
         })
     }
 
-    fn prepare_dense(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
         self.stages.set_stage(END, |rate| {
             rate.copy_from_slice(end.rate);
             flow.second_derivatives(end.x, rate);

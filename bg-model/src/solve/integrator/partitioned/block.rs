@@ -5,6 +5,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use crate::model::dynamics::Dynamics;
 use crate::model::linear::Sparsity;
 use crate::model::scalar::Scalar;
 
@@ -16,6 +17,7 @@ use super::tableau::KennedyCarpenter;
 use crate::solve::integrator::explicit::{Complete, Tableau};
 use crate::solve::integrator::linear::Jacobian;
 use crate::solve::integrator::{Arch, Flow, PointRef, Scale};
+use crate::solve::statistics::Statistics;
 
 /// The accepted steps after which the Jacobian is renewed, and the Jacobians after which the damped states are chosen
 /// anew.
@@ -25,14 +27,14 @@ const CHOICE: u32 = 4;
 const GROWTH: f64 = 2.0;
 
 /// A flow whose Jacobian has what is asked of it here: the entries among states that are not of second order.
-struct Damping<'a>(&'a dyn Flow);
+struct Damping<'a>(&'a Flow<'a>);
 
-impl Flow for Damping<'_> {
+impl Dynamics for Damping<'_> {
     fn states(&self) -> usize {
         self.0.states()
     }
 
-    fn rate(&self, t: f64, x: &[f64], dx: &mut [f64]) {
+    fn rate(&self, t: f64, x: &[f64], _negative: &[bool], dx: &mut [f64]) {
         self.0.rate(t, x, dx);
     }
 
@@ -40,7 +42,7 @@ impl Flow for Damping<'_> {
         self.0.damping_sparsity()
     }
 
-    fn jacobian(&self, t: f64, x: &[f64], entries: &mut [f64], slope: &mut [f64]) {
+    fn jacobian(&self, t: f64, x: &[f64], _negative: &[bool], entries: &mut [f64], slope: &mut [f64]) {
         self.0.damping(t, x, entries);
         slope.fill(0.0);
     }
@@ -134,17 +136,20 @@ impl Block {
     }
 
     /// Makes ready for a step of size `h` (s) from `start`. Gives whether the Jacobian is one of numbers.
-    pub fn prepare(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    pub fn prepare(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let (t, x) = &mut self.starts[self.present];
         *t = start.t;
         x.copy_from_slice(start.x);
         self.h = h;
         if self.age.is_none_or(|age| age >= RENEWAL) {
-            if !self.jacobian.evaluate(&Damping(flow), start, h, scale) {
+            // The flow itself counts.
+            let (damping, mut uncounted) = (Damping(flow), Statistics::default());
+            let damping = Flow::new(&damping, &[], &mut uncounted);
+            if !self.jacobian.evaluate(&damping, start, h, scale) {
                 return false;
             }
             core::mem::swap(&mut self.entries, &mut self.earlier);
-            self.pattern.entries(&Damping(flow), &self.jacobian, &mut self.entries);
+            self.pattern.entries(&damping, &self.jacobian, &mut self.entries);
             self.interval = self.age.map(|_| start.t - self.time);
             (self.time, self.age) = (start.t, Some(0));
             self.chosen = self.chosen.map(|(step, age)| (step, age + 1)).filter(|(_, age)| *age < CHOICE);

@@ -21,7 +21,7 @@ pub(super) use self::tableau::KennedyCarpenter;
 use super::explicit::{Explicit, Stages, Tableau};
 use super::hand_on::hand_on;
 use super::side_by_side::SIDE_BY_SIDE;
-use super::steps::{Begin, OfFlow};
+use super::steps::Begin;
 use super::tolerances::largest;
 use super::vectors::{Vectorised, attempt_in};
 use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
@@ -63,7 +63,7 @@ impl Default for Ark5 {
 
 impl Vectorised for Ark5 {
     #[inline(always)]
-    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt_inlined(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         let Self { explicit, block, .. } = self;
         if block.invert() { step(&mut explicit.stages, block, flow, start, h, scale, end) } else { f64::INFINITY }
     }
@@ -78,14 +78,14 @@ const AT_START: f64 = 0.02;
 fn step(
     stages: &mut Stages<KennedyCarpenter, f64, SIDE_BY_SIDE>,
     block: &mut Block,
-    flow: &dyn Flow,
+    flow: &Flow<'_>,
     start: PointRef<'_>,
     h: f64,
     scale: &Scale,
     end: &mut [f64],
 ) -> f64 {
     stages.begin(start.rate);
-    stages.evaluate(&OfFlow(flow), &Begin::of(start, h), 1..KennedyCarpenter::END, block);
+    stages.evaluate(flow, &Begin::of(start, h), 1..KennedyCarpenter::END, block);
     stages.write_rows([KennedyCarpenter::B, KennedyCarpenter::ERROR, KennedyCarpenter::START]);
     let Stages { end: slopes, differences: [difference, at_start], .. } = stages;
     for ((end, from), slope) in end.iter_mut().zip(start.x).zip(&**slopes) {
@@ -116,7 +116,7 @@ impl Method for Ark5 {
         self.block.fit(states);
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if !self.block.prepare(flow, start, h, scale) {
             return f64::INFINITY;
         }

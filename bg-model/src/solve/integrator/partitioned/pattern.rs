@@ -40,7 +40,7 @@ pub(super) struct Pattern {
 impl Pattern {
     /// Writes the entries of a Jacobian whose places are known from here on; with unknowns beside the states those of
     /// the states alone.
-    pub fn entries(&mut self, flow: &dyn Flow, jacobian: &Jacobian, entries: &mut Vec<f64>) {
+    pub fn entries(&mut self, flow: &Flow<'_>, jacobian: &Jacobian, entries: &mut Vec<f64>) {
         let n = flow.states();
         let mut sparsity = jacobian.sparsity(flow);
         entries.clear();

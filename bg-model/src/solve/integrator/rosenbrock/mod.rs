@@ -50,7 +50,7 @@ impl Method for Rodas5p {
         self.dense.iter_mut().for_each(|room| room.resize(states, 0.0));
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         match self.stages.evaluate(&RODAS5P, flow, start, h, scale) {
             None => f64::INFINITY,
             Some(false) => f64::NAN,
@@ -77,7 +77,7 @@ impl Method for Rodas5p {
         self.stages.fault
     }
 
-    fn prepare_dense(&mut self, _flow: &dyn Flow, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {
+    fn prepare_dense(&mut self, _flow: &Flow<'_>, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {
         for (v, weights) in self.dense.iter_mut().zip(&RODAS5P_DENSE) {
             v.fill(0.0);
             add(v, weights, &self.stages.u, 1.0);
@@ -124,7 +124,7 @@ impl Method for Ros2 {
         self.stages.fit(states);
     }
 
-    fn attempt(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
+    fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if self.stages.evaluate(&ROS2, flow, start, h, scale) != Some(true) {
             return f64::NAN;
         }

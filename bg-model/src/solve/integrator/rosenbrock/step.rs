@@ -50,7 +50,7 @@ impl<const S: usize> Stages<S> {
     pub fn evaluate(
         &mut self,
         tableau: &Tableau<S>,
-        flow: &dyn Flow,
+        flow: &Flow<'_>,
         start: PointRef<'_>,
         h: f64,
         scale: &Scale,

@@ -14,12 +14,12 @@ pub(crate) use crate::model::scalar::machine::Arch;
 /// A method whose attempts are all sums, rates and series.
 pub(super) trait Vectorised {
     /// As [`Method::attempt`](super::Method::attempt); to be inlined.
-    fn attempt_inlined(&mut self, flow: &dyn Flow, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64;
+    fn attempt_inlined(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64;
 }
 
 struct Attempt<'a, M> {
     method: &'a mut M,
-    flow: &'a dyn Flow,
+    flow: &'a Flow<'a>,
     start: PointRef<'a>,
     h: f64,
     scale: &'a Scale,
@@ -40,7 +40,7 @@ impl<M: Vectorised> NullaryFnOnce for Attempt<'_, M> {
 pub(super) fn attempt_in(
     arch: Arch,
     method: &mut impl Vectorised,
-    flow: &dyn Flow,
+    flow: &Flow<'_>,
     start: PointRef<'_>,
     h: f64,
     scale: &Scale,

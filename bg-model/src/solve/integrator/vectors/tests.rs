@@ -12,7 +12,6 @@ use crate::model::system::System;
 use crate::solve::integrator::{Flow, Gauss6, Method, Radau5, Radau9, Rodas5p, Ros2, Taylor, Tolerances};
 use crate::solve::simulation::{Settings, Span, integrate};
 use crate::solve::statistics::Statistics;
-use crate::solve::stepper::Frozen;
 
 /// Masses, and the states: momenta, then displacements.
 const M: usize = 6;
@@ -199,7 +198,7 @@ fn a_flow_has_the_same_bytes_in_all_vectors() {
     let of = |arch: Arch| {
         let mut statistics = Statistics::default();
         let system = Typed::<_, N, 0, 0> { of: &Row, arch };
-        let flow = Frozen::new(&system, &[], &mut statistics);
+        let flow = Flow::new(&system, &[], &mut statistics);
         let x: [f64; N] = core::array::from_fn(|i| 0.3 - 0.07 * i as f64);
         let (mut rate, mut slope, mut entries, mut factors) = ([0.0; N], [0.0; N], [0.0; N * N], [0.0; N * N]);
         flow.rate(0.0, &x, &mut rate);

@@ -17,7 +17,7 @@ use super::run::{Faulty, MOVED, Run};
 use super::settings::{self, Settings, Span};
 use super::step_size::{Judgement, Kept};
 use crate::model::capability::SecondOrder;
-use crate::model::dynamics::{Dynamics, Machine};
+use crate::model::dynamics::Machine;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
 use crate::solve::event::{Crossing, Found, Shortening};
@@ -46,7 +46,11 @@ pub(crate) struct Job<'a, O> {
 }
 
 /// Whether runs of `model` over `span` can be made side by side with these settings.
-pub(crate) fn fits(model: &dyn Dynamics, span: Span, settings: &Settings) -> bool {
+pub(crate) fn fits<const N: usize, const G: usize>(
+    model: &impl System<f64, N, G>,
+    span: Span,
+    settings: &Settings,
+) -> bool {
     let each_step = settings.samples == Samples::Steps;
     let has_breaks = model.next_break(span.t0) < f64::INFINITY;
     model.runs_in_lanes() && !has_breaks && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
