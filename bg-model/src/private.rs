@@ -8,14 +8,14 @@ pub use alloc::vec;
 
 pub use bg_macros::picture;
 
-pub use crate::model::iteration::{Equations, newton};
+pub use crate::model::dynamics::Over;
+pub use crate::model::iteration::{Equations, lift, newton};
 pub use crate::model::joined::joined;
 pub use crate::model::linear::pivot::Pivot;
-pub use crate::model::nearest::lifted;
 pub use crate::model::parameters::serialized::{deserialize, serialize};
-pub use crate::model::reactions::{Started, fit, kept, redundant, share};
 pub use crate::model::requirement::{Requirement, require};
 pub use crate::model::series::{store, window};
+pub use crate::model::start::{StartRoutine, StartTable, Starting, decided, kept, redundant, share, sides, start};
 pub use crate::model::vectorised::vectorised_rate;
 
 /// Eliminations as tables, where they are too long to be unrolled.

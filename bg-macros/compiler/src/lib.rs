@@ -8,7 +8,8 @@
 //! | [`graph`] | -> [`graph::causality::CausalGraph`] | names, missing ports, unknown units; bonds without a stroke |
 //! | [`system`] | -> [`system::equations::StateEquations`] and their derivatives | bonds; what a scene does not need |
 //! | [`program`] | -> [`program::Programs`] | order left open: flat single assignment |
-//! | [`emit`] | [`pipeline::Compiled`] -> tokens | |
+//! | [`tables`] | [`pipeline::Compiled`] -> [`tables::Tables`] | expressions |
+//! | [`emit`] | both -> tokens | |
 //!
 //! Under them are [`expr`], the expressions of package `bg-expressions`, which know nothing of bond graphs, and
 //! [`fault`]. [`stages::stages`] gives every stage's result as text.
@@ -21,6 +22,7 @@ pub mod program;
 pub mod source;
 pub mod stages;
 pub mod system;
+pub mod tables;
 
 pub use bg_expressions::expr;
 use bg_expressions::random;

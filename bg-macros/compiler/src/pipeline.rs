@@ -9,7 +9,7 @@ use crate::fault::{Faults, Staged};
 use crate::graph;
 use crate::graph::causality::{self, CausalGraph};
 use crate::program::elimination::{self, Elimination};
-use crate::program::{self, Programs};
+use crate::program::{self, Counts, Programs};
 use crate::source::ast::{Graph, Name, Source};
 use crate::source::part::{self, Flattened};
 use crate::source::scene::{self, Variant};
@@ -85,6 +85,15 @@ impl Compiled {
     #[must_use]
     pub fn stands_for_graph(&self) -> bool {
         !self.is_scene || !self.scenes.is_empty()
+    }
+
+    /// The functions of the running model with their operations.
+    #[must_use]
+    pub fn costs(&self) -> Vec<(&str, Counts)> {
+        let routines = self.programs.costs();
+        let factored = ("eliminate", self.elimination.factorisation_counts());
+        let solved = ("substitute", self.elimination.substitution_counts());
+        routines.chain([factored, solved]).collect()
     }
 
     /// The model's name and the names of the parameters that it keeps adjustable.

@@ -8,15 +8,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms from the ground up; those of one floor do not know each other.
-const FLOORS: [&[&str]; 7] =
-    [&["fault", "random"], &["expr"], &["source"], &["graph"], &["system"], &["program"], &["pipeline"]];
+const FLOORS: [&[&str]; 8] =
+    [&["fault", "random"], &["expr"], &["source"], &["graph"], &["system"], &["program"], &["pipeline"], &["tables"]];
 /// What only reads the results.
 const READERS: [&str; 2] = ["emit", "stages"];
 
 /// The rooms whose arrows are counted, with the rooms in them.
-const STAGES: [&str; 5] = ["source", "graph", "system", "program", "emit"];
+const STAGES: [&str; 6] = ["source", "graph", "system", "program", "tables", "emit"];
 /// The most arrows between them. What another room needs stands at the door: the room's `mod.rs`.
-const MOST_ARROWS: usize = 34;
+const MOST_ARROWS: usize = 41;
 
 fn floor(room: &str) -> usize {
     if READERS.contains(&room) {

@@ -134,30 +134,13 @@ fn also_open(others: &[OpenGap]) -> String {
 /// The coordinates nearest to `guess`, to first order, at which all gaps are closed to rounding.
 ///
 /// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates, `terms` the sum
-/// of the absolute values of its terms. Redundant gaps and coordinates without influence are allowed. With `U = 0` the
-/// gaps are only checked. Allocates.
+/// of the absolute values of its terms. Redundant gaps and coordinates without influence are allowed. Without
+/// coordinates the gaps are only checked. Allocates.
 ///
 /// # Errors
 /// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 of the machine's size, and of 1 m or rad at least),
 /// [`AssemblyError::NonFinite`] if a gap is not a number.
-pub fn close<const U: usize>(
-    guess: [f64; U],
-    gaps: &'static [Gap],
-    residual: impl Fn(&[f64; U], &mut [f64]),
-    terms: impl Fn(&[f64; U], &mut [f64]),
-) -> Result<[f64; U], AssemblyError> {
-    let residual = |coordinates: &[f64], sizes: &mut [f64]| residual(whole(coordinates), sizes);
-    let terms = |coordinates: &[f64], sizes: &mut [f64]| terms(whole(coordinates), sizes);
-    Ok(*whole(&closed(&guess, gaps, &residual, &terms)?))
-}
-
-/// All coordinates of a pose.
-fn whole<const U: usize>(coordinates: &[f64]) -> &[f64; U] {
-    coordinates.try_into().expect("there is a number for each coordinate")
-}
-
-/// The same for any number of coordinates.
-fn closed(
+pub fn close(
     guess: &[f64],
     gaps: &'static [Gap],
     residual: &dyn Fn(&[f64], &mut [f64]),
@@ -208,19 +191,19 @@ mod tests {
     use super::*;
 
     /// The same of a machine of 1 m.
-    fn close<const U: usize>(
-        guess: [f64; U],
+    fn close(
+        guess: &[f64],
         gaps: &'static [Gap],
-        residual: impl Fn(&[f64; U], &mut [f64]),
-    ) -> Result<[f64; U], AssemblyError> {
-        super::close(guess, gaps, residual, |_, terms| terms.fill(1.0))
+        residual: impl Fn(&[f64], &mut [f64]),
+    ) -> Result<Vec<f64>, AssemblyError> {
+        super::close(guess, gaps, &residual, &|_, terms| terms.fill(1.0))
     }
 
     #[test]
     fn what_is_closed_is_a_part_of_the_machine() {
         for size in [1.0, 1e3, 1e6] {
             let gap = |part: f64| {
-                super::close([], &PIN, |_, r| r.fill(part * size), |_, terms| terms.copy_from_slice(&[0.0, size]))
+                super::close(&[], &PIN, &|_, r| r.fill(part * size), &|_, terms| terms.copy_from_slice(&[0.0, size]))
             };
             assert!(gap(0.9e-10).is_ok());
             let AssemblyError::Open { largest, .. } = gap(1.1e-10).expect_err("open") else { panic!("a gap") };
@@ -234,7 +217,7 @@ mod tests {
     static PIN: [Gap; 2] = [gap("pin", "x"), gap("pin", "y")];
 
     /// Two links of lengths 0.3 and 0.5 m that must reach the point (0.6, y).
-    fn two_links(y: f64) -> impl Fn(&[f64; 2], &mut [f64]) {
+    fn two_links(y: f64) -> impl Fn(&[f64], &mut [f64]) {
         move |q, r| {
             r[0] = 0.3 * libm::cos(q[0]) + 0.5 * libm::cos(q[1]) - 0.6;
             r[1] = 0.3 * libm::sin(q[0]) + 0.5 * libm::sin(q[1]) - y;
@@ -244,7 +227,7 @@ mod tests {
     #[test]
     fn a_loop_closes_to_rounding_on_the_side_of_the_guess() {
         for side in [1.0, -1.0] {
-            let q = close([0.4 * side, -0.5 * side], &PIN, two_links(0.1)).unwrap();
+            let q = close(&[0.4 * side, -0.5 * side], &PIN, two_links(0.1)).unwrap();
             let mut r = [1.0; 2];
             two_links(0.1)(&q, &mut r);
             assert!(r.iter().all(|r| r.abs() <= 2.3e-16), "{r:?}");
@@ -254,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_loop_out_of_reach_names_its_joint_gap_and_unit() {
-        let error = close([0.4, -0.5], &PIN, two_links(2.0)).unwrap_err();
+        let error = close(&[0.4, -0.5], &PIN, two_links(2.0)).unwrap_err();
         let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
         assert_eq!((largest.gap, others.len()), (PIN[1], 0));
         let (sum, reach) = (0.6_f64.hypot(2.0), 0.8);
@@ -265,35 +248,35 @@ mod tests {
     #[test]
     fn coordinates_without_influence_stay_and_redundant_gaps_do_no_harm() {
         static GAPS: [Gap; 3] = [gap("a", "x"), gap("a", "y"), gap("a", "again")];
-        let q = close([0.4, 7.0, -0.5], &GAPS, |q, r| {
+        let q = close(&[0.4, 7.0, -0.5], &GAPS, |q, r| {
             two_links(0.1)(&[q[0], q[2]], &mut r[..2]);
             r[2] = r[0] + r[1];
         })
         .unwrap();
         assert_eq!(q[1], 7.0);
-        let alone = close([0.4, -0.5], &PIN, two_links(0.1)).unwrap();
+        let alone = close(&[0.4, -0.5], &PIN, two_links(0.1)).unwrap();
         assert!((q[0] - alone[0]).abs() < 1e-12 && (q[2] - alone[1]).abs() < 1e-12);
     }
 
     #[test]
     fn a_free_coordinate_pair_moves_as_little_as_possible() {
         static ONE: [Gap; 1] = [gap("rod", "length")];
-        let q = close([3.0, 4.5], &ONE, |q, r| r[0] = q[0] + q[1] - 7.0).unwrap();
+        let q = close(&[3.0, 4.5], &ONE, |q, r| r[0] = q[0] + q[1] - 7.0).unwrap();
         assert!((q[0] - 2.75).abs() < 1e-14 && (q[1] - 4.25).abs() < 1e-14, "{q:?}");
     }
 
     #[test]
     fn without_coordinates_the_gaps_are_only_checked() {
-        assert_eq!(close([], &PIN, |_, r| r.fill(CLOSED)), Ok([]));
-        let error = close([], &PIN, |_, r| r.copy_from_slice(&[2e-10, -3e-10])).unwrap_err();
+        assert_eq!(close(&[], &PIN, |_, r| r.fill(CLOSED)), Ok(vec![]));
+        let error = close(&[], &PIN, |_, r| r.copy_from_slice(&[2e-10, -3e-10])).unwrap_err();
         assert!(matches!(error, AssemblyError::Open { largest, .. } if largest.size == -3e-10));
-        assert_eq!(close([1.0], &[], |_, _| {}), Ok([1.0]));
+        assert_eq!(close(&[1.0], &[], |_, _| {}), Ok(vec![1.0]));
     }
 
     #[test]
     fn other_open_joints_are_listed_once_each() {
         static GAPS: [Gap; 4] = [gap("a", "x"), gap("b", "x"), gap("b", "y"), gap("c", "x")];
-        let error = close([], &GAPS, |_, r| r.copy_from_slice(&[1e-3, 2e-3, -5e-3, 0.0])).unwrap_err();
+        let error = close(&[], &GAPS, |_, r| r.copy_from_slice(&[1e-3, 2e-3, -5e-3, 0.0])).unwrap_err();
         let AssemblyError::Open { largest, others } = &error else { panic!("{error}") };
         assert_eq!((largest.gap, largest.size), (GAPS[2], -5e-3));
         assert_eq!(others.as_slice(), &[OpenGap { gap: GAPS[0], size: 1e-3, allowed: CLOSED }]);
@@ -302,9 +285,9 @@ mod tests {
 
     #[test]
     fn a_gap_that_is_no_number_is_an_error() {
-        let error = close([1.0, 1.0], &PIN, |_, r| r.copy_from_slice(&[0.0, f64::NAN])).unwrap_err();
+        let error = close(&[1.0, 1.0], &PIN, |_, r| r.copy_from_slice(&[0.0, f64::NAN])).unwrap_err();
         assert!(matches!(error, AssemblyError::NonFinite { gap, .. } if gap == PIN[1]));
-        let error = close([0.0, 0.0], &PIN, |q, r| r.copy_from_slice(&[q[0].sqrt() - 1.0, q[1]])).unwrap_err();
+        let error = close(&[0.0, 0.0], &PIN, |q, r| r.copy_from_slice(&[q[0].sqrt() - 1.0, q[1]])).unwrap_err();
         assert!(matches!(error, AssemblyError::NonFinite { gap, .. } if gap == PIN[0]));
     }
 }

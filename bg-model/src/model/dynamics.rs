@@ -18,6 +18,7 @@ use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Field, Sparsity, differences};
 use crate::model::origin::Origin;
+use crate::model::scalar::Scalar;
 use crate::model::scalar::machine::Arch;
 use crate::model::system::{Model, Powers, System, decide_by_sign, switches, values, values_mut};
 
@@ -27,7 +28,7 @@ use crate::model::system::{Model, Powers, System, decide_by_sign, switches, valu
 ///
 /// # Panics
 /// Each function, where a slice is shorter.
-pub trait Dynamics {
+pub trait Dynamics<S: Scalar = f64> {
     /// The number of states.
     fn states(&self) -> usize;
 
@@ -37,10 +38,10 @@ pub trait Dynamics {
     }
 
     /// [`System::rate`].
-    fn rate(&self, t: f64, x: &[f64], negative: &[bool], dx: &mut [f64]);
+    fn rate(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]);
 
     /// [`System::guards`].
-    fn guards(&self, _t: f64, _x: &[f64], _negative: &[bool], _guards: &mut [f64]) {}
+    fn guards(&self, _t: S, _x: &[S], _negative: &[S::Switch], _guards: &mut [S]) {}
 
     /// [`System::first_branches`].
     fn first_branches(&self) -> Vec<bool> {
@@ -48,7 +49,7 @@ pub trait Dynamics {
     }
 
     /// [`System::project`].
-    fn project(&self, _t: f64, _negative: &[bool], _x: &mut [f64]) {}
+    fn project(&self, _t: S, _negative: &[S::Switch], _x: &mut [S]) {}
 
     /// [`System::next_break`].
     fn next_break(&self, _t: f64) -> f64 {
@@ -66,7 +67,7 @@ pub trait Dynamics {
     }
 
     /// [`System::not_finite`].
-    fn not_finite(&self, _t: f64, _x: &[f64], _negative: &[bool]) -> Option<Origin> {
+    fn not_finite(&self, _t: S, _x: &[S], _negative: &[S::Switch]) -> Option<Origin> {
         None
     }
 
@@ -76,9 +77,9 @@ pub trait Dynamics {
     }
 
     /// [`Linearised::jacobian`]; by differences where the system does not know it.
-    fn jacobian(&self, t: f64, x: &[f64], negative: &[bool], entries: &mut [f64], slope: &mut [f64]) {
-        let rate = |t, x: &[f64], dx: &mut [f64]| self.rate(t, x, negative, dx);
-        differences(rate, t, x, entries, slope, &mut vec![0.0; x.len()]);
+    fn jacobian(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S], slope: &mut [S]) {
+        let rate = |t, x: &[S], dx: &mut [S]| self.rate(t, x, negative, dx);
+        differences(rate, t, x, entries, slope, &mut vec![S::from_f64(0.0); x.len()]);
     }
 
     /// [`Linearised::damping_sparsity`].
@@ -87,8 +88,8 @@ pub trait Dynamics {
     }
 
     /// [`Linearised::damping`].
-    fn damping(&self, t: f64, x: &[f64], negative: &[bool], entries: &mut [f64]) {
-        self.jacobian(t, x, negative, entries, &mut vec![0.0; x.len()]);
+    fn damping(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
+        self.jacobian(t, x, negative, entries, &mut vec![S::from_f64(0.0); x.len()]);
     }
 
     /// [`Elimination::factors`]; none where there is no elimination.
@@ -97,7 +98,7 @@ pub trait Dynamics {
     }
 
     /// [`Elimination::eliminate`].
-    fn eliminate(&self, _c: f64, _entries: &[f64], _factors: &mut [f64]) -> bool {
+    fn eliminate(&self, _c: S, _entries: &[S], _factors: &mut [S]) -> bool {
         false
     }
 
@@ -107,7 +108,7 @@ pub trait Dynamics {
     }
 
     /// [`Elimination::substitute`].
-    fn substitute(&self, _factors: &[f64], _b: &mut [f64]) {}
+    fn substitute(&self, _factors: &[S], _b: &mut [S]) {}
 
     /// The same with a complex c.
     fn substitute_complex(&self, _factors: &[Complex<f64>], _b: &mut [Complex<f64>]) {}
@@ -118,10 +119,10 @@ pub trait Dynamics {
     }
 
     /// [`SecondOrder::second_derivatives`].
-    fn second_derivatives(&self, _x: &[f64], _dx: &mut [f64]) {}
+    fn second_derivatives(&self, _x: &[S], _dx: &mut [S]) {}
 
     /// [`SecondOrder::forces`]; the rate where no states of second order are known.
-    fn forces(&self, t: f64, x: &[f64], negative: &[bool], dx: &mut [f64]) {
+    fn forces(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]) {
         self.rate(t, x, negative, dx);
     }
 
@@ -136,7 +137,7 @@ pub trait Dynamics {
     }
 
     /// [`Series::expand`]: order by order, of each all states.
-    fn expand(&self, _t: f64, _h: f64, _negative: &[bool], _rows: &mut [f64], _series: &mut [f64]) {}
+    fn expand(&self, _t: S, _h: S, _negative: &[S::Switch], _rows: &mut [S], _series: &mut [S]) {}
 
     /// [`Joints::held`]; none where joints hold nothing.
     fn held(&self) -> Option<Held> {
@@ -149,7 +150,7 @@ pub trait Dynamics {
     }
 
     /// [`Joints::hold`].
-    fn hold(&self, _t: f64, _x: &[f64], _negative: &[bool], _entries: &mut [f64]) {}
+    fn hold(&self, _t: S, _x: &[S], _negative: &[S::Switch], _entries: &mut [S]) {}
 
     /// [`Impacts::stops`]; none where nothing is hit.
     fn stops(&self) -> Option<Stops> {
@@ -162,7 +163,7 @@ pub trait Dynamics {
     }
 
     /// [`Impacts::impact`].
-    fn impact(&self, _t: f64, _x: &[f64], _negative: &[bool], _entries: &mut [f64]) {}
+    fn impact(&self, _t: S, _x: &[S], _negative: &[S::Switch], _entries: &mut [S]) {}
 
     /// [`Storages::states`]; none of a system that does not know what it stores.
     fn stored(&self) -> Option<&'static [StateInfo]> {
@@ -170,9 +171,9 @@ pub trait Dynamics {
     }
 
     /// [`Storages::energy`]; 0 where nothing is known.
-    fn energy(&self, _t: f64, _x: &[f64], _negative: &[bool], curvatures: &mut [f64]) -> f64 {
-        curvatures.fill(0.0);
-        0.0
+    fn energy(&self, _t: S, _x: &[S], _negative: &[S::Switch], curvatures: &mut [S]) -> S {
+        curvatures.fill(S::from_f64(0.0));
+        S::from_f64(0.0)
     }
 }
 
@@ -180,7 +181,7 @@ pub trait Dynamics {
 ///
 /// # Panics
 /// As [`Dynamics`].
-pub trait Machine: Dynamics {
+pub trait Machine<S: Scalar = f64>: Dynamics<S> {
     /// [`Model::description`].
     fn description(&self) -> &'static Description;
 
@@ -188,7 +189,7 @@ pub trait Machine: Dynamics {
     ///
     /// # Errors
     /// As there.
-    fn start(&self) -> Result<Vec<f64>, AssemblyError>;
+    fn start(&self) -> Result<Vec<S>, AssemblyError>;
 
     /// [`Model::redundant`].
     fn redundant(&self) -> Vec<Redundancy>;
@@ -200,27 +201,29 @@ pub trait Machine: Dynamics {
     ///
     /// # Errors
     /// As there.
-    fn impulse_energy(&self) -> Result<f64, AssemblyError>;
+    fn impulse_energy(&self) -> Result<S, AssemblyError>;
 
     /// [`Model::outputs`].
-    fn outputs(&self, t: f64, x: &[f64], negative: &[bool], y: &mut [f64]);
+    fn outputs(&self, t: S, x: &[S], negative: &[S::Switch], y: &mut [S]);
 
     /// [`Model::stored_energy`].
-    fn stored_energy(&self, t: f64, x: &[f64], negative: &[bool]) -> f64;
+    fn stored_energy(&self, t: S, x: &[S], negative: &[S::Switch]) -> S;
 
     /// [`Model::shown`].
     fn shown(&self, t: f64, x: &[f64], negative: &[bool], shown: &mut Vec<f64>);
 
     /// [`Model::powers`].
-    fn powers(&self, t: f64, x: &[f64], negative: &[bool]) -> Powers<f64>;
+    fn powers(&self, t: S, x: &[S], negative: &[S::Switch]) -> Powers<S>;
 }
 
 /// The branches of the switches of a system at time `t` (s) and state `x`.
 #[must_use]
-pub fn branches(system: &dyn Dynamics, t: f64, x: &[f64]) -> Vec<bool> {
+pub fn branches<S: Scalar>(system: &dyn Dynamics<S>, t: f64, x: &[S]) -> Vec<bool> {
     let mut negative = system.first_branches();
-    decide_by_sign(&mut negative, &mut vec![0.0; system.switches()], |negative, guards| {
-        system.guards(t, x, negative, guards);
+    let mut guards = vec![S::from_f64(0.0); system.switches()];
+    decide_by_sign(&mut negative, &mut guards, |negative, guards| {
+        let negative: Vec<S::Switch> = negative.iter().copied().map(S::Switch::from).collect();
+        system.guards(S::from_f64(t), x, &negative, guards);
     });
     negative
 }
@@ -284,6 +287,74 @@ where
             self.arch.dispatch(Substitute { elimination, factors, b });
         }
     }
+}
+
+/// A borrowed system in any scalar, as far as starts and reactions ask for it. Its functions are those that calculate
+/// with one number at a time, and hand over copies.
+#[derive(Clone, Copy, Debug)]
+pub struct Over<'a, Sys, const N: usize, const G: usize>(pub &'a Sys);
+
+impl<S: Scalar, Sys: System<S, N, G>, const N: usize, const G: usize> Dynamics<S> for Over<'_, Sys, N, G> {
+    fn states(&self) -> usize {
+        N
+    }
+
+    fn switches(&self) -> usize {
+        G
+    }
+
+    fn rate(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]) {
+        let mut rates = SVector::from_column_slice(dx);
+        self.0.rate(t, &SVector::from_column_slice(x), &each(negative), &mut rates);
+        dx.copy_from_slice(rates.as_slice());
+    }
+
+    fn guards(&self, t: S, x: &[S], negative: &[S::Switch], guards: &mut [S]) {
+        let mut values = SVector::from_column_slice(guards);
+        self.0.guards(t, &SVector::from_column_slice(x), &each(negative), &mut values);
+        guards.copy_from_slice(values.as_slice());
+    }
+
+    fn first_branches(&self) -> Vec<bool> {
+        self.0.first_branches().to_vec()
+    }
+
+    fn project(&self, t: S, negative: &[S::Switch], x: &mut [S]) {
+        let mut state = SVector::from_column_slice(x);
+        self.0.project(t, &each(negative), &mut state);
+        x.copy_from_slice(state.as_slice());
+    }
+
+    fn held(&self) -> Option<Held> {
+        self.0.joints().map(Joints::held)
+    }
+
+    fn kept(&self) -> &[f64] {
+        self.0.joints().map_or(&[], Joints::kept)
+    }
+
+    fn hold(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
+        if let Some(joints) = self.0.joints() {
+            joints.hold(t, &SVector::from_column_slice(x), &each(negative), entries);
+        }
+    }
+
+    fn stored(&self) -> Option<&'static [StateInfo]> {
+        self.0.storages().map(Storages::states)
+    }
+
+    fn energy(&self, t: S, x: &[S], negative: &[S::Switch], curvatures: &mut [S]) -> S {
+        let Some(storages) = self.0.storages() else { return S::from_f64(0.0) };
+        let mut values = SVector::from_column_slice(curvatures);
+        let energy = storages.energy(t, &SVector::from_column_slice(x), &each(negative), &mut values);
+        curvatures.copy_from_slice(values.as_slice());
+        energy
+    }
+}
+
+/// The branches in an array.
+fn each<T: Copy, const G: usize>(negative: &[T]) -> [T; G] {
+    negative.try_into().expect("there is a branch for each switch")
 }
 
 // What is compiled for the vectors of the machine: closures are not inlined there.

@@ -6,7 +6,8 @@
 //! to be smaller; of one unknown, between places at which the residual has opposite signs. It begins at zero; where
 //! that leads nowhere, at some other places in a fixed order, so that the same state always gives the same bits.
 
-use nalgebra::{Const, DimMin, SMatrix, SVector};
+use nalgebra::allocator::Allocator;
+use nalgebra::{DefaultAllocator, Dim, DimMin, OMatrix, OVector, U1};
 
 use crate::model::scalar::Scalar;
 
@@ -24,23 +25,35 @@ const SMALL: f64 = 1e-9;
 /// A residual beside the sum of its terms that is nothing but rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// So many equations of as many unknowns, in memory of that size: on the stack where the number is in the type.
+pub trait Unknowns: Dim + DimMin<Self, Output = Self> {}
+
+impl<D: Dim + DimMin<Self, Output = Self>> Unknowns for D {}
+
 /// Equations at a place.
-#[derive(Clone, Copy, Debug)]
-pub struct Equations<const L: usize> {
-    residuals: SVector<f64, L>,
-    sizes: SVector<f64, L>,
-    slopes: SMatrix<f64, L, L>,
+#[derive(Clone, Debug)]
+pub struct Equations<D: Unknowns>
+where
+    DefaultAllocator: Allocator<D> + Allocator<D, D>,
+{
+    residuals: OVector<f64, D>,
+    sizes: OVector<f64, D>,
+    slopes: OMatrix<f64, D, D>,
 }
 
-impl<const L: usize> Equations<L> {
+impl<D: Unknowns> Equations<D>
+where
+    DefaultAllocator: Allocator<D> + Allocator<D, D>,
+{
     /// From residuals, the sums of the absolute values of their terms, and their derivatives row by row.
-    pub fn of<S: Scalar>(values: &[S]) -> Self {
-        let (residuals, rest) = values.split_at(L);
-        let (sizes, slopes) = rest.split_at(L);
+    pub fn of<S: Scalar>(unknowns: D, values: &[S]) -> Self {
+        let count = unknowns.value();
+        let (residuals, rest) = values.split_at(count);
+        let (sizes, slopes) = rest.split_at(count);
         Self {
-            residuals: SVector::from_fn(|row, _| residuals[row].to_f64()),
-            sizes: SVector::from_fn(|row, _| sizes[row].to_f64()),
-            slopes: SMatrix::from_fn(|row, column| slopes[row * L + column].to_f64()),
+            residuals: OVector::from_fn_generic(unknowns, U1, |row, _| residuals[row].to_f64()),
+            sizes: OVector::from_fn_generic(unknowns, U1, |row, _| sizes[row].to_f64()),
+            slopes: OMatrix::from_fn_generic(unknowns, unknowns, |row, column| slopes[row * count + column].to_f64()),
         }
     }
 
@@ -51,33 +64,41 @@ impl<const L: usize> Equations<L> {
 }
 
 /// Solves `equations`, which gives the equations at a place; not numbers where it finds no solution.
-pub fn newton<const L: usize>(mut equations: impl FnMut(&[f64; L]) -> Equations<L>) -> [f64; L]
+pub fn newton<D: Unknowns>(unknowns: D, mut equations: impl FnMut(&[f64]) -> Equations<D>) -> OVector<f64, D>
 where
-    Const<L>: DimMin<Const<L>, Output = Const<L>>,
+    DefaultAllocator: Allocator<D> + Allocator<D, D>,
 {
-    let found = if L == 1 {
-        bracketed(&mut |place| Point::at(place, &equations(&[place; L]))).map(SVector::repeat)
+    let found = if unknowns.value() == 1 {
+        let found = bracketed(&mut |place| Point::at(place, &equations(&[place])));
+        found.map(|place| OVector::from_fn_generic(unknowns, U1, |_, _| place))
     } else {
         // Not the same for all unknowns: symmetric equations have no regular derivatives there.
-        let place = |start: f64| SVector::from_fn(|row, _| start * (1.0 + 0.1 * row as f64));
+        let place = |start: f64| OVector::from_fn_generic(unknowns, U1, |row, _| start * (1.0 + 0.1 * row as f64));
         STARTS.iter().find_map(|&start| damped(place(start), &mut equations))
     };
-    let Some(near) = found else { return [f64::NAN; L] };
+    let Some(near) = found else { return OVector::from_fn_generic(unknowns, U1, |_, _| f64::NAN) };
     // Derivatives are those at the place that is found: it has to be right to rounding.
-    let last = equations(&near.data.0[0]);
-    let step = last.slopes.lu().solve(&last.residuals).filter(is_finite);
-    (near - step.unwrap_or_else(SVector::zeros)).data.0[0]
+    let last = equations(near.as_slice());
+    match last.slopes.lu().solve(&last.residuals).filter(is_finite) {
+        Some(step) => near - step,
+        None => near,
+    }
+}
+
+/// Numbers in a scalar.
+pub fn lift<S: Scalar>(of: &[f64], to: &mut [S]) {
+    to.iter_mut().zip(of).for_each(|(to, &of)| *to = S::from_f64(of));
 }
 
 /// Newton's iteration from a place on, with parts of its steps.
-fn damped<const L: usize>(
-    mut place: SVector<f64, L>,
-    equations: &mut impl FnMut(&[f64; L]) -> Equations<L>,
-) -> Option<SVector<f64, L>>
+fn damped<D: Unknowns>(
+    mut place: OVector<f64, D>,
+    equations: &mut impl FnMut(&[f64]) -> Equations<D>,
+) -> Option<OVector<f64, D>>
 where
-    Const<L>: DimMin<Const<L>, Output = Const<L>>,
+    DefaultAllocator: Allocator<D> + Allocator<D, D>,
 {
-    let mut here = equations(&place.data.0[0]);
+    let mut here = equations(place.as_slice());
     for _ in 0..MOST_STEPS {
         if here.is_zero() {
             return Some(place);
@@ -88,11 +109,11 @@ where
             return Some(place - step);
         }
         let weights = step.zip_map(&place, |step, place| step.abs().max(place.abs()).max(f64::MIN_POSITIVE));
-        let length = |step: &SVector<f64, L>| step.component_div(&weights).amax();
+        let length = |step: &OVector<f64, D>| step.component_div(&weights).amax();
         let mut part = 1.0;
         (place, here) = loop {
-            let next = place - step * part;
-            let there = equations(&next.data.0[0]);
+            let next = &place - &step * part;
+            let there = equations(next.as_slice());
             let left = factors.solve(&there.residuals).filter(is_finite);
             if there.is_zero() || left.is_some_and(|left| length(&left) <= (1.0 - part / 4.0) * length(&step)) {
                 break (next, there);
@@ -106,7 +127,10 @@ where
     None
 }
 
-fn is_finite<const L: usize>(of: &SVector<f64, L>) -> bool {
+fn is_finite<D: Unknowns>(of: &OVector<f64, D>) -> bool
+where
+    DefaultAllocator: Allocator<D>,
+{
     of.iter().all(|value| value.is_finite())
 }
 
@@ -121,7 +145,10 @@ struct Point {
 }
 
 impl Point {
-    fn at<const L: usize>(place: f64, equations: &Equations<L>) -> Self {
+    fn at<D: Unknowns>(place: f64, equations: &Equations<D>) -> Self
+    where
+        DefaultAllocator: Allocator<D> + Allocator<D, D>,
+    {
         let (residual, slope) = (equations.residuals[0], equations.slopes[(0, 0)]);
         Self { place, residual, step: -residual / slope, is_zero: equations.is_zero() }
     }
@@ -203,12 +230,12 @@ mod tests {
     /// The solution of one equation and how often it was evaluated.
     fn solved(equation: impl Fn(f64) -> (f64, f64, f64)) -> (f64, u32) {
         let mut evaluations = 0;
-        let [found] = newton(|&[u]: &[f64; 1]| {
+        let found = newton(U1, |u| {
             evaluations += 1;
-            let (residual, size, slope) = equation(u);
-            Equations::of(&[residual, size, slope])
+            let (residual, size, slope) = equation(u[0]);
+            Equations::of(U1, &[residual, size, slope])
         });
-        (found, evaluations)
+        (found[0], evaluations)
     }
 
     #[test]
@@ -257,19 +284,21 @@ mod tests {
 
     #[test]
     fn equations_that_need_each_other_are_solved() {
-        // x^2 + y^2 = 4, x y = 1.
-        let [x, y] = newton(|&[x, y]: &[f64; 2]| {
-            Equations::of(&[
-                x * x + y * y - 4.0,
-                x * y - 1.0,
-                x * x + y * y + 4.0,
-                (x * y).abs() + 1.0,
-                2.0 * x,
-                2.0 * y,
-                y,
-                x,
-            ])
-        });
+        // x^2 + y^2 = 4, x y = 1, in memory of either kind.
+        fn solved<D: Unknowns>(two: D) -> [f64; 2]
+        where
+            DefaultAllocator: Allocator<D> + Allocator<D, D>,
+        {
+            let found = newton(two, |u| {
+                let (x, y) = (u[0], u[1]);
+                let residuals = [x * x + y * y - 4.0, x * y - 1.0];
+                let sizes = [x * x + y * y + 4.0, (x * y).abs() + 1.0];
+                Equations::of(two, &[residuals, sizes, [2.0 * x, 2.0 * y], [y, x]].concat())
+            });
+            [found[0], found[1]]
+        }
+        let [x, y] = solved(nalgebra::U2);
         assert!((x * x + y * y - 4.0).abs() < 1e-7 && (x * y - 1.0).abs() < 1e-7, "{x} {y}");
+        assert_eq!(solved(nalgebra::Dyn(2)), [x, y]);
     }
 }

@@ -54,31 +54,28 @@ pub(crate) fn nearest(
 ///
 /// Exact where the residuals determine all coordinates, or the guess is not moved; else to first order in how far it
 /// is.
-pub fn lifted<S: Scalar, const U: usize>(
-    guess: [S; U],
-    found: [f64; U],
-    residual: impl Fn(&[S; U]) -> Vec<S>,
-) -> [S; U] {
+pub(crate) fn lifted<S: Scalar>(guess: &[S], found: &[f64], residual: &dyn Fn(&[S]) -> Vec<S>) -> Vec<S> {
     // The first solves for derivatives in `f64`; the second takes away what rounding leaves where these have more
     // digits.
     const SOLUTIONS: usize = 2;
     let zero = S::from_f64(0.0);
     let beyond = |value: S| value - S::from_f64(value.to_f64());
-    let plain = found.map(S::from_f64);
-    if U == 0 {
+    let plain: Vec<S> = found.iter().copied().map(S::from_f64).collect();
+    if found.is_empty() {
         return plain;
     }
-    let moved = guess.map(beyond);
-    let mut lifted: [S; U] = core::array::from_fn(|k| plain[k] + moved[k]);
+    let moved: Vec<S> = guess.iter().copied().map(beyond).collect();
+    let mut lifted: Vec<S> = plain.iter().zip(&moved).map(|(&plain, &moved)| plain + moved).collect();
     let mut left: Vec<S> = residual(&lifted).into_iter().map(beyond).collect();
     if moved.iter().chain(&left).all(|&value| value == zero) {
         return plain;
     }
     let sizes_at = |coordinates: &[f64]| {
-        let sizes = residual(&core::array::from_fn(|k| S::from_f64(coordinates[k])));
+        let coordinates: Vec<S> = coordinates.iter().copied().map(S::from_f64).collect();
+        let sizes = residual(&coordinates);
         DVector::from_iterator(sizes.len(), sizes.into_iter().map(S::to_f64))
     };
-    let Some(inverse) = inverse(&found, left.len(), &sizes_at) else { return lifted };
+    let Some(inverse) = inverse(found, left.len(), &sizes_at) else { return lifted };
     for _ in 0..SOLUTIONS {
         for (k, lifted) in lifted.iter_mut().enumerate() {
             for (row, &left) in left.iter().enumerate() {

@@ -80,7 +80,7 @@ impl<Me: Mechanism> Machine for Me {
     }
 }
 
-fn simulation<'a, Me: Mechanism>(machine: &'a Me, request: Request, from: Option<&State>) -> Simulation<'a, Me> {
+fn simulation<'a>(machine: &impl Mechanism, request: Request, from: Option<&State>) -> Simulation<'a> {
     let simulation = Simulation::of(machine, request);
     match from {
         Some(state) => simulation.from(state),

@@ -7,6 +7,7 @@ use super::pairs;
 use super::routine::{self, Names};
 use crate::expr::Function;
 use crate::program::pairs::{Half, Step, Value};
+use crate::program::series::places;
 use crate::program::{Assignment, Changes, Operand, Operation};
 
 /// The coefficient at an order of what does not change.
@@ -155,21 +156,8 @@ impl<'w, 'n> Writer<'w, 'n> {
 
     fn call(&mut self, function: Function, arguments: &[Operand]) -> String {
         let is_fixed_power = function == Function::Pow && !self.is_changing(&arguments[1]);
-        let (name, places) = match function {
-            Function::Sqrt => ("sqrt", 1),
-            Function::Abs => ("abs", 1),
-            Function::Exp => ("exp", 2),
-            Function::Ln => ("ln", 2),
-            Function::Sin => ("sin", 3),
-            Function::Cos => ("cos", 3),
-            Function::Tan => ("tan", 3),
-            Function::Tanh => ("tanh", 3),
-            Function::Asin => ("asin", 3),
-            Function::Acos => ("acos", 3),
-            Function::Atan2 => ("atan2", 4),
-            Function::Pow if is_fixed_power => ("powf", 2),
-            Function::Pow => ("power", 6),
-        };
+        let name = if is_fixed_power { "powf" } else { method_of_series(function) };
+        let places = places(function, is_fixed_power);
         let at = self.reserve(places);
         let first = self.value(&arguments[0]);
         let second = arguments.get(1).map(|second| {
@@ -210,5 +198,13 @@ impl<'w, 'n> Writer<'w, 'n> {
             Value::Subtract(a, b) if !is_changing(a) => pairs::value(&Value::Turn(*b, [true; 2]), self.names),
             _ => pairs::value(value, self.names),
         }
+    }
+}
+
+/// The function of a series.
+fn method_of_series(function: Function) -> &'static str {
+    match function {
+        Function::Pow => "power",
+        other => other.name(),
     }
 }

@@ -1,33 +1,20 @@
 //! The look of a mechanism as a table of the generated model's description.
 //!
-//! In: a [`Compiled`]. Out: a `Drawing` literal, with the places of its quantities on the model's tape.
+//! In: a [`Drawing`]. Out: a `Drawing` literal.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::items::number;
-use crate::expr::Symbol;
-use crate::graph::drawing::{Body, Drawing, Joint, Point, Shape, Solid};
-use crate::pipeline::Compiled;
 use crate::program::Tape;
-use crate::system::equations::{Quantity, StateEquations};
-
-/// A place on the tape as a literal.
-type Place = TokenStream;
+use crate::source::drawing::{self, Joint, Point, Shape, Solid};
+use crate::tables::{Body, Drawing, Place};
 
 /// The `Drawing` literal.
-pub(super) fn drawing(model: &Compiled) -> TokenStream {
-    let (shown, tape) = (&model.equations.shown, &model.programs.shown);
-    let mut places = tape.places.iter().map(place);
-    let mut next = || places.next().expect("a place for each quantity");
-    let Drawing { bodies, ground, gravity, joints } = shown.drawing.map(&mut |_| next());
-    let bonds: Vec<TokenStream> = shown.bonds.iter().map(|_| (next(), next())).map(|(e, f)| quote!([#e, #f])).collect();
-    let bodies = bodies.iter().zip(&shown.drawing.bodies).map(|(body, quantities)| {
-        let states = states(&model.equations, &[&quantities.position, &quantities.orientation]);
-        body_info(body, &states)
-    });
-    let (ground, gravity, tape) = (points(&ground), optional(gravity.as_ref()), words(tape));
-    let joints = joints.iter().map(joint);
+pub(super) fn drawing(Drawing { bodies, ground, gravity, joints, bonds, tape }: &Drawing) -> TokenStream {
+    let (bodies, joints) = (bodies.iter().map(body_info), joints.iter().map(joint));
+    let (ground, gravity, tape) = (points(ground), optional(gravity.as_ref()), words(tape));
+    let bonds = bonds.iter().map(|places| places.map(|of| place(&of))).map(|[e, f]| quote!([#e, #f]));
     quote! {
         ::bg_model::drawing::Drawing {
             bodies: &[#(#bodies,)*], ground: #ground, gravity: #gravity, joints: &[#(#joints,)*],
@@ -36,21 +23,16 @@ pub(super) fn drawing(model: &Compiled) -> TokenStream {
     }
 }
 
-fn place(of: &Option<usize>) -> Place {
+fn place(of: &Place) -> TokenStream {
     let Some(place) = of.map(Literal::usize_unsuffixed) else { return quote!(None) };
     quote!(Some(#place))
 }
 
-/// The states that quantities depend on.
-fn states(equations: &StateEquations, of: &[&Quantity]) -> Vec<Literal> {
-    let ids: Vec<_> = of.iter().copied().flatten().flatten().copied().collect();
-    let symbols = equations.pool.symbols(&ids).into_iter();
-    symbols.filter_map(Symbol::as_state).map(Literal::usize_unsuffixed).collect()
-}
-
-fn body_info(body: &Body<Place>, states: &[Literal]) -> TokenStream {
-    let Body { name, position, orientation, solids, points: named } = body;
+fn body_info(Body { look, states }: &Body) -> TokenStream {
+    let drawing::Body { name, position, orientation, solids, points: named } = look;
+    let (position, orientation) = (place(position), place(orientation));
     let (solids, points) = (solids.iter().map(solid), points(named));
+    let states = states.iter().copied().map(Literal::usize_unsuffixed);
     quote! {
         ::bg_model::drawing::Body {
             name: #name, position: #position, orientation: #orientation, states: &[#(#states),*],
@@ -62,27 +44,37 @@ fn body_info(body: &Body<Place>, states: &[Literal]) -> TokenStream {
 fn solid(solid: &Solid<Place>) -> TokenStream {
     let Solid { shape, center, turned } = solid;
     let shape = match shape {
-        Shape::Cuboid(edges) => quote!(Cuboid(#edges)),
+        Shape::Cuboid(edges) => {
+            let edges = place(edges);
+            quote!(Cuboid(#edges))
+        }
         Shape::Cylinder { radius, length, axis } => {
+            let (radius, length) = (place(radius), place(length));
             let axis = Literal::usize_unsuffixed(*axis as usize);
             quote!(Cylinder { radius: #radius, length: #length, axis: #axis })
         }
-        Shape::Sphere(radius) => quote!(Sphere(#radius)),
+        Shape::Sphere(radius) => {
+            let radius = place(radius);
+            quote!(Sphere(#radius))
+        }
     };
-    let turned = optional(turned.as_ref());
+    let (center, turned) = (place(center), optional(turned.as_ref()));
     quote! {
         ::bg_model::drawing::Solid { shape: ::bg_model::drawing::Shape::#shape, center: #center, turned: #turned }
     }
 }
 
 fn points(of: &[Point<Place>]) -> TokenStream {
-    let points =
-        of.iter().map(|Point { name, place }| quote!(::bg_model::drawing::Point { name: #name, place: #place }));
+    let points = of.iter().map(|Point { name, place: at }| {
+        let at = place(at);
+        quote!(::bg_model::drawing::Point { name: #name, place: #at })
+    });
     quote!(&[#(#points,)*])
 }
 
 fn joint(joint: &Joint<Place>) -> TokenStream {
     let Joint { name, word, ends, places, force, moment } = joint;
+    let (places, force) = (places.iter().map(place), place(force));
     let moment = optional(moment.as_ref());
     quote! {
         ::bg_model::drawing::Joint {
@@ -92,7 +84,13 @@ fn joint(joint: &Joint<Place>) -> TokenStream {
 }
 
 fn optional(place: Option<&Place>) -> TokenStream {
-    place.map_or_else(|| quote!(None), |place| quote!(Some(#place)))
+    place.map_or_else(
+        || quote!(None),
+        |of| {
+            let of = self::place(of);
+            quote!(Some(#of))
+        },
+    )
 }
 
 fn words(tape: &Tape) -> TokenStream {

@@ -8,6 +8,7 @@ use quote::{format_ident, quote};
 
 use super::routine::parsed;
 use crate::program::elimination::{Elimination, Row, Step, Substep};
+use crate::tables::{self, EliminationTable};
 
 /// The value in a slot.
 fn value(slot: usize) -> Ident {
@@ -109,30 +110,10 @@ pub(super) fn substitution(elimination: &Elimination, n: usize) -> TokenStream {
 }
 
 fn factorisation_table(elimination: &Elimination) -> TokenStream {
-    let mut products = Vec::new();
-    let slots: Vec<String> = elimination
-        .factorisation
-        .chunk_by(|left, right| left.slot() == right.slot())
-        .map(|steps| {
-            let (mut entry, mut scale, mut is_pivot, mut of_unknown) = (None, None, false, false);
-            for step in steps {
-                if let Step::Enter { of, .. } | Step::Fill { of, .. } = *step {
-                    of_unknown = of == Row::Unknown;
-                }
-                match *step {
-                    Step::Enter { entry: number, .. } => entry = Some(number),
-                    Step::Fill { product, .. } | Step::Update { product, .. } => products.push(format!("{product:?}")),
-                    Step::Invert { .. } => is_pivot = true,
-                    Step::Scale { by, .. } => scale = Some(by),
-                }
-            }
-            let end = products.len();
-            format!(
-                "Slot {{ entry: {entry:?}, end: {end}, is_pivot: {is_pivot}, of_unknown: {of_unknown}, scale: {scale:?} }}"
-            )
-        })
-        .collect();
-    let [slots, products] = [slots, products].map(|rows| parsed(&rows.join(", ")));
+    let EliminationTable { slots, products, .. } = tables::elimination(elimination);
+    let slots = slots.iter().map(|slot| format!("{slot:?}")).collect::<Vec<_>>().join(", ");
+    let products = products.iter().map(|product| format!("{product:?}")).collect::<Vec<_>>().join(", ");
+    let [slots, products] = [slots, products].map(|rows| parsed(&rows));
     quote! {
         use ::bg_model::__private::table::{self, Slot};
         static SLOTS: &[Slot] = &[#slots];
@@ -142,12 +123,8 @@ fn factorisation_table(elimination: &Elimination) -> TokenStream {
 }
 
 fn substitution_table(elimination: &Elimination, n: usize) -> TokenStream {
-    let steps = elimination.substitution.iter().map(|step| match *step {
-        Substep::Subtract { row, slot, column } => (row, slot, column),
-        Substep::Scale { row, slot } => (row, slot, row),
-    });
-    let steps = parsed(&steps.map(|step| format!("{step:?}")).collect::<Vec<_>>().join(", "));
-    let rows = elimination.order.len();
+    let EliminationTable { steps, rows, .. } = tables::elimination(elimination);
+    let steps = parsed(&steps.iter().map(|step| format!("{step:?}")).collect::<Vec<_>>().join(", "));
     let whole = (rows > n).then(|| {
         quote! {
             let mut whole = [F::real(S::from_f64(0.0)); #rows];

@@ -4,6 +4,7 @@
 //! over the scalar; flat single assignments over fixed-size vectors. Each trait has a file of its own in this folder.
 
 mod capabilities;
+mod constants;
 mod impacts;
 mod iterations;
 mod linear;
@@ -17,7 +18,6 @@ mod routines;
 mod shared;
 mod start;
 mod system;
-mod tables;
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
@@ -25,14 +25,14 @@ use quote::quote;
 use super::items::{Given, declared};
 use super::{description, documentation, picture};
 use crate::pipeline::Compiled;
-use crate::program::Counts;
-use tables::Tables;
+use crate::tables::{self, Tables};
+use constants::Constants;
 
 /// The items of one model: parameters, inputs, the type, its functions, its description.
 #[must_use]
 pub fn model(model: &Compiled) -> TokenStream {
     let states = names::of_states(&model.equations);
-    Emission { model, states, shape: Shape::of(model) }.items()
+    Emission { model, states, shape: Shape::of(model), tables: tables::tables(model) }.items()
 }
 
 struct Emission<'a> {
@@ -40,6 +40,7 @@ struct Emission<'a> {
     /// The identifier of each state.
     states: Vec<Ident>,
     shape: Shape,
+    tables: Tables,
 }
 
 /// The numbers of states, switches, outputs and parameters, as they stand in types: a name there shows in documentation
@@ -72,21 +73,20 @@ impl Emission<'_> {
             parameters: &self.model.equations.parameters,
             inputs: &graph.inputs,
         };
-        let costs = self.costs();
-        let tables = self.tables(&given.scalar());
-        let definition = self.definition(&given, &costs, &tables);
-        let items = given.items(&definition, &self.code(&given, &costs, &tables));
+        let constants = self.constants(&given.scalar());
+        let definition = self.definition(&given, &constants);
+        let items = given.items(&definition, &self.code(&given, &constants));
         let scenes =
             given.scenes(!self.model.is_scene, &self.model.scenes.iter().map(String::as_str).collect::<Vec<_>>());
         quote!(#items #scenes)
     }
 
     /// The model's struct.
-    fn definition(&self, given: &Given, costs: &[(&str, Counts)], constants: &Tables) -> TokenStream {
+    fn definition(&self, given: &Given, constants: &Constants) -> TokenStream {
         let (name, scalar, fields) = (declared(given.name), given.scalar(), given.fields());
         let doc = &self.model.derived.causal.graph.docs;
         let picture = picture::text(self.model);
-        let tables = documentation::tables(self.model, costs);
+        let tables = documentation::tables(self.model, &self.model.costs());
         let (table_fields, decided, p) = (&constants.fields, self.decided().fields(), &self.shape.p);
         // The empty lines end a paragraph and HTML; rustdoc drops those inside a text at its ends.
         quote! {
@@ -106,13 +106,13 @@ impl Emission<'_> {
     }
 
     /// What the model's struct implements.
-    fn code(&self, given: &Given, costs: &[(&str, Counts)], tables: &Tables) -> TokenStream {
-        let description = description::description(self.model, costs);
-        let constructors = self.constructors(given, tables);
+    fn code(&self, given: &Given, constants: &Constants) -> TokenStream {
+        let description = description::description(&self.tables.description);
+        let constructors = self.constructors(given, constants);
         let (system, capabilities, model, reversed) =
             (self.system(), self.capabilities(), self.model(), self.reversed());
         let (mechanism, parts) = (self.mechanism(), self.parts());
-        let import_pair = tables.has_pairs.then(|| {
+        let import_pair = constants.has_pairs.then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
             )
@@ -135,7 +135,7 @@ impl Emission<'_> {
     }
 
     /// The model's own functions, and those that its traits call.
-    fn constructors(&self, given: &Given, tables: &Tables) -> TokenStream {
+    fn constructors(&self, given: &Given, constants: &Constants) -> TokenStream {
         let inputs_mut = given.inputs_mut();
         let has_inputs = !self.model.derived.causal.graph.inputs.is_empty();
         let input_argument = has_inputs.then(|| quote!(, inputs: Inputs));
@@ -145,10 +145,10 @@ impl Emission<'_> {
         let decided = self.decided();
         let (decided_arguments, decided_values) = (decided.owned(), decided.values());
         let construction = self.construction(has_inputs);
-        let (pose, reactions, sides) = (self.pose(), self.reactions(), self.sides_of_roots());
+        let reactions = self.reactions();
         let input_copied = has_inputs.then(|| quote!(inputs: first.inputs.clone(),));
         let decided_copied = decided.copied();
-        let Tables { values, functions, lets, moved, .. } = tables;
+        let Constants { values, functions, lets, moved, .. } = constants;
         let Shape { n, g, m, p } = &self.shape;
         quote! {
             impl Model {
@@ -231,20 +231,8 @@ impl Emission<'_> {
 
                 #starting
 
-                #pose
-
                 #reactions
-
-                #sides
             }
         }
-    }
-
-    /// The functions of the running model with their operations.
-    fn costs(&self) -> Vec<(&str, Counts)> {
-        let routines = self.model.programs.costs();
-        let factored = ("eliminate", self.model.elimination.factorisation_counts());
-        let solved = ("substitute", self.model.elimination.substitution_counts());
-        routines.chain([factored, solved]).collect()
     }
 }

@@ -7,10 +7,10 @@ use bg_picture::{Bond, End, Graph, Level, Node, Part};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::description::element_of;
 use crate::graph::{self, NodeKind};
 use crate::pipeline::Compiled;
 use crate::source::mechanism;
+use crate::tables::element_of;
 
 /// A graph of more nodes than these is drawn in words: bodies and joints.
 const LARGE: usize = 24;

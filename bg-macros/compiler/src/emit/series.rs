@@ -16,9 +16,8 @@ use super::blocks::{Blocks, Group, Part};
 use super::coefficients::Writer;
 use super::pairs;
 use super::routine::{Names, assignments, parsed, parsed_each};
-use crate::expr::Function;
 use crate::program::pairs::{Half, Paired, Step};
-use crate::program::{Assignment, Changes, Operation, Routine};
+use crate::program::{Assignment, Changes, Routine, SeriesSize, series_size};
 
 /// What a series reads, beside constants.
 pub(super) struct Reads<'a> {
@@ -142,7 +141,7 @@ pub(super) fn expansion(routine: &Routine, paired: Option<&Paired>, names: &Name
             series[k + 1].data.0 = [[#(#order_rates * part),*]];
         }
     };
-    let operations = operations(routine, counted.product, *found > 0);
+    let operations = operations(series_size(routine, *found > 0));
     Expansion { width: places, operations, body, parts }
 }
 
@@ -252,32 +251,9 @@ impl Pass {
     }
 }
 
-/// What an order costs beside a rate; where iterations find something, it is gone through twice.
-fn operations(routine: &Routine, products: usize, is_twice: bool) -> TokenStream {
-    let (mut order, mut sums) = (routine.results.len(), 0);
-    let changes = Changes::of(&alone(routine));
-    let is_changing = |operand| changes.operand(operand);
-    for Assignment { target, operation } in &routine.assignments {
-        if !changes.temporary(*target) {
-            continue;
-        }
-        order += match operation {
-            // Two products with the values at the start, and what is known already.
-            Operation::Multiply(..) if changes.is_product(operation) => 4,
-            Operation::Divide(_, divisor) if is_changing(divisor) => {
-                sums += 1;
-                2
-            }
-            Operation::Call(function, _) => {
-                sums += if matches!(function, Function::Abs | Function::Sqrt) { 1 } else { 2 };
-                4
-            }
-            Operation::Add(a, b) | Operation::Subtract(a, b) => usize::from(is_changing(a) && is_changing(b)),
-            _ => 1,
-        };
-    }
-    let passes = if is_twice { 2 } else { 1 };
-    let [rate, order, products, sums] =
-        [routine.counts.total(), passes * order, products, passes * sums].map(Literal::usize_unsuffixed);
+/// What it costs, as the fields of `Operations`.
+fn operations(size: SeriesSize) -> TokenStream {
+    let SeriesSize { rate, order, product_count, sums, .. } = size;
+    let [rate, order, products, sums] = [rate, order, product_count, sums].map(Literal::usize_unsuffixed);
     quote!(rate: #rate, order: #order, products: #products, sums: #sums)
 }

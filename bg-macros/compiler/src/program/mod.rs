@@ -6,6 +6,7 @@
 mod changes;
 mod programs;
 mod reversed;
+pub mod series;
 mod tape;
 
 pub use bg_expressions::elimination;
@@ -15,4 +16,5 @@ pub use bg_expressions::schedule::{
 pub use changes::Changes;
 pub use programs::{Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
 pub use reversed::Reversed;
+pub use series::{SeriesSize, series_size};
 pub use tape::Tape;

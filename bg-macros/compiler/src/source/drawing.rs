@@ -7,7 +7,7 @@
 use super::ast::Axis;
 
 /// A mechanism's look. `T` is a quantity, of a shape that its place fixes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Drawing<T> {
     /// Bodies in the order of declaration.
     pub bodies: Vec<Body<T>>,
@@ -20,7 +20,7 @@ pub struct Drawing<T> {
 }
 
 /// A body. Its own axes begin at the centre of mass.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Body<T> {
     /// Its name.
     pub name: String,
@@ -35,7 +35,7 @@ pub struct Body<T> {
 }
 
 /// A solid of a body.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Solid<T> {
     /// Its form.
     pub shape: Shape<T>,
@@ -46,7 +46,7 @@ pub struct Solid<T> {
 }
 
 /// A solid's form.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape<T> {
     /// Its edges along the solid's axes, m.
     Cuboid(T),
@@ -64,7 +64,7 @@ pub enum Shape<T> {
 }
 
 /// A named point.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Point<T> {
     /// Its name.
     pub name: String,
@@ -73,7 +73,7 @@ pub struct Point<T> {
 }
 
 /// What acts between two bodies.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Joint<T> {
     /// Its name.
     pub name: String,

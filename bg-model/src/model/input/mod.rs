@@ -142,7 +142,7 @@ impl Input {
 }
 
 /// The first instant after `t` (s) at which one of the `inputs` has a step end; infinity where there is none.
-pub fn next_break<const N: usize>(inputs: [&Input; N], t: f64) -> f64 {
+pub fn next_break<'a>(inputs: impl IntoIterator<Item = &'a Input>, t: f64) -> f64 {
     inputs
         .into_iter()
         .map(|input| input.next_break(t))

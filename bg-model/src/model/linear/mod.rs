@@ -7,7 +7,7 @@
 mod differences;
 mod field;
 pub(crate) mod pivot;
-pub(crate) mod table;
+pub mod table;
 
 pub(crate) use differences::differences;
 pub use field::Field;

@@ -83,7 +83,11 @@ pub enum ParameterError {
 
 debug_is_display!(ParameterError);
 
-fn check(parameter: &ParameterInfo, value: f64) -> Result<(), ParameterError> {
+/// Whether a parameter may have this value.
+///
+/// # Errors
+/// It is outside the parameter's range, or no number.
+pub fn check(parameter: &ParameterInfo, value: f64) -> Result<(), ParameterError> {
     if parameter.range.contains(value) {
         return Ok(());
     }

@@ -17,15 +17,12 @@ mod shared;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::SVector;
-
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::{Joints, Storages};
 use crate::model::description::StateKind;
+use crate::model::dynamics::{Dynamics, branches};
 use crate::model::holding::{FITTING, Held, HeldNow, Redundancy, Slip, Slipping};
 use crate::model::nearest::{lifted, nearest};
 use crate::model::scalar::Scalar;
-use crate::model::system::{System, branches_by_sign};
 use factors::{Factors, Matrix};
 #[cfg(feature = "std")]
 pub(crate) use impact::impacts_in;
@@ -33,13 +30,14 @@ pub(crate) use impact::{After, Collision, impacts_of};
 #[cfg(feature = "std")]
 pub(crate) use monitor::LoopsInLanes;
 pub(crate) use monitor::{Broken, LoopMonitor};
-pub use shared::{kept, redundant, share};
+pub use shared::share;
+pub(crate) use shared::{kept, redundant};
 
 /// A start state whose joints fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Started<S, const N: usize> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Started<S> {
     /// The state.
-    pub x: SVector<S, N>,
+    pub x: Vec<S>,
     /// The kinetic energy that impulses have taken, J.
     pub lost: S,
 }
@@ -56,15 +54,7 @@ impl<S: Scalar> Hold<S> {
         Self { held, entries: vec![S::from_f64(0.0); held.entries()] }
     }
 
-    pub fn read<J, const N: usize, const G: usize>(
-        &mut self,
-        joints: &J,
-        t: S,
-        x: &SVector<S, N>,
-        negative: &[S::Switch; G],
-    ) where
-        J: Joints<S, N, G>,
-    {
+    pub fn read(&mut self, joints: &dyn Dynamics<S>, t: S, x: &[S], negative: &[S::Switch]) {
         joints.hold(t, x, negative, &mut self.entries);
     }
 
@@ -86,7 +76,7 @@ impl<S: Scalar> Hold<S> {
     }
 
     /// The state that `impulses` of the reactions leave of `x`.
-    fn struck<const N: usize>(&self, mut x: SVector<S, N>, impulses: &[S]) -> SVector<S, N> {
+    fn struck(&self, mut x: Vec<S>, impulses: &[S]) -> Vec<S> {
         for (reaction, &impulse) in impulses.iter().enumerate() {
             for (&state, &by) in self.held.moved.iter().zip(self.moves(reaction)) {
                 x[state] = x[state] - by * impulse;
@@ -104,32 +94,29 @@ impl<S: Scalar> Hold<S> {
 /// # Errors
 /// [`AssemblyError::Torn`] where velocities do not fit, [`AssemblyError::Redundant`] where reactions are not unique,
 /// [`AssemblyError::Immobile`] where nothing can move.
-pub fn fit<Sys, S, const N: usize, const G: usize, const U: usize, const K: usize>(
-    system: &Sys,
-    unknowns: [S; U],
-    speeds: [usize; K],
-    start: impl Fn(&[S; U]) -> SVector<S, N>,
+pub(crate) fn fit<S: Scalar>(
+    system: &dyn Dynamics<S>,
+    unknowns: &[S],
+    speeds: &[usize],
+    start: &dyn Fn(&[S]) -> Vec<S>,
     impulse: bool,
-) -> Result<Started<S, N>, AssemblyError>
-where
-    Sys: System<S, N, G> + Joints<S, N, G>,
-    S: Scalar,
-{
-    let held = system.held();
-    let state = |values: &[S; K]| {
-        let mut all = unknowns;
+) -> Result<Started<S>, AssemblyError> {
+    let held = system.held().unwrap_or(Held::NOTHING);
+    let state = |values: &[S]| {
+        let mut all = unknowns.to_vec();
         speeds.iter().zip(values).for_each(|(&place, &value)| all[place] = value);
         start(&all)
     };
-    let read = |x: &SVector<S, N>| {
+    let read = |x: &[S]| {
         let mut hold = Hold::new(held);
-        hold.read(system, S::from_f64(0.0), x, &branches(system, x).map(S::Switch::from));
+        hold.read(system, S::from_f64(0.0), x, &at_start(system, x));
         hold
     };
-    let mut values = speeds.map(|place| unknowns[place]);
-    if K > 0 {
+    let mut values: Vec<S> = speeds.iter().map(|&place| unknowns[place]).collect();
+    if !values.is_empty() {
         let residual = |values: &[f64], flows: &mut [f64]| {
-            let hold = read(&state(&core::array::from_fn(|k| S::from_f64(values[k]))));
+            let values: Vec<S> = values.iter().copied().map(S::from_f64).collect();
+            let hold = read(&state(&values));
             flows.iter_mut().zip(hold.flows()).for_each(|(to, flow)| *to = flow.to_f64());
         };
         let rows = held.rigid.len() + held.compliant.len();
@@ -139,9 +126,9 @@ where
             others: Vec::new(),
         };
         // The flows are linear in the velocities, so the first step is the last but for rounding.
-        let found = nearest(&values.map(S::to_f64), rows, &|_| f64::INFINITY, &residual).map_err(torn)?.0;
-        let found = core::array::from_fn(|k| found[k]);
-        values = lifted(values, found, |values| read(&state(values)).flows().to_vec());
+        let guess: Vec<f64> = values.iter().copied().map(S::to_f64).collect();
+        let found = nearest(&guess, rows, &|_| f64::INFINITY, &residual).map_err(torn)?.0;
+        values = lifted(&values, &found, &|values| read(&state(values)).flows().to_vec());
     }
     let x = state(&values);
     let hold = read(&x);
@@ -153,7 +140,7 @@ where
         return Err(AssemblyError::Redundant(redundancy));
     }
     // Guesses count as well: what is left of them where nothing moves is rounding.
-    let allowed = fitting(&x, &momenta(system, [&x, &start(&unknowns)]), &read);
+    let allowed = fitting(&x, &momenta(system, [&x, &start(unknowns)]), &read);
     check_fit(&hold, &allowed, |slipping| impulse && slipping.is_rigid)?;
     let started = if impulse { strike(x, &read) } else { Started { x, lost: S::from_f64(0.0) } };
     check_fit(&read(&started.x), &allowed, |slipping| !slipping.is_rigid)?;
@@ -162,21 +149,18 @@ where
 
 /// For each flow at state `x` the largest that fits, in its unit: the part [`FITTING`] of what sources move there and
 /// of what these momenta do, each alone.
-fn fitting<S: Scalar, const N: usize>(
-    x: &SVector<S, N>,
-    momenta: &SVector<f64, N>,
-    read: &impl Fn(&SVector<S, N>) -> Hold<S>,
-) -> Vec<f64> {
-    let mut still = *x;
-    (0..N).filter(|&i| momenta[i] > 0.0).for_each(|i| still[i] = S::from_f64(0.0));
+fn fitting<S: Scalar>(x: &[S], momenta: &[f64], read: &dyn Fn(&[S]) -> Hold<S>) -> Vec<f64> {
+    let mut still = x.to_vec();
+    let moving: Vec<usize> = (0..x.len()).filter(|&i| momenta[i] > 0.0).collect();
+    moving.iter().for_each(|&i| still[i] = S::from_f64(0.0));
     let rest = read(&still);
     let mut squares = vec![0.0; rest.flows().len()];
-    for i in (0..N).filter(|&i| momenta[i] > 0.0) {
-        let mut moving = still;
-        moving[i] = S::from_f64(momenta[i]);
-        for ((square, flow), rest) in squares.iter_mut().zip(read(&moving).flows()).zip(rest.flows()) {
-            let alone = (*flow - *rest).to_f64();
-            *square += alone * alone;
+    for &i in &moving {
+        let mut alone = still.clone();
+        alone[i] = S::from_f64(momenta[i]);
+        for ((square, flow), rest) in squares.iter_mut().zip(read(&alone).flows()).zip(rest.flows()) {
+            let by = (*flow - *rest).to_f64();
+            *square += by * by;
         }
     }
     let both = squares.into_iter().zip(rest.flows());
@@ -185,34 +169,27 @@ fn fitting<S: Scalar, const N: usize>(
 
 /// How large each momentum would be if it stored alone what all of them store at one of these states; of a system
 /// that does not know what it stores, how large it is there. Zero for other states.
-fn momenta<Sys, S, const N: usize, const G: usize>(system: &Sys, states: [&SVector<S, N>; 2]) -> SVector<f64, N>
-where
-    Sys: System<S, N, G> + Joints<S, N, G>,
-    S: Scalar,
-{
+fn momenta<S: Scalar>(system: &dyn Dynamics<S>, states: [&[S]; 2]) -> Vec<f64> {
+    let count = states[0].len();
     let largest = |i: usize| states.iter().fold(0.0_f64, |largest, x| largest.max(x[i].to_f64().abs()));
-    let Some(storages) = system.storages() else {
-        let moved = system.held().moved;
-        return SVector::from_fn(|i, _| if moved.contains(&i) { largest(i) } else { 0.0 });
+    let Some(stored) = system.stored() else {
+        let moved = system.held().unwrap_or(Held::NOTHING).moved;
+        return (0..count).map(|i| if moved.contains(&i) { largest(i) } else { 0.0 }).collect();
     };
-    let is_momentum = |i: usize| matches!(storages.states()[i].kind, StateKind::Momentum(_));
-    let mut curvatures = SVector::from([S::from_f64(0.0); N]);
-    let negative = branches(system, states[0]).map(S::Switch::from);
-    storages.energy(S::from_f64(0.0), states[0], &negative, &mut curvatures);
+    let is_momentum = |i: usize| matches!(stored[i].kind, StateKind::Momentum(_));
+    let mut curvatures = vec![S::from_f64(0.0); count];
+    system.energy(S::from_f64(0.0), states[0], &at_start(system, states[0]), &mut curvatures);
     let curvature = |i: usize| if is_momentum(i) { curvatures[i].to_f64() } else { 0.0 };
-    let doubled = |x: &SVector<S, N>| (0..N).map(|i| curvature(i) * x[i].to_f64() * x[i].to_f64()).sum::<f64>();
+    let doubled = |x: &[S]| (0..count).map(|i| curvature(i) * x[i].to_f64() * x[i].to_f64()).sum::<f64>();
     let most = states.into_iter().map(doubled).fold(0.0, f64::max);
-    SVector::from_fn(|i, _| if curvature(i) > 0.0 { libm::sqrt(most / curvature(i)) } else { 0.0 })
+    let alone = |i| if curvature(i) > 0.0 { libm::sqrt(most / curvature(i)) } else { 0.0 };
+    (0..count).map(alone).collect()
 }
 
 /// For each rigid motion whether it follows from others and takes no part.
-fn dropped<J, S, const N: usize, const G: usize>(joints: &J) -> Vec<bool>
-where
-    J: Joints<S, N, G>,
-    S: Scalar,
-{
-    let held = joints.held();
-    dropped_of(held.rigid.len(), held.closing, joints.kept())
+fn dropped<S: Scalar>(system: &dyn Dynamics<S>) -> Vec<bool> {
+    let held = system.held().unwrap_or(Held::NOTHING);
+    dropped_of(held.rigid.len(), held.closing, system.kept())
 }
 
 /// The same of so many rigid motions, of which some are `closing`, and of what is kept of these.
@@ -225,30 +202,21 @@ fn dropped_of(rigid: usize, closing: &[(usize, usize)], kept: &[f64]) -> Vec<boo
 }
 
 /// The branches of the switches at t = 0 and this state.
-fn branches<Sys, S, const N: usize, const G: usize>(system: &Sys, x: &SVector<S, N>) -> [bool; G]
-where
-    Sys: System<S, N, G>,
-    S: Scalar,
-{
-    let guards = |negative: &[bool; G]| {
-        let mut guards = SVector::from([S::from_f64(0.0); G]);
-        system.guards(S::from_f64(0.0), x, &negative.map(S::Switch::from), &mut guards);
-        guards
-    };
-    branches_by_sign(system.first_branches(), guards).0
+fn at_start<S: Scalar>(system: &dyn Dynamics<S>, x: &[S]) -> Vec<S::Switch> {
+    branches(system, 0.0, x).into_iter().map(S::Switch::from).collect()
 }
 
 /// The state after the impulses that bring the flows of rigid joints to zero, with the energy that they take: half of
 /// impulse times flow before, as in a perfectly plastic impact. One solution is exact where momenta are linear in
 /// flows; elsewhere it is repeated while it helps.
-fn strike<S: Scalar, const N: usize>(mut x: SVector<S, N>, read: &impl Fn(&SVector<S, N>) -> Hold<S>) -> Started<S, N> {
+fn strike<S: Scalar>(mut x: Vec<S>, read: &dyn Fn(&[S]) -> Hold<S>) -> Started<S> {
     let (zero, half) = (S::from_f64(0.0), S::from_f64(0.5));
     let mut lost = zero;
     let mut before = read(&x);
     for _ in 0..20 {
         let rigid = before.held.rigid.len();
         let impulses = Factors::of(before.matrix()).solved(&before.flows()[..rigid]);
-        let moved = before.struck(x, &impulses);
+        let moved = before.struck(x.clone(), &impulses);
         let after = read(&moved);
         if fastest(&after, rigid) >= fastest(&before, rigid) {
             break;

@@ -12,8 +12,6 @@ use alloc::vec::Vec;
 #[cfg(feature = "std")]
 use nalgebra::SVector;
 
-#[cfg(feature = "std")]
-use super::dropped;
 use super::factors::Factors;
 use super::{Hold, dropped_of, slipping};
 #[cfg(feature = "std")]
@@ -128,7 +126,8 @@ impl<V: Vector> LoopsInLanes<V> {
     where
         J: Joints<Lanes<V>, N, G>,
     {
-        let (held, dropped) = (joints.held(), dropped(joints));
+        let held = joints.held();
+        let dropped = dropped_of(held.rigid.len(), held.closing, joints.kept());
         let (factors, pivots) = (Factors::new(dropped.len()), vec![[Lanes::from_f64(0.0); 2]; dropped.len()]);
         let is_fit = joints.is_hold_inlined() && !held.closing.is_empty();
         is_fit.then(|| Self { hold: Hold::new(held), factors, pivots, dropped })

@@ -7,16 +7,14 @@
 //! an instant only. So what follows at the start has to follow in poses near it as well: the mechanism is moved a
 //! little, with velocities that its joints allow, and closed again.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::SVector;
-
 use super::factors::Factors;
-use super::{Hold, branches, dropped};
-use crate::model::capability::Joints;
+use super::{Hold, at_start, dropped};
+use crate::model::dynamics::{Dynamics, branches};
 use crate::model::holding::{Held, Redundancy};
 use crate::model::scalar::Scalar;
-use crate::model::system::System;
 
 /// How far a mechanism is moved, rad; m where nothing turns, since all that joints hold is linear there.
 const FAR: f64 = 1e-3;
@@ -28,16 +26,12 @@ const CLOSINGS: usize = 6;
 
 /// For each number of [`Held::closing`] 1 where its row takes part, 0 where it follows from the others; all 1 without a
 /// pose. Allocates.
-pub fn kept<Sys, const N: usize, const G: usize, const K: usize>(
-    system: &Sys,
-    pose: Option<SVector<f64, N>>,
-) -> [f64; K]
-where
-    Sys: System<f64, N, G> + Joints<f64, N, G>,
-{
-    let mut kept = [1.0; K];
+pub(crate) fn kept(system: &dyn Dynamics, pose: Option<Vec<f64>>) -> Vec<f64> {
+    let held = system.held().unwrap_or(Held::NOTHING);
+    let numbers = held.closing.iter().map(|&(_, number)| number + 1).max();
+    let mut kept = vec![1.0; numbers.unwrap_or(0)];
     let Some(pose) = pose else { return kept };
-    let start = Start { system, held: system.held(), negative: branches(system, &pose), pose };
+    let start = Start { system, held, negative: branches(system, 0.0, &pose), pose };
     let mut following = start.following(&start.pose);
     for seed in [1, 2] {
         let Some(near) = following.contains(&true).then(|| start.moved(seed)).flatten() else { break };
@@ -51,31 +45,28 @@ where
 }
 
 /// A system in its start pose.
-struct Start<'a, Sys, const N: usize, const G: usize> {
-    system: &'a Sys,
+struct Start<'a> {
+    system: &'a dyn Dynamics,
     held: Held,
-    negative: [bool; G],
-    pose: SVector<f64, N>,
+    negative: Vec<bool>,
+    pose: Vec<f64>,
 }
 
-impl<Sys, const N: usize, const G: usize> Start<'_, Sys, N, G>
-where
-    Sys: System<f64, N, G> + Joints<f64, N, G>,
-{
-    fn hold(&self, x: &SVector<f64, N>) -> Hold<f64> {
+impl Start<'_> {
+    fn hold(&self, x: &[f64]) -> Hold<f64> {
         let mut hold = Hold::new(self.held);
         hold.read(self.system, 0.0, x, &self.negative);
         hold
     }
 
     /// The rows that follow from those before them.
-    fn following(&self, x: &SVector<f64, N>) -> Vec<bool> {
+    fn following(&self, x: &[f64]) -> Vec<bool> {
         let factors = Factors::of(self.hold(x).matrix());
         (0..self.held.rigid.len()).map(|row| factors.follows(row)).collect()
     }
 
     /// The pose a little further along a motion that the joints allow; none where nothing can move.
-    fn moved(&self, seed: u64) -> Option<SVector<f64, N>> {
+    fn moved(&self, seed: u64) -> Option<Vec<f64>> {
         let Held { pose, turning, .. } = self.held;
         let pushed = self.pushed(seed);
         let free = self.velocities(&pushed);
@@ -88,7 +79,8 @@ where
             (allowed > STILL * free).then_some(allowed)
         };
         let fastest = fastest(true).or_else(|| fastest(false))?;
-        let mut near = self.pose + allowed * (FAR / fastest);
+        let part = FAR / fastest;
+        let mut near: Vec<f64> = self.pose.iter().zip(&allowed).map(|(x, allowed)| x + allowed * part).collect();
         for _ in 0..CLOSINGS {
             self.system.project(0.0, &self.negative, &mut near);
         }
@@ -96,8 +88,8 @@ where
     }
 
     /// The state with momenta that point anywhere.
-    fn pushed(&self, seed: u64) -> SVector<f64, N> {
-        let mut pushed = self.pose;
+    fn pushed(&self, seed: u64) -> Vec<f64> {
+        let mut pushed = self.pose.clone();
         let mut number = seed;
         for &state in self.held.moved {
             // The generator MMIX of Knuth, The Art of Computer Programming, vol. 2, 3.3.4.
@@ -108,20 +100,20 @@ where
     }
 
     /// The state after the impulses of the joints.
-    fn fitted(&self, x: SVector<f64, N>) -> SVector<f64, N> {
+    fn fitted(&self, x: Vec<f64>) -> Vec<f64> {
         let hold = self.hold(&x);
         let impulses = Factors::of(hold.matrix()).solved(&hold.flows()[..self.held.rigid.len()]);
         hold.struck(x, &impulses)
     }
 
     /// How the pose changes by the momenta of `pushed`, beyond what changes at rest.
-    fn velocities(&self, pushed: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut still = self.pose;
+    fn velocities(&self, pushed: &[f64]) -> Vec<f64> {
+        let mut still = self.pose.clone();
         self.held.moved.iter().for_each(|&state| still[state] = 0.0);
-        let [mut with, mut without] = [SVector::zeros(); 2];
+        let mut velocities = vec![0.0; still.len()];
+        let [mut with, mut without] = [velocities.clone(), velocities.clone()];
         self.system.rate(0.0, pushed, &self.negative, &mut with);
         self.system.rate(0.0, &still, &self.negative, &mut without);
-        let mut velocities = SVector::zeros();
         self.held.pose.iter().for_each(|&state| velocities[state] = with[state] - without[state]);
         velocities
     }
@@ -129,20 +121,11 @@ where
 
 /// Makes `reactions`, zero for the rows that take no part, those of least norm: joints that hold the same motion share
 /// what it takes. Those of dry friction, after them, stay. N and N m count alike. Allocates where rows take no part.
-pub fn share<J, S, const N: usize, const G: usize>(
-    joints: &J,
-    t: S,
-    x: &SVector<S, N>,
-    negative: &[S::Switch; G],
-    reactions: &mut [S],
-) where
-    J: Joints<S, N, G>,
-    S: Scalar,
-{
+pub fn share<S: Scalar>(joints: &dyn Dynamics<S>, t: S, x: &[S], negative: &[S::Switch], reactions: &mut [S]) {
     if !joints.kept().contains(&0.0) {
         return;
     }
-    let mut hold = Hold::new(joints.held());
+    let mut hold = Hold::new(joints.held().unwrap_or(Held::NOTHING));
     hold.read(joints, t, x, negative);
     let factors = Factors::without(hold.matrix(), &dropped(joints));
     let reactions = &mut reactions[..hold.held.rigid.len()];
@@ -169,14 +152,10 @@ fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
 }
 
 /// The joints that hold what others hold already, in all poses; `x` is one of them. Allocates.
-pub fn redundant<Sys, S, const N: usize, const G: usize>(system: &Sys, x: &SVector<S, N>) -> Vec<Redundancy>
-where
-    Sys: System<S, N, G> + Joints<S, N, G>,
-    S: Scalar,
-{
-    let (held, dropped) = (system.held(), dropped(system));
+pub(crate) fn redundant<S: Scalar>(system: &dyn Dynamics<S>, x: &[S]) -> Vec<Redundancy> {
+    let (held, dropped) = (system.held().unwrap_or(Held::NOTHING), dropped(system));
     let mut hold = Hold::new(held);
-    hold.read(system, S::from_f64(0.0), x, &branches(system, x).map(S::Switch::from));
+    hold.read(system, S::from_f64(0.0), x, &at_start(system, x));
     let factors = Factors::without(hold.matrix(), &dropped);
     let mut rows: Vec<usize> = (0..dropped.len()).filter(|&row| dropped[row]).collect();
     let mut found = Vec::new();

@@ -1,17 +1,17 @@
 //! The elementary functions of a series, each through the differential equation that it satisfies.
 
-use super::{constant, order, product, slope, sum};
+use super::{Rows, constant, order, product, slope, sum};
 use crate::model::scalar::Scalar;
 
 /// The coefficient of order `k` > 0 of the w with w' = d u': the mean of the products of u's slopes and d.
 #[inline(always)]
-fn integral<S: Scalar, const W: usize>(rows: &[[S; W]], k: usize, u: usize, d: usize) -> S {
+fn integral<S: Scalar>(rows: &(impl Rows<S> + ?Sized), k: usize, u: usize, d: usize) -> S {
     slope(rows, 1, k + 1, k, u, d) / order(k)
 }
 
 /// The square root: w w = u. Places: 1.
 #[inline(always)]
-pub fn sqrt<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn sqrt<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     let w = if k == 0 { u.sqrt() } else { (u - sum(rows, 1, k, k, at, at)) / (rows[0][at] + rows[0][at]) };
     rows[k][at] = w;
     w
@@ -19,7 +19,7 @@ pub fn sqrt<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize,
 
 /// The exponential: w' = w u'. Places: 2.
 #[inline(always)]
-pub fn exp<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn exp<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     rows[k][at] = u;
     let w = if k == 0 { u.exp() } else { integral(rows, k, at, at + 1) };
     rows[k][at + 1] = w;
@@ -28,7 +28,7 @@ pub fn exp<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, 
 
 /// The natural logarithm: u w' = u'. Places: 2.
 #[inline(always)]
-pub fn ln<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn ln<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     rows[k][at] = u;
     let w = if k == 0 { u.ln() } else { (u - slope(rows, 1, k, k, at + 1, at) / order(k)) / rows[0][at] };
     rows[k][at + 1] = w;
@@ -37,7 +37,7 @@ pub fn ln<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u
 
 /// Sine and cosine of `u`, which they need of each other. Places: 3.
 #[inline(always)]
-fn sin_cos<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> (S, S) {
+fn sin_cos<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> (S, S) {
     rows[k][at] = u;
     let (sine, cosine) =
         if k == 0 { (u.sin(), u.cos()) } else { (integral(rows, k, at, at + 2), -integral(rows, k, at, at + 1)) };
@@ -47,19 +47,19 @@ fn sin_cos<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, 
 
 /// The sine: s' = c u', c' = -s u'. Places: 3.
 #[inline(always)]
-pub fn sin<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn sin<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     sin_cos(rows, k, at, u).0
 }
 
 /// The cosine. Places: 3.
 #[inline(always)]
-pub fn cos<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn cos<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     sin_cos(rows, k, at, u).1
 }
 
 /// The w of value `start` with w' = (1 + `sign` w w) u'. Places: 3.
 #[inline(always)]
-fn tangent<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S, start: S, sign: S) -> S {
+fn tangent<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S, start: S, sign: S) -> S {
     rows[k][at] = u;
     let w = if k == 0 { start } else { integral(rows, k, at, at + 2) };
     rows[k][at + 1] = w;
@@ -70,21 +70,21 @@ fn tangent<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, 
 
 /// The tangent: w' = (1 + w w) u'. Places: 3.
 #[inline(always)]
-pub fn tan<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn tan<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     let start = if k == 0 { u.tan() } else { u };
     tangent(rows, k, at, u, start, S::from_f64(1.0))
 }
 
 /// The hyperbolic tangent: w' = (1 - w w) u'. Places: 3.
 #[inline(always)]
-pub fn tanh<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn tanh<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     let start = if k == 0 { u.tanh() } else { u };
     tangent(rows, k, at, u, start, S::from_f64(-1.0))
 }
 
 /// The arc sine: r w' = u' with r r = 1 - u u. Places: 3.
 #[inline(always)]
-pub fn asin<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn asin<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     rows[k][at] = u;
     let square = sum(rows, 0, k + 1, k, at, at);
     let radicand = constant(k, S::from_f64(1.0)) - square;
@@ -96,14 +96,14 @@ pub fn asin<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize,
 
 /// The arc cosine, which changes as the arc sine does, the other way. Places: 3.
 #[inline(always)]
-pub fn acos<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn acos<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     let sine = asin(rows, k, at, u);
     if k == 0 { u.acos() } else { -sine }
 }
 
 /// The angle of the point (`x`, `y`): (x x + y y) w' = x y' - y x'. Places: 4.
 #[inline(always)]
-pub fn atan2<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, y: S, x: S) -> S {
+pub fn atan2<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, y: S, x: S) -> S {
     (rows[k][at], rows[k][at + 1]) = (y, x);
     rows[k][at + 2] = sum(rows, 0, k + 1, k, at, at) + sum(rows, 0, k + 1, k, at + 1, at + 1);
     let w = if k == 0 {
@@ -118,7 +118,7 @@ pub fn atan2<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize
 
 /// The power `u` to a constant `exponent`: u w' = exponent w u'. Places: 2.
 #[inline(always)]
-pub fn powf<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S, exponent: S) -> S {
+pub fn powf<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S, exponent: S) -> S {
     rows[k][at] = u;
     let w = if k == 0 {
         u.powf(exponent)
@@ -132,7 +132,7 @@ pub fn powf<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize,
 
 /// The power `u` to an `exponent` that changes: w' = w p' with p = exponent ln u. Places: 6.
 #[inline(always)]
-pub fn power<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S, exponent: S) -> S {
+pub fn power<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S, exponent: S) -> S {
     let logarithm = ln(rows, k, at, u);
     rows[k][at + 4] = product(rows, k, at + 2, exponent, logarithm);
     let w = if k == 0 { u.powf(exponent) } else { integral(rows, k, at + 4, at + 5) };

@@ -13,7 +13,37 @@ mod tests;
 
 pub use functions::{acos, asin, atan2, cos, exp, ln, power, powf, sin, sqrt, tan, tanh};
 
+use core::ops::IndexMut;
+
 use crate::model::scalar::{Pair, Scalar};
+
+/// Rows of numbers, one for each order.
+pub trait Rows<S>: IndexMut<usize, Output: IndexMut<usize, Output = S>> {}
+
+impl<S, R: IndexMut<usize, Output: IndexMut<usize, Output = S>> + ?Sized> Rows<S> for R {}
+
+/// Rows side by side in one list, of a width known at run time.
+#[derive(Debug)]
+pub struct Flat<'a, S> {
+    /// The numbers.
+    pub numbers: &'a mut [S],
+    /// How many a row has.
+    pub width: usize,
+}
+
+impl<S> core::ops::Index<usize> for Flat<'_, S> {
+    type Output = [S];
+
+    fn index(&self, k: usize) -> &[S] {
+        &self.numbers[k * self.width..][..self.width]
+    }
+}
+
+impl<S> IndexMut<usize> for Flat<'_, S> {
+    fn index_mut(&mut self, k: usize) -> &mut [S] {
+        &mut self.numbers[k * self.width..][..self.width]
+    }
+}
 
 /// A number's coefficients: itself, and zeros.
 #[inline(always)]
@@ -33,9 +63,22 @@ pub fn window<S, const K: usize>(from: &[S], at: usize) -> &[S; K] {
     from[at..].first_chunk().expect("generated code has the places that it reads")
 }
 
+/// What [`InnerProducts`] gives at order `k` for one product, whose factors stand at the places `left` and `right` of
+/// `rows`, in the same order of additions.
+pub fn inner_product<S: Scalar>(rows: &(impl Rows<S> + ?Sized), k: usize, left: usize, right: usize) -> S {
+    let ascending =
+        |from: usize, to: usize| (from..to).fold(S::from_f64(0.0), |sum, j| sum + rows[j][left] * rows[k - j][right]);
+    match k {
+        0 | 1 => S::from_f64(0.0),
+        2 => rows[1][left] * rows[1][right],
+        _ if k.is_multiple_of(2) => ascending(1, k),
+        _ => ascending(2, k - 1) + (rows[1][left] * rows[k - 1][right] + rows[k - 1][left] * rows[1][right]),
+    }
+}
+
 /// The product of `left` and `right`. Places: 2.
 #[inline(always)]
-pub fn product<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, left: S, right: S) -> S {
+pub fn product<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, left: S, right: S) -> S {
     (rows[k][at], rows[k][at + 1]) = (left, right);
     sum(rows, 0, k + 1, k, at, at + 1)
 }
@@ -198,7 +241,7 @@ fn add_products<S: Scalar, const M: usize>(sums: &mut [S; M], left: &[S], at: us
 
 /// The quotient of `dividend` and `divisor`. Places: 2.
 #[inline(always)]
-pub fn quotient<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, dividend: S, divisor: S) -> S {
+pub fn quotient<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, dividend: S, divisor: S) -> S {
     rows[k][at] = divisor;
     let known = sum(rows, 0, k, k, at + 1, at);
     let quotient = (dividend - known) / rows[0][at];
@@ -208,20 +251,20 @@ pub fn quotient<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: us
 
 /// The absolute value: the operand or its opposite, by the sign at the start. Places: 1.
 #[inline(always)]
-pub fn abs<S: Scalar, const W: usize>(rows: &mut [[S; W]], k: usize, at: usize, u: S) -> S {
+pub fn abs<S: Scalar>(rows: &mut (impl Rows<S> + ?Sized), k: usize, at: usize, u: S) -> S {
     rows[k][at] = u;
     if rows[0][at] < S::from_f64(0.0) { -u } else { u }
 }
 
 /// The sum of the products of `a` at order j and `b` at order `k` - j, for j from `from` to before `to`.
 #[inline(always)]
-fn sum<S: Scalar, const W: usize>(rows: &[[S; W]], from: usize, to: usize, k: usize, a: usize, b: usize) -> S {
+fn sum<S: Scalar>(rows: &(impl Rows<S> + ?Sized), from: usize, to: usize, k: usize, a: usize, b: usize) -> S {
     (from..to).fold(S::from_f64(0.0), |sum, j| sum + rows[j][a] * rows[k - j][b])
 }
 
 /// The same, each product times j.
 #[inline(always)]
-fn slope<S: Scalar, const W: usize>(rows: &[[S; W]], from: usize, to: usize, k: usize, a: usize, b: usize) -> S {
+fn slope<S: Scalar>(rows: &(impl Rows<S> + ?Sized), from: usize, to: usize, k: usize, a: usize, b: usize) -> S {
     (from..to).fold(S::from_f64(0.0), |sum, j| sum + order::<S>(j) * rows[j][a] * rows[k - j][b])
 }
 

@@ -26,19 +26,17 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let equations = &self.model.equations;
         let (count, routine) = (equations.found(), &self.model.programs.running.loops);
-        let mut behind = 0;
-        let groups = equations.iterations.iter().map(|iteration| {
-            let (first, length) = (iteration.first as usize, iteration.residuals.len());
-            let equations = behind..behind + iteration.equations().count();
-            behind = equations.end;
-            let [begin, end, from, to] =
-                [first, first + length, equations.start, equations.end].map(Literal::usize_unsuffixed);
+        let groups = self.tables.loops.iter().map(|of| {
+            let (first, length, equation) = (of.first, of.unknowns, of.equation);
+            let places = [first, first + length, equation, equation + of.equations()];
+            let [begin, end, from, to] = places.map(Literal::usize_unsuffixed);
             quote! {
-                let solved = ::bg_model::__private::newton(|u: &[f64; #length]| {
-                    found[#begin..#end].copy_from_slice(&u.map(S::from_f64));
-                    ::bg_model::__private::Equations::of(&self.loops(t, x, negative, &found)[#from..#to])
+                let unknowns = ::bg_model::nalgebra::Const::<#length>;
+                let solved = ::bg_model::__private::newton(unknowns, |u| {
+                    ::bg_model::__private::lift(u, &mut found[#begin..#end]);
+                    ::bg_model::__private::Equations::of(unknowns, &self.loops(t, x, negative, &found)[#from..#to])
                 });
-                found[#begin..#end].copy_from_slice(&solved.map(S::from_f64));
+                ::bg_model::__private::lift(solved.as_slice(), &mut found[#begin..#end]);
             }
         });
         let groups: TokenStream = groups.collect();

@@ -9,10 +9,11 @@ use super::super::elimination;
 use super::super::routine::parsed;
 use super::capabilities::accessor;
 use super::{Emission, Shape};
+use crate::tables::Tables;
 
 /// Rows and columns.
-fn listed(places: impl IntoIterator<Item = (usize, usize)>) -> TokenStream {
-    let places = places.into_iter().map(|(row, column)| format!("({row}, {column})"));
+fn listed(places: &[(usize, usize)]) -> TokenStream {
+    let places = places.iter().map(|(row, column)| format!("({row}, {column})"));
     parsed(&places.collect::<Vec<_>>().join(", "))
 }
 
@@ -25,13 +26,12 @@ impl Emission<'_> {
     /// The Jacobian with its sparsity, and what dampers do.
     fn linearised(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let jacobian = &self.model.jacobian;
-        let (places, count) = (listed(jacobian.places()), jacobian.entries.len());
+        let Tables { jacobian, unknowns, .. } = &self.tables;
+        let (places, count) = (listed(jacobian), jacobian.len());
         let [routine] = &self.model.programs.jacobian.routines;
         let (body, results) = self.running(routine, &format_ident!("slope_constants"));
         let (entries, slopes) = results.split_at(count);
-        let unknowns = jacobian.unknowns.len();
-        let sparsity = if unknowns == 0 {
+        let sparsity = if *unknowns == 0 {
             quote!(::bg_model::linear::Sparsity::Places(&ENTRIES))
         } else {
             quote!(::bg_model::linear::Sparsity::Bordered { places: &ENTRIES, unknowns: #unknowns })
@@ -64,8 +64,7 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let [routine] = &self.model.programs.damping.as_ref()?.routines;
         let (body, results) = self.running(routine, &format_ident!("damping_constants"));
-        let entries = self.model.jacobian.among_first_order(&self.model.second_order.states);
-        let places = listed(entries.map(|entry| (entry.row, entry.column)));
+        let places = listed(self.tables.damping.as_ref()?);
         let count = results.len();
         Some(quote! {
             fn damping_sparsity(&self) -> ::bg_model::linear::Sparsity {

@@ -6,14 +6,14 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::{Emission, Shape};
-use crate::expr::{Id, Symbol};
+use crate::expr::Symbol;
 use crate::program::{Operand, Reverse};
 
 impl Emission<'_> {
     pub(super) fn reversed(&self) -> Option<TokenStream> {
         let Shape { n, g, m, .. } = &self.shape;
         let reversed = self.model.programs.reversed.as_ref()?;
-        let (equations, constants) = (&self.model.equations, self.constants());
+        let (equations, constants) = (&self.model.equations, self.constant_count());
         let (rate, project) = (self.sweep(&reversed.rate, equations.states.len()), self.reverse_project());
         let outputs = reversed.outputs.as_ref().map(|sweep| self.sweep(sweep, equations.outputs.len()));
         let reverse_outputs = outputs.as_ref().map(|_| {
@@ -54,14 +54,14 @@ impl Emission<'_> {
         })
     }
 
-    fn constants(&self) -> Literal {
+    fn constant_count(&self) -> Literal {
         Literal::usize_unsuffixed(self.model.programs.running.constants.results.len())
     }
 
     /// The function of a sweep with so many weights: it replaces the derivatives by states and adds to those by
     /// constants.
     fn sweep(&self, sweep: &Reverse, weights: usize) -> TokenStream {
-        let (Shape { n, g, .. }, constants) = (&self.shape, self.constants());
+        let (Shape { n, g, .. }, constants) = (&self.shape, self.constant_count());
         let name = format_ident!("{}", sweep.routine.name.replace("reverse", "sweep"));
         let (body, results) = self.running(&sweep.routine, &format_ident!("constants"));
         let (mut by_state, mut by_constants) = (vec![quote!(S::from_f64(0.0)); self.states.len()], TokenStream::new());
@@ -91,11 +91,11 @@ impl Emission<'_> {
     /// The function that follows a projection backwards; nothing where there is none.
     fn reverse_project(&self) -> Option<TokenStream> {
         let Shape { n, g, .. } = &self.shape;
-        let (equations, running, constants) = (&self.model.equations, &self.model.programs.running, self.constants());
-        let (posed, settled) = (&equations.projections, &equations.settled);
-        let back = |name: &str, moved: &[(usize, Id)]| {
+        let (running, constants) = (&self.model.programs.running, self.constant_count());
+        let (posed, settled) = (&self.tables.projected, &self.tables.settled);
+        let back = |name: &str, moved: &[usize]| {
             let name = format_ident!("sweep_{name}");
-            let moved: Vec<_> = moved.iter().map(|&(index, _)| Literal::usize_unsuffixed(index)).collect();
+            let moved: Vec<_> = moved.iter().copied().map(Literal::usize_unsuffixed).collect();
             quote! {
                 self.#name(t, state, negative, &[#(weights[#moved]),*], &mut by_state, by_constants);
                 #(weights[#moved] = S::from_f64(0.0);)*

@@ -7,9 +7,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::start::lifted;
 use super::{Emission, Shape};
-use crate::system::equations::Slip;
 
 /// What the start pose decides for a run, each an array of numbers of this many places: which rows are kept, on which
 /// sides roots are.
@@ -83,19 +81,13 @@ impl Decided {
 impl Emission<'_> {
     /// What the start pose decides.
     pub(super) fn decided(&self) -> Decided {
-        let counts = [("kept", self.closing_rows()), ("sides", self.model.equations.sides.len())];
+        let counts = [("kept", self.tables.closing_rows), ("sides", self.tables.start.sides)];
         let arrays = counts.into_iter().filter(|(_, count)| *count > 0);
         Decided { arrays: arrays.map(|(name, count)| (format_ident!("{name}"), count)).collect() }
     }
 
-    /// How many rows may follow from others.
-    fn closing_rows(&self) -> usize {
-        let numbers = self.model.equations.holding.rigid.iter().filter_map(|slip| slip.kept);
-        numbers.max().map_or(0, |last| last as usize + 1)
-    }
-
     fn where_shared(&self, tokens: impl FnOnce(usize) -> TokenStream) -> Option<TokenStream> {
-        Some(self.closing_rows()).filter(|&rows| rows > 0).map(tokens)
+        Some(self.tables.closing_rows).filter(|&rows| rows > 0).map(tokens)
     }
 
     /// The function of `Joints` that hands over which rows are kept.
@@ -111,53 +103,27 @@ impl Emission<'_> {
 
     /// The body of a constructor after the checks: the model with what its start pose decides.
     pub(super) fn construction(&self, has_inputs: bool) -> TokenStream {
+        let Shape { n, g, .. } = &self.shape;
         let (inputs, cloned) = (has_inputs.then(|| quote!(, inputs)), has_inputs.then(|| quote!(, inputs.clone())));
         let decided = self.decided();
         let (assumed, moved) = (decided.assumed(), decided.moved());
         let made = |arguments: &TokenStream| quote!(Model::<f64>::made(parameters.clone(), parameters.numbers() #cloned #arguments));
-        let sides = (!self.model.equations.sides.is_empty()).then(|| {
+        let count = self.tables.start.sides;
+        let sides = (count > 0).then(|| {
             let made = made(&assumed);
-            quote!(let sides = #made.sides_of_roots();)
+            quote!(let sides: [f64; #count] = ::bg_model::__private::decided(::bg_model::__private::sides(&#made));)
         });
         let kept = self.where_shared(|rows| {
             let made = made(&moved);
             quote! {
                 let kept = [1.0; #rows];
                 let all = #made;
-                let kept = ::bg_model::__private::kept(&all, all.pose().ok());
+                let kept: [f64; #rows] = ::bg_model::__private::decided(
+                    ::bg_model::__private::kept(&all, &::bg_model::__private::Over::<_, #n, #g>(&all)),
+                );
             }
         });
         quote!(#sides #kept Ok(Self::made(parameters, values #inputs #moved)))
-    }
-
-    /// `sides_of_roots`: the signs of the roots in the closed start pose; 1 where there is none.
-    pub(super) fn sides_of_roots(&self) -> Option<TokenStream> {
-        let (count, closed) = (self.model.equations.sides.len(), self.closed_pose());
-        (count > 0).then(|| {
-            quote! {
-                fn sides_of_roots(&self) -> [f64; #count] {
-                    let found = || -> Result<[f64; #count], ::bg_model::assembly::AssemblyError> {
-                        #closed
-                        Ok(Model::<f64>::sides(&numbers, &unknowns))
-                    };
-                    found().map_or([1.0; #count], |sides| sides.map(|side| if side < 0.0 { -1.0 } else { 1.0 }))
-                }
-            }
-        })
-    }
-
-    /// `pose`: the state at the closed start pose, guessed velocities as they are.
-    pub(super) fn pose(&self) -> Option<TokenStream> {
-        let (n, closed, lifted) = (&self.shape.n, self.closed_pose(), lifted());
-        self.where_shared(|_| {
-            quote! {
-                fn pose(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
-                    #closed
-                    #lifted
-                    Ok(SVector::from(Self::start_state(&self.values, &unknowns)))
-                }
-            }
-        })
     }
 
     /// `reactions`: those of all rigid joints, of least norm where they are not unique.
@@ -168,8 +134,9 @@ impl Emission<'_> {
         self.where_shared(|_| {
             quote! {
                 fn reactions(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> [S; #count] {
-                    let (state, mut reactions) = (x, { #body [#(#reactions),*] });
-                    ::bg_model::__private::share(self, t, state, negative, &mut reactions);
+                    let (state, mut reactions) = (x.as_slice(), { #body [#(#reactions),*] });
+                    let over = ::bg_model::__private::Over::<_, #n, #g>(self);
+                    ::bg_model::__private::share(&over, t, state, negative, &mut reactions);
                     reactions
                 }
             }
@@ -178,11 +145,11 @@ impl Emission<'_> {
 
     /// The function of `Model` that names the joints.
     pub(super) fn redundant(&self) -> Option<TokenStream> {
+        let Shape { n, g, .. } = &self.shape;
         self.where_shared(|_| {
             quote! {
                 fn redundant(&self) -> ::bg_model::__private::vec::Vec<::bg_model::holding::Redundancy> {
-                    let Ok(pose) = self.pose() else { return ::bg_model::__private::vec::Vec::new() };
-                    ::bg_model::__private::redundant(self, &pose)
+                    ::bg_model::__private::redundant(self, &::bg_model::__private::Over::<_, #n, #g>(self))
                 }
             }
         })
@@ -208,10 +175,8 @@ impl Emission<'_> {
 }
 
 /// The rows that may follow from others, each with its number.
-pub(super) fn closing(rigid: &[Slip]) -> TokenStream {
-    let rows = rigid.iter().enumerate();
-    let rows = rows.filter_map(|(row, slip)| Some((row, slip.kept? as usize)));
-    let rows = rows.map(|(row, number)| {
+pub(super) fn closing(rows: &[(usize, usize)]) -> TokenStream {
+    let rows = rows.iter().map(|&(row, number)| {
         let [row, number] = [row, number].map(Literal::usize_unsuffixed);
         quote!((#row, #number))
     });

@@ -7,7 +7,6 @@ use quote::{ToTokens, quote};
 
 use super::super::items::identifier;
 use super::{Emission, Shape};
-use crate::expr::Id;
 use crate::program::Routine;
 
 /// The attribute of functions that are inlined where they are called, in release builds.
@@ -112,9 +111,9 @@ impl Emission<'_> {
 
     fn project(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let (running, equations) = (&self.model.programs.running, &self.model.equations);
-        let pose = self.projection(&running.project, &equations.projections);
-        let momenta = self.projection(&running.settle, &equations.settled);
+        let (running, tables) = (&self.model.programs.running, &self.tables);
+        let pose = self.projection(&running.project, &tables.projected);
+        let momenta = self.projection(&running.settle, &tables.settled);
         let inline = Inlined;
         quote! {
             fn project(&self, t: S, negative: &[S::Switch; #g], state: &mut SVector<S, #n>) {
@@ -129,9 +128,9 @@ impl Emission<'_> {
     }
 
     /// Gives the states of `moved` what the routine makes of them.
-    pub(super) fn projection(&self, routine: &Routine, moved: &[(usize, Id)]) -> Option<TokenStream> {
+    pub(super) fn projection(&self, routine: &Routine, moved: &[usize]) -> Option<TokenStream> {
         let (body, projected) = self.function(routine);
-        let indices = moved.iter().map(|&(index, _)| Literal::usize_unsuffixed(index));
+        let indices = moved.iter().copied().map(Literal::usize_unsuffixed);
         (!moved.is_empty()).then(|| {
             quote! {
                 {
@@ -160,7 +159,7 @@ impl Emission<'_> {
     /// The branches from which the search for those at the start begins; nothing where no switch remembers.
     fn first_branches(&self) -> Option<TokenStream> {
         let g = &self.shape.g;
-        let branches: Vec<bool> = self.model.equations.switches.iter().map(|switch| switch.remembers).collect();
+        let branches = &self.tables.first_branches;
         branches.contains(&true).then(|| {
             quote! {
                 fn first_branches(&self) -> [bool; #g] {
@@ -204,7 +203,7 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let program = &self.model.programs.not_finite;
         let [routine] = &program.routines;
-        let (fallible, inputs) = (&self.model.equations.fallible, &self.model.equations.inputs);
+        let (fallible, inputs) = (&self.tables.fallible, &self.model.equations.inputs);
         if fallible.is_empty() && inputs.is_empty() {
             return None;
         }
@@ -216,10 +215,7 @@ impl Emission<'_> {
         let decided = self.decided().read();
         let bindings = self.dynamic_bindings(routine);
         let (statements, values) = self.body(routine);
-        let laws = fallible.iter().zip(values).map(|(law, value)| {
-            let (kind, element) = (law.kind, &law.element);
-            quote!((#kind, #element, #value))
-        });
+        let laws = fallible.iter().zip(values).map(|((kind, element), value)| quote!((#kind, #element, #value)));
         Some(quote! {
             #[cold]
             fn not_finite(

@@ -47,7 +47,7 @@ pub use crate::system::equations::solution::Solution;
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
-pub use impact::{Impacts, Rebound};
+pub use impact::{Impacts, Rebound, Struck};
 pub use iteration::Iteration;
 pub use origin::{Kind, Origin};
 pub use shown::{Quantity, Shown};

@@ -23,7 +23,7 @@ struct Table<'a> {
 /// What a model has of its tables: fields of its type, their values, the functions that calculate them and the `let`s
 /// that call these.
 #[derive(Default)]
-pub(super) struct Tables {
+pub(super) struct Constants {
     pub(super) fields: TokenStream,
     pub(super) values: TokenStream,
     pub(super) functions: TokenStream,
@@ -35,8 +35,8 @@ pub(super) struct Tables {
 
 impl Emission<'_> {
     /// The tables of the running model, and of their pairs; `scalar` is what the model's struct calls it.
-    pub(super) fn tables(&self, scalar: &Ident) -> Tables {
-        let mut made = Tables::default();
+    pub(super) fn constants(&self, scalar: &Ident) -> Constants {
+        let mut made = Constants::default();
         for table in self.constant_tables() {
             self.add_table(&mut made, &table, scalar);
         }
@@ -66,7 +66,7 @@ impl Emission<'_> {
         tables
     }
 
-    fn add_table(&self, made: &mut Tables, table: &Table, scalar: &Ident) {
+    fn add_table(&self, made: &mut Constants, table: &Table, scalar: &Ident) {
         let &Table { prefix, doc, constants, paired } = table;
         let (field, function) = (format_ident!("{prefix}s"), format_ident!("{prefix}_table"));
         let (count, body) = (constants.results.len(), self.constant_table(constants));
@@ -89,7 +89,7 @@ impl Emission<'_> {
     }
 
     /// The pairs of a table's constants.
-    fn add_pairs(&self, made: &mut Tables, table: &Table, paired: &Paired, scalar: &Ident) {
+    fn add_pairs(&self, made: &mut Constants, table: &Table, paired: &Paired, scalar: &Ident) {
         let Table { prefix, constants, .. } = table;
         let (field, pair_field) = (format_ident!("{prefix}s"), format_ident!("{prefix}_pairs"));
         let (count, pairs) = (constants.results.len(), paired.constants.len());

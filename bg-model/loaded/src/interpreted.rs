@@ -1,0 +1,283 @@
+//! A model that is interpreted.
+//!
+//! In: a [`Blueprint`], values of its parameters, its inputs. Out: an [`Interpreted`] model, over slices and in any
+//! scalar, with the bits of generated code.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use bg_compiler::expr::Symbol;
+use bg_model::description::Description;
+use bg_model::input::Input;
+use bg_model::iteration::{Equations, lift, newton};
+use bg_model::nalgebra::{Const, Dyn};
+use bg_model::parameters::{ParameterError, check};
+use bg_model::requirement::require;
+use bg_model::scalar::Scalar;
+use bg_model::start::{kept, sides};
+
+use crate::blueprint::{Alone, Blueprint, Codes};
+use crate::code::{Code, Row};
+
+/// A model with its parameters and inputs, calculating in `S`.
+#[derive(Debug)]
+pub struct Interpreted<S: Scalar = f64> {
+    pub(crate) blueprint: Rc<Blueprint>,
+    pub(crate) parameters: Vec<f64>,
+    pub(crate) values: Vec<S>,
+    pub(crate) inputs: Vec<Input>,
+    pub(crate) decided: Decided,
+    /// The constants of the running programs.
+    pub(crate) constants: Vec<S>,
+    pub(crate) rows: Rows<S>,
+}
+
+/// What the start pose decides for a run.
+#[derive(Clone, Debug)]
+pub struct Decided {
+    /// 1 for each row of the joints that close loops which takes part, else 0.
+    pub kept: Vec<f64>,
+    /// On which side of zero roots are, 1 or -1.
+    pub sides: Vec<f64>,
+}
+
+/// The rows of values of the programs that are evaluated while a model runs.
+#[derive(Debug)]
+pub(crate) struct Rows<S> {
+    pub rate: RefCell<Row<S>>,
+    pub guards: RefCell<Row<S>>,
+    pub loops: RefCell<Row<S>>,
+    pub reactions: RefCell<Row<S>>,
+    pub outputs: RefCell<Row<S>>,
+    pub project: RefCell<Row<S>>,
+    pub settle: RefCell<Row<S>>,
+    pub stored_energy: RefCell<Row<S>>,
+    pub powers: RefCell<Row<S>>,
+    pub jacobian: RefCell<Row<S>>,
+    pub damping: Option<RefCell<Row<S>>>,
+    pub derivatives: Option<RefCell<Row<S>>>,
+    pub forces: Option<RefCell<Row<S>>>,
+    pub holding: Option<RefCell<Row<S>>>,
+    pub impacts: Option<RefCell<Row<S>>>,
+    pub sizes: RefCell<Row<S>>,
+    pub not_finite: RefCell<Row<S>>,
+}
+
+/// What a program reads at one moment, beside constants.
+#[derive(Clone, Copy)]
+pub(crate) struct Moment<'a, S: Scalar> {
+    pub t: S,
+    pub x: &'a [S],
+    pub negative: &'a [S::Switch],
+    pub found: &'a [S],
+    pub reactions: &'a [S],
+    pub rates: &'a [S],
+}
+
+impl<'a, S: Scalar> Moment<'a, S> {
+    pub const fn at(t: S, x: &'a [S], negative: &'a [S::Switch]) -> Self {
+        Self { t, x, negative, found: &[], reactions: &[], rates: &[] }
+    }
+}
+
+impl<S: Scalar> Interpreted<S> {
+    /// The model with these values of its parameters, in the order of their table, and these inputs, in theirs; those
+    /// that are missing are 0.
+    ///
+    /// # Errors
+    /// A parameter outside its range, a value that parameters give and that cannot be.
+    ///
+    /// # Panics
+    /// There is no value for a parameter.
+    pub fn new(blueprint: &Rc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> Result<Self, ParameterError> {
+        Self::lifted(blueprint, parameters.iter().copied().map(S::from_f64).collect(), inputs)
+    }
+
+    /// The same with values in the scalar, such as dual numbers.
+    ///
+    /// # Errors
+    /// As [`Interpreted::new`].
+    ///
+    /// # Panics
+    /// As [`Interpreted::new`].
+    pub fn lifted(blueprint: &Rc<Blueprint>, values: Vec<S>, inputs: &[Input]) -> Result<Self, ParameterError> {
+        let parameters: Vec<f64> = values.iter().copied().map(S::to_f64).collect();
+        let Description { parameters: table, inputs: named, .. } = blueprint.description();
+        table.iter().zip(&parameters).try_for_each(|(info, &value)| check(info, value))?;
+        if let Some(program) = &blueprint.programs.required {
+            require(blueprint.statics.required, &of_parameters(program, &parameters, &[], None))?;
+        }
+        let inputs: Vec<Input> = (0..named.len()).map(|index| inputs.get(index).cloned().unwrap_or_default()).collect();
+        let decided = decide(blueprint, &parameters, &inputs);
+        Ok(Self::made(blueprint, parameters, values, inputs, decided))
+    }
+
+    fn made(
+        blueprint: &Rc<Blueprint>,
+        parameters: Vec<f64>,
+        values: Vec<S>,
+        inputs: Vec<Input>,
+        decided: Decided,
+    ) -> Self {
+        let constants = table(&blueprint.programs.constants, &values, &decided);
+        let rows = Rows::of(&blueprint.programs, &constants, |program| table(program, &values, &decided));
+        Self { blueprint: Rc::clone(blueprint), parameters, values, inputs, decided, constants, rows }
+    }
+
+    /// The model in another scalar.
+    #[must_use]
+    pub fn in_scalar<T: Scalar>(&self) -> Interpreted<T> {
+        let Self { blueprint, parameters, inputs, decided, .. } = self;
+        let values = parameters.iter().copied().map(T::from_f64).collect();
+        Interpreted::made(blueprint, parameters.clone(), values, inputs.clone(), decided.clone())
+    }
+
+    pub(crate) fn programs(&self) -> &Codes {
+        &self.blueprint.programs
+    }
+
+    /// What a symbol is at a moment.
+    pub(crate) fn symbol(&self, symbol: Symbol, moment: &Moment<'_, S>) -> S {
+        match symbol {
+            Symbol::Time => moment.t,
+            Symbol::State(index) => moment.x[index as usize],
+            Symbol::Input(index) => self.inputs[index as usize].value(moment.t),
+            Symbol::Slope(index) => self.inputs[index as usize].slope(moment.t),
+            Symbol::Found(index) => moment.found[index as usize],
+            Symbol::Multiplier(index) => moment.reactions[index as usize],
+            Symbol::Rate(index) => moment.rates[index as usize],
+            Symbol::Kept(index) => S::from_f64(self.decided.kept[index as usize]),
+            Symbol::Side(index) => S::from_f64(self.decided.sides[index as usize]),
+            _ => unreachable!("no program of a running model reads {symbol:?}"),
+        }
+    }
+
+    /// Writes what a program gives at a moment. What iterations find for it is found first.
+    pub(crate) fn evaluate(&self, code: &Code, row: &RefCell<Row<S>>, moment: Moment<'_, S>, to: &mut [S]) {
+        let found = if moment.found.is_empty() && code.reads(|symbol| matches!(symbol, Symbol::Found(_))) {
+            self.found(moment.t, moment.x, moment.negative)
+        } else {
+            Vec::new()
+        };
+        let moment = if found.is_empty() { moment } else { Moment { found: &found, ..moment } };
+        let row = &mut *row.borrow_mut();
+        code.evaluate(row, |symbol| self.symbol(symbol, &moment), moment.negative, to);
+    }
+
+    /// The same as a list.
+    pub(crate) fn listed(&self, code: &Code, row: &RefCell<Row<S>>, moment: Moment<'_, S>) -> Vec<S> {
+        let mut results = vec![S::from_f64(0.0); code.results()];
+        self.evaluate(code, row, moment, &mut results);
+        results
+    }
+
+    /// What the unknowns of algebraic loops are, nearly; not numbers where that is not found.
+    pub(crate) fn found(&self, t: S, x: &[S], negative: &[S::Switch]) -> Vec<S> {
+        let mut found = vec![S::from_f64(0.0); self.blueprint.found()];
+        let code = &self.programs().loops;
+        for of in &self.blueprint.loops {
+            let unknowns = of.first..of.first + of.unknowns;
+            let mut equations = |u: &[f64]| {
+                lift(u, &mut found[unknowns.clone()]);
+                let moment = Moment { found: &found, ..Moment::at(t, x, negative) };
+                let results = self.listed(code, &self.rows.loops, moment);
+                results[of.equation..of.equation + of.equations()].to_vec()
+            };
+            // On the stack where most loops are: of one unknown.
+            let solved = if of.unknowns == 1 {
+                newton(Const::<1>, |u| Equations::of(Const::<1>, &equations(u))).as_slice().to_vec()
+            } else {
+                let unknowns = Dyn(of.unknowns);
+                newton(unknowns, |u| Equations::of(unknowns, &equations(u))).as_slice().to_vec()
+            };
+            lift(&solved, &mut found[unknowns]);
+        }
+        found
+    }
+
+    /// The reactions of all rigid joints, of least norm where they are not unique; none where joints close no loops.
+    pub(crate) fn reactions(&self, t: S, x: &[S], negative: &[S::Switch]) -> Vec<S> {
+        if self.blueprint.closing_rows == 0 {
+            return Vec::new();
+        }
+        let mut reactions = self.listed(&self.programs().reactions, &self.rows.reactions, Moment::at(t, x, negative));
+        bg_model::start::share(self, t, x, negative, &mut reactions);
+        reactions
+    }
+}
+
+/// What the start pose of a model decides.
+fn decide(blueprint: &Rc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> Decided {
+    let mut decided =
+        Decided { kept: vec![1.0; blueprint.closing_rows], sides: vec![1.0; blueprint.statics.start.sides] };
+    let made = |decided: &Decided| {
+        Interpreted::<f64>::made(blueprint, parameters.to_vec(), parameters.to_vec(), inputs.to_vec(), decided.clone())
+    };
+    if !decided.sides.is_empty() {
+        decided.sides = sides(&made(&decided));
+    }
+    if !decided.kept.is_empty() {
+        let all = made(&decided);
+        decided.kept = kept(&all, &all);
+    }
+    decided
+}
+
+/// What a program of parameters and unknowns gives.
+pub(crate) fn of_parameters<S: Scalar>(
+    Alone { constants, code }: &Alone,
+    values: &[S],
+    unknowns: &[S],
+    decided: Option<&Decided>,
+) -> Vec<S> {
+    let symbol = |symbol: Symbol| match symbol {
+        Symbol::Parameter(index) => values[index as usize],
+        Symbol::Unknown(index) => unknowns.get(index as usize).copied().unwrap_or(S::from_f64(0.0)),
+        symbol => of_decided(symbol, decided),
+    };
+    let constants = constants.once(&[], symbol);
+    code.once(&constants, symbol)
+}
+
+fn of_decided<S: Scalar>(symbol: Symbol, decided: Option<&Decided>) -> S {
+    match (symbol, decided) {
+        (Symbol::Kept(index), Some(decided)) => S::from_f64(decided.kept[index as usize]),
+        (Symbol::Side(index), Some(decided)) => S::from_f64(decided.sides[index as usize]),
+        _ => unreachable!("no program of parameters reads {symbol:?}"),
+    }
+}
+
+/// A table of constants.
+fn table<S: Scalar>(constants: &Code, values: &[S], decided: &Decided) -> Vec<S> {
+    constants.once(&[], |symbol| match symbol {
+        Symbol::Parameter(index) => values[index as usize],
+        symbol => of_decided(symbol, Some(decided)),
+    })
+}
+
+impl<S: Scalar> Rows<S> {
+    fn of(programs: &Codes, running: &[S], table: impl Fn(&Code) -> Vec<S>) -> Self {
+        let row = |code: &Code| RefCell::new(code.row(running));
+        let alone = |of: &Alone| RefCell::new(of.code.row(&table(&of.constants)));
+        let second = programs.second.as_ref().map(|second| (second, table(&second.constants)));
+        Self {
+            rate: row(&programs.rate),
+            guards: row(&programs.guards),
+            loops: row(&programs.loops),
+            reactions: row(&programs.reactions),
+            outputs: row(&programs.outputs),
+            project: row(&programs.project),
+            settle: row(&programs.settle),
+            stored_energy: row(&programs.stored_energy),
+            powers: row(&programs.powers),
+            jacobian: alone(&programs.jacobian),
+            damping: programs.damping.as_ref().map(alone),
+            derivatives: second.as_ref().map(|(second, table)| RefCell::new(second.derivatives.row(table))),
+            forces: second.as_ref().and_then(|(second, table)| Some(RefCell::new(second.forces.as_ref()?.row(table)))),
+            holding: programs.holding.as_ref().map(alone),
+            impacts: programs.impacts.as_ref().map(alone),
+            sizes: alone(&programs.sizes),
+            not_finite: alone(&programs.not_finite),
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! Models of `bond_graph!` text that run without rustc: the text is compiled by the compiler of the macro, its programs
+//! are interpreted.
+//!
+//! In: text in the language of the macro. Out: [`Graph`]s, of whose models [`Interpreted`] makes machines for
+//! [`bg_model::run::Simulation::of_machine`]. They have the bits of generated code.
+
+mod blueprint;
+mod code;
+mod interpreted;
+mod machine;
+mod series;
+mod statics;
+mod text;
+
+pub use blueprint::Blueprint;
+pub use interpreted::Interpreted;
+pub use text::{Fault, Graph, Model, load};

@@ -1,0 +1,314 @@
+//! An interpreted model as a run asks for it.
+//!
+//! In: an [`Interpreted`] model. Out: [`Dynamics`], [`Machine`] and [`Starting`] for it, in any scalar.
+
+use std::ops::Range;
+
+use bg_model::assembly::AssemblyError;
+use bg_model::capability::{Operations, SeriesSize};
+use bg_model::description::{Description, StateInfo};
+use bg_model::drawing;
+use bg_model::dynamics::{Dynamics, Machine};
+use bg_model::failure::Origin;
+use bg_model::holding::{Held, Redundancy, Stops};
+use bg_model::input::{Input, next_break};
+use bg_model::linear::Sparsity;
+use bg_model::linear::table::{eliminate, substitute};
+use bg_model::nalgebra::Complex;
+use bg_model::scalar::Scalar;
+use bg_model::start::{StartRoutine, StartTable, Starting, redundant, start};
+use bg_model::system::Powers;
+
+use crate::interpreted::{Interpreted, Moment, of_parameters};
+use crate::series::Expansion;
+
+impl<S: Scalar> Interpreted<S> {
+    /// Gives the states of `moved` what a projection makes of them.
+    fn moved(&self, moved: &[usize], projected: &[S], x: &mut [S]) {
+        moved.iter().zip(projected).for_each(|(&state, &value)| x[state] = value);
+    }
+}
+
+impl<S: Scalar> Dynamics<S> for Interpreted<S> {
+    fn states(&self) -> usize {
+        self.description().states.len()
+    }
+
+    fn switches(&self) -> usize {
+        self.description().switches.len()
+    }
+
+    fn rate(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]) {
+        // The unknowns of iterations come after the rates.
+        self.evaluate(&self.programs().rate, &self.rows.rate, Moment::at(t, x, negative), dx);
+    }
+
+    fn guards(&self, t: S, x: &[S], negative: &[S::Switch], guards: &mut [S]) {
+        self.evaluate(&self.programs().guards, &self.rows.guards, Moment::at(t, x, negative), guards);
+    }
+
+    fn first_branches(&self) -> Vec<bool> {
+        self.blueprint.first_branches.clone()
+    }
+
+    fn project(&self, t: S, negative: &[S::Switch], x: &mut [S]) {
+        let blueprint = &self.blueprint;
+        let steps = [
+            (&blueprint.projected, &blueprint.programs.project, &self.rows.project),
+            (&blueprint.settled, &blueprint.programs.settle, &self.rows.settle),
+        ];
+        for (moved, code, row) in steps {
+            if !moved.is_empty() {
+                let projected = self.listed(code, row, Moment::at(t, x, negative));
+                self.moved(moved, &projected, x);
+            }
+        }
+    }
+
+    fn next_break(&self, t: f64) -> f64 {
+        next_break(&self.inputs, t)
+    }
+
+    fn state_name(&self, index: usize) -> &'static str {
+        self.description().states.get(index).map_or("state", |state| state.name)
+    }
+
+    fn switch_name(&self, index: usize) -> Option<&'static str> {
+        self.description().switches.get(index).map(|switch| switch.name)
+    }
+
+    fn not_finite(&self, t: S, x: &[S], negative: &[S::Switch]) -> Option<Origin> {
+        let code = &self.programs().not_finite.code;
+        let laws = self.listed(code, &self.rows.not_finite, Moment::at(t, x, negative));
+        let laws = self.blueprint.statics.fallible.iter().zip(laws).map(|(&[kind, name], value)| (kind, name, value));
+        let inputs = self.description().inputs.iter().zip(&self.inputs);
+        let inputs = inputs.map(|(info, input)| ("input", info.name, input.value(t)));
+        Origin::first(&inputs.chain(laws).collect::<Vec<_>>())
+    }
+
+    fn sparsity(&self) -> Sparsity {
+        self.blueprint.statics.sparsity
+    }
+
+    fn jacobian(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S], slope: &mut [S]) {
+        let code = &self.programs().jacobian.code;
+        let results = self.listed(code, &self.rows.jacobian, Moment::at(t, x, negative));
+        let (of_states, of_time) = results.split_at(code.results() - slope.len());
+        entries.copy_from_slice(of_states);
+        slope.copy_from_slice(of_time);
+    }
+
+    fn damping_sparsity(&self) -> Sparsity {
+        self.blueprint.statics.damping.unwrap_or_else(|| self.sparsity())
+    }
+
+    fn damping(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
+        match (&self.programs().damping, &self.rows.damping) {
+            (Some(of), Some(row)) => self.evaluate(&of.code, row, Moment::at(t, x, negative), entries),
+            _ => self.jacobian(t, x, negative, entries, &mut x.to_vec()),
+        }
+    }
+
+    fn factors(&self) -> Option<usize> {
+        Some(self.blueprint.elimination.slots.len())
+    }
+
+    fn eliminate(&self, c: S, entries: &[S], factors: &mut [S]) -> bool {
+        let of = &self.blueprint.elimination;
+        eliminate(&of.slots, &of.products, c, entries, factors)
+    }
+
+    fn eliminate_complex(&self, c: Complex<f64>, entries: &[f64], factors: &mut [Complex<f64>]) -> bool {
+        let of = &self.blueprint.elimination;
+        eliminate(&of.slots, &of.products, c, entries, factors)
+    }
+
+    fn substitute(&self, factors: &[S], b: &mut [S]) {
+        let of = &self.blueprint.elimination;
+        let mut whole = b.to_vec();
+        whole.resize(of.rows, S::from_f64(0.0));
+        substitute::<S, S>(&of.steps, factors, &mut whole);
+        b.copy_from_slice(&whole[..b.len()]);
+    }
+
+    fn substitute_complex(&self, factors: &[Complex<f64>], b: &mut [Complex<f64>]) {
+        let of = &self.blueprint.elimination;
+        let mut whole = b.to_vec();
+        whole.resize(of.rows, Complex::new(0.0, 0.0));
+        substitute::<f64, Complex<f64>>(&of.steps, factors, &mut whole);
+        b.copy_from_slice(&whole[..b.len()]);
+    }
+
+    fn second(&self) -> Range<usize> {
+        self.blueprint.second.clone()
+    }
+
+    fn second_derivatives(&self, x: &[S], dx: &mut [S]) {
+        let (Some(of), Some(row)) = (&self.programs().second, &self.rows.derivatives) else { return };
+        let rates = dx.to_vec();
+        let moment = Moment { rates: &rates, ..Moment::at(S::from_f64(0.0), x, &[]) };
+        self.evaluate(&of.derivatives, row, moment, &mut dx[self.second()]);
+    }
+
+    fn forces(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]) {
+        let of = self.programs().second.as_ref().and_then(|second| second.forces.as_ref());
+        if let (Some(code), Some(row)) = (of, &self.rows.forces) {
+            self.evaluate(code, row, Moment::at(t, x, negative), dx);
+        } else {
+            self.rate(t, x, negative, dx);
+            self.second_derivatives(x, dx);
+        }
+    }
+
+    fn operations_of_forces(&self) -> Option<[u32; 2]> {
+        self.blueprint.operations_of_forces
+    }
+
+    fn series(&self) -> Option<SeriesSize> {
+        let bg_compiler::program::SeriesSize { width, rate, order, product_count, sums, .. } =
+            self.programs().series.size;
+        let small = |count: usize| u32::try_from(count).expect("fewer than 2^32 operations");
+        let operations =
+            Operations { rate: small(rate), order: small(order), products: small(product_count), sums: small(sums) };
+        // None is known where an input changes with time.
+        self.inputs.iter().all(Input::is_constant).then_some(SeriesSize { width, operations: Some(operations) })
+    }
+
+    fn expand(&self, t: S, h: S, negative: &[S::Switch], rows: &mut [S], series: &mut [S]) {
+        let (code, states) = (&self.programs().series, self.states());
+        let found = if code.reads_found() { self.found(t, &series[..states], negative) } else { Vec::new() };
+        let expansion = Expansion { constants: &self.constants, t, h, negative, states, found };
+        code.expand(expansion, |symbol| self.symbol(symbol, &Moment::at(t, &[], negative)), rows, series);
+    }
+
+    fn held(&self) -> Option<Held> {
+        self.blueprint.statics.held
+    }
+
+    fn kept(&self) -> &[f64] {
+        &self.decided.kept
+    }
+
+    fn hold(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
+        if let (Some(of), Some(row)) = (&self.programs().holding, &self.rows.holding) {
+            self.evaluate(&of.code, row, Moment::at(t, x, negative), entries);
+        }
+    }
+
+    fn stops(&self) -> Option<Stops> {
+        self.blueprint.statics.stops
+    }
+
+    fn kept_of_stops(&self) -> &[f64] {
+        &self.decided.kept
+    }
+
+    fn impact(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
+        if let (Some(of), Some(row)) = (&self.programs().impacts, &self.rows.impacts) {
+            self.evaluate(&of.code, row, Moment::at(t, x, negative), entries);
+        }
+    }
+
+    fn stored(&self) -> Option<&'static [StateInfo]> {
+        Some(self.description().states)
+    }
+
+    fn energy(&self, t: S, x: &[S], negative: &[S::Switch], curvatures: &mut [S]) -> S {
+        let code = &self.programs().sizes.code;
+        let results = self.listed(code, &self.rows.sizes, Moment::at(t, x, negative));
+        let (energy, of_states) = results.split_first().expect("the energy comes first");
+        curvatures.copy_from_slice(of_states);
+        *energy
+    }
+}
+
+impl<S: Scalar> Machine<S> for Interpreted<S> {
+    fn description(&self) -> &'static Description {
+        self.blueprint.statics.description
+    }
+
+    fn start(&self) -> Result<Vec<S>, AssemblyError> {
+        Ok(start(self, self)?.x)
+    }
+
+    fn redundant(&self) -> Vec<Redundancy> {
+        if self.decided.kept.is_empty() { Vec::new() } else { redundant(self, self) }
+    }
+
+    fn decided(&self) -> Vec<f64> {
+        [&self.decided.kept[..], &self.decided.sides[..]].concat()
+    }
+
+    fn impulse_energy(&self) -> Result<S, AssemblyError> {
+        if self.held().is_none() { Ok(S::from_f64(0.0)) } else { Ok(start(self, self)?.lost) }
+    }
+
+    fn outputs(&self, t: S, x: &[S], negative: &[S::Switch], y: &mut [S]) {
+        let reactions = self.reactions(t, x, negative);
+        let moment = Moment { reactions: &reactions, ..Moment::at(t, x, negative) };
+        self.evaluate(&self.programs().outputs, &self.rows.outputs, moment, y);
+    }
+
+    fn stored_energy(&self, t: S, x: &[S], negative: &[S::Switch]) -> S {
+        self.listed(&self.programs().stored_energy, &self.rows.stored_energy, Moment::at(t, x, negative))[0]
+    }
+
+    fn shown(&self, t: f64, x: &[f64], negative: &[bool], shown: &mut Vec<f64>) {
+        let states: Vec<S> = x.iter().copied().map(S::from_f64).collect();
+        let switches: Vec<S::Switch> = negative.iter().copied().map(S::Switch::from).collect();
+        let numbers = |of: Vec<S>| of.into_iter().map(S::to_f64).collect::<Vec<_>>();
+        let (reactions, found) = (
+            numbers(self.reactions(S::from_f64(t), &states, &switches)),
+            numbers(self.found(S::from_f64(t), &states, &switches)),
+        );
+        let input = |input: &Input| [input.value(t), input.slope(t)];
+        self.description().drawing.tape.evaluate(
+            &drawing::Moment {
+                t,
+                states: x,
+                parameters: &self.parameters,
+                inputs: &self.inputs.iter().map(input).collect::<Vec<_>>(),
+                negative,
+                reactions: &reactions,
+                found: &found,
+                sides: &self.decided.sides,
+            },
+            shown,
+        );
+    }
+
+    fn powers(&self, t: S, x: &[S], negative: &[S::Switch]) -> Powers<S> {
+        let powers = self.listed(&self.programs().powers, &self.rows.powers, Moment::at(t, x, negative));
+        Powers { supplied: powers[0], dissipated: powers[1] }
+    }
+}
+
+impl<S: Scalar> Interpreted<S> {
+    /// What a routine of the start gives, for values of the parameters and unknowns.
+    fn of_start<T: Scalar>(&self, routine: StartRoutine, values: &[T], unknowns: &[T]) -> Vec<T> {
+        let programs = self.programs();
+        let program = match routine {
+            StartRoutine::Guesses => Some(&programs.guesses),
+            StartRoutine::Gaps => Some(&programs.gaps),
+            StartRoutine::GapSizes => Some(&programs.gap_sizes),
+            StartRoutine::State => Some(&programs.start_state),
+            StartRoutine::Sides => programs.sides.as_ref(),
+            StartRoutine::Required => programs.required_at_start.as_ref(),
+        };
+        program.map_or_else(Vec::new, |program| of_parameters(program, values, unknowns, Some(&self.decided)))
+    }
+}
+
+impl<S: Scalar> Starting<S> for Interpreted<S> {
+    fn table(&self) -> StartTable {
+        self.blueprint.statics.start
+    }
+
+    fn in_numbers(&self, routine: StartRoutine, unknowns: &[f64]) -> Vec<f64> {
+        self.of_start(routine, &self.parameters, unknowns)
+    }
+
+    fn in_scalars(&self, routine: StartRoutine, unknowns: &[S]) -> Vec<S> {
+        self.of_start(routine, &self.values, unknowns)
+    }
+}

@@ -1,0 +1,139 @@
+//! The start of a model: the pose that closes its joints, the velocities that fit them, what the pose decides for a run.
+//!
+//! In: [`Starting`], the routines of parameters and unknowns from which a start is calculated, with their tables. Out:
+//! the start state; on which sides roots are closed; which rows of joints that close loops take part. Whoever evaluates
+//! the routines, the start has the same bits.
+
+use alloc::vec::Vec;
+
+use crate::model::assembly::{AssemblyError, Gap, close};
+use crate::model::dynamics::Dynamics;
+use crate::model::holding::Redundancy;
+use crate::model::nearest::lifted;
+use crate::model::reactions::{self, fit};
+pub use crate::model::reactions::{Started, share};
+use crate::model::requirement::{Requirement, require};
+use crate::model::scalar::Scalar;
+
+/// A routine of parameters and unknowns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StartRoutine {
+    /// The first guess of each unknown, of parameters alone.
+    Guesses,
+    /// The gaps of the joints, in the order of [`StartTable::gaps`].
+    Gaps,
+    /// For each gap the sum of the absolute values of its terms.
+    GapSizes,
+    /// The start state.
+    State,
+    /// What the sides of roots have the signs of.
+    Sides,
+    /// The scalars of [`StartTable::required`].
+    Required,
+}
+
+/// What a start is checked against, and what may move.
+#[derive(Clone, Copy, Debug)]
+pub struct StartTable {
+    /// The gaps to be closed.
+    pub gaps: &'static [Gap],
+    /// The unknowns that are velocities; the others are of the pose.
+    pub speeds: &'static [usize],
+    /// What is asked of the closed pose.
+    pub required: &'static [Requirement],
+    /// How many roots have a side.
+    pub sides: usize,
+    /// Whether impulses of the rigid joints make velocities fit.
+    pub impulse: bool,
+}
+
+/// What a start is calculated from, over slices.
+pub trait Starting<S: Scalar = f64> {
+    /// The tables.
+    fn table(&self) -> StartTable;
+
+    /// What a routine gives for these unknowns; for none it takes zeros.
+    fn in_numbers(&self, routine: StartRoutine, unknowns: &[f64]) -> Vec<f64>;
+
+    /// The same in the scalar.
+    fn in_scalars(&self, routine: StartRoutine, unknowns: &[S]) -> Vec<S>;
+}
+
+/// The unknowns: the guesses, those of the pose moved until the joints are closed.
+fn closed<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<f64>, AssemblyError> {
+    let StartTable { gaps, speeds, required, .. } = of.table();
+    let guess = of.in_numbers(StartRoutine::Guesses, &[]);
+    let places: Vec<usize> = (0..guess.len()).filter(|place| !speeds.contains(place)).collect();
+    let whole = |pose: &[f64]| {
+        let mut unknowns = guess.clone();
+        places.iter().zip(pose).for_each(|(&place, &value)| unknowns[place] = value);
+        unknowns
+    };
+    let routine = |routine, pose: &[f64], values: &mut [f64]| {
+        values.copy_from_slice(&of.in_numbers(routine, &whole(pose)));
+    };
+    let pose: Vec<f64> = places.iter().map(|&place| guess[place]).collect();
+    let pose = close(&pose, gaps, &|pose, gaps| routine(StartRoutine::Gaps, pose, gaps), &|pose, sizes| {
+        routine(StartRoutine::GapSizes, pose, sizes)
+    })?;
+    let unknowns = whole(&pose);
+    if !required.is_empty() {
+        require(required, &of.in_numbers(StartRoutine::Required, &unknowns))?;
+    }
+    Ok(unknowns)
+}
+
+/// The unknowns in the scalar: with what they are more than numbers, as derivatives.
+fn unknowns<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<S>, AssemblyError> {
+    let found = closed(of)?;
+    let guess = of.in_scalars(StartRoutine::Guesses, &[]);
+    Ok(lifted(&guess, &found, &|unknowns| of.in_scalars(StartRoutine::Gaps, unknowns)))
+}
+
+/// The state at the closed start pose, guessed velocities as they are.
+///
+/// # Errors
+/// The pose does not close.
+pub fn pose<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<S>, AssemblyError> {
+    Ok(of.in_scalars(StartRoutine::State, &unknowns(of)?))
+}
+
+/// The start state of a model, and what it took to make it fit.
+///
+/// # Errors
+/// The pose does not close, or the velocities do not fit.
+pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Started<S>, AssemblyError> {
+    if system.held().is_none() {
+        return Ok(Started { x: pose(of)?, lost: S::from_f64(0.0) });
+    }
+    let StartTable { speeds, impulse, .. } = of.table();
+    let state = |unknowns: &[S]| of.in_scalars(StartRoutine::State, unknowns);
+    fit(system, &unknowns(of)?, speeds, &state, impulse)
+}
+
+/// The signs of the roots in the closed start pose; 1 where there is none.
+pub fn sides<S: Scalar>(of: &dyn Starting<S>) -> Vec<f64> {
+    let sign = |side: f64| if side < 0.0 { -1.0 } else { 1.0 };
+    match closed(of) {
+        Ok(unknowns) => of.in_numbers(StartRoutine::Sides, &unknowns).into_iter().map(sign).collect(),
+        Err(_) => alloc::vec![1.0; of.table().sides],
+    }
+}
+
+/// Which rows of joints that close loops take part: 1 for each that does.
+pub fn kept(of: &dyn Starting, system: &dyn Dynamics) -> Vec<f64> {
+    reactions::kept(system, pose(of).ok())
+}
+
+/// What the start pose decides, in the array of a model that has so many.
+///
+/// # Panics
+/// There are others.
+pub fn decided<const K: usize>(of: Vec<f64>) -> [f64; K] {
+    of.try_into().expect("a number for each that is decided")
+}
+
+/// The joints that hold what others hold already, in all poses.
+pub fn redundant<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Vec<Redundancy> {
+    pose(of).map_or_else(|_| Vec::new(), |pose| reactions::redundant(system, &pose))
+}
