@@ -88,13 +88,10 @@ fn of_model(model: &Compiled) -> Vec<Stage> {
     }
     push("projection", projection_text(equations));
     push("program", program_text(equations, &programs.running));
-    if let Some(paired) = &programs.running.paired_rate {
+    if let Some(paired) = &programs.pairs().rate {
         push("pairs", paired_text(equations, paired));
     }
-    push(
-        "reversed",
-        programs.reversed.as_ref().map_or_else(|| "none: the rate is too long\n".to_owned(), reversed_text),
-    );
+    push("reversed", programs.reversed().map_or_else(|| "none: the rate is too long\n".to_owned(), reversed_text));
     push("jacobian", jacobian_text(equations, jacobian));
     push("second", second_text(equations, second_order));
     push("sizes", sizes_text(equations, sizes));

@@ -14,7 +14,7 @@ pub use bg_expressions::schedule::{
     Assignment, Counts, Operand, Operation, Program, Request, Reverse, Routine, pairs, repetition, reverse, schedule,
 };
 pub use changes::Changes;
-pub use programs::{Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
+pub use programs::{Pairs, Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
 pub use reversed::Reversed;
 pub use series::{SeriesSize, series_size};
 pub use tape::Tape;

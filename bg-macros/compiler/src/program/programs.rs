@@ -3,6 +3,7 @@
 //! In: equations, the derivatives of the rates and the second derivatives. Out: what every generated function
 //! evaluates, in order, with its table of constants.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
 use super::pairs::{Paired, pair};
@@ -22,8 +23,6 @@ const INLINED: usize = 400;
 pub struct Programs {
     /// Functions of the running model; they share one constant table.
     pub running: Running,
-    /// How what they give depends on states and constants, where that is not too long.
-    pub reversed: Option<Reversed>,
     /// The derivatives of the rates, with a constant table of their own.
     pub jacobian: Program<1>,
     /// The derivatives among states that are not of second order, with a constant table of their own, where all of them
@@ -46,6 +45,19 @@ pub struct Programs {
     pub not_finite: Program<1>,
     /// What pictures show.
     pub shown: Tape,
+    /// How many states there are.
+    states: usize,
+    pairs: OnceCell<Pairs>,
+    reversed: OnceCell<Option<Reversed>>,
+}
+
+/// Programs in pairs of operations, where that pays.
+#[derive(Debug)]
+pub struct Pairs {
+    /// The rates.
+    pub rate: Option<Paired>,
+    /// The forces.
+    pub forces: Option<Paired>,
 }
 
 /// The functions of the running model.
@@ -55,8 +67,6 @@ pub struct Running {
     pub constants: Routine,
     /// The rates of all states.
     pub rate: Routine,
-    /// The rates in pairs of operations, where that pays.
-    pub paired_rate: Option<Paired>,
     /// The guards of all switches.
     pub guards: Routine,
     /// The equations of all iterations.
@@ -85,8 +95,6 @@ pub struct SecondOrderPrograms {
     /// The rates with second derivatives in their places, where rates are inlined: otherwise rates and second
     /// derivatives, one after the other, take as long.
     pub forces: Option<Routine>,
-    /// The forces in pairs of operations, where that pays.
-    pub paired_forces: Option<Paired>,
 }
 
 /// First guesses, gaps and start state, each with its own constants.
@@ -112,7 +120,6 @@ pub fn programs(
     sizes: &mut Sizes,
 ) -> Programs {
     let running = running(equations);
-    let reversed = reversed(&running, equations.states.len());
     let (jacobian, damping) = derivatives(jacobian, &second_order.states);
     let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
     let (holding, impacts) = (holding(equations), impacts(equations));
@@ -126,7 +133,6 @@ pub fn programs(
     let shown = tape(&equations.pool, &equations.solution, &equations.shown.quantities());
     Programs {
         running,
-        reversed,
         jacobian,
         damping,
         second_order,
@@ -137,6 +143,9 @@ pub fn programs(
         required,
         not_finite,
         shown,
+        states: equations.states.len(),
+        pairs: OnceCell::new(),
+        reversed: OnceCell::new(),
     }
 }
 
@@ -192,8 +201,7 @@ fn running(equations: &mut StateEquations) -> Running {
     ];
     let Program { constants, routines } = schedule(&mut equations.pool, requests);
     let [rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers] = routines;
-    let paired_rate = pair(&rate);
-    Running { constants, rate, paired_rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers }
+    Running { constants, rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers }
 }
 
 fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondOrderPrograms {
@@ -201,12 +209,11 @@ fn of_second_order(second_order: &mut SecondOrder, with_forces: bool) -> SecondO
     let second_derivatives = Request { name: "second_derivatives", roots: derivatives };
     if !with_forces {
         let Program { constants, routines: [second_derivatives] } = schedule(pool, [second_derivatives]);
-        return SecondOrderPrograms { constants, second_derivatives, forces: None, paired_forces: None };
+        return SecondOrderPrograms { constants, second_derivatives, forces: None };
     }
     let forces = Request { name: "forces", roots: forces };
     let Program { constants, routines: [second_derivatives, forces] } = schedule(pool, [second_derivatives, forces]);
-    let paired_forces = pair(&forces);
-    SecondOrderPrograms { constants, second_derivatives, forces: Some(forces), paired_forces }
+    SecondOrderPrograms { constants, second_derivatives, forces: Some(forces) }
 }
 
 /// In a pool of its own, so that it has no influence on the order of the other functions' operations.
@@ -289,6 +296,21 @@ impl Starting {
 }
 
 impl Programs {
+    /// Rates and forces in pairs. They are sought when they are first asked for: that takes as long as all the rest,
+    /// and who interprets programs has no use for them.
+    pub fn pairs(&self) -> &Pairs {
+        self.pairs.get_or_init(|| Pairs {
+            rate: pair(&self.running.rate),
+            forces: self.second_order.as_ref().and_then(|second| pair(second.forces.as_ref()?)),
+        })
+    }
+
+    /// How what the functions of the running model give depends on states and constants, where that is not too long;
+    /// made when it is first asked for.
+    pub fn reversed(&self) -> Option<&Reversed> {
+        self.reversed.get_or_init(|| reversed(&self.running, self.states)).as_ref()
+    }
+
     /// The functions that are called while the model runs, with their operations.
     pub fn costs(&self) -> impl Iterator<Item = (&str, Counts)> {
         let running = self.running.routines().into_iter();

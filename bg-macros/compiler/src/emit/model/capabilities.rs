@@ -113,7 +113,8 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let programs = self.model.programs.second_order.as_ref()?;
         let own = programs.forces.as_ref().map(|routine| {
-            let (body, forces) = self.with_pairs(routine, programs.paired_forces.as_ref(), "second_constant");
+            let (body, forces) =
+                self.with_pairs(routine, self.model.programs.pairs().forces.as_ref(), "second_constant");
             quote!(#body dx.data.0 = [[#(#forces),*]];)
         });
         let inline = own.as_ref().and_then(|_| self.inline());
@@ -156,9 +157,8 @@ impl Emission<'_> {
                 quote!(#inputs #states)
             },
         };
-        let series::Expansion { width, operations, body, parts } = self.with_names(|names| {
-            series::expansion(routine, self.model.programs.running.paired_rate.as_ref(), names, &reads)
-        });
+        let series::Expansion { width, operations, body, parts } = self
+            .with_names(|names| series::expansion(routine, self.model.programs.pairs().rate.as_ref(), names, &reads));
         let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
             #parts

@@ -51,7 +51,7 @@ impl Emission<'_> {
         let of_forces = " What depends on parameters only, of forces.";
         let of_holding = " What depends on parameters only, of held motions.";
         let mut tables = vec![
-            table("constant", of_rates, &running.constants, running.paired_rate.as_ref()),
+            table("constant", of_rates, &running.constants, self.model.programs.pairs().rate.as_ref()),
             table("slope_constant", of_jacobian, &jacobian.constants, None),
         ];
         let of_damping = " What depends on parameters only, of damping.";
@@ -60,8 +60,8 @@ impl Emission<'_> {
         let of_impacts = " What depends on parameters only, of impacts.";
         tables.extend(impacts.as_ref().map(|program| table("impact_constant", of_impacts, &program.constants, None)));
         tables.push(table("size_constant", " What depends on parameters only, of sizes.", &sizes.constants, None));
-        tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, paired_forces, .. }| {
-            table("second_constant", of_forces, constants, paired_forces.as_ref())
+        tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, .. }| {
+            table("second_constant", of_forces, constants, self.model.programs.pairs().forces.as_ref())
         }));
         tables
     }

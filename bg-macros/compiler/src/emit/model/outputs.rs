@@ -15,7 +15,7 @@ impl Emission<'_> {
         let (start, started) = self.start();
         let (outputs, stored_energy, powers) = (self.outputs(), self.stored_energy(), self.powers());
         let (shown, redundant, decided) = (self.shown(), self.redundant(), self.decided().handed_over());
-        let reversed = self.model.programs.reversed.as_ref();
+        let reversed = self.model.programs.reversed();
         let reversed = reversed.map(|_| accessor("reversed", &quote!(Reversed<S, #n, #g, #m>), &quote!(Some(self))));
         quote! {
             #started

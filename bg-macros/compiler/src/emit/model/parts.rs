@@ -19,7 +19,7 @@ impl Emission<'_> {
         let running = &programs.running;
         // The equations of iterations are written out where their unknowns are found.
         let functions = running.routines().into_iter().filter(|routine| !std::ptr::eq(*routine, &running.loops));
-        let sweeps = programs.reversed.iter().flat_map(Reversed::sweeps).map(|sweep| &sweep.routine);
+        let sweeps = programs.reversed().into_iter().flat_map(Reversed::sweeps).map(|sweep| &sweep.routine);
         let second_order = programs.second_order.iter().flat_map(SecondOrderPrograms::routines);
         let tables: [(&str, Vec<&Routine>); 7] = [
             ("constants", functions.chain(sweeps).collect()),

@@ -12,7 +12,7 @@ use crate::program::{Operand, Reverse};
 impl Emission<'_> {
     pub(super) fn reversed(&self) -> Option<TokenStream> {
         let Shape { n, g, m, .. } = &self.shape;
-        let reversed = self.model.programs.reversed.as_ref()?;
+        let reversed = self.model.programs.reversed()?;
         let (equations, constants) = (&self.model.equations, self.constant_count());
         let (rate, project) = (self.sweep(&reversed.rate, equations.states.len()), self.reverse_project());
         let outputs = reversed.outputs.as_ref().map(|sweep| self.sweep(sweep, equations.outputs.len()));

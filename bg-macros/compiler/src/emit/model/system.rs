@@ -70,7 +70,7 @@ impl Emission<'_> {
             }
         };
         let always = function(quote!(always_inlined_rate), Some(Inlined), self.function(&running.rate));
-        let Some(paired) = &running.paired_rate else {
+        let Some(paired) = &self.model.programs.pairs().rate else {
             let rate = calling(quote!(rate), None, quote!(always_inlined_rate));
             let inlined =
                 self.inline().map(|inline| calling(quote!(inlined_rate), Some(inline), quote!(always_inlined_rate)));
