@@ -84,7 +84,7 @@ fn a_host_comes_where_our_run_does() {
     let pendulum = Pendulum::new(Default::default()).unwrap();
     let shaker = Shaker::make(Default::default(), &[]).unwrap();
     let ball = Ball::make(Default::default(), &[]).unwrap();
-    let own = |run: Simulation<'_, _>| run.rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap();
+    let own = |run: Simulation<'_>| run.rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap();
     let wanted = [
         (&PENDULUM as &dyn Described, "angle", own(Simulation::new(&pendulum))["angle"][0]),
         (&SHAKER, "x", Simulation::new(&shaker).rtol(1e-11).at(&[1.0]).until(1.0).run().unwrap()["x"][0]),

@@ -14,6 +14,7 @@ mod state;
 mod trajectory;
 
 use std::ops::ControlFlow;
+use std::rc::Rc;
 use std::time::Duration;
 
 use clock::Clock;
@@ -72,8 +73,8 @@ use crate::solve::statistics::Statistics;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use = "a run is made by `run`"]
-pub struct Simulation<'a, Me> {
-    model: &'a Me,
+pub struct Simulation<'a> {
+    model: Rc<dyn Machine>,
     request: Request,
     start: Option<State>,
     each_step: EachStep<'a>,
@@ -83,14 +84,19 @@ pub struct Simulation<'a, Me> {
 /// Is told the time reached, s, after each step, and says whether the run goes on.
 type EachStep<'a> = Box<dyn FnMut(f64) -> ControlFlow<()> + 'a>;
 
-impl<'a, Me: Mechanism> Simulation<'a, Me> {
+impl<'a> Simulation<'a> {
     /// A run of `model` from its start, as [`Request::default`] says, unless another setting is given.
-    pub fn new(model: &'a Me) -> Self {
+    pub fn new(model: &impl Mechanism) -> Self {
         Self::of(model, Request::default())
     }
 
     /// A run of `model` from its start as it is asked for.
-    pub fn of(model: &'a Me, request: Request) -> Self {
+    pub fn of(model: &impl Mechanism, request: Request) -> Self {
+        Self::over(model.machine(), request)
+    }
+
+    /// The same of a model over slices.
+    pub fn over(model: Rc<dyn Machine>, request: Request) -> Self {
         let each_step = Box::new(|_| ControlFlow::Continue(()));
         Self { model, request, start: None, each_step, ending: None }
     }
@@ -164,7 +170,7 @@ impl<'a, Me: Mechanism> Simulation<'a, Me> {
     /// # Errors
     /// The start cannot be assembled, the state is not one of this mechanism, or the mechanism cannot stand in it.
     pub fn start(&self) -> Result<State, RunError> {
-        let model = &*self.model.machine();
+        let model = &*self.model;
         let (t, Beginning { x, largest, negative }) = beginning(model, self.start.as_ref())?;
         Ok(State::new(model.description(), t, x.as_slice(), largest.as_slice(), negative.as_deref()))
     }
@@ -176,7 +182,7 @@ impl<'a, Me: Mechanism> Simulation<'a, Me> {
     /// error has what was reached.
     pub fn run(self) -> Result<Trajectory, RunError> {
         let Self { model, request, start, each_step, ending } = self;
-        Integration { request, start, each_step, ending }.recorded(&*model.machine(), None)
+        Integration { request, start, each_step, ending }.recorded(&*model, None)
     }
 }
 
