@@ -29,7 +29,8 @@ pub fn many(asked: Asked<'_>, values: &[Vec<f64>]) -> Vec<Result<Outcome, String
     let made = |own: &[f64]| models.maker().make(scene.index, own, inputs);
     // Any model that can be made knows the inputs of all.
     let model = each.iter().find_map(|own| made(own).ok());
-    let mut runs = model.and_then(|model| model.in_lanes(request, &each)).into_iter().flatten();
+    let runs = model.map(|model| model.in_lanes(request, &each).expect("its maker says that it has lanes"));
+    let mut runs = runs.into_iter().flatten();
     let outcome = |own: Result<Values, String>| {
         let own = own?;
         match runs.next() {
