@@ -25,9 +25,10 @@ use crate::precision::reference::{ReferenceError, Solution, solve};
 
 /// The models of the mechanism `Me`: with runs side by side if `Lanes` is [`On`], with gradients and with reference
 /// solutions in the same way.
-pub struct Compiled<Me, Lanes = Off, Gradients = Off, Solutions = On>(
-    PhantomData<fn() -> (Me, Lanes, Gradients, Solutions)>,
-);
+pub struct Compiled<Me, Lanes = Off, Gradients = Off, Solutions = On>(Types<(Me, Lanes, Gradients, Solutions)>);
+
+/// Types of which there are no values here, so that any thread can have it.
+type Types<T> = PhantomData<fn() -> T>;
 
 /// Something that is compiled for each model.
 #[derive(Clone, Copy, Debug)]

@@ -184,7 +184,7 @@ fn differentiated(
 ) -> Result<Sensitivities, InputError> {
     let machine = machine(program, scene, chosen)?;
     let by: Vec<&str> = parameters.iter().map(|(info, _)| info.name).collect();
-    Ok(machine.known("derivatives by parameters", machine.sensitivities(&request, &by))??)
+    Ok(machine.known("derivatives by parameters", machine.sensitivities(request, &by))??)
 }
 
 /// What is printed.
