@@ -5,11 +5,12 @@ use std::process::ExitCode;
 
 use bg_model::description::Description;
 use bg_model::simulation::{MissingColumn, Recording};
-use bg_workbench::Program;
 use bg_workbench::extras::{Extras, Page};
 #[cfg(not(target_arch = "wasm32"))]
 use bg_workbench::figures::Figure;
+use bg_workbench::maker::Maker;
 use bg_workbench::summary::Additions;
+use bg_workbench::{Compiled, Program};
 
 use crate::columns::{has_reference_columns, reference_columns};
 #[cfg(not(target_arch = "wasm32"))]
@@ -19,25 +20,29 @@ use crate::mechanism::Hacksaw;
 use crate::precision::case;
 use crate::{checks, sources, summary};
 
+/// What makes its models: all solutions are stored.
+pub(crate) fn maker() -> impl Maker {
+    let maker = Compiled::<Hacksaw>::new().without_solutions();
+    #[cfg(feature = "lanes")]
+    let maker = maker.lanes();
+    #[cfg(feature = "gradients")]
+    let maker = maker.gradients();
+    maker
+}
+
 /// The program.
 #[must_use]
-pub fn program() -> Program<Hacksaw> {
-    let program = cfg_select! {
-        target_arch = "wasm32" => Program::<Hacksaw>::new(),
-        _ => Program::<Hacksaw>::with_cases(case::cases(), &["paper", "full-offset", "rigid"]),
-    };
-    let program = program
+pub fn program() -> Program {
+    let program = Program::with(maker());
+    #[cfg(not(target_arch = "wasm32"))]
+    let program = program.with_cases(case::cases(), &["paper", "full-offset", "rigid"]);
+    program
         .version(env!("CARGO_PKG_VERSION"))
         .about(
             "Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says about them",
         )
         .scene("paper")
-        .extras(Paper);
-    #[cfg(all(feature = "lanes", not(target_arch = "wasm32")))]
-    let program = program.lanes();
-    #[cfg(feature = "gradients")]
-    let program = program.gradients();
-    program
+        .extras(Paper)
 }
 
 /// Does what the arguments ask for and gives the exit code. All that it calls is compiled here, once, since nothing of

@@ -163,7 +163,7 @@ fn eliminated(of: &dyn Machine, t: f64, x: &[f64], negative: &[bool]) -> Vec<u64
 fn same_runs(compiled: &Rc<dyn Machine>, loaded: &Rc<dyn Machine>, method: Integrator) {
     let request =
         || Request { method, t_end: 0.05, samples: Samples::Every(0.01), step_limit: 400, ..Request::default() };
-    let run = |of: &Rc<dyn Machine>| match Simulation::of_machine(Rc::clone(of), request()).run() {
+    let run = |of: &Rc<dyn Machine>| match Simulation::over(Rc::clone(of), request()).run() {
         Ok(run) => told(&run),
         Err(RunError::Stopped(stopped)) => format!("{}\n{}", stopped.cause, told(&stopped.trajectory)),
         Err(fault) => fault.to_string(),

@@ -3,13 +3,13 @@
 //! In: a mechanism's type. Out: a value that stands for it, so that a library can list its models.
 
 use std::marker::PhantomData;
+use std::rc::Rc;
 
-use bg_model::capability::Linearised;
 use bg_model::description::Description;
+use bg_model::dynamics::Machine;
 use bg_model::linear::Sparsity;
-use bg_model::mechanism::{Mechanism, ModelVisitor};
+use bg_model::mechanism::Mechanism;
 use bg_model::parameters::{ParameterError, Parameters};
-use bg_model::system::Model;
 
 use crate::instance::{Fault, InDuals, Signals, Slopes, Stood, nominals_at_start};
 
@@ -67,15 +67,14 @@ impl<Me> Of<Me> {
 
 impl<Me: Mechanism + 'static> sealed::Make for Of<Me> {
     fn make(&self, values: &[f64], signals: &Signals, t: f64) -> Result<Made, Fault> {
-        let mut parameters = Me::Parameters::default();
-        values.iter().enumerate().for_each(|(index, &value)| parameters.set_value(index, value));
+        let parameters = Me::Parameters::of_values(values);
         parameters.validate()?;
         let mechanism = Me::make(parameters, &signals.inputs())?;
         Ok(Made { machine: Stood::at_start(mechanism.machine(), t)?, slopes: mechanism.visit(InDuals) })
     }
 
     fn check(&self, index: usize, value: f64) -> Result<(), ParameterError> {
-        Me::Parameters::default().set(Me::describe().parameters[index].name, value)
+        Me::describe().parameters[index].check(value)
     }
 }
 
@@ -91,35 +90,48 @@ impl<Me: Mechanism> Described for Of<Me> {
     }
 
     fn dependencies(&self) -> Option<Vec<Vec<usize>>> {
-        Me::make(Me::Parameters::default(), &[]).ok()?.visit(Pattern)
+        AtDefaults::of::<Me>().dependencies()
     }
 
     fn nominals(&self) -> Option<Vec<f64>> {
-        nominals_at_start(&*Me::make(Me::Parameters::default(), &[]).ok()?.machine())
+        AtDefaults::of::<Me>().nominals()
     }
 }
 
-/// Which rate depends on which states.
-struct Pattern;
+/// A model with its parameters at their defaults, whatever its type.
+pub struct AtDefaults {
+    /// Its tables.
+    pub description: &'static Description,
+    /// The model; none where its defaults are of no model.
+    pub model: Option<Rc<dyn Machine>>,
+}
 
-impl ModelVisitor<f64> for Pattern {
-    type Output = Option<Vec<Vec<usize>>>;
+impl AtDefaults {
+    fn of<Me: Mechanism>() -> Self {
+        let model = Me::make(Me::Parameters::default(), &[]).ok().map(|model| model.machine());
+        Self { description: Me::describe(), model }
+    }
+}
 
-    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        let (places, unknowns) = match model.linearised()?.sparsity() {
+impl Described for AtDefaults {
+    fn description(&self) -> &'static Description {
+        self.description
+    }
+
+    fn dependencies(&self) -> Option<Vec<Vec<usize>>> {
+        let machine = self.model.as_deref()?;
+        let (places, unknowns) = match machine.sparsity() {
             Sparsity::Full => return None,
             Sparsity::Places(places) => (places, 0),
             Sparsity::Bordered { places, unknowns } => (places, unknowns),
         };
-        let mut depends = vec![vec![false; N]; N];
+        let count = machine.states();
+        let mut depends = vec![vec![false; count]; count];
         // The unknowns are solved for together: what one of them needs, all of them may need.
-        let mut of_unknowns = vec![false; N];
-        let mut reads_unknowns = vec![false; N];
+        let mut of_unknowns = vec![false; count];
+        let mut reads_unknowns = vec![false; count];
         for (row, column) in places.iter().map(|&(row, column)| (usize::from(row), usize::from(column))) {
-            match (row < N, column < N) {
+            match (row < count, column < count) {
                 (true, true) => depends[row][column] = true,
                 (true, false) => reads_unknowns[row] = true,
                 (false, true) => of_unknowns[column] = true,
@@ -133,5 +145,9 @@ impl ModelVisitor<f64> for Pattern {
         }
         let places = |own: Vec<bool>| own.iter().enumerate().filter_map(|(k, on)| on.then_some(k)).collect();
         Some(depends.into_iter().map(places).collect())
+    }
+
+    fn nominals(&self) -> Option<Vec<f64>> {
+        nominals_at_start(self.model.as_deref()?)
     }
 }

@@ -43,7 +43,7 @@ pub mod variables;
 
 pub use bg_model;
 pub use description::{Packing, Version, model_description, terminals_and_icons, token};
-pub use exported::{Described, Exported, Of};
+pub use exported::{AtDefaults, Described, Exported, Of};
 pub use instance::{Fault, Instance, Interface};
 
 /// The category of log messages.

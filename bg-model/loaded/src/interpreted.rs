@@ -11,7 +11,7 @@ use bg_model::description::Description;
 use bg_model::input::Input;
 use bg_model::iteration::{Equations, lift, newton};
 use bg_model::nalgebra::{Const, Dyn};
-use bg_model::parameters::{ParameterError, check};
+use bg_model::parameters::ParameterError;
 use bg_model::requirement::require;
 use bg_model::scalar::Scalar;
 use bg_model::start::{kept, sides};
@@ -103,7 +103,7 @@ impl<S: Scalar> Interpreted<S> {
     pub fn lifted(blueprint: &Rc<Blueprint>, values: Vec<S>, inputs: &[Input]) -> Result<Self, ParameterError> {
         let parameters: Vec<f64> = values.iter().copied().map(S::to_f64).collect();
         let Description { parameters: table, inputs: named, .. } = blueprint.description();
-        table.iter().zip(&parameters).try_for_each(|(info, &value)| check(info, value))?;
+        table.iter().zip(&parameters).try_for_each(|(info, &value)| info.check(value))?;
         if let Some(program) = &blueprint.programs.required {
             require(blueprint.statics.required, &of_parameters(program, &parameters, &[], None))?;
         }

@@ -2,7 +2,7 @@
 //! are interpreted.
 //!
 //! In: text in the language of the macro. Out: [`Graph`]s, of whose models [`Interpreted`] makes machines for
-//! [`bg_model::run::Simulation::of_machine`]. They have the bits of generated code.
+//! [`bg_model::run::Simulation::over`]. They have the bits of generated code.
 
 mod blueprint;
 mod code;

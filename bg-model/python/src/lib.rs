@@ -4,7 +4,7 @@
 //! ([`hacksaw/python`](../../../hacksaw/python) is an example):
 //!
 //! ```ignore
-//! bg_python::python_module!(_pendulum, bg_workbench::Program::<Pendulum>::new);
+//! bg_python::python_module!(_pendulum, bg_workbench::Program::of::<Pendulum>);
 //! ```
 //!
 //! | module | question |
@@ -19,7 +19,6 @@ pub mod model;
 pub mod table;
 pub mod waiting;
 
-use bg_model::mechanism::Scenes;
 use bg_workbench::Program;
 use pyo3::prelude::*;
 
@@ -38,11 +37,14 @@ macro_rules! python_module {
     };
 }
 
-/// Puts the functions of a model into `module`; `program` makes the program of its mechanism.
+/// Puts the functions of a model into `module`; `program` makes its program.
 ///
 /// # Errors
 /// Python's.
-pub fn fill<Me: Scenes>(module: &Bound<'_, PyModule>, program: fn() -> Program<Me>) -> PyResult<()> {
+pub fn fill(
+    module: &Bound<'_, PyModule>,
+    program: impl Fn() -> Program + Send + Sync + 'static,
+) -> PyResult<()> {
     let model = Bound::new(module.py(), model::Model::new(program))?;
     for name in model::FUNCTIONS {
         module.add(name, model.getattr(name)?)?;

@@ -5,14 +5,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use bg_model::description::ParameterInfo;
-use bg_model::mechanism::Scenes;
 use bg_model::nalgebra::DMatrix;
 use bg_workbench::Program;
 use bg_workbench::calls::{self, Asked, Ran, Started};
 use bg_workbench::inputs::Named;
-use bg_workbench::linear::StateSpace;
-use bg_workbench::sensitivity::Course;
 use bg_workbench::sweep::folder::{Folder, Kind};
 use bg_workbench::sweep::plan::Plan;
 use bg_workbench::sweep::{Outcome, Share, parquet, recipe, shown, sweep};
@@ -35,19 +31,6 @@ pyo3::create_exception!(
 pub const FUNCTIONS: [&str; 9] =
     ["run", "linearize", "sensitivity", "parameters", "scenes", "outputs", "sweep", "sweep_shards", "read_sweep"];
 
-/// What a module does, whatever its mechanism.
-trait Workbench: Send + Sync {
-    fn about(&self) -> [String; 2];
-    fn scenes(&self) -> Vec<(String, String)>;
-    fn parameters(&self, scene: Option<&str>) -> Result<Vec<ParameterInfo>, String>;
-    fn outputs(&self, scene: Option<&str>) -> Result<Vec<(String, String)>, String>;
-    fn run(&self, asked: &Asked) -> Result<Ran, String>;
-    fn linearize(&self, asked: &Asked, at: Option<f64>) -> Result<StateSpace, String>;
-    fn sensitivity(&self, asked: &Asked, by: &[String], of: &[String]) -> Result<(Ran, Vec<Course>), String>;
-    fn shards(&self, plan: &Source) -> Result<usize, String>;
-    fn sweep(&self, work: &Work, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, String>;
-}
-
 /// A plan, as a file or as text.
 enum Source {
     File(PathBuf),
@@ -62,11 +45,8 @@ struct Work {
     threads: usize,
 }
 
-/// The workbench of a mechanism.
-struct Of<Me: Scenes>(fn() -> Program<Me>);
-
 impl Source {
-    fn read<'a, Me: Scenes>(&self, program: &'a Program<Me>) -> Result<Plan<'a, Me::Parameters>, String> {
+    fn read<'a>(&self, program: &'a Program) -> Result<Plan<'a>, String> {
         let plan = match self {
             Self::File(path) => Plan::read(program, path),
             Self::Text(text) => Plan::parse(program, "the plan", Path::new(""), text.clone()),
@@ -75,60 +55,31 @@ impl Source {
     }
 }
 
-impl<Me: Scenes> Workbench for Of<Me> {
-    fn about(&self) -> [String; 2] {
-        calls::about(&(self.0)())
-    }
-
-    fn scenes(&self) -> Vec<(String, String)> {
-        calls::scenes(&(self.0)())
-    }
-
-    fn parameters(&self, scene: Option<&str>) -> Result<Vec<ParameterInfo>, String> {
-        calls::parameters(&(self.0)(), scene).map_err(|fault| fault.to_string())
-    }
-
-    fn outputs(&self, scene: Option<&str>) -> Result<Vec<(String, String)>, String> {
-        calls::outputs(&(self.0)(), scene).map_err(|fault| fault.to_string())
-    }
-
-    fn run(&self, asked: &Asked) -> Result<Ran, String> {
-        calls::run(&(self.0)(), asked).map_err(|fault| fault.to_string())
-    }
-
-    fn linearize(&self, asked: &Asked, at: Option<f64>) -> Result<StateSpace, String> {
-        calls::linearize(&(self.0)(), asked, at).map_err(|fault| fault.to_string())
-    }
-
-    fn sensitivity(&self, asked: &Asked, by: &[String], of: &[String]) -> Result<(Ran, Vec<Course>), String> {
-        calls::sensitivity(&(self.0)(), asked, by, of).map_err(|fault| fault.to_string())
-    }
-
-    fn shards(&self, plan: &Source) -> Result<usize, String> {
-        let program = (self.0)();
-        let plan = plan.read(&program)?;
-        Ok(plan.design.runs.div_ceil(plan.shard))
-    }
-
-    fn sweep(&self, work: &Work, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, String> {
-        let program = (self.0)();
-        let plan = work.plan.read(&program)?;
-        let folder = Folder::claim(&work.out, &recipe::of(&program, &plan)).map_err(|fault| fault.to_string())?;
-        sweep(&program, &plan, &folder, work.share, work.threads, &|_, _| goes_on()).map_err(|fault| fault.to_string())
+impl Work {
+    /// Does it as long as `goes_on` says so.
+    fn done(&self, program: &Program, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, String> {
+        let plan = self.plan.read(program)?;
+        let folder = Folder::claim(&self.out, &recipe::of(program, &plan)).map_err(|fault| fault.to_string())?;
+        sweep(program, &plan, &folder, self.share, self.threads, &|_, _| goes_on()).map_err(|fault| fault.to_string())
     }
 }
 
 /// A model, whose methods are the functions of its module.
 #[pyclass(frozen)]
 pub struct Model {
-    workbench: Box<dyn Workbench>,
+    program: Box<dyn Fn() -> Program + Send + Sync>,
 }
 
 impl Model {
-    /// Of the mechanism of a program.
-    pub fn new<Me: Scenes>(program: fn() -> Program<Me>) -> Self {
-        Self { workbench: Box::new(Of(program)) }
+    /// Of a program, which is made for each question.
+    pub fn new(program: impl Fn() -> Program + Send + Sync + 'static) -> Self {
+        Self { program: Box::new(program) }
     }
+}
+
+/// What cannot be done, as Python raises it.
+fn refused(fault: impl ToString) -> PyErr {
+    PyValueError::new_err(fault.to_string())
 }
 
 /// How a run is asked for in Python; what is not given is as on the command line.
@@ -177,14 +128,14 @@ impl Model {
     /// What the model is.
     #[getter]
     fn about(&self) -> String {
-        let [_, about] = self.workbench.about();
+        let [_, about] = calls::about(&(self.program)());
         about
     }
 
     /// The program's version.
     #[getter]
     fn version(&self) -> String {
-        let [version, _] = self.workbench.about();
+        let [version, _] = calls::about(&(self.program)());
         version
     }
 
@@ -214,7 +165,7 @@ impl Model {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let mut ran = interruptible(py, |_| self.workbench.run(&asked))?.map_err(PyValueError::new_err)?;
+        let mut ran = interruptible(py, |_| calls::run(&(self.program)(), &asked))?.map_err(refused)?;
         let failure = ran.failure.take();
         let table = table(py, ran)?;
         match failure {
@@ -242,7 +193,7 @@ impl Model {
         parameters: Option<BTreeMap<String, f64>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let asked = asked(scene, set, inputs, "model", parameters)?;
-        let space = interruptible(py, |_| self.workbench.linearize(&asked, at))?.map_err(PyValueError::new_err)?;
+        let space = interruptible(py, |_| calls::linearize(&(self.program)(), &asked, at))?.map_err(refused)?;
         let linear = py.import("json")?.call_method1("loads", (space.json(),))?;
         for (name, matrix) in [("a", &space.a), ("b", &space.b), ("c", &space.c), ("d", &space.d)] {
             linear.set_item(name, array(py, matrix)?)?;
@@ -275,8 +226,8 @@ impl Model {
         let mut asked = asked(scene, set, inputs, "model", parameters)?;
         integrated(&mut asked, t_end, step, method, rtol, atol)?;
         let (by, outputs) = (by.unwrap_or_default(), outputs.unwrap_or_default());
-        let found = interruptible(py, |_| self.workbench.sensitivity(&asked, &by, &outputs))?;
-        let (ran, courses) = found.map_err(PyValueError::new_err)?;
+        let found = interruptible(py, |_| calls::sensitivity(&(self.program)(), &asked, &by, &outputs))?;
+        let (ran, courses) = found.map_err(refused)?;
         let info = about_run(py, &ran)?;
         let t = ("t".to_owned(), "s".to_owned(), Values::Real(ran.run.recording.times));
         let courses = courses.into_iter().map(|course| (course.name, course.unit, Values::Real(course.values)));
@@ -288,7 +239,7 @@ impl Model {
     #[pyo3(signature = (scene=None))]
     fn parameters<'py>(&self, py: Python<'py>, scene: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
-        for info in self.workbench.parameters(scene).map_err(PyValueError::new_err)? {
+        for info in calls::parameters(&(self.program)(), scene).map_err(refused)? {
             let one = PyDict::new(py);
             one.set_item("default", info.default)?;
             one.set_item("unit", info.unit)?;
@@ -303,14 +254,14 @@ impl Model {
 
     /// The scenes by name, with what they are.
     fn scenes(&self) -> BTreeMap<String, String> {
-        self.workbench.scenes().into_iter().collect()
+        calls::scenes(&(self.program)()).into_iter().collect()
     }
 
     /// The outputs of a scene by name, with their units.
     #[pyo3(signature = (scene=None))]
     fn outputs<'py>(&self, py: Python<'py>, scene: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
-        let outputs = self.workbench.outputs(scene).map_err(PyValueError::new_err)?;
+        let outputs = calls::outputs(&(self.program)(), scene).map_err(refused)?;
         outputs.into_iter().try_for_each(|(name, unit)| all.set_item(name, unit))?;
         Ok(all)
     }
@@ -334,7 +285,7 @@ impl Model {
         let share = Share::new(shard.0, shard.1).ok_or_else(none)?;
         let work = Work { plan: source(plan)?, out, share, threads };
         let outcome =
-            interruptible(py, |goes_on| self.workbench.sweep(&work, goes_on))?.map_err(PyValueError::new_err)?;
+            interruptible(py, |goes_on| work.done(&(self.program)(), goes_on))?.map_err(refused)?;
         let counts = PyDict::new(py);
         counts.set_item("runs", outcome.runs)?;
         counts.set_item("made", outcome.made_runs)?;
@@ -346,7 +297,9 @@ impl Model {
 
     /// How many shards, each some hundred runs, the sweep of a plan has.
     fn sweep_shards(&self, plan: &Bound<'_, PyAny>) -> PyResult<usize> {
-        self.workbench.shards(&source(plan)?).map_err(PyValueError::new_err)
+        let program = (self.program)();
+        let plan = source(plan)?.read(&program).map_err(refused)?;
+        Ok(plan.design.runs.div_ceil(plan.shard))
     }
 
     /// The rows of a sweep's folder as far as it is done: one for each run, or with `trajectories` for each sample.
@@ -382,7 +335,7 @@ fn source(plan: &Bound<'_, PyAny>) -> PyResult<Source> {
         return Ok(Source::File(plan.extract()?));
     }
     let text: String = plan.py().import("json")?.call_method1("dumps", (plan,))?.extract()?;
-    calls::toml_of_json(&text).map(Source::Text).map_err(|fault| PyValueError::new_err(fault.to_string()))
+    calls::toml_of_json(&text).map(Source::Text).map_err(refused)
 }
 
 /// How a run was integrated, what it cost, where it ended, what its inputs were.
@@ -397,7 +350,7 @@ fn about_run<'py>(py: Python<'py>, Ran { run, inputs, .. }: &Ran) -> PyResult<Bo
     info.set_item("rejected", statistics.rejected)?;
     info.set_item("rate_evaluations", statistics.rate_evaluations)?;
     info.set_item("wall_time", run.wall.as_secs_f64())?;
-    info.set_item("state", run.last.to_json().map_err(|fault| PyValueError::new_err(fault.to_string()))?)?;
+    info.set_item("state", run.last.to_json().map_err(refused)?)?;
     info.set_item("events", PyArray1::from_slice(py, &run.recording.events))?;
     Ok(info)
 }
@@ -407,7 +360,7 @@ fn named<'py>(py: Python<'py>, inputs: &[Named]) -> PyResult<Bound<'py, PyDict>>
     let loads = py.import("json")?.getattr("loads")?;
     let all = PyDict::new(py);
     for input in inputs {
-        let text = serde_json::to_string(input).map_err(|fault| PyValueError::new_err(fault.to_string()))?;
+        let text = serde_json::to_string(input).map_err(refused)?;
         let one = loads.call1((text,))?;
         one.del_item("name")?;
         all.set_item(input.name, one)?;

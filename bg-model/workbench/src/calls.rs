@@ -6,8 +6,6 @@
 use std::collections::BTreeMap;
 
 use bg_model::description::ParameterInfo;
-use bg_model::mechanism::Scenes;
-use bg_model::parameters::Parameters;
 use bg_model::run::Trajectory;
 use thiserror::Error;
 
@@ -15,7 +13,6 @@ use crate::Program;
 use crate::command::{derivatives, linearised};
 use crate::inputs::{self, Named};
 use crate::linear::StateSpace;
-use crate::machine::Making;
 use crate::parameters::{self, Chosen, number};
 use crate::request::Integration;
 use crate::running::{Begin, follow};
@@ -69,22 +66,22 @@ fn refused(fault: impl std::fmt::Display) -> Refused {
 
 /// The program's version, and what its mechanism is.
 #[must_use]
-pub fn about<Me>(program: &Program<Me>) -> [String; 2] {
+pub fn about(program: &Program) -> [String; 2] {
     [program.texts.version.clone(), program.texts.about.clone()]
 }
 
 /// The scenes with what they are.
 #[must_use]
-pub fn scenes<Me>(program: &Program<Me>) -> Vec<(String, String)> {
-    program.scenes.iter().map(|scene| (scene.name.clone(), scene.summary())).collect()
+pub fn scenes(program: &Program) -> Vec<(String, String)> {
+    program.models.scenes.iter().map(|scene| (scene.name.clone(), scene.summary())).collect()
 }
 
 /// The parameters of a scene, or without one of all.
 ///
 /// # Errors
 /// No such scene.
-pub fn parameters<Me: Scenes>(program: &Program<Me>, scene: Option<&str>) -> Result<Vec<ParameterInfo>, Refused> {
-    let table = <Me::Parameters as Parameters>::table();
+pub fn parameters(program: &Program, scene: Option<&str>) -> Result<Vec<ParameterInfo>, Refused> {
+    let table = program.models.graph().description.parameters;
     match scene {
         None => Ok(table.to_vec()),
         Some(_) => {
@@ -98,7 +95,7 @@ pub fn parameters<Me: Scenes>(program: &Program<Me>, scene: Option<&str>) -> Res
 ///
 /// # Errors
 /// No such scene.
-pub fn outputs<Me: Scenes>(program: &Program<Me>, scene: Option<&str>) -> Result<Vec<(String, String)>, Refused> {
+pub fn outputs(program: &Program, scene: Option<&str>) -> Result<Vec<(String, String)>, Refused> {
     let scene = program.find_scene(scene).map_err(Refused)?;
     Ok(scene.description.outputs.iter().map(|output| (output.name.to_owned(), output.unit.to_owned())).collect())
 }
@@ -107,15 +104,14 @@ pub fn outputs<Me: Scenes>(program: &Program<Me>, scene: Option<&str>) -> Result
 ///
 /// # Errors
 /// It cannot be made.
-pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<Ran, Refused> {
+pub fn run(program: &Program, asked: &Asked) -> Result<Ran, Refused> {
     let request = asked.integration.request(0.0, None).map_err(refused)?;
     let Given { scene, chosen, inputs } = given(program, asked)?;
     let begin = match asked.start {
         Started::Model => Begin::Model,
         Started::Equilibrium => Begin::Equilibrium,
     };
-    let making = Making { scene, scenes: &program.scenes, values: &chosen.values, inputs: &chosen.inputs };
-    let machine = making.made::<Me>().map_err(refused)?;
+    let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
     let from = begin.state(&*machine).map_err(refused)?;
     let outcome = follow(&*machine, request, from.as_ref(), |_| ()).map_err(refused)?;
     Ok(Ran { run: outcome.run, failure: outcome.failure, inputs })
@@ -125,7 +121,7 @@ pub fn run<Me: Scenes>(program: &Program<Me>, asked: &Asked) -> Result<Ran, Refu
 ///
 /// # Errors
 /// There is none.
-pub fn linearize<Me: Scenes>(program: &Program<Me>, asked: &Asked, at: Option<f64>) -> Result<StateSpace, Refused> {
+pub fn linearize(program: &Program, asked: &Asked, at: Option<f64>) -> Result<StateSpace, Refused> {
     let Given { scene, chosen, .. } = given(program, asked)?;
     linearised(program, scene, &chosen, at).map_err(Refused)
 }
@@ -135,8 +131,8 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, asked: &Asked, at: Option<f6
 ///
 /// # Errors
 /// It cannot be made, or has no derivatives.
-pub fn sensitivity<Me: Scenes>(
-    program: &Program<Me>,
+pub fn sensitivity(
+    program: &Program,
     asked: &Asked,
     by: &[String],
     of: &[String],
@@ -157,19 +153,20 @@ pub fn toml_of_json(text: &str) -> Result<String, Refused> {
 }
 
 /// What a run is made of.
-struct Given<'a, P> {
+struct Given<'a> {
     scene: &'a Scene,
-    chosen: Chosen<P>,
+    chosen: Chosen,
     inputs: Vec<Named>,
 }
 
-fn given<'a, Me: Scenes>(program: &'a Program<Me>, asked: &Asked) -> Result<Given<'a, Me::Parameters>, Refused> {
+fn given<'a>(program: &'a Program, asked: &Asked) -> Result<Given<'a>, Refused> {
     let scene = program.find_scene(asked.scene.as_deref()).map_err(Refused)?;
-    let mut chosen = Chosen::<Me::Parameters>::default();
+    let graph = program.models.graph().description;
+    let mut chosen = Chosen::new(graph.parameters);
     for (name, &value) in &asked.set {
         parameters::set(&mut chosen, &format!("{name}={}", number(value)), name, value).map_err(refused)?;
     }
-    let (values, inputs) = inputs::chosen_and_named(&asked.inputs, Me::describe().inputs).map_err(refused)?;
+    let (values, inputs) = inputs::chosen_and_named(&asked.inputs, graph.inputs).map_err(refused)?;
     chosen.inputs = values;
     Ok(Given { scene, chosen, inputs })
 }

@@ -42,7 +42,10 @@
 //!
 //! | module | question |
 //! |---|---|
-//! | [`program`] | how a program is made of a mechanism |
+//! | [`program`] | how a program is made of the models of a graph |
+//! | [`maker`] | what makes these, compiled or not |
+//! | [`compiled`] | the models of a mechanism that `bond_graph!` made |
+//! | [`machine`] | what one of them is asked, whatever its type |
 //! | [`extras`] | what it adds: figures, lines, checks |
 //! | [`command`] | what the user asks for |
 //! | [`calls`] | the same for another program: runs and linear models as values |
@@ -113,11 +116,13 @@ pub mod sweep;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod tables;
 
+pub mod compiled;
 pub mod extras;
 pub mod inputs;
 pub use bg_analysis::linear;
 pub mod live;
-mod machine;
+pub mod machine;
+pub mod maker;
 pub mod page;
 pub mod parameters;
 pub mod precision;
@@ -136,11 +141,12 @@ use std::process::ExitCode;
 use bg_model::mechanism::Scenes;
 
 pub use bg_model;
+pub use compiled::Compiled;
 pub use program::Program;
 
 /// Does what the program's arguments ask for of the mechanism `Me`, and gives the exit code: 0 done, 1 the run or an output
 /// failed, 2 the input cannot be used. In WebAssembly it answers a page from then on, see [`live`].
 #[must_use]
 pub fn main<Me: Scenes>() -> ExitCode {
-    Program::<Me>::new().main(std::env::args_os())
+    Program::of::<Me>().main(std::env::args_os())
 }

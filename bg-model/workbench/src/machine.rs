@@ -1,111 +1,164 @@
-//! A scene's model with its parameters and inputs, whatever its type.
+//! A model with its parameters and inputs, whatever its type.
 //!
-//! In: a scene, values of all parameters, inputs. Out: the model as a trait object. Commands and pages ask it for runs
-//! and linear models, so that they are compiled once, and not for each model.
+//! In: what a command or a page asks. Out: runs, linear models, derivatives, of a trait object: commands are compiled
+//! once, and not for each model.
 
 use std::ops::ControlFlow;
+use std::rc::Rc;
 
-use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium, linearise_at};
+use bg_analysis::identify::{Data, Identified, IdentifyError, Variable};
+use bg_analysis::linear::{Equilibrium, LinearError, StateSpace};
 use bg_model::description::Description;
-use bg_model::input::Input;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, ModelVisitor, Scenes};
-use bg_model::nalgebra::SVector;
-use bg_model::parameters::{ParameterError, Parameters};
-use bg_model::run::{Request, RunError, Simulation, State, Trajectory};
-use bg_model::system::{Model, branches};
+use bg_model::dynamics::{self, branches};
+use bg_model::extended::Accuracy;
+use bg_model::parameters::ParameterError;
+use bg_model::run::{LaneError, Request, RunError, Simulation, State, Trajectory};
+use bg_model::sensitivity::{Gradients, Objective, Sensitivities, SensitivityError};
 use thiserror::Error;
 
-use crate::scenes::{Fixed, Scene, own_parameters};
+use crate::precision::reference::{ReferenceError, Solution};
+use crate::scenes::Fixed;
 
-/// A model that can be run and linearised.
+/// A model that can be run. What gives an `Option` is `None` where the model has not got it, which is so unless it is
+/// written.
 pub trait Machine {
-    /// What it consists of.
-    fn description(&self) -> &'static Description;
-
-    /// The state that a run starts from: `from`, or without one its own start.
-    ///
-    /// # Errors
-    /// The start cannot be assembled, or the state is not one of this model.
-    fn start(&self, from: Option<&State>) -> Result<State, RunError>;
-
-    /// Makes a run from there, and tells `told` the time reached, s, after each step.
-    ///
-    /// # Errors
-    /// As [`Machine::start`], or the run stops before its end.
-    fn run(&self, request: Request, from: Option<&State>, told: &mut dyn FnMut(f64)) -> Result<Trajectory, RunError>;
+    /// It over slices.
+    fn model(&self) -> Rc<dyn dynamics::Machine>;
 
     /// The equilibrium near the state `guess`, with the inputs as at `t` (s).
     ///
     /// # Errors
     /// There is none.
-    fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Equilibrium, LinearError>;
+    fn equilibrium(&self, _t: f64, _guess: &[f64]) -> Option<Result<Equilibrium, LinearError>> {
+        None
+    }
 
     /// The linear model in `state`, one of this model, in the branches of its switches that are known there.
     ///
     /// # Errors
     /// There is none.
-    fn linearised(&self, state: &State) -> Result<StateSpace, LinearError>;
+    fn linearised(&self, _state: &State) -> Option<Result<StateSpace, LinearError>> {
+        None
+    }
 
-    /// What pictures show at `t` (s) and the state `x`: a value for each result of the drawing.
-    fn shown(&self, t: f64, x: &[f64]) -> Vec<f64>;
+    /// A run from its own start with the derivatives of all outputs by the parameters called `by`.
+    ///
+    /// # Errors
+    /// The run cannot be made, or has no derivatives; no parameter has such a name.
+    fn sensitivities(&self, _request: &Request, _by: &[&str]) -> Option<Result<Sensitivities, SensitivityError>> {
+        None
+    }
+
+    /// The derivatives of one number of a run from its own start by the parameters called `by`, by the run followed
+    /// backwards. A program asks for it where [`Maker::has_gradients`](crate::maker::Maker::has_gradients) says so.
+    ///
+    /// # Errors
+    /// As [`Machine::sensitivities`].
+    fn gradient(
+        &self,
+        _request: &Request,
+        _objective: &Objective<'_>,
+        _by: &[&str],
+    ) -> Option<Result<Gradients, SensitivityError>> {
+        None
+    }
+
+    /// The `variables` with which it comes nearest to `data`, the other parameters as they are. `told` is told of each
+    /// run the variables' values and the root of the mean square of what is left, in parts of the noise.
+    ///
+    /// # Errors
+    /// As [`bg_analysis::identify::identify`].
+    fn identified(
+        &self,
+        _request: &Request,
+        _data: &Data,
+        _variables: &[Variable],
+        _told: &mut dyn FnMut(&[f64], f64),
+    ) -> Option<Result<Identified, IdentifyError>> {
+        None
+    }
+
+    /// Its outputs at `instants` (s, ascending, from 0 on) as exactly as `accuracy` says: a solution that runs are
+    /// measured against.
+    ///
+    /// # Errors
+    /// As [`solve`](crate::precision::reference::solve).
+    fn solution(&self, _accuracy: Accuracy, _instants: &[f64]) -> Option<Result<Solution, ReferenceError>> {
+        None
+    }
+
+    /// A run from its own start with each of these values of its own parameters, the inputs as they are: each the same
+    /// to the bit as by itself. A program asks for it where [`Maker::has_lanes`](crate::maker::Maker::has_lanes) says
+    /// so.
+    fn in_lanes(&self, _request: &Request, _own: &[Vec<f64>]) -> Option<Vec<Result<Trajectory, LaneError>>> {
+        None
+    }
 }
 
-impl<Me: Mechanism> Machine for Me {
-    fn description(&self) -> &'static Description {
-        Me::describe()
+impl dyn Machine + '_ {
+    /// What it consists of.
+    #[must_use]
+    pub fn description(&self) -> &'static Description {
+        self.model().description()
     }
 
-    fn start(&self, from: Option<&State>) -> Result<State, RunError> {
-        simulation(self, Request::default(), from).start()
+    /// The state that a run starts from: `from`, or without one its own start.
+    ///
+    /// # Errors
+    /// The start cannot be assembled, or the state is not one of this model.
+    pub fn start(&self, from: Option<&State>) -> Result<State, RunError> {
+        self.simulation(Request::default(), from).start()
     }
 
-    fn run(&self, request: Request, from: Option<&State>, told: &mut dyn FnMut(f64)) -> Result<Trajectory, RunError> {
+    /// Makes a run from there, and tells `told` the time reached, s, after each step.
+    ///
+    /// # Errors
+    /// As [`start`](#method.start), or the run stops before its end.
+    pub fn run(
+        &self,
+        request: Request,
+        from: Option<&State>,
+        told: &mut dyn FnMut(f64),
+    ) -> Result<Trajectory, RunError> {
         let each_step = |t| {
             told(t);
             ControlFlow::Continue(())
         };
-        simulation(self, request, from).each_step(each_step).run()
+        self.simulation(request, from).each_step(each_step).run()
     }
 
-    fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Equilibrium, LinearError> {
-        equilibrium(self, t, guess)
-    }
-
-    fn linearised(&self, state: &State) -> Result<StateSpace, LinearError> {
-        linearise_at(self, state)
-    }
-
-    fn shown(&self, t: f64, x: &[f64]) -> Vec<f64> {
-        self.visit::<f64, _>(Shown { t, x })
-    }
-}
-
-fn simulation<'a>(machine: &impl Mechanism, request: Request, from: Option<&State>) -> Simulation<'a> {
-    let simulation = Simulation::of(machine, request);
-    match from {
-        Some(state) => simulation.from(state),
-        None => simulation,
-    }
-}
-
-/// What is shown of a model at one moment.
-struct Shown<'a> {
-    t: f64,
-    x: &'a [f64],
-}
-
-impl ModelVisitor<f64> for Shown<'_> {
-    type Output = Vec<f64>;
-
-    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Vec<f64>
-    where
-        Mo: Model<f64, N, G, M>,
-    {
-        let x = SVector::from_column_slice(self.x);
+    /// What pictures show at `t` (s) and the state `x`: a value for each result of the drawing.
+    #[must_use]
+    pub fn shown(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let model = &*self.model();
         let mut values = Vec::new();
-        model.shown(self.t, &x, &branches(model, self.t, &x), &mut values);
+        model.shown(t, x, &branches(model, t, x), &mut values);
         values
     }
+
+    /// `found`, which there may be none of; `what` it is, in words.
+    ///
+    /// # Errors
+    /// It is not there.
+    pub(crate) fn known<T>(&self, what: &'static str, found: Option<T>) -> Result<T, Absent> {
+        found.ok_or_else(|| Absent { what, model: self.description().name })
+    }
+
+    fn simulation<'a>(&self, request: Request, from: Option<&State>) -> Simulation<'a> {
+        let simulation = Simulation::over(self.model(), request);
+        match from {
+            Some(state) => simulation.from(state),
+            None => simulation,
+        }
+    }
+}
+
+/// What a model has not got.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{model}` was made without {what}; a program that is compiled with `bond_graph!` has them")]
+pub struct Absent {
+    what: &'static str,
+    model: &'static str,
 }
 
 /// A model that there is not.
@@ -117,36 +170,4 @@ pub enum MachineError {
     /// The parameters cannot be.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-}
-
-/// What a model is made of.
-#[derive(Clone, Copy)]
-pub struct Making<'a, P> {
-    /// The scene.
-    pub scene: &'a Scene,
-    /// The models of its mechanism.
-    pub scenes: &'a [Scene],
-    /// Values of all parameters.
-    pub values: &'a P,
-    /// The inputs in the order of the description.
-    pub inputs: &'a [Input],
-}
-
-impl<P: Parameters> Making<'_, P> {
-    /// The model, of a mechanism with these parameters.
-    ///
-    /// # Errors
-    /// [`MachineError`].
-    pub fn made<Me: Scenes<Parameters = P>>(self) -> Result<Box<dyn Machine>, MachineError> {
-        Me::model(self.scene.index, self)
-    }
-}
-
-impl<P: Parameters> MechanismVisitor for Making<'_, P> {
-    type Output = Result<Box<dyn Machine>, MachineError>;
-
-    fn visit<Sc: Mechanism + 'static>(self) -> Self::Output {
-        let own = own_parameters(self.scene, self.scenes, self.values)?;
-        Ok(Box::new(Sc::make(own, self.inputs)?))
-    }
 }

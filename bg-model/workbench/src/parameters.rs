@@ -1,10 +1,11 @@
 //! The parameters of a run: defaults, then a TOML file, then `--set`, each by name and each checked.
 //!
 //! In: the parameters' table of the model, a file's text, `NAME=VALUE` texts. Out: checked parameters, or one line that
-//! says what to change. Generic over the model's parameter struct, which is seen by name only.
+//! says what to change.
 
 use std::path::{Path, PathBuf};
 
+use bg_model::description::ParameterInfo;
 use bg_model::input::Input;
 use bg_model::parameters::{ParameterError, Parameters};
 use thiserror::Error;
@@ -72,29 +73,117 @@ fn near_miss(near: Option<&String>) -> String {
     }
 }
 
+/// A value for each parameter of a table, in its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values {
+    table: &'static [ParameterInfo],
+    values: Vec<f64>,
+}
+
+impl Values {
+    /// The defaults of `table`.
+    #[must_use]
+    pub fn new(table: &'static [ParameterInfo]) -> Self {
+        Self { table, values: table.iter().map(|info| info.default).collect() }
+    }
+
+    /// Those of a generated struct.
+    #[must_use]
+    pub fn of<P: Parameters>(parameters: &P) -> Self {
+        Self { table: P::table(), values: parameters.values() }
+    }
+
+    /// The table.
+    #[must_use]
+    pub const fn table(&self) -> &'static [ParameterInfo] {
+        self.table
+    }
+
+    /// All values, in the order of the table.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The parameters with their values.
+    pub fn all(&self) -> impl Iterator<Item = (&'static ParameterInfo, f64)> + use<'_> {
+        self.table.iter().zip(self.values.iter().copied())
+    }
+
+    /// Those that are not at their defaults.
+    pub fn changed(&self) -> impl Iterator<Item = (&'static ParameterInfo, f64)> + use<'_> {
+        self.all().filter(|(info, value)| *value != info.default)
+    }
+
+    /// The value of parameter `index`.
+    ///
+    /// # Panics
+    /// There is none.
+    #[must_use]
+    pub fn value(&self, index: usize) -> f64 {
+        self.values[index]
+    }
+
+    /// The value of the parameter called `name`, if there is one.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<f64> {
+        Some(self.values[self.place(name)?])
+    }
+
+    /// Sets parameter `index` without looking at its range.
+    ///
+    /// # Panics
+    /// There is none.
+    pub fn set_value(&mut self, index: usize, value: f64) {
+        self.values[index] = value;
+    }
+
+    /// Sets the parameter called `name`.
+    ///
+    /// # Errors
+    /// An unknown name, or a value outside the parameter's range.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), ParameterError> {
+        let index = self.place(name).ok_or_else(|| ParameterError::Unknown { name: name.to_owned() })?;
+        self.table[index].check(value)?;
+        self.values[index] = value;
+        Ok(())
+    }
+
+    /// The index of the parameter called `name`.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        self.table.iter().position(|info| info.name == name)
+    }
+}
+
 /// The values chosen for a run, and where each was chosen.
 #[derive(Clone, Debug)]
-pub struct Chosen<P> {
+pub struct Chosen {
     /// The values.
-    pub values: P,
+    pub values: Values,
     /// For each parameter of the table the last place that set it: a `--set` or a file; empty for a default.
     pub places: Vec<String>,
     /// The inputs in the order of the model's description; those that are missing are 0.
     pub inputs: Vec<Input>,
 }
 
-impl<P: Parameters> Default for Chosen<P> {
-    fn default() -> Self {
-        Self { values: P::default(), places: vec![String::new(); P::table().len()], inputs: Vec::new() }
+impl Chosen {
+    /// The defaults of `table`, no inputs.
+    #[must_use]
+    pub fn new(table: &'static [ParameterInfo]) -> Self {
+        Self { values: Values::new(table), places: vec![String::new(); table.len()], inputs: Vec::new() }
     }
 }
 
-/// The model's defaults, changed by the file and then by the `NAME=VALUE` texts in their order.
+/// The defaults of `table`, changed by the file and then by the `NAME=VALUE` texts in their order.
 ///
 /// # Errors
 /// The first setting that cannot be used.
-pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<Chosen<P>, SettingError> {
-    let mut parameters = Chosen::<P>::default();
+pub fn merge(
+    table: &'static [ParameterInfo],
+    file: Option<&Path>,
+    settings: &[String],
+) -> Result<Chosen, SettingError> {
+    let mut parameters = Chosen::new(table);
     if let Some(path) = file {
         let text = std::fs::read_to_string(path)
             .map_err(|source| SettingError::Unreadable { path: path.to_owned(), source })?;
@@ -118,23 +207,21 @@ pub fn merge<P: Parameters>(file: Option<&Path>, settings: &[String]) -> Result<
 
 /// The parameters as a TOML file that `--params` reads, each with its meaning as a comment.
 #[must_use]
-pub fn to_toml<P: Parameters>(parameters: &P) -> String {
+pub fn to_toml(parameters: &Values) -> String {
     let mut text = String::new();
-    for (index, info) in P::table().iter().enumerate() {
+    for (info, value) in parameters.all() {
         let unit = if info.unit.is_empty() { "1" } else { info.unit };
-        text += &format!("# {} [{unit}]\n{} = {:?}\n", one_line(info.doc), info.name, parameters.value(index));
+        text += &format!("# {} [{unit}]\n{} = {value:?}\n", one_line(info.doc), info.name);
     }
     text
 }
 
 /// The parameters as a table for the terminal: name, default, unit, meaning.
 #[must_use]
-pub fn table<P: Parameters>() -> String {
-    let rows = P::table();
-    let width = |text: fn(&bg_model::description::ParameterInfo) -> String| {
-        rows.iter().map(|info| text(info).chars().count()).max().unwrap_or(0)
-    };
-    let value = |info: &bg_model::description::ParameterInfo| number(info.default);
+pub fn table(rows: &[ParameterInfo]) -> String {
+    let width =
+        |text: fn(&ParameterInfo) -> String| rows.iter().map(|info| text(info).chars().count()).max().unwrap_or(0);
+    let value = |info: &ParameterInfo| number(info.default);
     let (names, values, units) = (width(|i| i.name.to_owned()), width(value), width(|i| i.unit.to_owned()));
     rows.iter()
         .map(|info| {
@@ -163,7 +250,7 @@ pub(crate) fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn set_from_toml<P: Parameters>(parameters: &mut Chosen<P>, path: &Path, text: &str) -> Result<(), SettingError> {
+fn set_from_toml(parameters: &mut Chosen, path: &Path, text: &str) -> Result<(), SettingError> {
     let entries: toml::Table = text.parse().map_err(|fault: toml::de::Error| {
         let [line, column] = place_of(&fault, text);
         SettingError::Toml { path: path.to_owned(), line, column, message: one_line(fault.message()) }
@@ -172,11 +259,7 @@ fn set_from_toml<P: Parameters>(parameters: &mut Chosen<P>, path: &Path, text: &
 }
 
 /// Sets the parameters that a TOML table has; a fault names `place`.
-pub(crate) fn set_from_table<P: Parameters>(
-    parameters: &mut Chosen<P>,
-    place: &str,
-    entries: &toml::Table,
-) -> Result<(), SettingError> {
+pub(crate) fn set_from_table(parameters: &mut Chosen, place: &str, entries: &toml::Table) -> Result<(), SettingError> {
     for (name, value) in entries {
         let number = match value {
             toml::Value::Float(number) => *number,
@@ -200,22 +283,17 @@ pub(crate) fn place_of(fault: &toml::de::Error, text: &str) -> [usize; 2] {
 }
 
 /// Sets the parameter called `name`; a fault names `place`.
-pub(crate) fn set<P: Parameters>(
-    parameters: &mut Chosen<P>,
-    place: &str,
-    name: &str,
-    value: f64,
-) -> Result<(), SettingError> {
+pub(crate) fn set(parameters: &mut Chosen, place: &str, name: &str, value: f64) -> Result<(), SettingError> {
     let place = place.to_owned();
     parameters.values.set(name, value).map_err(|fault| match fault {
         ParameterError::Unknown { name } => SettingError::Unknown {
             place: place.clone(),
-            near: nearest(&name, P::table().iter().map(|info| info.name)),
+            near: nearest(&name, parameters.values.table().iter().map(|info| info.name)),
             name: one_line(&name),
         },
         fault => SettingError::Range { place: place.clone(), fault },
     })?;
-    if let Some(index) = P::table().iter().position(|info| info.name == name) {
+    if let Some(index) = parameters.values.place(name) {
         parameters.places[index] = place;
     }
     Ok(())

@@ -1,38 +1,28 @@
-//! A program made of a mechanism: its name, its defaults, what it adds to the workbench.
+//! A program made of the models of a graph: its name, its defaults, what it adds to the workbench.
 
 use std::ffi::OsString;
-use std::marker::PhantomData;
 use std::process::ExitCode;
 
 use bg_model::mechanism::Scenes;
 
+use crate::compiled::Compiled;
 use crate::extras::{Extras, Plain};
+use crate::maker::Maker;
+use crate::precision::case::{Case, CaseSolution};
 #[cfg(not(target_arch = "wasm32"))]
-use crate::gradient::Differentiate;
-use crate::precision::case::Case;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::precision::case::CaseSolution;
-use crate::scenes::{Scene, scenes};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::sweep::lanes::Many;
+use crate::scenes::Scene;
+use crate::scenes::{Models, in_small_letters};
 
-/// A program of the mechanism `Me`.
-pub struct Program<Me> {
+/// A program of the models of a graph.
+pub struct Program {
     pub(crate) texts: Texts,
     pub(crate) scene: String,
-    pub(crate) scenes: Vec<Scene>,
+    pub(crate) models: Models,
     pub(crate) cases: Vec<Case>,
     /// The names of the cases that are measured unless others are asked for; of the scene that is run where there are
     /// none.
     pub(crate) measured: Vec<String>,
     pub(crate) extras: Box<dyn Extras>,
-    /// What makes runs side by side, if the program has it.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) lanes: Option<Many>,
-    /// What follows runs backwards, if the program has it.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) gradients: Option<Differentiate>,
-    mechanism: PhantomData<Me>,
 }
 
 /// What a program says of itself.
@@ -46,50 +36,47 @@ pub(crate) struct Texts {
 /// The end of a run that is not told another, s.
 pub const T_END: f64 = 5.0;
 
-impl<Me: Scenes> Default for Program<Me> {
-    fn default() -> Self {
-        Self::new()
+impl Program {
+    /// The program of any mechanism that `bond_graph!` made, with what [`Compiled`] has unless more is asked for.
+    #[must_use]
+    pub fn of<Me: Scenes>() -> Self {
+        Self::with(Compiled::<Me>::new())
     }
-}
 
-impl<Me: Scenes> Program<Me> {
-    /// The program of any mechanism: it runs the graph as it stands, or where it has scenes only, the first one. Its
-    /// command `precision` has a case for each scene and measures the scene that is run, against solutions that it
+    /// The program of the models of `maker`: it runs the graph as it stands, or where it has scenes only, the first one.
+    /// Its command `precision` has a case for each scene and measures the scene that is run, against solutions that it
     /// computes.
     #[must_use]
-    pub fn new() -> Self {
-        // A page has no such command.
-        let cases = cfg_select! {
-            target_arch = "wasm32" => Vec::new(),
-            _ => Case::of_scenes(&scenes::<Me>(), 1.0, CaseSolution::computed::<Me>()),
-        };
-        Self::with_cases(cases, &[])
-    }
-
-    /// The same with these cases of `precision`, and the names of those that it measures unless others are asked for.
-    /// With stored solutions alone nothing is compiled for computing any.
-    #[must_use]
-    pub fn with_cases(cases: Vec<Case>, measured: &[&str]) -> Self {
-        let scenes = scenes::<Me>();
-        let own = scenes.iter().find(|scene| scene.index == 0).expect("the mechanism is one of its models");
+    pub fn with(maker: impl Maker + 'static) -> Self {
+        let models = Models::of(maker);
+        let own = models.graph();
         let texts = Texts {
-            name: crate::scenes::in_small_letters(own.description.name),
+            name: in_small_letters(own.description.name),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             about: own.description.doc.split_whitespace().collect::<Vec<_>>().join(" "),
         };
         Self {
             texts,
             scene: own.name.clone(),
-            scenes,
-            cases,
-            measured: measured.iter().map(|&name| name.to_owned()).collect(),
+            cases: Case::of_scenes(&models.scenes, 1.0, CaseSolution::Computed),
+            models,
+            measured: Vec::new(),
             extras: Box::new(Plain),
-            #[cfg(not(target_arch = "wasm32"))]
-            lanes: None,
-            #[cfg(not(target_arch = "wasm32"))]
-            gradients: None,
-            mechanism: PhantomData,
         }
+    }
+
+    /// These cases of `precision`, and the names of those that it measures unless others are asked for.
+    #[must_use]
+    pub fn with_cases(mut self, cases: Vec<Case>, measured: &[&str]) -> Self {
+        self.cases = cases;
+        self.measured = measured.iter().map(|&name| name.to_owned()).collect();
+        self
+    }
+
+    /// Its models.
+    #[must_use]
+    pub const fn models(&self) -> &Models {
+        &self.models
     }
 
     /// What `--help` says first; else the documentation of the graph.
@@ -112,7 +99,7 @@ impl<Me: Scenes> Program<Me> {
     /// There is no such scene.
     #[must_use]
     pub fn scene(mut self, name: &str) -> Self {
-        assert!(self.scenes.iter().any(|scene| scene.name == name), "there is no scene `{name}`");
+        assert!(self.models.named(name).is_some(), "there is no scene `{name}`");
         name.clone_into(&mut self.scene);
         self
     }
@@ -122,27 +109,6 @@ impl<Me: Scenes> Program<Me> {
     pub fn extras(mut self, extras: impl Extras + 'static) -> Self {
         self.extras = Box::new(extras);
         self
-    }
-
-    /// Lets `sweep` make runs by the methods `nystrom`, `cfmr7` and `dop853` side by side, eight at a time on a machine
-    /// with AVX-512, four with AVX2; what they give is the same to the bit. It is compiled for each model twice, so a
-    /// program has it only if it asks for it.
-    #[cfg(not(target_arch = "wasm32"))]
-    #[must_use]
-    pub fn lanes(mut self) -> Self {
-        self.lanes = Some(crate::sweep::lanes::many::<Me>);
-        self
-    }
-
-    /// Gives the program the command `gradient`: one number of a run differentiated by all parameters, by the run
-    /// followed backwards. It is compiled for each model, so a program has it only if it asks for it. A page has no use
-    /// for it.
-    #[must_use]
-    pub fn gradients(self) -> Self {
-        cfg_select! {
-            target_arch = "wasm32" => self,
-            _ => Self { gradients: Some(crate::gradient::differentiate::<Me>), ..self },
-        }
     }
 
     /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output
@@ -163,8 +129,8 @@ impl<Me: Scenes> Program<Me> {
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn find_scene(&self, name: Option<&str>) -> Result<&Scene, String> {
         let name = name.unwrap_or(&self.scene);
-        self.scenes.iter().find(|scene| scene.name == name).ok_or_else(|| {
-            let known: Vec<&str> = self.scenes.iter().map(|scene| scene.name.as_str()).collect();
+        self.models.named(name).ok_or_else(|| {
+            let known: Vec<&str> = self.models.scenes.iter().map(|scene| scene.name.as_str()).collect();
             format!("there is no scene `{name}`; there are {}", known.join(", "))
         })
     }
@@ -172,7 +138,6 @@ impl<Me: Scenes> Program<Me> {
     /// The scene called `name`.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn scene_called(&self, name: &str) -> &Scene {
-        let scene = self.scenes.iter().find(|scene| scene.name == name);
-        scene.expect("the command line takes the names of scenes only")
+        self.models.named(name).expect("the command line takes the names of scenes only")
     }
 }

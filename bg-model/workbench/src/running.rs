@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::linear::{Equilibrium, LinearError};
-use crate::machine::Machine;
+use crate::machine::{Absent, Machine};
 
 /// A run, and why it stopped before its end, if it did.
 pub struct Outcome {
@@ -36,6 +36,8 @@ pub enum BeginError {
     Run(#[from] RunError),
     #[error(transparent)]
     Linear(#[from] LinearError),
+    #[error(transparent)]
+    Absent(#[from] Absent),
 }
 
 impl Begin {
@@ -65,7 +67,7 @@ impl Begin {
 /// The mechanism cannot be assembled or has no equilibrium.
 pub fn at_rest(machine: &dyn Machine) -> Result<(State, Equilibrium), BeginError> {
     let mut state = machine.start(None)?;
-    let rest = machine.equilibrium(0.0, &state.values())?;
+    let rest = machine.known("equilibria", machine.equilibrium(0.0, &state.values()))??;
     for ((_, value), at_rest) in state.states.iter_mut().zip(&rest.x) {
         *value = *at_rest;
     }

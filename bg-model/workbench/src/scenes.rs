@@ -1,19 +1,20 @@
 //! The models of a graph by name: its scenes and the graph as it stands.
 //!
-//! In: a mechanism. Out: its models, each with its name on the command line; the parameters of one of them, from values
-//! of the whole table.
+//! In: what makes models. Out: each with its name on the command line; the parameters of one of them, from values of the
+//! whole table, and it made of these.
 
 use bg_model::description::Description;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::parameters::Parameters;
+use bg_model::input::Input;
 use thiserror::Error;
 
-use crate::parameters::number;
+use crate::machine::{Machine, MachineError};
+use crate::maker::Maker;
+use crate::parameters::{Values, number};
 
 /// A model: a scene, or the literal one that the scenes are reduced from.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Its number, as [`Scenes::model`] has it.
+    /// Its number, as [`Maker::models`] has it.
     pub index: usize,
     /// The name on the command line: `literal`, or the scene's name in small letters with hyphens.
     pub name: String,
@@ -23,31 +24,71 @@ pub struct Scene {
 
 /// The scenes in the order of the text, then the literal model, where there is one.
 #[must_use]
-pub fn scenes<Me: Scenes>() -> Vec<Scene> {
-    let scene = |index| {
-        let description = Me::model(index, Describe);
-        Scene { index, name: in_small_letters(description.name), description }
+pub fn scenes(maker: &dyn Maker) -> Vec<Scene> {
+    let scene = |(index, description): (usize, &'static Description)| Scene {
+        index,
+        name: in_small_letters(description.name),
+        description,
     };
-    let mut scenes: Vec<Scene> = (usize::from(Me::LITERAL)..Me::MODELS).map(scene).collect();
-    if !Me::LITERAL {
+    let mut scenes: Vec<Scene> = maker.models().into_iter().enumerate().map(scene).collect();
+    if !maker.is_literal() {
         return scenes;
     }
-    let is_taken = scenes.iter().any(|scene| scene.name == LITERAL);
-    let literal = scene(0);
-    let name = if is_taken { literal.name.clone() } else { LITERAL.to_owned() };
-    scenes.push(Scene { name, ..literal });
+    let mut literal = scenes.remove(0);
+    if scenes.iter().all(|scene| scene.name != LITERAL) {
+        LITERAL.clone_into(&mut literal.name);
+    }
+    scenes.push(literal);
     scenes
 }
 
 const LITERAL: &str = "literal";
 
-struct Describe;
+/// The models of a graph by name, with what makes them.
+pub struct Models {
+    maker: Box<dyn Maker>,
+    /// All, as [`scenes`] lists them.
+    pub scenes: Vec<Scene>,
+}
 
-impl MechanismVisitor for Describe {
-    type Output = &'static Description;
+impl Models {
+    /// Those of `maker`.
+    #[must_use]
+    pub fn of(maker: impl Maker + 'static) -> Self {
+        Self { scenes: scenes(&maker), maker: Box::new(maker) }
+    }
 
-    fn visit<Me: Mechanism>(self) -> &'static Description {
-        Me::describe()
+    /// What makes them.
+    #[must_use]
+    pub fn maker(&self) -> &dyn Maker {
+        &*self.maker
+    }
+
+    /// The one that stands for the graph.
+    #[must_use]
+    pub fn graph(&self) -> &Scene {
+        self.scenes.iter().find(|scene| scene.index == 0).expect("the graph is one of its models")
+    }
+
+    /// The parameters of the graph at their defaults.
+    #[must_use]
+    pub fn defaults(&self) -> Values {
+        Values::new(self.graph().description.parameters)
+    }
+
+    /// The one called `name`.
+    #[must_use]
+    pub fn named(&self, name: &str) -> Option<&Scene> {
+        self.scenes.iter().find(|scene| scene.name == name)
+    }
+
+    /// The model of `scene`, one of these, with these values of the graph's parameters and inputs.
+    ///
+    /// # Errors
+    /// [`MachineError`].
+    pub fn made(&self, scene: &Scene, values: &Values, inputs: &[Input]) -> Result<Box<dyn Machine>, MachineError> {
+        let own = own_values(scene, &self.scenes, values)?;
+        Ok(self.maker.make(scene.index, own.values(), inputs)?)
     }
 }
 
@@ -101,8 +142,8 @@ pub struct Fixed {
 ///
 /// # Errors
 /// The first value that differs from the one that the scene keeps the parameter at.
-pub fn check_fixed<P: Parameters>(scene: &Scene, scenes: &[Scene], values: &P) -> Result<(), Fixed> {
-    let table = P::table().iter().enumerate();
+pub fn check_fixed(scene: &Scene, scenes: &[Scene], values: &Values) -> Result<(), Fixed> {
+    let table = values.table().iter().enumerate();
     let fixed = table.filter(|(index, info)| values.value(*index) != info.default && !scene.adjusts(info.name));
     match fixed.into_iter().next() {
         None => Ok(()),
@@ -119,20 +160,16 @@ pub fn check_fixed<P: Parameters>(scene: &Scene, scenes: &[Scene], values: &P) -
     }
 }
 
-/// The own parameters of `scene`, one of `scenes`, by name from `values` of the whole table.
+/// The values of the own parameters of `scene`, one of `scenes`, by name from `values` of the whole table.
 ///
 /// # Errors
 /// As [`check_fixed`].
-pub fn own_parameters<P: Parameters, All: Parameters>(
-    scene: &Scene,
-    scenes: &[Scene],
-    values: &All,
-) -> Result<P, Fixed> {
+pub fn own_values(scene: &Scene, scenes: &[Scene], values: &Values) -> Result<Values, Fixed> {
     check_fixed(scene, scenes, values)?;
-    let mut own = P::default();
-    for (index, info) in All::table().iter().enumerate() {
-        if let Some(place) = P::table().iter().position(|kept| kept.name == info.name) {
-            own.set_value(place, values.value(index));
+    let mut own = Values::new(scene.description.parameters);
+    for (index, info) in own.table().iter().enumerate() {
+        if let Some(value) = values.get(info.name) {
+            own.set_value(index, value);
         }
     }
     Ok(own)

@@ -20,4 +20,4 @@ bond_graph! {
     }
 }
 
-bg_python::python_module!(_driven, bg_workbench::Program::<Driven>::new);
+bg_python::python_module!(_driven, bg_workbench::Program::of::<Driven>);

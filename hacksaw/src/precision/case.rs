@@ -5,13 +5,13 @@ use bg_workbench::precision::case::{Case, CaseSolution};
 use bg_workbench::scenes::scenes;
 
 use super::reference::Reference;
-use crate::mechanism::Hacksaw;
+use crate::command::maker;
 
 /// All cases.
 #[must_use]
 pub fn cases() -> Vec<Case> {
     let paper = CaseSolution::Stored(|| Reference::Paper.load());
-    let mut cases = Case::of_scenes(&scenes::<Hacksaw>(), 5.0, paper);
+    let mut cases = Case::of_scenes(&scenes(&maker()), 5.0, paper);
     for case in &mut cases {
         match case.name.as_str() {
             "rigid" => case.solution = CaseSolution::Stored(|| Reference::Rigid.load()),

@@ -5,8 +5,7 @@
 use bg_model::integrator::Integrator;
 use bg_model::simulation::Recording;
 use bg_workbench::precision::measure::{self, Counts, Entry, Setting};
-use bg_workbench::scenes::scenes;
-use hacksaw::mechanism::Hacksaw;
+use hacksaw::command::program;
 use hacksaw::precision::case::case;
 
 fn tolerance(rtol: f64) -> Setting {
@@ -15,11 +14,11 @@ fn tolerance(rtol: f64) -> Setting {
 
 /// One run of the case called `name`.
 fn measure(name: &str, method: Integrator, setting: Setting, reference: &Recording) -> Entry {
-    measure::measure::<Hacksaw>(&case(name), &scenes::<Hacksaw>(), method, setting, 1, reference).unwrap()
+    measure::measure(&case(name), program().models(), method, setting, 1, reference).unwrap()
 }
 
 fn stored(name: &str) -> Recording {
-    case(name).solve(&scenes::<Hacksaw>()).expect("a stored solution")
+    case(name).solve(program().models()).expect("a stored solution")
 }
 
 /// The largest pose error, m or rad, to two digits.

@@ -1,17 +1,17 @@
 //! Parameters by name, from a file and from `--set`, on the table of the hacksaw.
 
 use bg_model::parameters::Parameters;
-use bg_workbench::parameters::{Chosen, SettingError, merge, number, to_toml};
+use bg_workbench::parameters::{Chosen, SettingError, Values, merge, number, to_toml};
 use hacksaw::mechanism::HacksawParameters;
 
-fn chosen(toml: &str, settings: &[&str]) -> Result<Chosen<HacksawParameters>, SettingError> {
+fn chosen(toml: &str, settings: &[&str]) -> Result<Chosen, SettingError> {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), toml).unwrap();
     let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
-    merge(Some(file.path()), &settings)
+    merge(HacksawParameters::table(), Some(file.path()), &settings)
 }
 
-fn merge_text(toml: &str, settings: &[&str]) -> Result<HacksawParameters, SettingError> {
+fn merge_text(toml: &str, settings: &[&str]) -> Result<Values, SettingError> {
     chosen(toml, settings).map(|chosen| chosen.values)
 }
 
@@ -65,12 +65,10 @@ fn each_fault_is_one_line_that_names_its_place() {
 
 #[test]
 fn the_written_file_reads_back() {
-    let mut parameters = HacksawParameters::default();
+    let mut parameters = Values::new(HacksawParameters::table());
     parameters.set("torque", 1.0 / 3.0).unwrap();
     let back = merge_text(&to_toml(&parameters), &[]).unwrap();
-    for index in 0..HacksawParameters::table().len() {
-        assert_eq!(back.value(index), parameters.value(index));
-    }
+    assert_eq!(back, parameters);
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! What is said of the hacksaw's scenes and graphs.
 
-use bg_workbench::scenes::{self, Scene};
+use bg_workbench::scenes::Scene;
 use bg_workbench::tables::{Part, graph};
 use clap::ValueEnum;
-use hacksaw::mechanism::Hacksaw;
+use hacksaw::command::program;
 
 fn scenes() -> Vec<Scene> {
-    scenes::scenes::<Hacksaw>()
+    program().models().scenes.clone()
 }
 
 #[test]

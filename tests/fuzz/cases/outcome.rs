@@ -12,7 +12,7 @@ use bg_compiler::source::{mechanism, part, scene, syntax};
 use bg_compiler::stages::stages;
 use bg_model::parameters::Parameters;
 use bg_model::system::Model;
-use bg_workbench::parameters::{Chosen, SettingError, merge};
+use bg_workbench::parameters::{SettingError, merge};
 use hacksaw::mechanism::{Hacksaw, HacksawParameters};
 use proc_macro2::{Ident, TokenStream, TokenTree};
 
@@ -132,9 +132,8 @@ fn settings(file: &[u8], set: &[String]) -> Result<Outcome, Violation> {
     let mut written = tempfile::NamedTempFile::new().map_err(failed)?;
     written.write_all(file).map_err(failed)?;
     let path = (!file.is_empty()).then(|| written.path());
-    let chosen: Result<Chosen<HacksawParameters>, SettingError> = merge(path, set);
-    match chosen {
-        Ok(chosen) => accepted(chosen.values),
+    match merge(HacksawParameters::table(), path, set) {
+        Ok(chosen) => accepted(HacksawParameters::of_values(chosen.values.values())),
         Err(error) => refused(&error),
     }
 }

@@ -3,7 +3,7 @@
 //! In: randomness. Out: bytes of a file that mostly are TOML of the hacksaw's parameters, and texts `NAME=VALUE`.
 
 use bg_model::parameters::Parameters;
-use bg_workbench::parameters::to_toml;
+use bg_workbench::parameters::{Values, to_toml};
 use fastrand::Rng;
 use hacksaw::mechanism::HacksawParameters;
 
@@ -88,7 +88,7 @@ pub(super) fn settings(rng: &mut Rng) -> Input {
 
 fn file(rng: &mut Rng) -> Vec<u8> {
     let mut bytes = match rng.u32(..4) {
-        0 => to_toml(&HacksawParameters::default()).into_bytes(),
+        0 => to_toml(&Values::new(HacksawParameters::table())).into_bytes(),
         _ => (0..rng.usize(..6)).map(|_| format!("{} = {}\n", name(rng), value(rng))).collect::<String>().into_bytes(),
     };
     for _ in 0..rng.usize(..6).saturating_sub(3) {

@@ -27,6 +27,15 @@ pub trait Parameters: Clone + Default {
         (0..Self::table().len()).map(|index| self.value(index)).collect()
     }
 
+    /// Parameters of these values, in the order of the table, without looking at ranges; those that are missing keep
+    /// their defaults.
+    #[must_use]
+    fn of_values(values: &[f64]) -> Self {
+        let mut parameters = Self::default();
+        values.iter().enumerate().for_each(|(index, &value)| parameters.set_value(index, value));
+        parameters
+    }
+
     /// The value of the parameter called `name`, if there is one.
     fn get(&self, name: &str) -> Option<f64> {
         let index = Self::table().iter().position(|p| p.name == name)?;
@@ -41,7 +50,7 @@ pub trait Parameters: Clone + Default {
         let Some(index) = Self::table().iter().position(|p| p.name == name) else {
             return Err(ParameterError::Unknown { name: name.to_owned() });
         };
-        check(&Self::table()[index], value)?;
+        Self::table()[index].check(value)?;
         self.set_value(index, value);
         Ok(())
     }
@@ -51,7 +60,7 @@ pub trait Parameters: Clone + Default {
     /// # Errors
     /// The first value outside its range.
     fn validate(&self) -> Result<(), ParameterError> {
-        Self::table().iter().enumerate().try_for_each(|(index, parameter)| check(parameter, self.value(index)))
+        Self::table().iter().enumerate().try_for_each(|(index, parameter)| parameter.check(self.value(index)))
     }
 }
 
@@ -83,15 +92,17 @@ pub enum ParameterError {
 
 debug_is_display!(ParameterError);
 
-/// Whether a parameter may have this value.
-///
-/// # Errors
-/// It is outside the parameter's range, or no number.
-pub fn check(parameter: &ParameterInfo, value: f64) -> Result<(), ParameterError> {
-    if parameter.range.contains(value) {
-        return Ok(());
+impl ParameterInfo {
+    /// Checks `value` against the parameter's range.
+    ///
+    /// # Errors
+    /// It is not a finite number inside.
+    pub fn check(&self, value: f64) -> Result<(), ParameterError> {
+        if self.range.contains(value) {
+            return Ok(());
+        }
+        Err(ParameterError::OutOfRange { name: self.name, value, unit: self.unit, range: self.range })
     }
-    Err(ParameterError::OutOfRange { name: parameter.name, value, unit: parameter.unit, range: parameter.range })
 }
 
 impl Range {

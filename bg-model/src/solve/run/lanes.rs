@@ -77,9 +77,7 @@ struct Many<'a, Me> {
 impl<Me: Mechanism> Many<'_, Me> {
     /// The run with these values by itself.
     fn alone(&self, values: &[f64]) -> Result<Trajectory, LaneError> {
-        let mut parameters = self.model.parameters().clone();
-        values.iter().enumerate().for_each(|(index, &value)| parameters.set_value(index, value));
-        let model = Me::make(parameters, &self.model.inputs())?;
+        let model = Me::make(Me::Parameters::of_values(values), &self.model.inputs())?;
         Ok(Simulation::of(&model, self.request.clone()).run()?)
     }
 

@@ -92,11 +92,11 @@ impl<'a> Simulation<'a> {
 
     /// A run of `model` from its start as it is asked for.
     pub fn of(model: &impl Mechanism, request: Request) -> Self {
-        Self::of_machine(model.machine(), request)
+        Self::over(model.machine(), request)
     }
 
-    /// The same of a model that is known by its machine only.
-    pub fn of_machine(model: Rc<dyn Machine>, request: Request) -> Self {
+    /// The same of a model over slices.
+    pub fn over(model: Rc<dyn Machine>, request: Request) -> Self {
         let each_step = Box::new(|_| ControlFlow::Continue(()));
         Self { model, request, start: None, each_step, ending: None }
     }

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use bg_model::mechanism::Scenes;
 use bg_model::run::Request;
 use bg_model::simulation::Recording;
 
@@ -17,14 +16,15 @@ use crate::parameters::{self, Chosen};
 use crate::running::Outcome;
 use crate::samples::read_file;
 
-pub fn compare<Me: Scenes>(program: &Program<Me>, arguments: &CompareArguments) -> Result<ExitCode, InputError> {
-    let mut chosen = parameters::merge::<Me::Parameters>(arguments.params.as_deref(), &arguments.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&arguments.input, Me::describe().inputs)?;
+pub fn compare(program: &Program, arguments: &CompareArguments) -> Result<ExitCode, InputError> {
+    let graph = program.models.graph().description;
+    let mut chosen = parameters::merge(graph.parameters, arguments.params.as_deref(), &arguments.set)?;
+    let (inputs, named) = inputs::chosen_and_named(&arguments.input, graph.inputs)?;
     chosen.inputs = inputs;
     let request = request(&arguments.integration, 0.0, None)?;
     let [a, b] = [&arguments.a, &arguments.b].map(|name| side(program, name, &chosen, &request));
     let ((a, first), (b, second)) = (a?, b?);
-    let is_made = |name: &String| program.scenes.iter().any(|scene| scene.name == *name);
+    let is_made = |name: &String| program.models.named(name).is_some();
     let inputs = match [&arguments.a, &arguments.b].into_iter().any(is_made) {
         true => inputs::text(&named, [0.0, request.t_end]),
         false => String::new(),
@@ -35,13 +35,13 @@ pub fn compare<Me: Scenes>(program: &Program<Me>, arguments: &CompareArguments) 
 }
 
 /// A run by name, and why it stopped before its end, if it did: of a scene a new one, else the one that a file has.
-fn side<Me: Scenes>(
-    program: &Program<Me>,
+fn side(
+    program: &Program,
     name: &str,
-    chosen: &Chosen<Me::Parameters>,
+    chosen: &Chosen,
     request: &Request,
 ) -> Result<(Recording, Option<String>), InputError> {
-    if let Some(scene) = program.scenes.iter().find(|scene| scene.name == name) {
+    if let Some(scene) = program.models.named(name) {
         let machine = machine(program, scene, chosen)?;
         let Outcome { run, failure } = follow(&*machine, request.clone(), None)?;
         let failure = failure.map(|failure| format!("the run of `{name}` failed: {failure}"));
@@ -55,7 +55,7 @@ fn side<Me: Scenes>(
     let mut samples = read_file(&file)?;
     // A file has no units; those of the model's outputs are known by name.
     for column in &mut samples.columns {
-        let mut outputs = program.scenes.iter().flat_map(|scene| scene.description.outputs);
+        let mut outputs = program.models.scenes.iter().flat_map(|scene| scene.description.outputs);
         if let Some(output) = outputs.find(|output| output.name == column.name) {
             output.unit.clone_into(&mut column.unit);
         }

@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use bg_fmi::archive::archive;
-use bg_fmi::{Of, Packing, Version};
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_fmi::{AtDefaults, Packing, Version};
 use thiserror::Error;
 
 use super::arguments::FmuArguments;
 use super::{InputError, say};
 use crate::Program;
 use crate::files::whole;
+use crate::parameters::Values;
 
 /// A library that there is none of.
 #[derive(Debug, Error)]
@@ -35,7 +35,7 @@ pub(super) enum LibraryError {
     Foreign(PathBuf, &'static str),
 }
 
-pub(super) fn pack<Me: Scenes>(program: &Program<Me>, arguments: &FmuArguments) -> Result<ExitCode, InputError> {
+pub(super) fn pack(program: &Program, arguments: &FmuArguments) -> Result<ExitCode, InputError> {
     let FmuArguments { library, out, t_end, .. } = arguments;
     let scene = program.scene_called(&arguments.scene);
     let name = &program.texts.name;
@@ -53,24 +53,13 @@ pub(super) fn pack<Me: Scenes>(program: &Program<Me>, arguments: &FmuArguments) 
     }
     let path = out.clone().unwrap_or_else(|| PathBuf::from(format!("{identifier}.fmu")));
     let packing = Packing { version, identifier, stop_time: *t_end };
-    let unit = Me::model(scene.index, Packed { packing: &packing, library: &bytes });
+    let own = Values::new(scene.description.parameters);
+    let machine = program.models.maker().make(scene.index, own.values(), &[]);
+    let model = AtDefaults { description: scene.description, model: machine.ok().map(|machine| machine.model()) };
+    let unit = archive(&model, &packing, &bytes);
     whole::write(&path, |file| file.write_all(&unit?))?;
     let (name, version, platform) = (scene.description.name, version.name(), bg_fmi::archive::platform(version));
     Ok(say(&format!("{}: {name} for FMI {version}, {platform}\n", path.display())))
-}
-
-/// The archive of a model.
-struct Packed<'a> {
-    packing: &'a Packing,
-    library: &'a [u8],
-}
-
-impl MechanismVisitor for Packed<'_> {
-    type Output = io::Result<Vec<u8>>;
-
-    fn visit<Me: Mechanism>(self) -> Self::Output {
-        archive(&Of::<Me>::NEW, self.packing, self.library)
-    }
 }
 
 /// A name of letters, digits and underscores, for a library in a unit.

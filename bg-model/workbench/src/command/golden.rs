@@ -2,8 +2,6 @@
 
 use std::process::ExitCode;
 
-use bg_model::mechanism::Scenes;
-
 use super::arguments::{CheckArguments, RecordArguments};
 use super::run::{claimed_and_run, machine};
 use super::{InputError, ended};
@@ -15,16 +13,17 @@ use crate::parameters;
 use crate::running::{Begin, Outcome};
 
 /// A run that stops before its end is not recorded.
-pub fn record<Me: Scenes>(program: &Program<Me>, arguments: &RecordArguments) -> Result<ExitCode, InputError> {
+pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode, InputError> {
     let RecordArguments { model, integration, out, name } = arguments;
-    let mut chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&model.input, Me::describe().inputs)?;
+    let graph = program.models.graph().description;
+    let mut chosen = parameters::merge(graph.parameters, model.params.as_deref(), &model.set)?;
+    let (inputs, named) = inputs::chosen_and_named(&model.input, graph.inputs)?;
     chosen.inputs = inputs;
     let integration = integration.integration();
     let request = integration.request(0.0, None)?;
     let scene = program.scene_called(&model.scene);
     let name = name.as_deref().unwrap_or(&scene.name);
-    let claim = || Ok(Place::claim(out, name, Me::describe().name)?);
+    let claim = || Ok(Place::claim(out, name, graph.name)?);
     let machine = machine(program, scene, &chosen)?;
     let (Outcome { run, failure }, _, place) = claimed_and_run(&*machine, request, &Begin::Model, None, claim)?;
     if let Some(failure) = failure {
@@ -34,7 +33,7 @@ pub fn record<Me: Scenes>(program: &Program<Me>, arguments: &RecordArguments) ->
     Ok(ended(written.and_then(|line| console::print(&format!("{line}\n"))).err()))
 }
 
-pub fn check<Me: Scenes>(program: &Program<Me>, arguments: &CheckArguments) -> Result<ExitCode, InputError> {
+pub fn check(program: &Program, arguments: &CheckArguments) -> Result<ExitCode, InputError> {
     let mut faults = Vec::new();
     for prepared in prepare(program, &arguments.out, &arguments.names)? {
         match check_one(program, &prepared) {

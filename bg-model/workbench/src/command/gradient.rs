@@ -5,18 +5,16 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bg_model::description::OutputInfo;
-use bg_model::mechanism::Scenes;
-use bg_model::parameters::Parameters;
 use bg_model::sensitivity::{Measured, Objective};
 use clap::Args;
 
 use super::arguments::{IntegrationArguments, ModelArguments};
-use super::run::request;
+use super::run::{machine, request};
 use super::sensitivity::{adjustable, observed};
 use super::{InputError, ended};
 use crate::Program;
 use crate::files::{FileError, RunFolder, console};
-use crate::gradient::{Asked, Fault, Slope, csv, text};
+use crate::gradient::{Slope, csv, text};
 use crate::identify::Data;
 use crate::identify::data::{pair, read_file};
 use crate::inputs;
@@ -73,14 +71,15 @@ struct Question<'a> {
     objective: Objective<'a>,
 }
 
-pub fn gradient<Me: Scenes>(program: &Program<Me>, arguments: &GradientArguments) -> Result<ExitCode, InputError> {
-    let Some(differentiate) = program.gradients else {
-        let fault = "this program has no such command; its `main` asks for it by `Program::gradients()`".to_owned();
+pub fn gradient(program: &Program, arguments: &GradientArguments) -> Result<ExitCode, InputError> {
+    if !program.models.maker().has_gradients() {
+        let fault = "this program has no such command; its `main` asks for it by `Compiled::gradients()`".to_owned();
         return Err(InputError::Unknown { option: "gradient", fault });
-    };
+    }
     let values = &arguments.model;
-    let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&values.input, Me::describe().inputs)?;
+    let graph = program.models.graph().description;
+    let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;
+    let (inputs, named) = inputs::chosen_and_named(&values.input, graph.inputs)?;
     chosen.inputs = inputs;
     let scene = program.scene_called(&values.scene);
     let parameters = adjustable(scene, &chosen, &arguments.by, "--by")?;
@@ -98,22 +97,9 @@ pub fn gradient<Me: Scenes>(program: &Program<Me>, arguments: &GradientArguments
     };
     let question = question(scene, arguments, &columns, request.t_end)?;
     let folder = RunFolder::claim(&arguments.out, &[TABLE, CSV].map(str::to_owned))?;
-    let all = chosen.values.values();
+    let machine = machine(program, scene, &chosen)?;
     let by: Vec<&str> = parameters.iter().map(|(info, _)| info.name).collect();
-    let found = differentiate(Asked {
-        scene,
-        scenes: &program.scenes,
-        values: &all,
-        inputs: &chosen.inputs,
-        request: &request,
-        objective: &question.objective,
-        by: &by,
-    });
-    let found = found.map_err(|fault| match fault {
-        Fault::Fixed(fault) => InputError::Fixed { place: chosen.places[fault.index].clone(), fault },
-        Fault::Model(fault) => fault.into(),
-        Fault::Gradient(fault) => fault.into(),
-    })?;
+    let found = machine.known("gradients", machine.gradient(&request, &question.objective, &by))??;
     let slopes: Vec<Slope> = (parameters.iter().zip(&found.by))
         .map(|(&(parameter, at), &derivative)| Slope { parameter, at, derivative })
         .collect();

@@ -3,14 +3,12 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use bg_model::mechanism::Scenes;
-
 use super::arguments::GraphArguments;
 use super::{InputError, say};
 use crate::files::whole;
 use crate::{Program, picture, tables};
 
-pub(super) fn graph<Me: Scenes>(program: &Program<Me>, arguments: &GraphArguments) -> Result<ExitCode, InputError> {
+pub(super) fn graph(program: &Program, arguments: &GraphArguments) -> Result<ExitCode, InputError> {
     let scene = program.scene_called(&arguments.scene);
     let GraphArguments { part, svg, dot, level, .. } = arguments;
     if svg.is_none() && dot.is_none() {

@@ -5,15 +5,13 @@ use std::process::ExitCode;
 
 use bg_model::description::ParameterInfo;
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::parameters::Parameters;
 use bg_model::run::Request;
 use clap::Args;
 
 use super::arguments::{IntegrationArguments, ModelArguments};
 use super::methods::integrator;
 use super::progress::bar;
-use super::run::{model, request};
+use super::run::{machine, request};
 use super::sensitivity::{adjustable, observed, unknown};
 use super::{InputError, ended};
 use crate::Program;
@@ -21,10 +19,10 @@ use crate::figures::FigureError;
 use crate::figures::fit::fit;
 use crate::files::{FileError, RunFolder, console};
 use crate::identify::data::{pair, read_file};
-use crate::identify::{Data, Identified, Variable, identify as identified, report};
+use crate::identify::{Data, Identified, Variable, report};
 use crate::inputs;
 use crate::output::OutputError;
-use crate::parameters::{self, Chosen};
+use crate::parameters;
 use crate::scenes::Scene;
 
 const REPORT: &str = "identify.txt";
@@ -72,10 +70,11 @@ pub struct IdentifyArguments {
     pub out: PathBuf,
 }
 
-pub fn identify<Me: Scenes>(program: &Program<Me>, arguments: &IdentifyArguments) -> Result<ExitCode, InputError> {
+pub fn identify(program: &Program, arguments: &IdentifyArguments) -> Result<ExitCode, InputError> {
     let values = &arguments.model;
-    let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
-    let (inputs, named_inputs) = inputs::chosen_and_named(&values.input, Me::describe().inputs)?;
+    let graph = program.models.graph().description;
+    let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;
+    let (inputs, named_inputs) = inputs::chosen_and_named(&values.input, graph.inputs)?;
     chosen.inputs = inputs;
     let scene = program.scene_called(&values.scene);
     let outputs = scene.description.outputs;
@@ -91,8 +90,14 @@ pub fn identify<Me: Scenes>(program: &Program<Me>, arguments: &IdentifyArguments
     let data = read_file(&arguments.data, outputs, &named, &only)?;
     let folder = RunFolder::claim(&arguments.out, &files(&data, scene))?;
     let request = integration(arguments, &data)?;
-    let fitting = Fitting { scene, scenes: &program.scenes, chosen: &chosen, request, data: &data, variables };
-    let found = Me::model(scene.index, fitting)?;
+    let machine = machine(program, scene, &chosen)?;
+    let bar = bar(1, "run {pos}: {msg}");
+    let found = machine.identified(&request, &data, &variables, &mut |values, error| {
+        bar.inc(1);
+        bar.set_message(format!("error {error:.3e} of the noise, {values:?}"));
+    });
+    bar.finish_and_clear();
+    let found = machine.known("derivatives by parameters", found)??;
     let inputs = inputs::text(&named_inputs, [0.0, data.times.last().copied().unwrap_or_default()]);
     let told = format!("{}{inputs}", report::text(&found, &data, outputs));
     let (written, faults) = write(folder, &told, &found, &data, scene);
@@ -153,31 +158,6 @@ fn figure(output: &str) -> String {
 fn files(data: &Data, scene: &Scene) -> Vec<String> {
     let figures = data.columns.iter().map(|column| figure(scene.description.outputs[column.output].name));
     [REPORT, FOUND].into_iter().map(str::to_owned).chain(figures).collect()
-}
-
-/// Fits a scene's model.
-struct Fitting<'a, P> {
-    scene: &'a Scene,
-    scenes: &'a [Scene],
-    chosen: &'a Chosen<P>,
-    request: Request,
-    data: &'a Data,
-    variables: Vec<Variable>,
-}
-
-impl<P: Parameters> MechanismVisitor for Fitting<'_, P> {
-    type Output = Result<Identified, InputError>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let model: Sc = model(self.scene, self.scenes, self.chosen)?;
-        let bar = bar(1, "run {pos}: {msg}");
-        let outcome = identified(&model, &self.request, self.data, &self.variables, |values, error| {
-            bar.inc(1);
-            bar.set_message(format!("error {error:.3e} of the noise, {values:?}"));
-        });
-        bar.finish_and_clear();
-        Ok(outcome?)
-    }
 }
 
 /// Writes the files; gives their number, where they are there, and what failed.

@@ -2,7 +2,6 @@
 
 use std::process::ExitCode;
 
-use bg_model::mechanism::Scenes;
 use bg_model::run::{Request, State};
 
 use super::arguments::{IntegrationArguments, LinearizeArguments};
@@ -29,12 +28,15 @@ const MOST: usize = 40;
 /// The frequencies of a response in each decade, and at most.
 const IN_DECADE: f64 = 100.0;
 const MOST_FREQUENCIES: f64 = 2000.0;
+/// What a model may not have.
+const LINEAR: &str = "linear models";
 
-pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArguments) -> Result<ExitCode, InputError> {
+pub fn linearize(program: &Program, arguments: &LinearizeArguments) -> Result<ExitCode, InputError> {
     check_time("--at", arguments.at)?;
     let values = &arguments.model;
-    let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&values.input, Me::describe().inputs)?;
+    let graph = program.models.graph().description;
+    let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;
+    let (inputs, named) = inputs::chosen_and_named(&values.input, graph.inputs)?;
     chosen.inputs = inputs;
     let scene = program.scene_called(&values.scene);
     let folder = RunFolder::claim(&arguments.out, &names(scene))?;
@@ -50,12 +52,7 @@ pub fn linearize<Me: Scenes>(program: &Program<Me>, arguments: &LinearizeArgumen
 
 /// The linear model of a scene at `at`, s, or without it at the equilibrium near the start; or the sentence why there
 /// is none.
-pub fn space<Me: Scenes>(
-    program: &Program<Me>,
-    scene: &Scene,
-    chosen: &Chosen<Me::Parameters>,
-    at: Option<f64>,
-) -> Result<StateSpace, String> {
+pub fn space(program: &Program, scene: &Scene, chosen: &Chosen, at: Option<f64>) -> Result<StateSpace, String> {
     let arguments = LinearizeArguments { at, ..LinearizeArguments::of_scene(&scene.name) };
     let space = check_time("at", at).and_then(|()| here(program, scene, chosen, &arguments));
     space.map(|(space, _)| space).map_err(|fault| fault.to_string())
@@ -85,10 +82,10 @@ fn diagram(input: &str, output: &str) -> String {
 }
 
 /// Linearises a scene where the arguments say.
-fn here<Me: Scenes>(
-    program: &Program<Me>,
+fn here(
+    program: &Program,
     scene: &Scene,
-    chosen: &Chosen<Me::Parameters>,
+    chosen: &Chosen,
     arguments: &LinearizeArguments,
 ) -> Result<(StateSpace, String), InputError> {
     linearised(&*machine(program, scene, chosen)?, arguments.at, |t| arguments.integration(t))
@@ -103,10 +100,10 @@ pub fn linearised(
 ) -> Result<(StateSpace, String), InputError> {
     let Some(t) = at else {
         let (state, rest) = at_rest(machine)?;
-        return Ok((machine.linearised(&state)?, rest.sentence()));
+        return Ok((machine.known(LINEAR, machine.linearised(&state))??, rest.sentence()));
     };
     let state = state_at(machine, t, &integration(t))?;
-    Ok((machine.linearised(&state)?, format!("where the run is at t = {t:?} s")))
+    Ok((machine.known(LINEAR, machine.linearised(&state))??, format!("where the run is at t = {t:?} s")))
 }
 
 /// The state that a run reaches at `t` (s).

@@ -25,8 +25,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use bg_model::mechanism::{Mechanism, Scenes};
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::parameters::ParameterError;
 use bg_model::run::RunError;
 use bg_model::sensitivity::SensitivityError;
 use bg_model::simulation::MissingColumn;
@@ -42,6 +41,7 @@ use crate::identify::data::Unusable;
 use crate::inputs::InputSettingError;
 use crate::linear::LinearError;
 use crate::live::ModuleError;
+use crate::machine::Absent;
 use crate::output::OutputError;
 use crate::parameters::{self, SettingError};
 use crate::precision::measure::MeasureError;
@@ -82,6 +82,8 @@ enum InputError {
     #[error(transparent)]
     Model(#[from] ParameterError),
     #[error(transparent)]
+    Absent(#[from] Absent),
+    #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]
     Column(#[from] MissingColumn),
@@ -116,6 +118,7 @@ impl From<BeginError> for InputError {
         match fault {
             BeginError::Run(fault) => fault.into(),
             BeginError::Linear(fault) => fault.into(),
+            BeginError::Absent(fault) => fault.into(),
         }
     }
 }
@@ -127,7 +130,7 @@ impl From<crate::precision::case::CaseError> for InputError {
 }
 
 /// Does what the arguments ask for and gives the exit code.
-pub(crate) fn main<Me: Scenes>(program: &Program<Me>, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+pub(crate) fn main(program: &Program, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = command(program).try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
     let outcome = match cli {
         Err(fault) if fault.use_stderr() => return refuse(&one_line(&fault)),
@@ -139,7 +142,7 @@ pub(crate) fn main<Me: Scenes>(program: &Program<Me>, arguments: impl IntoIterat
     outcome.unwrap_or_else(|fault| refuse(&fault))
 }
 
-fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode, InputError> {
+fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
     let print = |scene: &str, part| Ok(say(&tables::graph(program.scene_called(scene), Some(part))));
     match command {
         Command::Run(arguments) => run::simulate(program, &arguments, None),
@@ -153,21 +156,21 @@ fn obey<Me: Scenes>(program: &Program<Me>, command: Command) -> Result<ExitCode,
         Command::Identify(arguments) => identify::identify(program, &arguments),
         Command::Gradient(arguments) => gradient::gradient(program, &arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),
-        Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.scenes))),
+        Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.models.scenes))),
         Command::Scene { scene: Some(name) } => {
-            Ok(say(&tables::scene(program.scene_called(&name), <Me::Parameters as Parameters>::table())))
+            Ok(say(&tables::scene(program.scene_called(&name), program.models.defaults().table())))
         }
         Command::Graph(arguments) => graph::graph(program, &arguments),
         Command::Fmu(arguments) => fmu::pack(program, &arguments),
         Command::States { scene } => print(&scene, Part::States),
         Command::Equations { scene } => print(&scene, Part::Equations),
-        Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&Me::Parameters::default()))),
-        Command::Parameters { toml: false } => Ok(say(&parameters::table::<Me::Parameters>())),
+        Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&program.models.defaults()))),
+        Command::Parameters { toml: false } => Ok(say(&parameters::table(program.models.defaults().table()))),
     }
 }
 
 /// The command line with the program's names, and its parameters in the help.
-fn command<Me: Mechanism>(program: &Program<Me>) -> clap::Command {
+fn command(program: &Program) -> clap::Command {
     let help = format!(
         "Parameters (name, default, unit, meaning); defaults < --params < --set:\n{}\n\
          Files: a folder has the files of one run. They are written aside and take their place at the end, when those of the\n\
@@ -175,28 +178,29 @@ fn command<Me: Mechanism>(program: &Program<Me>) -> clap::Command {
          that would replace one is refused, as is a second run into the same folder at once. What a run wrote is listed in\n\
          `.run` in the folder.\n\n\
          Exit code: 0 done, 1 the run or an output failed (what could be written is), 2 the input cannot be used.",
-        parameters::table::<Me::Parameters>()
+        parameters::table(program.models.defaults().table())
     );
     let texts = &program.texts;
     let command = Cli::command().name(texts.name.clone()).bin_name(texts.name.clone()).version(texts.version.clone());
     let command = every(command.about(texts.about.clone()).after_help(help.clone()), program);
-    let command = command.mut_subcommand("gradient", |gradient| gradient.hide(program.gradients.is_none()));
+    let command = command.mut_subcommand("gradient", |gradient| gradient.hide(!program.models.maker().has_gradients()));
     let command = command.mut_subcommand("report", |report| report.after_help(help.clone()));
     command.mut_subcommand("run", |run| run.after_help(help))
 }
 
 /// `command` and all commands below it, each as [`named`] has it.
-fn every<Me>(command: clap::Command, program: &Program<Me>) -> clap::Command {
+fn every(command: clap::Command, program: &Program) -> clap::Command {
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
     let command = named(command, program);
     names.into_iter().fold(command, |command, name| command.mut_subcommand(name, |own| every(own, program)))
 }
 
 /// `command` with the names of scenes and cases where it takes any.
-fn named<Me>(command: clap::Command, program: &Program<Me>) -> clap::Command {
+fn named(command: clap::Command, program: &Program) -> clap::Command {
     let scene = |argument: Arg| {
         let is_optional = argument.get_long().is_none();
-        let names = program.scenes.iter().map(|scene| PossibleValue::new(scene.name.clone()).help(scene.summary()));
+        let names =
+            program.models.scenes.iter().map(|scene| PossibleValue::new(scene.name.clone()).help(scene.summary()));
         let argument = argument.value_parser(PossibleValuesParser::new(names));
         if is_optional { argument } else { argument.required(false).default_value(program.scene.clone()) }
     };

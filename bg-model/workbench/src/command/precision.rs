@@ -3,7 +3,6 @@
 use std::process::ExitCode;
 
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::Scenes;
 
 use super::arguments::PrecisionArguments;
 use super::progress::bar;
@@ -15,7 +14,7 @@ use crate::precision::case::Case;
 use crate::precision::measure::{Entry, Setting, measure};
 use crate::precision::report;
 
-pub fn measure_all<Me: Scenes>(program: &Program<Me>, arguments: &PrecisionArguments) -> Result<ExitCode, InputError> {
+pub fn measure_all(program: &Program, arguments: &PrecisionArguments) -> Result<ExitCode, InputError> {
     check(arguments)?;
     let wanted = |name: &String| program.cases.iter().find(|case| case.name == *name);
     let cases: Vec<&Case> = arguments.cases.iter().filter_map(wanted).collect();
@@ -26,11 +25,11 @@ pub fn measure_all<Me: Scenes>(program: &Program<Me>, arguments: &PrecisionArgum
     let mut entries: Vec<Entry> = Vec::new();
     for case in cases {
         bar.set_message(format!("{}: reference", case.name));
-        let reference = case.solve(&program.scenes)?;
+        let reference = case.solve(&program.models)?;
         for method in methods {
             bar.set_message(format!("{} by {}", case.name, method.name()));
             for setting in settings(arguments, *method) {
-                entries.push(measure::<Me>(case, &program.scenes, *method, setting, arguments.repeats, &reference)?);
+                entries.push(measure(case, &program.models, *method, setting, arguments.repeats, &reference)?);
                 bar.inc(1);
             }
         }

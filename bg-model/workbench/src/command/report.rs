@@ -3,8 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use bg_model::mechanism::Scenes;
-
 use super::InputError;
 use super::arguments::{IntegrationArguments, ReportArguments};
 use super::linearize::{check_time, linearised};
@@ -30,7 +28,7 @@ pub struct Look {
     pub module: Option<Module>,
 }
 
-pub fn report<Me: Scenes>(program: &Program<Me>, arguments: &ReportArguments) -> Result<ExitCode, InputError> {
+pub fn report(program: &Program, arguments: &ReportArguments) -> Result<ExitCode, InputError> {
     let ReportArguments { run, glb, modes, show, live } = arguments;
     let name = &program.texts.name;
     let files = ReportFiles { page: format!("{name}.html"), glb: glb.then(|| format!("{name}.glb")) };

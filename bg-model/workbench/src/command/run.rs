@@ -1,12 +1,9 @@
 //! The command `run`: a scene integrated, its files written, its summary printed.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 
 use bg_model::description::ParameterInfo;
-use bg_model::mechanism::{Mechanism, Scenes};
-use bg_model::parameters::Parameters;
 use bg_model::run::{Request, RunError, State, sample_times};
 use bg_model::simulation::{MissingColumn, Part};
 
@@ -18,28 +15,25 @@ use crate::Program;
 use crate::files::{console, whole};
 use crate::inputs::{self, Named};
 use crate::live::{Live, Order, changed};
-use crate::machine::{Machine, MachineError, Making};
+use crate::machine::{Machine, MachineError};
 use crate::output::{Claimed, OutputError, Places, Table};
 use crate::page::film::Film;
 use crate::page::{Parameter, Views};
-use crate::parameters::{self, Chosen};
+use crate::parameters::{self, Chosen, Values};
 use crate::picture;
 use crate::running::{self, Begin, Outcome};
-use crate::scenes::{Scene, own_parameters};
+use crate::scenes::Scene;
 use crate::shown::Exhibits;
 use crate::summary::Summary;
 
 /// Runs and writes; `look` is what a report is to show beside the run, where one is wanted.
-pub fn simulate<Me: Scenes>(
-    program: &Program<Me>,
-    arguments: &RunArguments,
-    look: Option<&Look>,
-) -> Result<ExitCode, InputError> {
+pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>) -> Result<ExitCode, InputError> {
     let RunArguments { model, integration, .. } = arguments;
-    let mut chosen = parameters::merge::<Me::Parameters>(model.params.as_deref(), &model.set)?;
-    let settings = inputs::settings(&model.input, Me::describe().inputs)?;
+    let graph = program.models.graph().description;
+    let mut chosen = parameters::merge(graph.parameters, model.params.as_deref(), &model.set)?;
+    let settings = inputs::settings(&model.input, graph.inputs)?;
     chosen.inputs = inputs::made(&settings);
-    let inputs = inputs::named(&settings, Me::describe().inputs);
+    let inputs = inputs::named(&settings, graph.inputs);
     let begin = match (&arguments.from, arguments.start) {
         (Some(path), _) => Begin::At(read_state(path)?),
         (None, Start::Model) => Begin::Model,
@@ -61,7 +55,7 @@ pub fn simulate<Me: Scenes>(
             module: module.wasm(scene.index)?,
             order: Order {
                 scene: scene.name.clone(),
-                parameters: differing(&chosen.values),
+                parameters: chosen.values.changed().map(|(info, value)| (info.name.to_owned(), value)).collect(),
                 inputs: settings,
                 integration: integration.integration(),
                 begin: begin.clone(),
@@ -86,24 +80,8 @@ pub fn simulate<Me: Scenes>(
 }
 
 /// The model of a scene with the parameters chosen for the whole table.
-pub fn model<P: Parameters, Sc: Mechanism>(
-    scene: &Scene,
-    scenes: &[Scene],
-    chosen: &Chosen<P>,
-) -> Result<Sc, InputError> {
-    let own = own_parameters(scene, scenes, &chosen.values);
-    let own = own.map_err(|fault| InputError::Fixed { place: chosen.places[fault.index].clone(), fault })?;
-    Ok(Sc::make(own, &chosen.inputs)?)
-}
-
-/// The same, whatever its type.
-pub fn machine<Me: Scenes>(
-    program: &Program<Me>,
-    scene: &Scene,
-    chosen: &Chosen<Me::Parameters>,
-) -> Result<Box<dyn Machine>, InputError> {
-    let making = Making { scene, scenes: &program.scenes, values: &chosen.values, inputs: &chosen.inputs };
-    making.made::<Me>().map_err(|fault| match fault {
+pub fn machine(program: &Program, scene: &Scene, chosen: &Chosen) -> Result<Box<dyn Machine>, InputError> {
+    program.models.made(scene, &chosen.values, &chosen.inputs).map_err(|fault| match fault {
         MachineError::Fixed(fault) => InputError::Fixed { place: chosen.places[fault.index].clone(), fault },
         MachineError::Parameter(fault) => fault.into(),
     })
@@ -157,8 +135,8 @@ fn save_state(path: &Path, state: &State) -> Result<(), String> {
 }
 
 /// Writes the files and prints the summary; gives what failed.
-fn report<Me>(
-    program: &Program<Me>,
+fn report(
+    program: &Program,
     scene: &Scene,
     outcome: Outcome,
     rows: &[f64],
@@ -197,18 +175,8 @@ pub fn request(arguments: &IntegrationArguments, t0: f64, finest: Option<f64>) -
 }
 
 /// The parameters with their values.
-fn values<P: Parameters>(values: &P, source: impl Fn(&str) -> &'static str) -> Vec<Parameter> {
-    let table = P::table().iter().enumerate();
-    let value = |(index, info): (usize, &ParameterInfo)| Parameter {
-        info: info.clone(),
-        value: values.value(index),
-        source: source(info.name),
-    };
-    table.map(value).collect()
-}
-
-/// The parameters that differ from their defaults.
-fn differing<P: Parameters>(values: &P) -> BTreeMap<String, f64> {
-    let all = P::table().iter().enumerate().map(|(index, info)| (info, values.value(index)));
-    all.filter(|(info, value)| *value != info.default).map(|(info, value)| (info.name.to_owned(), value)).collect()
+fn values(values: &Values, source: impl Fn(&str) -> &'static str) -> Vec<Parameter> {
+    let parameter =
+        |(info, value): (&ParameterInfo, f64)| Parameter { info: info.clone(), value, source: source(info.name) };
+    values.all().map(parameter).collect()
 }

@@ -4,15 +4,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bg_model::description::{OutputInfo, ParameterInfo};
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::parameters::Parameters;
 use bg_model::run::{Request, Trajectory};
-use bg_model::sensitivity::{Direction, Sensitivities, sensitivities};
+use bg_model::sensitivity::Sensitivities;
 use bg_model::simulation::Samples;
 use clap::Args;
 
 use super::arguments::{IntegrationArguments, ModelArguments};
-use super::run::{model, request};
+use super::run::{machine, request};
 use super::{InputError, ended};
 use crate::Program;
 use crate::figures::FigureError;
@@ -62,13 +60,11 @@ pub struct SensitivityArguments {
     pub out: PathBuf,
 }
 
-pub fn sensitivity<Me: Scenes>(
-    program: &Program<Me>,
-    arguments: &SensitivityArguments,
-) -> Result<ExitCode, InputError> {
+pub fn sensitivity(program: &Program, arguments: &SensitivityArguments) -> Result<ExitCode, InputError> {
     let values = &arguments.model;
-    let mut chosen = parameters::merge::<Me::Parameters>(values.params.as_deref(), &values.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&values.input, Me::describe().inputs)?;
+    let graph = program.models.graph().description;
+    let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;
+    let (inputs, named) = inputs::chosen_and_named(&values.input, graph.inputs)?;
     chosen.inputs = inputs;
     let scene = program.scene_called(&values.scene);
     let parameters = adjustable(scene, &chosen, &arguments.by, "--by")?;
@@ -80,7 +76,7 @@ pub fn sensitivity<Me: Scenes>(
     let request = with_times(request(&arguments.integration, 0.0, None)?, &arguments.at);
     let names = [TABLE, CSV, COURSES, FIGURE].map(str::to_owned);
     let folder = RunFolder::claim(&arguments.out, &names)?;
-    let found = differentiated(program, scene, &chosen, request, &parameters)?;
+    let found = differentiated(program, scene, &chosen, &request, &parameters)?;
     let mut measures = Measure::ALL.to_vec();
     measures.extend(arguments.at.iter().map(|&t| Measure::At(t)));
     let question = Question { outputs: &outputs, parameters: &parameters, measures: &measures };
@@ -96,9 +92,9 @@ pub fn sensitivity<Me: Scenes>(
 }
 
 /// The parameters of these names with their values, of a scene; without names all that it leaves adjustable.
-pub fn adjustable<P: Parameters>(
+pub fn adjustable(
     scene: &Scene,
-    chosen: &Chosen<P>,
+    chosen: &Chosen,
     names: &[String],
     option: &'static str,
 ) -> Result<Vec<(&'static ParameterInfo, f64)>, InputError> {
@@ -162,16 +158,16 @@ fn with_times(mut request: Request, at: &[f64]) -> Request {
 
 /// A run of a scene and the derivatives over it of outputs by parameters, given `by` and `of` their names; or the
 /// sentence why there are none.
-pub fn derivatives<Me: Scenes>(
-    program: &Program<Me>,
+pub fn derivatives(
+    program: &Program,
     scene: &Scene,
-    chosen: &Chosen<Me::Parameters>,
+    chosen: &Chosen,
     request: Request,
     [by, of]: [&[String]; 2],
 ) -> Result<(Trajectory, Vec<Course>), String> {
     let found = adjustable(scene, chosen, by, "by").and_then(|parameters| {
         let outputs = observed(scene, of, "outputs")?;
-        let found = differentiated(program, scene, chosen, request, &parameters)?;
+        let found = differentiated(program, scene, chosen, &request, &parameters)?;
         let courses = courses(&found, &Question { outputs: &outputs, parameters: &parameters, measures: &[] });
         Ok((found.trajectory, courses))
     });
@@ -179,34 +175,16 @@ pub fn derivatives<Me: Scenes>(
 }
 
 /// A run of a scene with its derivatives by these parameters.
-fn differentiated<Me: Scenes>(
-    program: &Program<Me>,
+fn differentiated(
+    program: &Program,
     scene: &Scene,
-    chosen: &Chosen<Me::Parameters>,
-    request: Request,
+    chosen: &Chosen,
+    request: &Request,
     parameters: &[(&'static ParameterInfo, f64)],
 ) -> Result<Sensitivities, InputError> {
-    let by = parameters.iter().map(|(info, _)| info.name).collect();
-    Me::model(scene.index, Differentiated { scene, scenes: &program.scenes, chosen, request, by })
-}
-
-/// A scene's model with its run and derivatives.
-struct Differentiated<'a, P> {
-    scene: &'a Scene,
-    scenes: &'a [Scene],
-    chosen: &'a Chosen<P>,
-    request: Request,
-    by: Vec<&'a str>,
-}
-
-impl<P: Parameters> MechanismVisitor for Differentiated<'_, P> {
-    type Output = Result<Sensitivities, InputError>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
-        let model: Sc = model(self.scene, self.scenes, self.chosen)?;
-        let directions = self.by.iter().map(|name| Direction::parameter::<Sc>(name)).collect::<Result<Vec<_>, _>>()?;
-        Ok(sensitivities(&model, &self.request, &directions)?)
-    }
+    let machine = machine(program, scene, chosen)?;
+    let by: Vec<&str> = parameters.iter().map(|(info, _)| info.name).collect();
+    Ok(machine.known("derivatives by parameters", machine.sensitivities(request, &by))??)
 }
 
 /// What is printed.

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use bg_model::mechanism::Scenes;
 use clap::{Args, Subcommand};
 
 use super::progress::bar;
@@ -56,7 +55,7 @@ enum SweepCommand {
     },
 }
 
-pub fn obey<Me: Scenes>(program: &Program<Me>, arguments: &SweepArguments) -> Result<ExitCode, InputError> {
+pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, InputError> {
     let SweepArguments { command, plan, out, threads, shard } = arguments;
     if let Some(SweepCommand::Show { folder, csv, trajectories }) = command {
         let folder = Folder::open(folder).map_err(SweepError::from)?;

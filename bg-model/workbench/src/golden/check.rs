@@ -70,27 +70,24 @@ impl fmt::Display for Deviating {
 }
 
 /// The golden outputs in `folder`, all or those called `names`, each fit to be run by `program`.
-pub(crate) fn prepare<'a, Me: Scenes>(
-    program: &'a Program<Me>,
+pub(crate) fn prepare<'a>(
+    program: &'a Program,
     folder: &Path,
     names: &[String],
-) -> Result<Vec<Prepared<'a, Me::Parameters>>, GoldenError> {
+) -> Result<Vec<Prepared<'a>>, GoldenError> {
     let files = list(folder, names)?;
     if files.is_empty() {
         let first = renewal::first(&program.texts.name, folder);
         return Err(GoldenError::Nothing { folder: folder.to_owned(), first });
     }
-    let model = Me::describe().name;
-    files.into_iter().map(|files| Prepared::new(files.read(model)?, &program.scenes)).collect()
+    let model = program.models.graph().description.name;
+    files.into_iter().map(|files| Prepared::new(files.read(model)?, &program.models)).collect()
 }
 
 /// Runs a golden output again.
-pub(crate) fn check_one<Me: Scenes>(
-    program: &Program<Me>,
-    prepared: &Prepared<'_, Me::Parameters>,
-) -> Result<Agreement, Box<Deviating>> {
+pub(crate) fn check_one(program: &Program, prepared: &Prepared<'_>) -> Result<Agreement, Box<Deviating>> {
     let Golden { files, record, samples } = &prepared.golden;
-    let (judged, differences) = match prepared.run::<Me>() {
+    let (judged, differences) = match prepared.run() {
         Ok(run) => differences(record, samples, &run),
         Err(fault) => (Vec::new(), vec![Difference::NoRun(fault)]),
     };
@@ -119,8 +116,15 @@ pub(crate) fn check_one<Me: Scenes>(
 /// # Errors
 /// [`GoldenError::Deviates`] with all that differs; else what makes the folder no one of golden outputs of `Me`.
 pub fn check<Me: Scenes>(folder: impl AsRef<Path>) -> Result<(), GoldenError> {
-    let program = Program::<Me>::new();
-    let all = prepare(&program, folder.as_ref(), &[])?;
-    let deviating: Vec<_> = all.iter().filter_map(|prepared| check_one(&program, prepared).err()).collect();
+    check_of(&Program::of::<Me>(), folder)
+}
+
+/// The same of a program that there is, of which nothing is compiled once more.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_of(program: &Program, folder: impl AsRef<Path>) -> Result<(), GoldenError> {
+    let all = prepare(program, folder.as_ref(), &[])?;
+    let deviating: Vec<_> = all.iter().filter_map(|prepared| check_one(program, prepared).err()).collect();
     if deviating.is_empty() { Ok(()) } else { Err(GoldenError::Deviates(deviating)) }
 }

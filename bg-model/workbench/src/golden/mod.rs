@@ -29,7 +29,7 @@ use std::path::PathBuf;
 use bg_model::simulation::Recording;
 use thiserror::Error;
 
-pub use check::{Agreement, Deviating, check};
+pub use check::{Agreement, Deviating, check, check_of};
 pub(crate) use check::{check_one, prepare};
 pub use counts::Counts;
 pub use difference::Difference;

@@ -6,15 +6,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Component, Path};
 
-use bg_model::parameters::Parameters;
 use bg_model::run::Trajectory;
 
 use super::GoldenError;
 use super::counts::Counts;
 use super::file::{Files, Record, Tolerances, tolerances};
-use super::{VERSION, renewal, size};
+use super::{VERSION, size};
 use crate::files::{FileError, check_is_no_file, whole};
 use crate::inputs::Named;
+use crate::parameters::Values;
 use crate::request::Integration;
 
 /// A place for a golden output, which can be written.
@@ -51,15 +51,14 @@ impl Place {
 
     /// Writes `run`, which is what `scene` gives when it is integrated so with these inputs and parameters. Gives one
     /// line on what is recorded.
-    pub fn write<P: Parameters>(
+    pub fn write(
         self,
         scene: &str,
         (inputs, named): (&[String], &[Named]),
         integration: Integration,
-        parameters: &P,
+        parameters: &Values,
         run: &Trajectory,
     ) -> Result<String, FileError> {
-        let changed = renewal::changed(parameters).into_iter();
         let record = Record {
             model: self.model.to_owned(),
             version: VERSION.to_owned(),
@@ -67,7 +66,7 @@ impl Place {
             inputs: inputs.to_vec(),
             input_files: files(named),
             run: integration,
-            parameters: changed.map(|(name, value)| (name.to_owned(), value)).collect(),
+            parameters: parameters.changed().map(|(info, value)| (info.name.to_owned(), value)).collect(),
             counts: Counts::from(&run.statistics),
             tolerances: tolerances(&run.columns, &self.known),
         };

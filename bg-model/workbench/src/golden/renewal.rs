@@ -2,27 +2,19 @@
 
 use std::path::Path;
 
-use bg_model::parameters::Parameters;
-
 use super::FOLDER;
 use super::file::Golden;
-use crate::parameters::number;
+use crate::parameters::{Values, number};
 use crate::request::Integration;
 
-/// The parameters that differ from their defaults.
-pub(crate) fn changed<P: Parameters>(values: &P) -> Vec<(&'static str, f64)> {
-    let values = P::table().iter().enumerate().map(|(index, info)| (info, values.value(index)));
-    values.filter(|(info, value)| *value != info.default).map(|(info, value)| (info.name, value)).collect()
-}
-
 /// The command of the program called `program` that records `golden` anew with these parameters.
-pub(super) fn command<P: Parameters>(program: &str, golden: &Golden, parameters: &P) -> String {
+pub(super) fn command(program: &str, golden: &Golden, parameters: &Values) -> String {
     let scene = golden.record.scene.as_str();
     let Integration { t_end, step, method, rtol, atol, fixed_step } = golden.record.run;
     let mut words: Vec<String> = [program, "golden", "record", "--scene", scene].map(str::to_owned).to_vec();
     let mut option = |name: &str, value: String| words.extend([format!("--{name}"), value]);
-    for (name, value) in changed(parameters) {
-        option("set", format!("{name}={}", number(value)));
+    for (info, value) in parameters.changed() {
+        option("set", format!("{}={}", info.name, number(value)));
     }
     for input in &golden.record.inputs {
         option("input", input.clone());

@@ -3,17 +3,15 @@
 //! In: what was recorded, and the mechanism of now. Out: the run that the record asks for, or why there is none.
 
 use bg_model::input::Input;
-use bg_model::mechanism::Scenes;
-use bg_model::parameters::Parameters;
 use bg_model::run::{Request, RunError, Trajectory};
 use thiserror::Error;
 
 use super::file::Golden;
 use super::{GoldenError, record};
 use crate::inputs;
-use crate::machine::{MachineError, Making};
-use crate::parameters::{Chosen, set};
-use crate::scenes::Scene;
+use crate::machine::MachineError;
+use crate::parameters::{Chosen, Values, set};
+use crate::scenes::{Models, Scene};
 
 /// A run that cannot be made any more.
 #[derive(Debug, Error)]
@@ -26,25 +24,24 @@ pub enum RunFault {
     Run(#[from] RunError),
 }
 
-/// A golden output that fits the mechanism with the parameters `P`.
-#[derive(Debug)]
-pub(crate) struct Prepared<'a, P> {
+/// A golden output that fits the mechanism.
+pub(crate) struct Prepared<'a> {
     pub golden: Golden,
-    pub parameters: P,
+    pub parameters: Values,
     inputs: Vec<Input>,
     scene: &'a Scene,
-    scenes: &'a [Scene],
+    models: &'a Models,
     request: Request,
 }
 
-impl<'a, P: Parameters> Prepared<'a, P> {
-    /// Looks whether the mechanism with these scenes has what the record names.
-    pub fn new(golden: Golden, scenes: &'a [Scene]) -> Result<Self, GoldenError> {
+impl<'a> Prepared<'a> {
+    /// Looks whether the mechanism with these models has what the record names.
+    pub fn new(golden: Golden, models: &'a Models) -> Result<Self, GoldenError> {
         let path = golden.files.toml();
         let record = &golden.record;
         let unknown = || GoldenError::Scene { path: path.clone(), scene: record.scene.clone() };
-        let scene = scenes.iter().find(|scene| scene.name == record.scene).ok_or_else(unknown)?;
-        let mut chosen = Chosen::<P>::default();
+        let scene = models.named(&record.scene).ok_or_else(unknown)?;
+        let mut chosen = Chosen::new(models.graph().description.parameters);
         let place = path.display().to_string();
         for (name, value) in &record.parameters {
             set(&mut chosen, &place, name, *value)?;
@@ -58,13 +55,12 @@ impl<'a, P: Parameters> Prepared<'a, P> {
         if let Some((input, _)) = other {
             return Err(GoldenError::InputFile { path, input: input.clone() });
         }
-        Ok(Self { parameters: chosen.values, inputs, scene, scenes, request, golden })
+        Ok(Self { parameters: chosen.values, inputs, scene, models, request, golden })
     }
 
     /// Makes the run.
-    pub fn run<Me: Scenes<Parameters = P>>(&self) -> Result<Trajectory, RunFault> {
-        let Self { parameters, inputs, scene, scenes, request, .. } = self;
-        let machine = Making { scene, scenes, values: parameters, inputs }.made::<Me>()?;
-        Ok(machine.run(request.clone(), None, &mut |_| ())?)
+    pub fn run(&self) -> Result<Trajectory, RunFault> {
+        let machine = self.models.made(self.scene, &self.parameters, &self.inputs)?;
+        Ok(machine.run(self.request.clone(), None, &mut |_| ())?)
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! Compiled for WebAssembly a program has the modules below and no others: no command line, no files, no figures. Of
 //! the mechanism's scenes it has the one whose number the variable `BG_LIVE_MODEL` says at its build, as
-//! [`Scenes::only`] counts them.
+//! [`Scenes::only`](bg_model::mechanism::Scenes::only) counts them.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod module;
@@ -15,8 +15,7 @@ use std::collections::BTreeMap;
 
 use bg_model::description::{Description, ParameterInfo};
 use bg_model::input::{Input, TableError};
-use bg_model::mechanism::Scenes;
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::parameters::ParameterError;
 use bg_model::run::{RunError, sample_times};
 use bg_model::simulation::{MissingColumn, Part};
 use serde::{Deserialize, Serialize};
@@ -25,7 +24,7 @@ use thiserror::Error;
 use crate::Program;
 use crate::extras::Extras;
 use crate::inputs::{Named, Setting, named};
-use crate::machine::{Machine, MachineError, Making};
+use crate::machine::MachineError;
 use crate::page::film::Film;
 use crate::page::{Balance, Bonds, Data};
 use crate::parameters::number;
@@ -115,33 +114,17 @@ struct Shown {
 /// The line of the summary that only a clock can tell.
 const WALL_TIME: &str = "wall time";
 
-/// The answer to the order `text`, JSON both.
+/// The answer to the order `text`, JSON both. In WebAssembly there is an answer for the one scene that the module is
+/// built for.
 #[must_use]
-pub fn answer<Me: Scenes>(program: &Program<Me>, text: &str) -> String {
-    told(serde_json::from_str(text).map_err(Refusal::from).and_then(|order: Order| {
-        let scene = program.scenes.iter().find(|scene| scene.name == order.scene);
-        let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
-        shown_of(program, scene, &order, |making| making.made::<Me>())
-    }))
+pub fn answer(program: &Program, text: &str) -> String {
+    told(serde_json::from_str(text).map_err(Refusal::from).and_then(|order: Order| shown_of(program, &order)))
 }
 
-/// Registers what answers a page, for the one scene that the module is built for.
+/// Registers what answers a page.
 #[cfg(target_arch = "wasm32")]
-pub(crate) fn register<Me: Scenes>(program: Program<Me>) {
-    const MODEL: usize = match option_env!("BG_LIVE_MODEL") {
-        Some(text) => match usize::from_str_radix(text, 10) {
-            Ok(index) => index,
-            Err(_) => panic!("BG_LIVE_MODEL is the number of a scene"),
-        },
-        None => 0,
-    };
-    bg_live::register(move |text| {
-        told(serde_json::from_str(text).map_err(Refusal::from).and_then(|order: Order| {
-            let scene = program.scenes.iter().find(|scene| scene.index == MODEL && scene.name == order.scene);
-            let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
-            shown_of(&program, scene, &order, |making| Me::only::<MODEL, _>(making))
-        }))
-    });
+pub(crate) fn register(program: Program) {
+    bg_live::register(move |text| answer(&program, text));
 }
 
 fn told(outcome: Result<Shown, Refusal>) -> String {
@@ -152,26 +135,25 @@ fn told(outcome: Result<Shown, Refusal>) -> String {
     serde_json::to_string(&answer).expect("an answer has text keys only")
 }
 
-/// Runs a scene as it is asked for, whose model `made` makes.
-fn shown_of<Me: Scenes>(
-    program: &Program<Me>,
-    scene: &Scene,
-    order: &Order,
-    made: impl FnOnce(Making<'_, Me::Parameters>) -> Result<Box<dyn Machine>, MachineError>,
-) -> Result<Shown, Refusal> {
-    let mut values = Me::Parameters::default();
+/// Runs a scene as it is asked for.
+fn shown_of(program: &Program, order: &Order) -> Result<Shown, Refusal> {
+    let models = &program.models;
+    let scene = models.named(&order.scene);
+    #[cfg(target_arch = "wasm32")]
+    let scene = scene.filter(|scene| scene.index == crate::compiled::MODEL);
+    let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
+    let mut values = models.defaults();
     order.parameters.iter().try_for_each(|(name, value)| values.set(name, *value))?;
     let inputs: Vec<Input> = order.inputs.iter().map(Setting::input).collect::<Result<_, _>>()?;
-    let machine = made(Making { scene, scenes: &program.scenes, values: &values, inputs: &inputs })?;
+    let machine = models.made(scene, &values, &inputs)?;
     let Integration { t_end, step, .. } = order.integration;
     let t0 = order.begin.time();
     let mut request = order.integration.request(t0, Some(program.extras.finest(t_end)))?;
     request.parts.push(Part::Shown);
     let from = order.begin.state(&*machine)?;
     let outcome = follow(&*machine, request, from.as_ref(), |_| ())?;
-    let table = Me::Parameters::table().iter().enumerate();
-    let changed = changed(table.map(|(index, info)| (info, values.value(index))));
-    let inputs = named(&order.inputs, Me::describe().inputs);
+    let changed = changed(values.all());
+    let inputs = named(&order.inputs, models.graph().description.inputs);
     Ok(shown(&*program.extras, scene, outcome, &sample_times(t0, step, t_end), (changed, inputs))?)
 }
 

@@ -1,17 +1,14 @@
 //! What is measured: a scene with parameters and the solution that it is held against.
 
-use std::marker::PhantomData;
-
 use bg_model::extended::Accuracy;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::parameters::ParameterError;
 use bg_model::run::sample_times;
 use bg_model::simulation::Recording;
 use thiserror::Error;
 
-use super::reference::{self, ReferenceError};
-use crate::machine::{Machine, MachineError, Making};
-use crate::scenes::{Fixed, Scene, own_parameters};
+use super::reference::ReferenceError;
+use crate::machine::{Absent, Machine, MachineError};
+use crate::scenes::{Fixed, Models, Scene};
 
 /// A case.
 #[derive(Clone, Debug)]
@@ -35,19 +32,9 @@ pub struct Case {
 pub enum CaseSolution {
     /// It is stored.
     Stored(fn() -> Recording),
-    /// It is computed, of the case with its scene among these.
-    Computed(fn(&Case, &[Scene]) -> Result<Recording, CaseError>),
-}
-
-impl CaseSolution {
-    /// It is computed in double-double arithmetic at a hundred instants, for which each model of `Me` is compiled once
-    /// more.
-    #[must_use]
-    pub fn computed<Me: Scenes>() -> Self {
-        Self::Computed(|case, scenes| {
-            Me::model(case.scene(scenes).index, Solve::<Me> { case, scenes, of: PhantomData })
-        })
-    }
+    /// It is computed, in double-double arithmetic at a hundred instants, of what has
+    /// [`Machine::solution`](crate::machine::Machine::solution).
+    Computed,
 }
 
 /// A case that cannot be built or solved.
@@ -62,6 +49,9 @@ pub enum CaseError {
     /// Its solution.
     #[error("no solution to measure against: {0}")]
     Reference(#[from] ReferenceError),
+    /// None is computed.
+    #[error("no solution to measure against: {0}")]
+    Absent(#[from] Absent),
 }
 
 impl Case {
@@ -89,61 +79,31 @@ impl Case {
         scene.unwrap_or_else(|| panic!("there is no scene `{}`", self.scene))
     }
 
-    /// Its model, `Sc` of the mechanism `Me`.
+    /// Its model, one of `models`.
     ///
     /// # Errors
     /// Parameters that cannot be.
-    pub fn model<Me: Mechanism, Sc: Mechanism>(&self, scenes: &[Scene]) -> Result<Sc, CaseError> {
-        Ok(Sc::make(own_parameters(self.scene(scenes), scenes, &self.values::<Me>()?)?, &[])?)
-    }
-
-    /// The same of the mechanism `Me`, whatever its type.
-    ///
-    /// # Errors
-    /// Parameters that cannot be.
-    pub(crate) fn machine<Me: Scenes>(&self, scenes: &[Scene]) -> Result<Box<dyn Machine>, CaseError> {
-        let values = self.values::<Me>()?;
-        let made = Making { scene: self.scene(scenes), scenes, values: &values, inputs: &[] }.made::<Me>();
-        made.map_err(|fault| match fault {
+    pub(crate) fn machine(&self, models: &Models) -> Result<Box<dyn Machine>, CaseError> {
+        let mut values = models.defaults();
+        self.set.iter().try_for_each(|(name, value)| values.set(name, *value))?;
+        models.made(self.scene(&models.scenes), &values, &[]).map_err(|fault| match fault {
             MachineError::Fixed(fault) => fault.into(),
             MachineError::Parameter(fault) => fault.into(),
         })
-    }
-
-    /// The values of all parameters.
-    fn values<Me: Mechanism>(&self) -> Result<Me::Parameters, ParameterError> {
-        let mut values = Me::Parameters::default();
-        self.set.iter().try_for_each(|(name, value)| values.set(name, *value))?;
-        Ok(values)
     }
 
     /// Its solution.
     ///
     /// # Errors
     /// A computation that fails.
-    pub fn solve(&self, scenes: &[Scene]) -> Result<Recording, CaseError> {
-        match self.solution {
-            CaseSolution::Stored(stored) => Ok(stored()),
-            CaseSolution::Computed(computed) => computed(self, scenes),
-        }
-    }
-}
-
-struct Solve<'a, Me> {
-    case: &'a Case,
-    scenes: &'a [Scene],
-    of: PhantomData<Me>,
-}
-
-impl<Me: Mechanism> MechanismVisitor for Solve<'_, Me> {
-    type Output = Result<Recording, CaseError>;
-
-    fn visit<Sc: Mechanism>(self) -> Self::Output {
+    pub fn solve(&self, models: &Models) -> Result<Recording, CaseError> {
         /// Two digits beyond what a run in double precision can show.
         const ACCURACY: Accuracy = Accuracy { columns: 10, tolerance: 1e-18 };
-        let Self { case, scenes, .. } = self;
-        let model: Sc = case.model::<Me, Sc>(scenes)?;
-        let instants = sample_times(0.0, case.t_end / 100.0, case.t_end);
-        Ok(reference::solve(&model, ACCURACY, &instants, |_| true)?.samples)
+        if let CaseSolution::Stored(stored) = self.solution {
+            return Ok(stored());
+        }
+        let machine = self.machine(models)?;
+        let instants = sample_times(0.0, self.t_end / 100.0, self.t_end);
+        Ok(machine.known("reference solutions", machine.solution(ACCURACY, &instants))??.samples)
     }
 }

@@ -4,7 +4,6 @@
 //! the run with the outputs at the reference's instants, without the building of the model.
 
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::Scenes;
 use bg_model::run::{Request, RunError, Trajectory};
 use bg_model::simulation::{Recording, Samples};
 use bg_model::statistics::Statistics;
@@ -15,7 +14,7 @@ use super::case::{Case, CaseError};
 use super::errors::{Errors, Incomparable};
 use crate::machine::Machine;
 use crate::running::{Outcome, follow};
-use crate::scenes::Scene;
+use crate::scenes::Models;
 
 /// How exact a run is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,21 +114,21 @@ const ENOUGH: f64 = 2.0;
 ///
 /// # Errors
 /// The case cannot be built; a run that fails is no error here.
-pub fn measure<Me: Scenes>(
+pub fn measure(
     case: &Case,
-    scenes: &[Scene],
+    models: &Models,
     integrator: Integrator,
     setting: Setting,
     repeats: usize,
     reference: &Recording,
 ) -> Result<Entry, MeasureError> {
     let repeats = repeats.max(1);
-    let scene = case.scene(scenes);
+    let scene = case.scene(&models.scenes);
     let request = request(integrator, setting, reference);
     let mut runs = Vec::with_capacity(repeats);
     let mut first = None;
     for _ in 0..repeats {
-        let (run, failure) = once(&*case.machine::<Me>(scenes)?, &request)?;
+        let (run, failure) = once(&*case.machine(models)?, &request)?;
         runs.push(run.wall.as_secs_f64());
         first.get_or_insert((run, failure));
         if runs.iter().sum::<f64>() > ENOUGH {

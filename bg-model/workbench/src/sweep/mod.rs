@@ -28,7 +28,6 @@ pub mod wanted;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use bg_model::mechanism::Scenes;
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -124,9 +123,9 @@ pub type Told<'a> = &'a (dyn Fn(usize, usize) -> bool + Sync);
 ///
 /// # Errors
 /// [`SweepError`]. What was written until then stays, and is not made again.
-pub fn sweep<Me: Scenes>(
-    program: &Program<Me>,
-    plan: &Plan<'_, Me::Parameters>,
+pub fn sweep(
+    program: &Program,
+    plan: &Plan<'_>,
     folder: &Folder,
     share: Share,
     threads: usize,
@@ -134,13 +133,13 @@ pub fn sweep<Me: Scenes>(
 ) -> Result<Outcome, SweepError> {
     let job = Job::new(program, plan, folder.recipe());
     let (scene, inputs, request) = (plan.scene, &plan.chosen.inputs[..], &plan.request);
-    let asked = lanes::Asked { scene, scenes: &program.scenes, inputs, request };
-    if let Some(many) = program.lanes.filter(|_| lanes::may_gain(plan)) {
-        let make = |numbers: &[usize]| job.runs_by(numbers, |values| many(asked, values));
+    let asked = runs::Asked { models: &program.models, scene, inputs, request };
+    if program.models.maker().has_lanes() && lanes::may_gain(plan) {
+        let make = |numbers: &[usize]| job.runs_by(numbers, |values| lanes::many(asked, values));
         return all(&job, folder, share, threads, told, (lanes::TOGETHER, &make));
     }
     let begin = &plan.begin;
-    let run = |values: &Vec<f64>| runs::run::<Me>(asked, begin, values);
+    let run = |values: &Vec<f64>| runs::run(asked, begin, values);
     let make = |numbers: &[usize]| job.runs_by(numbers, |values| values.iter().map(run).collect());
     all(&job, folder, share, threads, told, (1, &make))
 }

@@ -8,8 +8,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use bg_model::description::Description;
-use bg_model::mechanism::Scenes;
-use bg_model::parameters::Parameters;
 use bg_model::run::Request;
 use serde::Deserialize;
 use thiserror::Error;
@@ -19,7 +17,7 @@ use super::design::{Axis, Design, DesignError, Interval};
 use super::wanted::{Reduction, Wanted};
 use crate::Program;
 use crate::inputs::{self, InputSettingError, Setting};
-use crate::parameters::{self, Chosen, SettingError, nearest, one_line, place_of};
+use crate::parameters::{self, Chosen, SettingError, Values, nearest, one_line, place_of};
 use crate::request::{Integration, RequestError};
 use crate::running::Begin;
 use crate::scenes::{Fixed, Scene, check_fixed};
@@ -188,7 +186,7 @@ impl Default for Trajectories {
 
 /// A plan, checked.
 #[derive(Debug)]
-pub struct Plan<'a, P> {
+pub struct Plan<'a> {
     /// The file's text.
     pub text: String,
     /// The model.
@@ -200,7 +198,7 @@ pub struct Plan<'a, P> {
     /// Where runs begin.
     pub begin: Begin,
     /// The parameters that are not swept, and the inputs.
-    pub chosen: Chosen<P>,
+    pub chosen: Chosen,
     /// The inputs as they were set.
     pub settings: Vec<Setting>,
     /// The values of the others.
@@ -211,12 +209,12 @@ pub struct Plan<'a, P> {
     pub shard: usize,
 }
 
-impl<'a, P: Parameters> Plan<'a, P> {
+impl<'a> Plan<'a> {
     /// Reads the plan at `path`. Names of files in it are seen from the plan's folder.
     ///
     /// # Errors
     /// [`PlanError`].
-    pub fn read<Me: Scenes<Parameters = P>>(program: &'a Program<Me>, path: &Path) -> Result<Self, PlanError> {
+    pub fn read(program: &'a Program, path: &Path) -> Result<Self, PlanError> {
         let text =
             fs::read_to_string(path).map_err(|source| PlanError::Unreadable { path: path.to_owned(), source })?;
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -227,23 +225,19 @@ impl<'a, P: Parameters> Plan<'a, P> {
     ///
     /// # Errors
     /// [`PlanError`].
-    pub fn parse<Me: Scenes<Parameters = P>>(
-        program: &'a Program<Me>,
-        plan: &str,
-        folder: &Path,
-        text: String,
-    ) -> Result<Self, PlanError> {
+    pub fn parse(program: &'a Program, plan: &str, folder: &Path, text: String) -> Result<Self, PlanError> {
         let file = entries(plan, &text)?;
         let other = |fault: String| PlanError::Other { plan: plan.to_owned(), fault };
         let scene = program.find_scene(file.scene.as_deref()).map_err(other)?;
-        let mut chosen =
-            parameters::merge::<P>(file.params.as_ref().map(|params| folder.join(params)).as_deref(), &[])?;
+        let params = file.params.as_ref().map(|params| folder.join(params));
+        let (graph, scenes) = (program.models.graph().description, &program.models.scenes);
+        let mut chosen = parameters::merge(graph.parameters, params.as_deref(), &[])?;
         parameters::set_from_table(&mut chosen, &format!("{plan}, [set]"), &file.set)?;
-        let settings = inputs(&file.inputs, folder, Me::describe())
+        let settings = inputs(&file.inputs, folder, graph)
             .map_err(|fault| PlanError::Input { plan: plan.to_owned(), fault: Box::new(fault) })?;
         chosen.inputs = inputs::made(&settings);
         let (of, design) = design(&file, plan, folder)?;
-        check_parameters(&design, &chosen, &format!("{plan}, {of}"), scene, &program.scenes)?;
+        check_parameters(&design, &chosen, &format!("{plan}, {of}"), scene, scenes)?;
         if let Some(name) = design.names.iter().find(|name| file.set.contains_key(*name)) {
             return Err(other(format!("`{name}` is both in [set] and swept; take it out of one of them")));
         }
@@ -353,14 +347,14 @@ fn rows(path: &Path) -> Result<(Vec<String>, Vec<f64>), String> {
 }
 
 /// Sets each swept parameter to values that lie around all others, as `run` would.
-fn check_parameters<P: Parameters>(
+fn check_parameters(
     design: &Design,
-    chosen: &Chosen<P>,
+    chosen: &Chosen,
     place: &str,
     scene: &Scene,
     scenes: &[Scene],
 ) -> Result<(), PlanError> {
-    let check = |values: &P, places: &[String]| {
+    let check = |values: &Values, places: &[String]| {
         check_fixed(scene, scenes, values).map_err(|fault| {
             let set = &places[fault.index];
             PlanError::Fixed { place: set.clone(), fault: Box::new(fault) }

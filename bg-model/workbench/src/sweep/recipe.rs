@@ -7,7 +7,6 @@
 use std::path::Path;
 
 use bg_model::description::Description;
-use bg_model::parameters::Parameters;
 use toml::{Table, Value};
 
 use super::plan::Plan;
@@ -29,13 +28,13 @@ pub(super) const OF_SIZES: &str = "by the sizes of the states";
 
 /// The recipe of a sweep by `plan`.
 #[must_use]
-pub fn of<Me, P: Parameters>(program: &Program<Me>, plan: &Plan<'_, P>) -> Table {
+pub fn of(program: &Program, plan: &Plan<'_>) -> Table {
     let Plan { scene, integration, request, begin, chosen, settings, design, wanted, shard, text } = plan;
     let model = scene.description;
     let of_strings = |names: &mut dyn Iterator<Item = String>| Value::Array(names.map(Value::String).collect());
     let values = (0..design.runs).flat_map(|run| design.values(run)).flat_map(f64::to_le_bytes);
-    let base = P::table().iter().enumerate().filter(|(_, info)| !design.names.iter().any(|name| name == info.name));
-    let base = base.map(|(index, info)| (info.name.to_owned(), Value::Float(chosen.values.value(index))));
+    let base = chosen.values.all().filter(|(info, _)| !design.names.iter().any(|name| name == info.name));
+    let base = base.map(|(info, value)| (info.name.to_owned(), Value::Float(value)));
     let inputs = model.inputs.iter().zip(settings).map(|(info, setting)| (info.name.to_owned(), input(setting)));
     let files = model.inputs.iter().zip(settings);
     let files = files.filter_map(|(info, setting)| Some((info.name.to_owned(), Value::String(file(setting)?))));

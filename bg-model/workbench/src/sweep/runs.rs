@@ -6,28 +6,47 @@
 use std::ops::Range;
 
 use bg_model::description::{Description, ParameterInfo};
-use bg_model::mechanism::Scenes;
-use bg_model::parameters::Parameters;
+use bg_model::input::Input;
+use bg_model::run::Request;
 use bg_model::simulation::Recording;
 
 use super::OWN_COLUMNS;
 use super::design::Design;
-use super::lanes::Asked;
 use super::parquet::{Column, Table, Values};
 use super::plan::Plan;
 use super::recipe::OF_SIZES;
 use super::wanted::Wanted;
 use crate::Program;
-use crate::machine::Making;
+use crate::parameters::Values as Parameters;
 use crate::running::{Begin, Outcome, follow};
+use crate::scenes::{Models, Scene};
+
+/// What runs have in common.
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
+    /// The models of the graph.
+    pub models: &'a Models,
+    /// The one that is run.
+    pub scene: &'a Scene,
+    /// The inputs.
+    pub inputs: &'a [Input],
+    /// What is asked of each run.
+    pub request: &'a Request,
+}
+
+impl Asked<'_> {
+    /// These values of all parameters.
+    pub fn all(&self, values: &[f64]) -> Parameters {
+        let mut all = self.models.defaults();
+        values.iter().enumerate().for_each(|(index, value)| all.set_value(index, *value));
+        all
+    }
+}
 
 /// Makes a run that begins there with these values of all parameters, or says why there is none.
-pub fn run<Me: Scenes>(asked: Asked<'_>, begin: &Begin, values: &[f64]) -> Result<Outcome, String> {
-    let Asked { scene, scenes, inputs, request } = asked;
-    let mut all = Me::Parameters::default();
-    values.iter().enumerate().for_each(|(index, value)| all.set_value(index, *value));
-    let making = Making { scene, scenes, values: &all, inputs };
-    let machine = making.made::<Me>().map_err(|fault| fault.to_string())?;
+pub fn run(asked: Asked<'_>, begin: &Begin, values: &[f64]) -> Result<Outcome, String> {
+    let Asked { models, scene, inputs, request } = asked;
+    let machine = models.made(scene, &asked.all(values), inputs).map_err(|fault| fault.to_string())?;
     let from = begin.state(&*machine).map_err(|fault| fault.to_string())?;
     follow(&*machine, request.clone(), from.as_ref(), |_| ()).map_err(|fault| fault.to_string())
 }
@@ -61,11 +80,11 @@ pub struct Job<'a> {
 
 impl<'a> Job<'a> {
     /// The job of `plan`; every file says `recipe`.
-    pub fn new<Me: Scenes>(program: &Program<Me>, plan: &'a Plan<'_, Me::Parameters>, recipe: &str) -> Self {
+    pub fn new(program: &Program, plan: &'a Plan<'_>, recipe: &str) -> Self {
         let Plan { design, wanted, scene, chosen, shard, .. } = plan;
-        let parameters = <Me::Parameters as Parameters>::table();
+        let parameters = chosen.values.table();
         let place = |name: &String| parameters.iter().position(|info| info.name == name).expect("a plan was checked");
-        let base = chosen.values.values();
+        let base = chosen.values.values().to_vec();
         let swept: Vec<usize> = design.names.iter().map(place).collect();
         let all = parameters.iter().zip(&base).enumerate().filter(|(index, _)| !swept.contains(index));
         let all =

@@ -106,7 +106,7 @@ impl Bench {
     fn golden<Me: Scenes>(&self, words: &[&str]) -> ExitCode {
         let folder = self.folder();
         let words = [&["slide", "golden"], words, &["--out", folder.to_str().unwrap()]].concat();
-        Program::<Me>::new().main(words.into_iter().map(Into::into))
+        Program::of::<Me>().main(words.into_iter().map(Into::into))
     }
 
     /// Records 1 s with samples every 0.1 s under the scene's name.
@@ -444,6 +444,6 @@ fn a_place_that_cannot_be_written_is_refused_before_the_run() {
     assert_eq!(fs::read_to_string(bench.folder()).unwrap(), "a file");
     assert!(bench.fault::<now::Slide>().starts_with("cannot read DIR: "));
     let words = ["slide", "golden", "record", "--out", "/proc/golden"].map(Into::into);
-    assert_eq!(Program::<now::Slide>::new().main(words), ExitCode::from(2));
+    assert_eq!(Program::of::<now::Slide>().main(words), ExitCode::from(2));
     assert!(!Path::new("/proc/golden").exists());
 }

@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use bg_model::bond_graph;
-use bg_workbench::Program;
 use bg_workbench::sweep::folder::Folder;
 use bg_workbench::sweep::plan::Plan;
 use bg_workbench::sweep::{Outcome, Share, recipe, sweep};
+use bg_workbench::{Compiled, Program};
 
 bond_graph! {
     /// A block on a spring, whose contact resists its two directions differently. It knows no speed above a limit.
@@ -42,8 +42,12 @@ limit = { from = 2.0, to = 9.0 }
 x = ["max", "final", "integral"]
 "#;
 
+fn in_lanes() -> Program {
+    Program::with(Compiled::<Block>::new().lanes())
+}
+
 /// Makes the sweep of `plan` on so many threads; gives its files with their bytes.
-fn made(program: &Program<Block>, plan: &str, threads: usize) -> (Outcome, BTreeMap<String, Vec<u8>>) {
+fn made(program: &Program, plan: &str, threads: usize) -> (Outcome, BTreeMap<String, Vec<u8>>) {
     let folder = tempfile::tempdir().unwrap();
     let plan = Plan::parse(program, "plan.toml", Path::new(""), plan.to_owned()).unwrap();
     let claimed = Folder::claim(folder.path(), &recipe::of(program, &plan)).unwrap();
@@ -57,10 +61,10 @@ fn made(program: &Program<Block>, plan: &str, threads: usize) -> (Outcome, BTree
 #[test]
 fn files_are_those_of_runs_made_one_by_one() {
     for plan in [PLAN.to_owned(), format!("scene = \"place\"\n{PLAN}")] {
-        let (alone, expected) = made(&Program::new(), &plan, 1);
+        let (alone, expected) = made(&Program::of::<Block>(), &plan, 1);
         assert!(expected.len() == 9 && alone.runs == 120 && alone.failed > 5 && alone.failed < 100, "{alone:?}");
         for threads in [1, 2] {
-            let (together, files) = made(&Program::new().lanes(), &plan, threads);
+            let (together, files) = made(&in_lanes(), &plan, threads);
             assert_eq!(together, alone);
             assert!(files == expected, "{threads}");
         }
@@ -70,8 +74,7 @@ fn files_are_those_of_runs_made_one_by_one() {
 #[test]
 fn runs_without_a_model_have_their_reasons() {
     let plan = PLAN.replace("mass = { from = 0.5", "unit = { from = -1.0");
-    let ((alone, expected), (together, files)) =
-        (made(&Program::new(), &plan, 1), made(&Program::new().lanes(), &plan, 1));
+    let ((alone, expected), (together, files)) = (made(&Program::of::<Block>(), &plan, 1), made(&in_lanes(), &plan, 1));
     assert!(together == alone && alone.failed > 20, "{alone:?}");
     assert!(files == expected);
 }

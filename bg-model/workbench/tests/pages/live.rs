@@ -33,7 +33,7 @@ fn order(length: f64) -> String {
 }
 
 fn native(order: &str) -> String {
-    live::answer(&Program::<Pendulum>::new(), order)
+    live::answer(&Program::of::<Pendulum>(), order)
 }
 
 fn parsed(answer: &str) -> Value {
@@ -97,7 +97,7 @@ fn an_answer_names_the_inputs_as_the_report_does() {
     let table = json!({ "times": [0.0, 1.0], "values": [4.0, 6.0], "cubic": false,
         "source": { "file": "load.csv", "column": null, "crc32": "0a1b2c3d" } });
     let order = order(0.8).replace("\"length\":0.8", "").replace("\"inputs\":[]", &format!("\"inputs\":[{table}]"));
-    let answer = parsed(&live::answer(&Program::<Pushed>::new(), &order));
+    let answer = parsed(&live::answer(&Program::of::<Pushed>(), &order));
     let lines = answer["lines"].as_array().unwrap_or_else(|| panic!("{answer}"));
     let expected = [
         json!(["input", "force = load.csv: 2 rows from 0 to 1 s, CRC-32 0a1b2c3d"]),

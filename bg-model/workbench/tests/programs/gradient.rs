@@ -109,6 +109,6 @@ fn what_cannot_be_asked_is_told() {
     assert!(fault.contains("--of"), "{fault}");
     let other = program("pendulum").current_dir(directory).args(["gradient", "--of", "x"]).output().unwrap();
     let fault = refused(&other);
-    assert!(fault.contains("asks for it by `Program::gradients()`"), "{fault}");
+    assert!(fault.contains("asks for it by `Compiled::gradients()`"), "{fault}");
     assert!(!directory.join("out").exists());
 }
