@@ -4,6 +4,7 @@
 mod texts;
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use bg_loaded::{Blueprint, Graph, Interpreted, load};
 use bg_model::dynamics::{Machine, branches};
@@ -17,7 +18,7 @@ use bg_model::simulation::Samples;
 use bond_graph_tests::each_example;
 
 /// A model of a text with the values and inputs of `of`.
-fn interpreted(blueprint: &Rc<Blueprint>, values: &[f64], inputs: &[Input]) -> Rc<dyn Machine> {
+fn interpreted(blueprint: &Arc<Blueprint>, values: &[f64], inputs: &[Input]) -> Rc<dyn Machine> {
     Rc::new(Interpreted::<f64>::new(blueprint, values, inputs).expect("the compiled model takes the same values"))
 }
 

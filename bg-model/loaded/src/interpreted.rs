@@ -4,7 +4,7 @@
 //! scalar, with the bits of generated code.
 
 use std::cell::RefCell;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use bg_compiler::expr::Symbol;
 use bg_model::description::Description;
@@ -22,7 +22,7 @@ use crate::code::{Code, Row};
 /// A model with its parameters and inputs, calculating in `S`.
 #[derive(Debug)]
 pub struct Interpreted<S: Scalar = f64> {
-    pub(crate) blueprint: Rc<Blueprint>,
+    pub(crate) blueprint: Arc<Blueprint>,
     pub(crate) parameters: Vec<f64>,
     pub(crate) values: Vec<S>,
     pub(crate) inputs: Vec<Input>,
@@ -89,7 +89,7 @@ impl<S: Scalar> Interpreted<S> {
     ///
     /// # Panics
     /// There is no value for a parameter.
-    pub fn new(blueprint: &Rc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> Result<Self, ParameterError> {
+    pub fn new(blueprint: &Arc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> Result<Self, ParameterError> {
         Self::lifted(blueprint, parameters.iter().copied().map(S::from_f64).collect(), inputs)
     }
 
@@ -100,7 +100,7 @@ impl<S: Scalar> Interpreted<S> {
     ///
     /// # Panics
     /// As [`Interpreted::new`].
-    pub fn lifted(blueprint: &Rc<Blueprint>, values: Vec<S>, inputs: &[Input]) -> Result<Self, ParameterError> {
+    pub fn lifted(blueprint: &Arc<Blueprint>, values: Vec<S>, inputs: &[Input]) -> Result<Self, ParameterError> {
         let parameters: Vec<f64> = values.iter().copied().map(S::to_f64).collect();
         let Description { parameters: table, inputs: named, .. } = blueprint.description();
         table.iter().zip(&parameters).try_for_each(|(info, &value)| info.check(value))?;
@@ -113,7 +113,7 @@ impl<S: Scalar> Interpreted<S> {
     }
 
     fn made(
-        blueprint: &Rc<Blueprint>,
+        blueprint: &Arc<Blueprint>,
         parameters: Vec<f64>,
         values: Vec<S>,
         inputs: Vec<Input>,
@@ -121,7 +121,7 @@ impl<S: Scalar> Interpreted<S> {
     ) -> Self {
         let constants = table(&blueprint.programs.constants, &values, &decided);
         let rows = Rows::of(&blueprint.programs, &constants, |program| table(program, &values, &decided));
-        Self { blueprint: Rc::clone(blueprint), parameters, values, inputs, decided, constants, rows }
+        Self { blueprint: Arc::clone(blueprint), parameters, values, inputs, decided, constants, rows }
     }
 
     /// The model in another scalar.
@@ -207,7 +207,7 @@ impl<S: Scalar> Interpreted<S> {
 }
 
 /// What the start pose of a model decides.
-fn decide(blueprint: &Rc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> Decided {
+fn decide(blueprint: &Arc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> Decided {
     let mut decided =
         Decided { kept: vec![1.0; blueprint.closing_rows], sides: vec![1.0; blueprint.statics.start.sides] };
     let made = |decided: &Decided| {

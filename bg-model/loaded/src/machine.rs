@@ -3,6 +3,7 @@
 //! In: an [`Interpreted`] model. Out: [`Dynamics`], [`Machine`] and [`Starting`] for it, in any scalar.
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use bg_model::assembly::AssemblyError;
 use bg_model::capability::{Operations, SeriesSize};
@@ -14,8 +15,10 @@ use bg_model::holding::{Held, Redundancy, Stops};
 use bg_model::input::{Input, next_break};
 use bg_model::linear::Sparsity;
 use bg_model::linear::table::{eliminate, substitute};
+use bg_model::mechanism::Differentiable;
 use bg_model::nalgebra::Complex;
-use bg_model::scalar::Scalar;
+use bg_model::parameters::ParameterError;
+use bg_model::scalar::{Gradient, Scalar};
 use bg_model::start::{StartRoutine, StartTable, Starting, redundant, start};
 use bg_model::system::Powers;
 
@@ -310,5 +313,23 @@ impl<S: Scalar> Starting<S> for Interpreted<S> {
 
     fn in_scalars(&self, routine: StartRoutine, unknowns: &[S]) -> Vec<S> {
         self.of_start(routine, &self.values, unknowns)
+    }
+}
+
+impl Differentiable for Interpreted {
+    fn description(&self) -> &'static Description {
+        self.blueprint.statics.description
+    }
+
+    fn inputs(&self) -> Vec<Input> {
+        self.inputs.clone()
+    }
+
+    fn machine(&self) -> Rc<dyn Machine> {
+        Rc::new(self.in_scalar::<f64>())
+    }
+
+    fn sloped(&self, inputs: &[Input]) -> Result<Rc<dyn Machine<Gradient>>, ParameterError> {
+        Ok(Rc::new(Interpreted::<Gradient>::new(&self.blueprint, &self.parameters, inputs)?))
     }
 }

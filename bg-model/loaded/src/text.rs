@@ -3,7 +3,7 @@
 //! In: text in the language of the macro. Out: the models of its graphs, or all faults at their places.
 
 use std::fmt;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use bg_compiler::pipeline;
 use bg_compiler::source::{part, syntax};
@@ -26,7 +26,7 @@ pub struct Graph {
 #[derive(Clone, Debug)]
 pub struct Model {
     /// What it is made of.
-    pub blueprint: Rc<Blueprint>,
+    pub blueprint: Arc<Blueprint>,
 }
 
 /// What is wrong with a text, and where.
@@ -77,7 +77,7 @@ pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
     let compiled = pipeline::models(&source).map_err(of_stage)?;
     let mut graphs: Vec<Graph> = Vec::new();
     for model in &compiled {
-        let own = Model { blueprint: Rc::new(Blueprint::of(model)) };
+        let own = Model { blueprint: Arc::new(Blueprint::of(model)) };
         match graphs.last_mut().filter(|_| !model.stands_for_graph()) {
             Some(graph) => graph.models.push(own),
             None => graphs.push(Graph {

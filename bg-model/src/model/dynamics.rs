@@ -289,12 +289,17 @@ where
     }
 }
 
-/// A borrowed system in any scalar, as far as starts and reactions ask for it. Its functions are those that calculate
-/// with one number at a time, and hand over copies.
+/// A system or model in any scalar, borrowed or held by `H`, as starts, reactions and studies ask for it. Its functions
+/// are those that calculate with one number at a time, and hand over copies.
 #[derive(Clone, Copy, Debug)]
-pub struct Over<'a, Sys, const N: usize, const G: usize>(pub &'a Sys);
+pub struct Over<H, const N: usize, const G: usize, const M: usize>(pub H);
 
-impl<S: Scalar, Sys: System<S, N, G>, const N: usize, const G: usize> Dynamics<S> for Over<'_, Sys, N, G> {
+impl<S, H, const N: usize, const G: usize, const M: usize> Dynamics<S> for Over<H, N, G, M>
+where
+    S: Scalar,
+    H: Deref,
+    H::Target: System<S, N, G> + Sized,
+{
     fn states(&self) -> usize {
         N
     }
@@ -349,6 +354,51 @@ impl<S: Scalar, Sys: System<S, N, G>, const N: usize, const G: usize> Dynamics<S
         let energy = storages.energy(t, &SVector::from_column_slice(x), &each(negative), &mut values);
         curvatures.copy_from_slice(values.as_slice());
         energy
+    }
+}
+
+impl<S, H, const N: usize, const G: usize, const M: usize> Machine<S> for Over<H, N, G, M>
+where
+    S: Scalar,
+    H: Deref,
+    H::Target: Model<S, N, G, M> + Sized,
+{
+    fn description(&self) -> &'static Description {
+        self.0.description()
+    }
+
+    fn start(&self) -> Result<Vec<S>, AssemblyError> {
+        Ok(self.0.start()?.as_slice().to_vec())
+    }
+
+    fn redundant(&self) -> Vec<Redundancy> {
+        self.0.redundant()
+    }
+
+    fn decided(&self) -> Vec<f64> {
+        self.0.decided()
+    }
+
+    fn impulse_energy(&self) -> Result<S, AssemblyError> {
+        self.0.impulse_energy()
+    }
+
+    fn outputs(&self, t: S, x: &[S], negative: &[S::Switch], y: &mut [S]) {
+        let mut outputs = SVector::from_column_slice(y);
+        self.0.outputs(t, &SVector::from_column_slice(x), &each(negative), &mut outputs);
+        y.copy_from_slice(outputs.as_slice());
+    }
+
+    fn stored_energy(&self, t: S, x: &[S], negative: &[S::Switch]) -> S {
+        self.0.stored_energy(t, &SVector::from_column_slice(x), &each(negative))
+    }
+
+    fn shown(&self, t: f64, x: &[f64], negative: &[bool], shown: &mut Vec<f64>) {
+        self.0.shown(t, &SVector::from_column_slice(x), &each(negative), shown);
+    }
+
+    fn powers(&self, t: S, x: &[S], negative: &[S::Switch]) -> Powers<S> {
+        self.0.powers(t, &SVector::from_column_slice(x), &each(negative))
     }
 }
 

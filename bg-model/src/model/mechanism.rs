@@ -7,10 +7,10 @@ use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use crate::model::description::Description;
-use crate::model::dynamics::{Machine, shared};
+use crate::model::dynamics::{Machine, Over, shared};
 use crate::model::input::Input;
 use crate::model::parameters::{ParameterError, Parameters};
-use crate::model::scalar::Scalar;
+use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;
 
 /// A model that `bond_graph!` generated: a graph or one of its scenes.
@@ -44,6 +44,56 @@ pub trait Mechanism: Clone {
 
     /// Hands the model to `visitor`, and with it what makes the same model of parameters in `S`, and that one in `T`.
     fn visit_lifted<S: Scalar, T: Scalar, V: LiftedVisitor<S, T>>(&self, visitor: V) -> V::Output;
+}
+
+/// A model as studies of it ask for it: in doubles, and made anew in numbers with slopes.
+pub trait Differentiable {
+    /// What it consists of.
+    fn description(&self) -> &'static Description;
+
+    /// Its inputs, in the order of its description.
+    fn inputs(&self) -> Vec<Input>;
+
+    /// It in doubles.
+    fn machine(&self) -> Rc<dyn Machine>;
+
+    /// The same with these inputs, in numbers with slopes.
+    ///
+    /// # Errors
+    /// There is none with its parameters.
+    fn sloped(&self, inputs: &[Input]) -> Result<Rc<dyn Machine<Gradient>>, ParameterError>;
+}
+
+impl<Me: Mechanism> Differentiable for Me {
+    fn description(&self) -> &'static Description {
+        Me::describe()
+    }
+
+    fn inputs(&self) -> Vec<Input> {
+        Mechanism::inputs(self)
+    }
+
+    fn machine(&self) -> Rc<dyn Machine> {
+        Mechanism::machine(self)
+    }
+
+    fn sloped(&self, inputs: &[Input]) -> Result<Rc<dyn Machine<Gradient>>, ParameterError> {
+        Ok(Me::make(self.parameters().clone(), inputs)?.visit(Lifted))
+    }
+}
+
+/// Shares a copy of a model in numbers with slopes.
+struct Lifted;
+
+impl ModelVisitor<Gradient> for Lifted {
+    type Output = Rc<dyn Machine<Gradient>>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<Gradient, N, G, M> + Clone + 'static,
+    {
+        Rc::new(Over::<Rc<Mo>, N, G, M>(Rc::new(model.clone())))
+    }
 }
 
 /// Shares a copy of a model.

@@ -7,10 +7,11 @@
 //! Runge-Kutta method. Where joints are rigid, p loses what they hold, as by an impulse, and closes the gaps q by p
 //! such that the flows are -q.
 
+use bg_model::dynamics::{Dynamics, branches};
 use bg_model::nalgebra::{DMatrix, DVector};
 use bg_model::scalar::{Gradient, Scalar};
 
-use super::sloped::Sloped;
+use super::sloped::{held, projected, rates};
 
 /// Singular values below this part of the largest entry are of rows that follow from others.
 const FOLLOWS: f64 = 1e-10;
@@ -30,9 +31,9 @@ pub(super) struct Carry {
 }
 
 /// The state that the move leads to from `x`.
-pub(super) fn carried(model: &dyn Sloped, t: f64, x: &DVector<f64>, carry: &Carry) -> DVector<f64> {
+pub(super) fn carried(model: &dyn Dynamics<Gradient>, t: f64, x: &DVector<f64>, carry: &Carry) -> DVector<f64> {
     let momenta: DVector<f64> = x.zip_map(&mask(&carry.momenta), |value, is| value * is);
-    let negative = model.branches(t, &still(x));
+    let negative = branches(model, t, &still(x));
     let kinematics = Kinematics { model, t: Gradient::from_f64(t), carry, negative };
     let mut place = x - &momenta;
     let gaps = kinematics.gaps(&place);
@@ -50,7 +51,7 @@ pub(super) fn carried(model: &dyn Sloped, t: f64, x: &DVector<f64>, carry: &Carr
 }
 
 struct Kinematics<'a> {
-    model: &'a dyn Sloped,
+    model: &'a dyn Dynamics<Gradient>,
     t: Gradient,
     carry: &'a Carry,
     negative: Vec<bool>,
@@ -60,24 +61,24 @@ impl Kinematics<'_> {
     /// d/ds of all states but momenta, which are zero at `place`.
     fn slope(&self, place: &DVector<f64>, gaps: &DVector<f64>) -> DVector<f64> {
         let mut push = self.carry.push.clone();
-        if let Some(held) = self.model.held(self.t, &along(place, &push), &self.negative) {
+        if let Some(held) = held(self.model, self.t, &along(place, &push), &self.negative) {
             let flows = DVector::from_iterator(held.flows.len(), held.flows.iter().map(|flow| flow.slopes()[0]));
             push -= held.moves * solved(held.matrix, &(flows + gaps));
         }
-        let rates = self.model.rates(self.t, &along(place, &push), &self.negative);
+        let rates = rates(self.model, self.t, &along(place, &push), &self.negative);
         let moved = |state: usize| rates[state].slopes()[0] + self.carry.add[state];
         DVector::from_fn(place.len(), |state, _| if self.carry.stays[state] { 0.0 } else { moved(state) })
     }
 
     /// The gaps of the rigid motions; none without rigid joints.
     fn gaps(&self, place: &DVector<f64>) -> DVector<f64> {
-        let held = self.model.held(self.t, &still(place), &self.negative);
+        let held = held(self.model, self.t, &still(place), &self.negative);
         held.map_or(DVector::zeros(0), |held| held.gaps)
     }
 
     /// The state with momenta that rigid joints allow.
     fn fitting(&self, x: DVector<f64>) -> DVector<f64> {
-        let Some(held) = self.model.held(self.t, &still(&x), &self.negative) else {
+        let Some(held) = held(self.model, self.t, &still(&x), &self.negative) else {
             return x;
         };
         let flows = DVector::from_iterator(held.flows.len(), held.flows.iter().map(|flow| flow.value));
@@ -85,7 +86,7 @@ impl Kinematics<'_> {
     }
 
     fn projected(&self, x: &DVector<f64>) -> DVector<f64> {
-        let projected = self.model.projected(self.t, &still(x), &self.negative);
+        let projected = projected(self.model, self.t, &still(x), &self.negative);
         DVector::from_iterator(x.len(), projected.iter().map(|state| state.value))
     }
 }

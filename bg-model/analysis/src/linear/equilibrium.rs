@@ -10,7 +10,7 @@
 //! unstable, or a force acts along a free direction, pseudo-transient continuation with steps too short to be drawn to
 //! an unstable equilibrium (Kelley and Keyes, SIAM Journal on Numerical Analysis 35, 1998).
 
-use bg_model::mechanism::Mechanism;
+use bg_model::mechanism::Differentiable;
 use bg_model::nalgebra::DVector;
 
 use super::coordinates::{Coordinate, Role};
@@ -61,7 +61,7 @@ impl Equilibrium {
 /// # Errors
 /// [`LinearError::NoEquilibrium`] names what still changes; [`LinearError::NotFinite`] and [`LinearError::BadRate`] a
 /// rate that has no derivative or no value on the way.
-pub fn equilibrium<Me: Mechanism>(mechanism: &Me, t: f64, guess: &[f64]) -> Result<Equilibrium, LinearError> {
+pub fn equilibrium(mechanism: &dyn Differentiable, t: f64, guess: &[f64]) -> Result<Equilibrium, LinearError> {
     found(&Plant::at(mechanism, t, None)?, t, &DVector::from_column_slice(guess))
 }
 

@@ -4,15 +4,18 @@
 //! rounding; the states after a finite move along the kinematics.
 //! Method: numbers with slopes along [`WIDTH`] states at once, and along time for an input whose tangent is 1.
 
+use std::rc::Rc;
+
 use bg_model::description::{Description, StateKind};
+use bg_model::dynamics::{Machine, branches};
 use bg_model::input::Input;
-use bg_model::mechanism::Mechanism;
+use bg_model::mechanism::Differentiable;
 use bg_model::nalgebra::{DMatrix, DVector};
 use bg_model::parameters::ParameterError;
 use bg_model::scalar::{Gradient, Scalar};
 
 use super::carry::{Carry, carried};
-use super::sloped::{Sloped, sloped};
+use super::sloped::look;
 
 /// How many directions a number has slopes along.
 const WIDTH: usize = Gradient::WIDTH;
@@ -43,20 +46,19 @@ pub(super) struct Plant {
     t: f64,
     /// The branches of the switches, where they are known.
     negative: Option<Vec<bool>>,
-    model: Box<dyn Sloped>,
+    model: Rc<dyn Machine<Gradient>>,
     /// The same with a tangent of one unit a second for each input in turn.
-    growing: Vec<Box<dyn Sloped>>,
+    growing: Vec<Rc<dyn Machine<Gradient>>>,
 }
 
 impl Plant {
     /// `mechanism` at time `t` (s). Where its switches are in branches that are not known the signs of their guards
     /// decide.
-    pub fn at<Me: Mechanism>(mechanism: &Me, t: f64, negative: Option<Vec<bool>>) -> Result<Self, ParameterError> {
-        let values: Vec<f64> = mechanism.inputs().iter().map(|input| input.value(t)).collect();
-        let made = |inputs: &[Input]| Ok(sloped(&Me::make(mechanism.parameters().clone(), inputs)?));
-        let growing = (0..values.len()).map(|index| made(&held(&values, Some(index))));
+    pub fn at(model: &dyn Differentiable, t: f64, negative: Option<Vec<bool>>) -> Result<Self, ParameterError> {
+        let values: Vec<f64> = model.inputs().iter().map(|input| input.value(t)).collect();
+        let growing = (0..values.len()).map(|index| model.sloped(&held(&values, Some(index))));
         let growing = growing.collect::<Result<_, ParameterError>>()?;
-        Ok(Self { description: Me::describe(), t, negative, model: made(&held(&values, None))?, growing })
+        Ok(Self { description: model.description(), t, negative, model: model.sloped(&held(&values, None))?, growing })
     }
 
     /// Rates, outputs and derivatives at state `x`.
@@ -64,7 +66,7 @@ impl Plant {
         let time = Gradient::from_f64(self.t);
         let at = along(x, &[]);
         let negative = self.branches(&*self.model, &at);
-        let here = self.model.look(time, &at, &negative);
+        let here = look(&*self.model, time, &at, &negative);
         let states = x.len();
         let mut found = Derivatives {
             rates: DVector::from_iterator(states, here.rates.iter().map(|rate| rate.value)),
@@ -74,7 +76,7 @@ impl Plant {
         };
         let all: Vec<usize> = (0..states).collect();
         for some in all.chunks(WIDTH) {
-            let look = self.model.look(time, &along(x, some), &negative);
+            let look = look(&*self.model, time, &along(x, some), &negative);
             for (l, &state) in some.iter().enumerate() {
                 found.rates_by_state.set_column(state, &slopes(&look.rates, l));
                 found.outputs_by_state.set_column(state, &slopes(&look.outputs, l));
@@ -87,9 +89,9 @@ impl Plant {
     /// Derivatives by the inputs at state `x`.
     pub fn by_inputs(&self, x: &DVector<f64>) -> ByInputs {
         let x = along(x, &[]);
-        let by_time = |model: &dyn Sloped| {
+        let by_time = |model: &dyn Machine<Gradient>| {
             let negative = self.branches(model, &x);
-            let look = model.look(Gradient::new(self.t, [1.0; WIDTH]), &x, &negative);
+            let look = look(model, Gradient::new(self.t, [1.0; WIDTH]), &x, &negative);
             (slopes(&look.rates, 0), slopes(&look.outputs, 0))
         };
         let (rates, outputs) = by_time(&*self.model);
@@ -100,8 +102,8 @@ impl Plant {
         }
     }
 
-    fn branches(&self, model: &dyn Sloped, x: &[Gradient]) -> Vec<bool> {
-        self.negative.clone().unwrap_or_else(|| model.branches(self.t, x))
+    fn branches(&self, model: &dyn Machine<Gradient>, x: &[Gradient]) -> Vec<bool> {
+        self.negative.clone().unwrap_or_else(|| branches(model, self.t, x))
     }
 
     /// The state that a finite move leads to.

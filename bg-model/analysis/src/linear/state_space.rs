@@ -9,7 +9,7 @@
 //! time only; where orientations change there, eigenvalues depend on the coordinates that are taken for them.
 
 use bg_model::description::Description;
-use bg_model::mechanism::Mechanism;
+use bg_model::mechanism::Differentiable;
 use bg_model::nalgebra::{DMatrix, DVector};
 use bg_model::run::State;
 use serde::{Serialize, Serializer};
@@ -81,7 +81,7 @@ pub struct StateSpace {
 ///
 /// # Errors
 /// [`LinearError::NotFinite`], [`LinearError::BadRate`] name a rate without a derivative or a value.
-pub fn linearise<Me: Mechanism>(mechanism: &Me, t: f64, x: &[f64]) -> Result<StateSpace, LinearError> {
+pub fn linearise(mechanism: &dyn Differentiable, t: f64, x: &[f64]) -> Result<StateSpace, LinearError> {
     linearised(&Plant::at(mechanism, t, None)?, t, &DVector::from_column_slice(x))
 }
 
@@ -89,7 +89,7 @@ pub fn linearise<Me: Mechanism>(mechanism: &Me, t: f64, x: &[f64]) -> Result<Sta
 ///
 /// # Errors
 /// As [`linearise`].
-pub fn linearise_at<Me: Mechanism>(mechanism: &Me, state: &State) -> Result<StateSpace, LinearError> {
+pub fn linearise_at(mechanism: &dyn Differentiable, state: &State) -> Result<StateSpace, LinearError> {
     let plant = Plant::at(mechanism, state.t, state.negative())?;
     linearised(&plant, state.t, &DVector::from_vec(state.values()))
 }

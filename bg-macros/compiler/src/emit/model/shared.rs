@@ -119,7 +119,7 @@ impl Emission<'_> {
                 let kept = [1.0; #rows];
                 let all = #made;
                 let kept: [f64; #rows] = ::bg_model::__private::decided(
-                    ::bg_model::__private::kept(&all, &::bg_model::__private::Over::<_, #n, #g>(&all)),
+                    ::bg_model::__private::kept(&all, &::bg_model::__private::Over::<_, #n, #g, 0>(&all)),
                 );
             }
         });
@@ -135,7 +135,7 @@ impl Emission<'_> {
             quote! {
                 fn reactions(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> [S; #count] {
                     let (state, mut reactions) = (x.as_slice(), { #body [#(#reactions),*] });
-                    let over = ::bg_model::__private::Over::<_, #n, #g>(self);
+                    let over = ::bg_model::__private::Over::<_, #n, #g, 0>(self);
                     ::bg_model::__private::share(&over, t, state, negative, &mut reactions);
                     reactions
                 }
@@ -149,7 +149,7 @@ impl Emission<'_> {
         self.where_shared(|_| {
             quote! {
                 fn redundant(&self) -> ::bg_model::__private::vec::Vec<::bg_model::holding::Redundancy> {
-                    ::bg_model::__private::redundant(self, &::bg_model::__private::Over::<_, #n, #g>(self))
+                    ::bg_model::__private::redundant(self, &::bg_model::__private::Over::<_, #n, #g, 0>(self))
                 }
             }
         })

@@ -37,7 +37,7 @@ impl Emission<'_> {
     /// The functions of the trait that give the start, and before them what they are calculated from.
     pub(super) fn start(&self) -> (TokenStream, TokenStream) {
         let Shape { n, g, .. } = &self.shape;
-        let over = quote!(&::bg_model::__private::Over::<_, #n, #g>(self));
+        let over = quote!(&::bg_model::__private::Over::<_, #n, #g, 0>(self));
         let impulse_energy = self.model.programs.holding.as_ref().map(|_| {
             quote! {
                 fn impulse_energy(&self) -> Result<S, ::bg_model::assembly::AssemblyError> {
