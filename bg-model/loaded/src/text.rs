@@ -3,11 +3,12 @@
 //! In: text in the language of the macro. Out: the models of its graphs, or all faults at their places.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 use bg_compiler::pipeline;
 use bg_compiler::source::{part, syntax};
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Span, TokenStream, TokenTree};
 
 use crate::blueprint::Blueprint;
 
@@ -38,15 +39,15 @@ pub struct Fault {
     pub message: String,
     /// What to do about it.
     pub help: String,
-    /// Line from 1 and column from 1, in characters, of its first and behind its last character.
-    pub from: [usize; 2],
-    /// As `from`.
-    pub to: [usize; 2],
+    /// Line and column of its first character, both from 1, the column in characters.
+    pub place: [usize; 2],
+    /// The bytes of the text that it is about.
+    pub bytes: Range<usize>,
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { code, message, help, from: [line, column], .. } = self;
+        let Self { code, message, help, place: [line, column], .. } = self;
         write!(f, "{line}:{column}: ")?;
         if let Some(code) = code {
             write!(f, "[{code}] ")?;
@@ -56,7 +57,8 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The graphs of a text with their models.
+/// The graphs of a text with their models. Of a Rust file the calls of `bond_graph!` outside of functions and modules are
+/// the text.
 ///
 /// # Errors
 /// All faults of the first stage that has any.
@@ -68,7 +70,7 @@ pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
     let of_stage = |faults: Vec<bg_compiler::fault::Fault>| {
         faults.into_iter().map(|fault| at(fault.span, Some(fault.code), fault.message, fault.help)).collect::<Vec<_>>()
     };
-    let source = syntax::parse(tokens).map_err(of_stage)?;
+    let source = syntax::parse(calls(&tokens).unwrap_or(tokens)).map_err(of_stage)?;
     if let Some(path) = part::unasked(&source) {
         let message = format!("the part `{}` stands in no file here", path.name.text);
         let help = "write the part into this file: a text cannot use parts of a Rust crate".to_owned();
@@ -90,7 +92,22 @@ pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
     Ok(graphs)
 }
 
+/// What stands in the calls of the macro, of a text that is a Rust file; none of other texts.
+fn calls(tokens: &TokenStream) -> Option<TokenStream> {
+    let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
+    let call = |tokens: &[TokenTree]| match tokens {
+        [TokenTree::Ident(name), TokenTree::Punct(mark), TokenTree::Group(group)]
+            if name == "bond_graph" && mark.as_char() == '!' =>
+        {
+            Some(group.stream())
+        }
+        _ => None,
+    };
+    let calls: Vec<TokenStream> = tokens.windows(3).filter_map(call).collect();
+    (!calls.is_empty()).then(|| calls.into_iter().collect())
+}
+
 fn at(span: Span, code: Option<&'static str>, message: String, help: String) -> Fault {
-    let [from, to] = [span.start(), span.end()].map(|place| [place.line, place.column + 1]);
-    Fault { code, message, help, from, to }
+    let start = span.start();
+    Fault { code, message, help, place: [start.line, start.column + 1], bytes: span.byte_range() }
 }

@@ -31,6 +31,8 @@ pub(crate) struct Texts {
     pub name: String,
     pub version: String,
     pub about: String,
+    /// The file that has the models, which stands behind each command; none of a compiled program.
+    pub file: Option<String>,
 }
 
 /// The end of a run that is not told another, s.
@@ -54,6 +56,7 @@ impl Program {
             name: in_small_letters(own.description.name),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             about: own.description.doc.split_whitespace().collect::<Vec<_>>().join(" "),
+            file: None,
         };
         Self {
             texts,
@@ -83,6 +86,14 @@ impl Program {
     #[must_use]
     pub fn about(mut self, about: &str) -> Self {
         about.clone_into(&mut self.texts.about);
+        self
+    }
+
+    /// It is called `name`, and its models are those of `file`, which stands behind each command: `NAME run FILE`.
+    #[must_use]
+    pub fn on_file(mut self, name: &str, file: &str) -> Self {
+        name.clone_into(&mut self.texts.name);
+        self.texts.file = Some(file.to_owned());
         self
     }
 

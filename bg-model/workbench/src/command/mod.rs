@@ -182,17 +182,24 @@ fn command(program: &Program) -> clap::Command {
     );
     let texts = &program.texts;
     let command = Cli::command().name(texts.name.clone()).bin_name(texts.name.clone()).version(texts.version.clone());
-    let command = every(command.about(texts.about.clone()).after_help(help.clone()), program);
+    let command = every(command.about(texts.about.clone()).after_help(help.clone()), program, &texts.name);
     let command = command.mut_subcommand("gradient", |gradient| gradient.hide(!program.models.maker().has_gradients()));
     let command = command.mut_subcommand("report", |report| report.after_help(help.clone()));
     command.mut_subcommand("run", |run| run.after_help(help))
 }
 
-/// `command` and all commands below it, each as [`named`] has it.
-fn every(command: clap::Command, program: &Program) -> clap::Command {
+/// `command`, called by `words`, and all commands below it, each as [`named`] has it.
+fn every(command: clap::Command, program: &Program, words: &str) -> clap::Command {
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let command = match &program.texts.file {
+        Some(file) if names.is_empty() => command.override_usage(format!("{words} {file} [OPTIONS]")),
+        _ => command,
+    };
     let command = named(command, program);
-    names.into_iter().fold(command, |command, name| command.mut_subcommand(name, |own| every(own, program)))
+    names.into_iter().fold(command, |command, name| {
+        let words = format!("{words} {name}");
+        command.mut_subcommand(name, |own| every(own, program, &words))
+    })
 }
 
 /// `command` with the names of scenes and cases where it takes any.

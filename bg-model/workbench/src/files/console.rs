@@ -27,6 +27,11 @@ pub fn complain(fault: &impl Display) {
     let _ = writeln!(stderr(), "error: {}", one_line(&fault.to_string()));
 }
 
+/// Says `note` on standard error as one line that begins with `note: `.
+pub fn note(note: &impl Display) {
+    let _ = writeln!(stderr(), "note: {}", one_line(&note.to_string()));
+}
+
 /// `outcome`, where a reader that has gone away is none of the writer's faults.
 pub(super) fn unless_closed(outcome: io::Result<()>) -> io::Result<()> {
     match outcome {

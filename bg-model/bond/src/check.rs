@@ -1,0 +1,49 @@
+//! The command `check`: all faults of files.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use bg_workbench::files::console;
+
+use crate::{faults, file};
+
+/// Says the faults of all files; exit code 1 where there are any, 2 where a file cannot be read.
+pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
+    let mut code = 0;
+    for path in files {
+        let text = match file::read(path) {
+            Ok(text) => text,
+            Err(fault) => {
+                console::complain(&fault);
+                code = 2;
+                continue;
+            }
+        };
+        let told = match file::graphs(&text) {
+            Ok(graphs) if json => drop(graphs),
+            Ok(graphs) => {
+                let names: Vec<String> = graphs
+                    .iter()
+                    .map(|graph| {
+                        let count = graph.models.len();
+                        if count == 1 { graph.name.clone() } else { format!("{} with {count} models", graph.name) }
+                    })
+                    .collect();
+                say(&format!("{}: {}\n", text.name, names.join(", ")), &mut code);
+            }
+            Err(faults) => {
+                code = code.max(1);
+                if json { say(&faults::json(&text, &faults), &mut code) } else { faults::tell(&text, &faults) }
+            }
+        };
+        told
+    }
+    ExitCode::from(code)
+}
+
+fn say(text: &str, code: &mut u8) {
+    if let Err(fault) = console::print(text) {
+        console::complain(&fault);
+        *code = (*code).max(1);
+    }
+}

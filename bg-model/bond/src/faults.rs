@@ -1,0 +1,82 @@
+//! Faults of a text as a reader sees them.
+//!
+//! In: a text and its faults. Out: each with its code, its place in the text and what to do, as rustc shows its own; the
+//! same as JSON, one line each.
+
+use std::io::{IsTerminal, stderr};
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use bg_loaded::Fault;
+use serde::Serialize;
+
+use crate::file::Text;
+
+/// Shows the faults on the error output.
+pub fn tell(text: &Text, faults: &[Fault]) {
+    let renderer = if stderr().is_terminal() { Renderer::styled() } else { Renderer::plain() };
+    for fault in faults {
+        eprintln!("{}\n", shown(text, fault, &renderer));
+    }
+    let count = if faults.len() == 1 { "a fault".to_owned() } else { format!("{} faults", faults.len()) };
+    eprintln!("error: {}: {count}", text.name);
+}
+
+fn shown(text: &Text, fault: &Fault, renderer: &Renderer) -> String {
+    let title = Level::ERROR.primary_title(&fault.message);
+    let title = match fault.code {
+        Some(code) => title.id(code),
+        None => title,
+    };
+    let bytes = fault.bytes.start.min(text.text.len())..fault.bytes.end.min(text.text.len());
+    let place = Snippet::source(&text.text).path(&text.name).annotation(AnnotationKind::Primary.span(bytes));
+    let group: Group<'_> = title.element(place);
+    let group = if fault.help.is_empty() { group } else { group.element(Level::HELP.message(&fault.help)) };
+    renderer.render(&[group])
+}
+
+/// A fault for programs.
+#[derive(Serialize)]
+struct Line<'a> {
+    file: &'a str,
+    line: usize,
+    column: usize,
+    bytes: [usize; 2],
+    code: Option<&'static str>,
+    message: &'a str,
+    help: &'a str,
+}
+
+/// The faults, each a line of JSON.
+pub fn json(text: &Text, faults: &[Fault]) -> String {
+    let line = |Fault { code, message, help, place: [line, column], bytes }: &Fault| {
+        let line = Line {
+            file: &text.name,
+            line: *line,
+            column: *column,
+            bytes: [bytes.start, bytes.end],
+            code: *code,
+            message,
+            help,
+        };
+        serde_json::to_string(&line).expect("texts and numbers") + "\n"
+    };
+    faults.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_is_shown_at_its_place() {
+        let text =
+            Text { name: "swing.bond".to_owned(), text: "graph Swing {\n    param mass: kgg = 2;\n}\n".to_owned() };
+        let faults = crate::file::graphs(&text).expect_err("there is no unit kgg");
+        let told = shown(&text, &faults[0], &Renderer::plain());
+        assert!(told.starts_with("error[BG0"), "{told}");
+        assert!(told.contains("--> swing.bond:2:17") && told.contains("^^^") && told.contains("help: "), "{told}");
+        let json = json(&text, &faults[..1]);
+        let value: serde_json::Value = serde_json::from_str(&json).expect("a line of JSON");
+        assert_eq!([value["line"].as_u64(), value["column"].as_u64()], [Some(2), Some(17)]);
+    }
+}

@@ -1,0 +1,60 @@
+//! The program `bond`: every command of the workbench on a text file, without rustc.
+//!
+//! In: a command, a file with graphs in the language of `bond_graph!` (or a robot's description), the command's options.
+//! Out: what the command gives of the models of the file, which are interpreted.
+
+mod arguments;
+mod check;
+mod faults;
+mod file;
+mod maker;
+mod new;
+
+use std::process::ExitCode;
+
+use arguments::{Asked, Call};
+use bg_workbench::Program;
+use bg_workbench::files::console;
+
+fn main() -> ExitCode {
+    let outcome = match arguments::asked(std::env::args_os().skip(1)) {
+        Ok(Asked::Help(text)) => console::print(&text).map(|()| ExitCode::SUCCESS).map_err(|fault| fault.to_string()),
+        Ok(Asked::Check { files, json }) => return check::check(&files, json),
+        Ok(Asked::New { name }) => new::new(&name).map(|()| ExitCode::SUCCESS),
+        Ok(Asked::Program(call)) => return program(call),
+        Err(fault) => Err(fault),
+    };
+    outcome.unwrap_or_else(|fault| {
+        console::complain(&fault);
+        ExitCode::from(2)
+    })
+}
+
+/// Hands a command of the workbench to the program of a graph.
+fn program(Call { file, graph, command, options }: Call) -> ExitCode {
+    let read = match file::read(&file) {
+        Ok(read) => read,
+        Err(fault) => {
+            console::complain(&fault);
+            return ExitCode::from(2);
+        }
+    };
+    let graphs = match file::graphs(&read) {
+        Ok(graphs) => graphs,
+        Err(faults) => {
+            faults::tell(&read, &faults);
+            return ExitCode::from(2);
+        }
+    };
+    match maker::Loaded::of(graphs, graph.as_deref()) {
+        Ok(loaded) => {
+            let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into));
+            let program = Program::with(loaded).on_file("bond", &file.display().to_string());
+            program.version(env!("CARGO_PKG_VERSION")).main(words.chain(options))
+        }
+        Err(fault) => {
+            console::complain(&format!("{}: {fault}", file.display()));
+            ExitCode::from(2)
+        }
+    }
+}

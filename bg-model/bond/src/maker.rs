@@ -1,0 +1,83 @@
+//! The models of a graph of a text, for the workbench.
+//!
+//! In: the graphs of a text, the name of one. Out: what makes its models: they are interpreted.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium, linearise_at};
+use bg_loaded::{Blueprint, Graph, Interpreted};
+use bg_model::description::Description;
+use bg_model::dynamics;
+use bg_model::input::Input;
+use bg_model::mechanism::Differentiable;
+use bg_model::parameters::ParameterError;
+use bg_model::run::State;
+use bg_workbench::machine::Machine;
+use bg_workbench::maker::Maker;
+
+/// A graph of a text.
+#[derive(Debug)]
+pub struct Loaded {
+    graph: Graph,
+}
+
+impl Loaded {
+    /// The graph called `name`, or the only one.
+    ///
+    /// # Errors
+    /// There is none, or there are several and no name: a sentence.
+    pub fn of(graphs: Vec<Graph>, name: Option<&str>) -> Result<Self, String> {
+        let names = || graphs.iter().map(|graph| format!("`{}`", graph.name)).collect::<Vec<_>>().join(", ");
+        let place = match name {
+            Some(name) => graphs
+                .iter()
+                .position(|graph| graph.name == name)
+                .ok_or_else(|| format!("there is no graph `{name}`; there are {}", names()))?,
+            None if graphs.len() == 1 => 0,
+            None if graphs.is_empty() => return Err("there is no graph, only parts".to_owned()),
+            None => return Err(format!("which graph? Say --graph NAME: there are {}", names())),
+        };
+        let graph = graphs.into_iter().nth(place).expect("it has this place");
+        Ok(Self { graph })
+    }
+
+    fn blueprint(&self, model: usize) -> &Arc<Blueprint> {
+        &self.graph.models[model].blueprint
+    }
+}
+
+impl Maker for Loaded {
+    fn models(&self) -> Vec<&'static Description> {
+        self.graph.models.iter().map(|model| model.blueprint.description()).collect()
+    }
+
+    fn is_literal(&self) -> bool {
+        self.graph.is_literal
+    }
+
+    fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError> {
+        let model = Interpreted::new(self.blueprint(model), own, inputs)?;
+        Ok(Box::new(Made { over_slices: model.machine(), model }))
+    }
+}
+
+/// A model of it.
+struct Made {
+    model: Interpreted,
+    over_slices: Rc<dyn dynamics::Machine>,
+}
+
+impl Machine for Made {
+    fn model(&self) -> Rc<dyn dynamics::Machine> {
+        Rc::clone(&self.over_slices)
+    }
+
+    fn equilibrium(&self, t: f64, guess: &[f64]) -> Option<Result<Equilibrium, LinearError>> {
+        Some(equilibrium(&self.model, t, guess))
+    }
+
+    fn linearised(&self, state: &State) -> Option<Result<StateSpace, LinearError>> {
+        Some(linearise_at(&self.model, state))
+    }
+}
