@@ -113,7 +113,7 @@ impl dyn Machine + '_ {
     /// Makes a run from there, and tells `told` the time reached, s, after each step.
     ///
     /// # Errors
-    /// As [`start`](#method.start), or the run stops before its end.
+    /// As for its start, or the run stops before its end.
     pub fn run(
         &self,
         request: Request,
